@@ -1,5 +1,6 @@
 """Agents as a user might write them, good and bad; found as `tests.own_agents:Name`."""
 
+import os
 import time
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal
@@ -56,6 +57,24 @@ class Ponderous(Restless):
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         time.sleep(600)
         return super().act(observation, legal)
+
+
+class Slow(Restless):
+    """Takes seconds for an evaluation."""
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        time.sleep(0.2)
+        return super().act(observation, legal)
+
+
+class Parent(Restless):
+    """Leaves a process behind that has all its files open."""
+
+    def __init__(self, rng: np.random.Generator, problem: Problem) -> None:
+        super().__init__(rng, problem)
+        if os.fork() == 0:
+            time.sleep(600)
+            os._exit(0)
 
 
 class Moody(LinearModel):

@@ -10,7 +10,7 @@ from typing import Any
 
 from distributed import Scheduler, Worker
 
-from app.process_setup import set_process_name
+from app.processes import set_process_name
 
 
 class NoHttpServer:

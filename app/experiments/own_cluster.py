@@ -6,9 +6,13 @@ import os
 import signal
 import sys
 import tempfile
+import threading
+from collections import Counter
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from typing import TYPE_CHECKING
+
+from app.processes import STALLED_S, is_stopped
 
 if TYPE_CHECKING:
     from distributed import Client, SpecCluster
@@ -88,6 +92,7 @@ def own_cluster(workers: int) -> "Iterator[Client]":
             )
         stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster, set_as_default=False))
+        stack.enter_context(_watched(cluster))
         stack.callback(_kill_workers, cluster)
         yield client
 
@@ -130,6 +135,30 @@ def _sigint_blocked() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _watched(cluster: "SpecCluster") -> Iterator[None]:
+    """Kill workers that a signal has stopped for `STALLED_S`; others then get their trials."""
+    closing, seen_stopped = threading.Event(), Counter[int]()
+
+    def watch() -> None:
+        while not closing.wait(1.0):
+            # Times that it was seen so, since a clock also runs while all processes are stopped.
+            for pid in [nanny.pid for nanny in list(cluster.workers.values())]:
+                seen_stopped[pid] = seen_stopped[pid] + 1 if pid and is_stopped(pid) else 0
+                if seen_stopped[pid] > STALLED_S:
+                    _logger.warning("a worker was stopped by a signal for %g s", STALLED_S)
+                    with suppress(ProcessLookupError):
+                        os.kill(pid, signal.SIGKILL)
+
+    thread = threading.Thread(target=watch, name="workers' watch", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        closing.set()
+        thread.join()
 
 
 def _kill_workers(cluster: "SpecCluster") -> None:

@@ -8,18 +8,21 @@ import multiprocessing
 import os
 import signal
 import sys
+import threading
+import time
 from collections.abc import Sequence
 from contextlib import suppress
-from functools import partial
+from functools import cache, partial
 from multiprocessing import forkserver, resource_tracker, util
 from multiprocessing.context import ForkServerContext, SpawnContext
 from pathlib import Path
 from typing import Any
 
-from app.process_setup import die_with_parent, set_process_name
+from app.processes import die_with_parent, set_process_name
 
 _PRELOADED = ["app.jobs.worker", "app.physics.mujoco_simulator"]
 """Modules that most processes need, those included that are otherwise imported late."""
+_CONTINUED_EVERY_S = 1.0
 _start_interpreter = util.spawnv_passfds
 
 
@@ -27,15 +30,11 @@ def process_context() -> "ForkServerContext | SpawnContext":
     """Return the `multiprocessing` context that creates processes.
 
     On Linux it starts a fork server where none runs. Elsewhere, where the libraries that are used
-    do not all survive a fork, each process is started anew. A fork server that a signal has stopped
-    is continued, since whoever starts a process waits for it.
+    do not all survive a fork, each process is started anew.
     """
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
-    pid = vars(forkserver._forkserver)["_forkserver_pid"]  # noqa: SLF001 - it is told nowhere else
-    if pid is not None:
-        with suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGCONT)
+    _start_watch()
     forkserver.set_forkserver_preload(_PRELOADED)
     return multiprocessing.get_context("forkserver")
 
@@ -59,6 +58,25 @@ def start_fork_server() -> None:
         forkserver.ensure_running()
     finally:
         util.spawnv_passfds = _start_interpreter
+
+
+@cache
+def _start_watch() -> None:
+    """Continue a fork server that a signal has stopped, within `_CONTINUED_EVERY_S`.
+
+    Whoever starts a process waits for it, and so does whoever waits for the end of one.
+    """
+
+    def watch() -> None:
+        while True:
+            time.sleep(_CONTINUED_EVERY_S)
+            # It is told nowhere else.
+            pid = vars(forkserver._forkserver)["_forkserver_pid"]  # noqa: SLF001
+            if pid is not None:
+                with suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGCONT)
+
+    threading.Thread(target=watch, name="fork server's watch", daemon=True).start()
 
 
 def _fork(

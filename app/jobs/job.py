@@ -31,6 +31,7 @@ from app.jobs.messages import (
     TrialsDone,
 )
 from app.jobs.worker_process import Exit, WorkerProcess
+from app.processes import STALLED_S
 from app.runs.race_config import RaceConfig
 from app.runs.recording import LaneRecording
 from app.runs.records import Evaluated, Reference
@@ -43,11 +44,10 @@ from app.storage.run import ANNOTATIONS, CHECKPOINT, LIVE, RUNNING, SUMMARY, TAB
 
 MAX_OUTAGE_S = 600.0
 """Longest database outage that a job waits out; after that its run becomes `interrupted`."""
-STALLED_S = 8.0
-"""A process stopped by a signal (SIGSTOP) for longer is killed, since its run reads `running`."""
 SILENT_S = 60.0
 """A process without a heartbeat for longer is killed. Longer than `STALLED_S`, since on a busy
 machine a silent process may still work."""
+_EVENT_S_PER_CHANGE = 0.001
 _logger = logging.getLogger(__name__)
 
 
@@ -251,6 +251,7 @@ class Job:
         # Check that the store works before anything is discarded: raises during an outage.
         self._store.get(self.run_id)
         if self.stopping:
+            self._keep_checkpoint()
             if self._has_begun:
                 error = f"It did not answer when it was to stop, so {end.how}."
                 self.end("stopped", error, self._result_so_far())
@@ -262,6 +263,13 @@ class Job:
             self.end("interrupted", f"What came of it could not be kept: {end.error}.")
         else:
             self.end("failed", f"The job ended before it was done: {end.how}.")
+
+    def _keep_checkpoint(self) -> None:
+        """Let the newest checkpoint be the table of a training that cannot save one any more."""
+        if self._store.artifact(self.run_id, TABLE) is None:
+            checkpoint = self._store.artifact(self.run_id, CHECKPOINT)
+            if checkpoint is not None:
+                self._store.put_artifact(self.run_id, TABLE, checkpoint)
 
     def _handle_with_retry(self, message: Message) -> None:
         """Handle a message, retrying while the database is unavailable.
@@ -332,7 +340,9 @@ class Job:
             # The process may report its last steps after the run was paused.
             eta_s = eta_s if self.last.state in RUNNING else None
             self.last = replace(self.last, done=done, eta_s=eta_s)
-            if time.monotonic() - self._published_s >= 1 / self.events_per_s:
+            # An event has all changes of the run.
+            period_s = max(1 / self.events_per_s, len(self.last.changes) * _EVENT_S_PER_CHANGE)
+            if time.monotonic() - self._published_s >= period_s:
                 self.publish()
 
     def _handle_change(self, changed: Changed) -> None:

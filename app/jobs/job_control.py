@@ -245,6 +245,8 @@ class JobControl:
             agent.tune(**rates)
         if "pace" in changes:
             self._pace = changes["pace"]
+            # A step that is overdue by the new pace begins now; those after it wait their time.
+            self._began_s = max(self._began_s, time.monotonic() - self._interval_s())
         self.changes.append({"step": step, **changes})
 
 

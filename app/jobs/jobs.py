@@ -53,6 +53,8 @@ from app.storage.run_ids import RunIds
 MAX_PAUSED = 16
 MAX_PENDING_CHANGES = 8
 """Maximum number of changes that wait for acknowledgement at once; each blocks a thread."""
+MAX_CHANGES = 2_000
+"""Maximum number of live changes of a run; each of its events has all of them."""
 _ACKNOWLEDGE_S = 5.0
 _KILL_S = 2.0
 _EXIT_S = 10.0
@@ -301,7 +303,7 @@ class Jobs:
 
         Raises:
             NotFound: if there is no such run.
-            Conflict: if it neither runs nor is paused.
+            Conflict: if it neither runs nor is paused, or was changed `MAX_CHANGES` times.
             UnknownName, InvalidInput: for what cannot be changed so.
             NotAnswering: if its process does not acknowledge in time; nothing is changed then.
             Busy: if too many changes wait for acknowledgement.
@@ -330,7 +332,7 @@ class Jobs:
 
         Raises:
             NotFound: if there is no such run.
-            Conflict: if it neither runs nor is paused.
+            Conflict: if it neither runs nor is paused, or was changed `MAX_CHANGES` times.
             InvalidInput: if it cannot happen to this robot, or contradicts what else happens.
             NotAnswering: if its process does not acknowledge in time; nothing happens then.
             Busy: if too many changes wait for acknowledgement.
@@ -360,7 +362,14 @@ class Jobs:
         try:
             with self._changed:
                 job = self._live_job(run_id, LIVE, "changed")
-                changes = checked(self._store.get(run_id))
+                run = self._store.get(run_id)
+                if len(run.changes) >= MAX_CHANGES:
+                    raise Conflict(
+                        f"training {run_id} was changed {MAX_CHANGES:,} times, which is the most; "
+                        "stop it, and continue from its table",
+                        run.state,
+                    )
+                changes = checked(run)
                 sent = job.tune(changes, _ACKNOWLEDGE_S) if job.is_answering else None
             if sent is None or not sent.received.wait(_ACKNOWLEDGE_S) or sent.changed is None:
                 raise NotAnswering(

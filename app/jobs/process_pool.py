@@ -3,7 +3,6 @@
 import multiprocessing
 import os
 import queue
-import signal
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -15,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from app.domain.errors import HexapodError, InvalidInput
 from app.jobs.fork_server import process_context
-from app.process_setup import set_up_process
+from app.processes import kill_group, set_up_process
 from app.storage.errors import Busy
 
 IDLE_S = 60.0
@@ -161,15 +160,12 @@ class ProcessPool:
         for process in list((executor._processes or {}).values()) if executor else ():  # noqa: SLF001
             with suppress(ValueError):  # it has exited, and its handle is closed
                 if process.pid is not None and process.is_alive():
-                    with suppress(ProcessLookupError):  # it has no group of its own yet
-                        os.killpg(process.pid, signal.SIGKILL)
-                    process.kill()
+                    kill_group(process.pid)
+                    process.kill()  # it may have no group of its own yet
 
 
 def _set_up_worker() -> None:
     set_up_process(NICENESS)
-    # With processes that it starts itself, such as an encoder, it is killed as a group.
-    os.setpgrp()
     threading.Thread(target=_exit_with_parent, daemon=True).start()
 
 

@@ -29,6 +29,8 @@ _CHECKPOINT_S = 4.0
 """Time for jobs to write a last checkpoint at shutdown, of the 10 s that a shutdown may take."""
 _KILL_S = 1.5
 _CHECK_EVERY_S = 1.0
+_FROZEN_S = 5.0
+"""After a longer time between two checks the server was stopped itself, perhaps with its jobs."""
 _STORE_UNAVAILABLE = (StorageFailed, StorageFull)
 _logger = logging.getLogger(__name__)
 
@@ -75,6 +77,8 @@ class Supervisor:
         self._shutdown = threading.Event()
         self._last_progress_s = time.monotonic()
         """When a run was started last, or no run could be started; monotonic clock."""
+        self._checked_s = time.monotonic()
+        """When the jobs were checked last; monotonic clock."""
         self._thread = threading.Thread(target=self._supervise, name="supervisor", daemon=True)
 
     @property
@@ -212,7 +216,10 @@ class Supervisor:
 
     def _check_jobs(self) -> None:
         """Kill stalled processes, and reconcile the states that failed writes left uncertain."""
+        checked_s, self._checked_s = self._checked_s, time.monotonic()
         for job in self._jobs.values():
+            if self._checked_s - checked_s > _FROZEN_S:
+                job.process.excuse_silence()
             job.end_if_stalled()
         for run_id in list(self._to_reconcile):
             running_job = self._jobs.get(run_id)

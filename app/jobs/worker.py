@@ -35,7 +35,7 @@ from app.jobs.messages import (
     Task,
     TrainingTask,
 )
-from app.process_setup import set_up_process
+from app.processes import set_up_process
 from app.runs.racing import race
 from app.runs.records import LaneStep, StepTaken
 from app.runs.tables import restore, snapshot, to_bytes
@@ -106,6 +106,8 @@ def _train(task: TrainingTask, control: JobControl) -> None:
         control.checkpoint()
         return
     if result is None:
+        # What was learned is kept even if the evaluation takes longer than a stop may.
+        control.checkpoint()
         # The baseline's walk takes a while; a training that is stopped early does not wait for it.
         result = finish_training(learner, config, measure_reference=False)
     control.send(Saved(_saved(learner, task, control)))

@@ -7,12 +7,13 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from pathlib import Path
+from multiprocessing import connection
 from typing import NamedTuple
 
 from app.jobs import worker
 from app.jobs.fork_server import process_context
 from app.jobs.messages import Command, Heartbeat, Message, Task
+from app.processes import is_stopped, kill_group
 
 _EXIT_S = 5.0
 _logger = logging.getLogger(__name__)
@@ -74,7 +75,7 @@ class WorkerProcess:
         except EOFError as error:
             raise OSError("the process that forks others has ended") from error
         self._last_message_s = time.monotonic()
-        # With the server's copy of the child's end closed, `recv` raises EOFError at its exit.
+        # Its exit is then the end of the pipe, unless a process that it started holds that too.
         self._child_pipe.close()
         name = self._process.name
         threading.Thread(target=self._receive_loop, args=(on_end,), name=name, daemon=True).start()
@@ -102,23 +103,21 @@ class WorkerProcess:
         """Return the time since its last message or heartbeat [s]; 0 while one is handled."""
         return 0.0 if self._is_handling else time.monotonic() - self._last_message_s
 
+    def excuse_silence(self) -> None:
+        """Measure silence and stop anew: nobody listened, as the server was stopped itself."""
+        self._last_message_s = time.monotonic()
+        self._stopped_since_s = None
+
     def stopped_s(self) -> float:
         """Return for how long it was observed stopped by a signal such as SIGSTOP [s], else 0."""
-        if not self._is_stopped():
+        pid = self.pid
+        if pid is None or not is_stopped(pid):
             self._stopped_since_s = None
             return 0.0
         now = time.monotonic()
         if self._stopped_since_s is None:
             self._stopped_since_s = now
         return now - self._stopped_since_s
-
-    def _is_stopped(self) -> bool:
-        try:
-            status = Path(f"/proc/{self.pid}/stat").read_bytes()
-        except OSError:  # it has exited, or this is not Linux
-            return False
-        # The state follows the name, which is in parentheses and may contain any.
-        return status.rpartition(b") ")[2][:1] == b"T"
 
     def _send_loop(self) -> None:
         while (item := self._to_send.get()) is not None:
@@ -128,7 +127,7 @@ class WorkerProcess:
 
     def _receive_loop(self, on_end: Callable[[Exit], None]) -> None:
         try:
-            while True:
+            while self._has_message():
                 self._handle(self._pipe.recv())
         except (EOFError, ConnectionError):
             pass
@@ -141,10 +140,17 @@ class WorkerProcess:
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
+        if self._process.pid is not None:
+            kill_group(self._process.pid)  # what it started and did not end
         self._to_send.put(None)
         end = Exit(self._exit_description(), self._error)
         self._process.close()
         on_end(end)
+
+    def _has_message(self) -> bool:
+        """Wait for a message; False if there will be none, as the process has exited."""
+        connection.wait([self._pipe, self._process.sentinel])
+        return self._pipe.poll()
 
     def _handle(self, message: Message | Heartbeat) -> None:
         """Handle a message; the time that takes does not count as silence of the process."""

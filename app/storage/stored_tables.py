@@ -99,7 +99,7 @@ def _require_table(run: Run, table: T | None) -> T:
             f"training {run.id} is {run.state}; choose one that is finished or stopped", run.state
         )
     if table is None:
-        raise Conflict(f"training {run.id} was {run.state} before it began", run.state)
+        raise Conflict(f"training {run.id} was {run.state} before it kept a table", run.state)
     return table
 
 

@@ -68,6 +68,22 @@ def test_a_worker_killed_midway_changes_no_result(
     assert results(while_killing_workers()) == expected
 
 
+def test_stopped_workers_are_replaced(
+    trials: list[Trial], expected: dict[str, TrialResult], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As by SIGSTOP: their connections stay open, so that Dask notices nothing."""
+    monkeypatch.setattr("app.experiments.own_cluster.STALLED_S", 0.5)
+
+    def while_stopping_workers() -> Iterator[Outcome]:
+        for number, outcome in enumerate(run_trials(trials, TWO)):
+            if number == 5:
+                for worker in workers_of(psutil.Process()):
+                    worker.suspend()
+            yield outcome
+
+    assert results(while_stopping_workers()) == expected
+
+
 def test_a_trial_is_set_aside_after_three_dead_workers_or_one_exception(
     poisoned: Path,
 ) -> None:

@@ -66,3 +66,23 @@ def test_a_stopped_fork_server_keeps_no_run_waiting(launch: Callable[..., Served
     fork_server(server).suspend()
     run = server.start({**BODY, "steps": 50})
     assert server.in_state(run, "finished", "failed")["state"] == "finished"
+
+
+def test_a_stopped_fork_server_keeps_no_core_and_no_shutdown_waiting(
+    launch: Callable[..., Served],
+) -> None:
+    """It reaps what it has forked, so that the end of a job is seen through it alone."""
+    server = launch()
+    cores = psutil.cpu_count() or 1
+    body = {**BODY, "steps": 100, "pace": 20, "evaluate_every": 0}
+    runs = [server.start(body) for _ in range(cores)]
+    for run in runs:
+        server.moving(run)
+    fork_server(server).suspend()
+    for run in runs:
+        server.in_state(run, "finished")
+    waited = server.start({**BODY, "steps": 50})
+    assert server.in_state(waited, "finished", "failed")["state"] == "finished"
+    server.moving(server.start(ENDLESS))
+    fork_server(server).suspend()
+    assert server.end() == 0

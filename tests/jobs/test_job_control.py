@@ -94,6 +94,16 @@ def test_step_does_not_begin_because_its_pace_was_moved(pipe: FakePipe) -> None:
     assert time.monotonic() - began >= 0.24
 
 
+def test_one_step_begins_at_once_if_a_new_pace_makes_it_overdue(pipe: FakePipe) -> None:
+    pipe.control.keep_pace(0.01, step_s=0.1)
+    time.sleep(0.25)
+    pipe.commands.put(Command("tune", 1, {"pace": 0.5}))
+    assert pipe.control.wait_for_turn(1)
+    began = time.monotonic()
+    assert pipe.control.wait_for_turn(2)
+    assert time.monotonic() - began >= 0.19
+
+
 def test_tune_changes_rates_and_records_the_change(pipe: FakePipe) -> None:
     grid = FootGrid()
     agent = QLearning(generator(0), Problem(((1, 4), (2, 5), (3, 6)), grid.cells))

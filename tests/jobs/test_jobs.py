@@ -12,7 +12,7 @@ import pytest
 
 from app.domain.errors import InvalidInput
 from app.events.bus import EventBus
-from app.jobs.job import Job
+from app.jobs.job import SILENT_S, Job
 from app.jobs.jobs import Jobs
 from app.jobs.queue import MAX_QUEUED, RunQueue
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
@@ -22,6 +22,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, StorageFailed
 from app.storage.recordings import Recordings
 from app.storage.run import QUEUED, Run
+from app.storage.stored_tables import load_table
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.patience import LONG_S
 from tests.storage.stores import of_type
@@ -170,6 +171,34 @@ def test_race_whose_agent_does_not_let_itself_be_stopped_is_ended(
     assert [lane["steps"] for lane in stopped.result["lanes"]] == [1, 0]
 
 
+def test_stop_keeps_what_was_learned_although_the_last_evaluation_takes_too_long(
+    jobs: Jobs, store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Job, "stop_grace_s", 3.0)
+    run = jobs.train(training(steps=1000, agent="tests.own_agents:Slow"))
+    wait_for_progress(store, run)
+    stopped = jobs.stop(run.id)
+    assert (stopped.state, stopped.error) == (
+        "stopped",
+        "It did not answer when it was to stop, so it was ended after 3 s; what was done is kept.",
+    )
+    assert load_table(store, run.id).meta["step"] == stopped.done > 0
+
+
+def test_number_of_live_changes_is_limited(
+    jobs: Jobs, store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.jobs.jobs.MAX_CHANGES", 2)
+    run = jobs.train(endless())
+    wait_for_progress(store, run)
+    jobs.change(run.id, {"alpha": 0.5})
+    jobs.change(run.id, {"pace": 10})
+    with pytest.raises(Conflict, match="was changed 2 times, which is the most"):
+        jobs.change(run.id, {"alpha": 0.6})
+    assert len(store.get(run.id).changes) == 2
+    jobs.stop(run.id)
+
+
 def test_starting_run_stops_at_once(jobs: Jobs, store: RunStore) -> None:
     # It takes a step in 3 s: the second one would come long after it is seen to run.
     run = jobs.train(training(steps=100, pace=0.1, evaluate_every=0))
@@ -187,6 +216,41 @@ def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: Ru
     assert now.state == "failed"
     assert "SIGKILL" in (now.error or "")
     assert wait_until_ended(store, jobs.train(training())).state == "finished", "others go on"
+
+
+@pytest.mark.parametrize("is_killed", [False, True])
+def test_process_that_an_agent_started_ends_with_its_job(
+    jobs: Jobs, store: RunStore, is_killed: bool
+) -> None:
+    run = jobs.train(training(steps=100, pace=20, agent="tests.own_agents:Parent"))
+    wait_for_progress(store, run)
+    (left,) = psutil.Process(pid_of(jobs, run)).children()
+    if is_killed:
+        os.kill(pid_of(jobs, run), signal.SIGKILL)
+    assert wait_until_ended(store, run).state == ("failed" if is_killed else "finished")
+    assert wait_until_ended(store, jobs.train(training())).state == "finished", "the core is free"
+    wait_until(lambda: not left.is_running() or left.status() == psutil.STATUS_ZOMBIE)
+
+
+def test_jobs_outlive_a_stop_of_the_server_that_stops_them_too(store: RunStore) -> None:
+    """As Ctrl-Z in a terminal, or a paused container."""
+    bus = EventBus()
+    jobs = Jobs(store, Recordings(store), bus, cores=1)
+    jobs.open()
+    try:
+        run = jobs.train(endless())
+        wait_for_progress(store, run)
+        job = jobs._supervisor.find(run.id)
+        assert job is not None
+        with jobs._supervisor.changed:  # neither it nor its jobs are looked after meanwhile
+            time.sleep(0.1)
+            jobs._supervisor._checked_s -= 2 * SILENT_S
+            job.process._last_message_s -= 2 * SILENT_S
+            jobs._supervisor._check_jobs()
+        done = store.get(run.id).done
+        wait_until(lambda: store.get(run.id).done > done + 1)
+    finally:
+        jobs.close()
 
 
 def test_race_fails_if_its_training_fails(jobs: Jobs, store: RunStore) -> None:

@@ -1,4 +1,4 @@
-"""Set-up shared by worker processes: name, priority, SIGINT, death with the parent."""
+"""Worker processes: name, priority, SIGINT, groups, death with the parent, whether stopped."""
 
 import ctypes
 import multiprocessing
@@ -6,12 +6,17 @@ import os
 import signal
 import sys
 from contextlib import suppress
+from pathlib import Path
 
+STALLED_S = 8.0
+"""A worker process stopped by a signal (SIGSTOP) for longer is killed: it would never be done."""
 _PR_SET_PDEATHSIG, _PR_SET_NAME = 1, 15
 
 
 def set_up_process(niceness: int) -> None:
     """Name this process, lower its priority, ignore SIGINT, and die with the parent.
+
+    It leads a group of its own, so that it can be killed with the processes that it starts.
 
     Args:
         niceness: added to the nice value.
@@ -22,6 +27,27 @@ def set_up_process(niceness: int) -> None:
     # Ctrl-C goes to the terminal's whole process group; the server shuts its workers down itself.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     die_with_parent()
+    os.setpgrp()
+
+
+def kill_group(pid: int) -> None:
+    """Kill the processes of a group that still run (SIGKILL), if it exists.
+
+    Args:
+        pid: id of the process that leads or led it.
+    """
+    with suppress(ProcessLookupError):
+        os.killpg(pid, signal.SIGKILL)
+
+
+def is_stopped(pid: int) -> bool:
+    """Whether a signal such as SIGSTOP has stopped a process; Linux only, else False."""
+    try:
+        status = Path(f"/proc/{pid}/stat").read_bytes()
+    except OSError:  # it has exited, or this is not Linux
+        return False
+    # The state follows the name, which is in parentheses and may contain any.
+    return status.rpartition(b") ")[2][:1] == b"T"
 
 
 def die_with_parent() -> None:
