@@ -17,7 +17,7 @@ from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, 
 from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
-from app.domain.errors import DamagedFile, HexapodError
+from app.domain.errors import HexapodError
 from app.storage.database.fair_semaphore import FairSemaphore
 from app.storage.database.schema import ABOUT
 from app.storage.errors import OwnershipLost, StorageFailed, StorageFull
@@ -233,7 +233,7 @@ def translate_errors() -> Iterator[None]:
     """Translate the driver's errors into `HexapodError`s with messages for the user.
 
     Raises:
-        StorageFull, StorageFailed, DamagedFile: in place of the driver's errors.
+        StorageFull, StorageFailed: in place of the driver's errors.
     """
     try:
         yield
@@ -288,7 +288,7 @@ def _disk_full_error() -> HexapodError:
 
 
 def _corrupt_error() -> HexapodError:
-    return DamagedFile(
+    return StorageFailed(
         "the database file in the data folder is damaged, or is no database; move it away to "
         "begin anew, or put a copy of it back"
     )

@@ -36,8 +36,8 @@ def open_store(
     Raises:
         InvalidInput: if another server owns the database, a newer version created it, or the data
             folder is not writable.
-        DamagedFile: if the database is damaged.
-        StorageFailed: if the database is unavailable.
+        DamagedFile: if the database is empty, or lacks tables.
+        StorageFailed: if the database is damaged or unavailable.
     """
     settings.prepare_data()
     with lock_folder(settings.data):

@@ -26,8 +26,8 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
 
     Raises:
         InvalidInput: if it has the schema of another version.
-        DamagedFile: if the database is damaged.
-        StorageFailed: if it cannot be read.
+        DamagedFile: if the database is empty, or lacks tables.
+        StorageFailed: if it is damaged, or cannot be read.
     """
     with ExitStack() as stack:
         database = stack.enter_context(closing(Database(_engine(settings))))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from app.domain.errors import DamagedFile, InvalidInput
+from app.domain.errors import InvalidInput
 from app.settings import Settings
 from app.storage.database import engine
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
@@ -139,7 +139,7 @@ def test_newer_schema_is_refused(backend: str, postgresql: PostgresServer, tmp_p
 
 def test_file_that_is_no_database_is_refused_and_unchanged(tmp_path: Path) -> None:
     (tmp_path / DATABASE_FILE).write_bytes(b"holiday pictures" * 100)
-    with pytest.raises(DamagedFile, match="no database"):
+    with pytest.raises(StorageFailed, match="no database"):
         open_store(Settings(data=tmp_path)).__enter__()
     assert (tmp_path / DATABASE_FILE).read_bytes().startswith(b"holiday")
 

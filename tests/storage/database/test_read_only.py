@@ -75,5 +75,5 @@ def test_schema_of_another_version_is_refused(tmp_path: Path) -> None:
 
 def test_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
     (tmp_path / DATABASE_FILE).write_text("milk" * 1000)
-    with pytest.raises(InvalidInput, match="damaged"), open_read_only(Settings(data=tmp_path)):
+    with pytest.raises(StorageFailed, match="damaged"), open_read_only(Settings(data=tmp_path)):
         pass
