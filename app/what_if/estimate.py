@@ -2,11 +2,12 @@
 
 import threading
 import time
-from collections import OrderedDict
+from collections import OrderedDict, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, zip_longest
+from statistics import fmean
 from typing import NamedTuple
 
 from app.agents.registry import learns
@@ -26,13 +27,20 @@ from app.runs.config import RACE_STEPS, TrainingConfig, training_config
 from app.storage.errors import Busy
 from app.what_if.step_time import Steps, step_s_of
 
-MAX_MEASURED = 12
-"""Agents and walking problems of an experiment that are timed; others count as their mean."""
+MAX_MEASURED = 24
+"""Kinds of steps of an experiment that are timed; others count as the mean of their sort."""
 MAX_CACHED = 256
 CACHED_S = 600.0
 """After this time the machine may be busier, or less."""
 MAX_AT_ONCE = 4
 """Requests whose steps are timed, or wait for that; each holds a thread of the server."""
+
+
+class _Sort(NamedTuple):
+    """What a step's time depends on most: two-step takes a hundred times as long as a table."""
+
+    agent: str
+    simulator: str
 
 
 class _Part(NamedTuple):
@@ -89,9 +97,15 @@ class Estimates:
     def _experiment_s(self, config: ExperimentConfig, workers: int) -> float:
         plan = plan_of(config)
         parts = [*_trials(plan)]
-        measured = self._measured(one.steps for one in parts)
-        mean = sum(measured.values()) / max(len(measured), 1)
-        total = sum(one.number * measured.get(one.steps, mean) for one in parts)
+        measured = self._measured(_each_sort_first(one.steps for one in parts))
+        by_sort: defaultdict[_Sort, list[float]] = defaultdict(list)
+        for steps, step_s in measured.items():
+            by_sort[_sort(steps)].append(step_s)
+        total = sum(
+            one.number
+            * measured.get(one.steps, fmean(by_sort[_sort(one.steps)] or [*measured.values()]))
+            for one in parts
+        )
         return total / max(1, min(workers, plan.total))
 
     def _measured(self, wanted: Iterable[Steps]) -> Mapping[Steps, float]:
@@ -134,6 +148,18 @@ class Estimates:
 
 def _seconds(parts: Iterable[_Part], measured: Mapping[Steps, float]) -> float:
     return sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
+
+
+def _sort(steps: Steps) -> _Sort:
+    return _Sort(steps.training.agent, steps.training.simulator)
+
+
+def _each_sort_first(kinds: Iterable[Steps]) -> list[Steps]:
+    """Return the kinds without repetitions: first one of each sort, then a second one of each."""
+    by_sort: defaultdict[_Sort, list[Steps]] = defaultdict(list)
+    for kind in dict.fromkeys(kinds):
+        by_sort[_sort(kind)].append(kind)
+    return [kind for kinds in zip_longest(*by_sort.values()) for kind in kinds if kind]
 
 
 def _kind(config: TrainingConfig) -> Steps:

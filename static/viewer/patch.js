@@ -13,6 +13,7 @@
   const query = new URLSearchParams(location.search);
   let view = query.get("view") ?? "leader";
   let socketWorker = null;
+  let isConnecting = false;
   // Close reasons of the hub that refuse a viewer. viser's client tries again all the same.
   const REFUSALS = ["full", "address full", "place taken"];
 
@@ -53,6 +54,7 @@
   };
 
   const onSocket = ({ data }) => {
+    if (data.type === "connected" || data.type === "closed") isConnecting = false;
     if (data.type === "connected") {
       // A reconnection uses the first address, and the view may have changed since.
       sendView();
@@ -86,6 +88,10 @@
     }
 
     postMessage(message, ...rest) {
+      // The client gives up an attempt after a second. After many that failed browsers begin the next one
+      // later than that, so that none would succeed; the worker gives them up after five.
+      if (message?.type === "retry" && isConnecting) return;
+      if (message?.type === "retry" || message?.type === "set_server") isConnecting = true;
       if (message?.type !== "set_server") return super.postMessage(message, ...rest);
       socketWorker = this;
       this.addEventListener("message", onSocket);

@@ -16,6 +16,7 @@ from app.viewer.hub import Hub
 from app.viewer.track import Position
 from app.viewer.viser_internals import stream
 from app.viewer.viser_internals.server import InProcessViser
+from tests.conftest import new_page
 from tests.viewer.serving import ServedHub, Upstream, serving, start_viser, wait_until
 
 DASHBOARD = """
@@ -397,3 +398,29 @@ def test_recording_plays_with_a_seek_bar(
         )
     label_of_viser = "window.__viserSceneTree.getState()['/world/label'].message.props.text"
     assert page.evaluate(label_of_viser) == ""
+
+
+def test_an_attempt_to_connect_is_not_given_up_for_the_next_one(
+    flat_browser: Browser, served: ServedHub
+) -> None:
+    """After a long outage browsers begin each attempt later than the client would begin anew."""
+    script = """async () => {
+      const lines = `const got = [];
+        onmessage = ({ data: { type } }) => {
+          if (type === "fail") postMessage({ type: "closed" });
+          else if (type === "tell") postMessage({ type: "got", got });
+          else got.push(type);
+        };`;
+      const worker = new Worker(URL.createObjectURL(new Blob([lines])));
+      const answer = () => new Promise((resolve) => {
+        worker.addEventListener("message", ({ data }) => resolve(data), { once: true });
+      });
+      const post = (...types) => types.forEach((type) => worker.postMessage({ type }));
+      post("set_server", "retry", "retry", "fail");
+      await answer();
+      post("retry", "retry", "tell");
+      return (await answer()).got;
+    }"""
+    with new_page(flat_browser) as page:
+        page.goto(served.page)
+        assert page.evaluate(script) == ["set_server", "retry"]

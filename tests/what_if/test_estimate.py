@@ -82,6 +82,22 @@ def test_trials_are_divided_among_the_workers() -> None:
     )
 
 
+def test_trials_that_are_not_timed_count_as_those_of_the_same_agent(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("app.what_if.estimate.MAX_MEASURED", 4)
+    config = experiment_config(
+        "sweep", {"seeds": 1, "agents": ("greedy", "q-learning"), "steps": (100,)}
+    )
+    pool = TimedPool()
+    gaits = len(config.gaits)
+    assert gaits > 2
+    estimated_s = Estimates(pool, cores=1).of(ExperimentStart(config, workers=1))
+    assert sorted(pool.timed) == ["greedy", "greedy", "q-learning", "q-learning"]
+    greedy_s, learner_s = 50 * 1.0, (100 + 50) * 0.1
+    assert estimated_s == pytest.approx(gaits * (greedy_s + learner_s))
+
+
 def test_more_than_one_request_that_waits_is_refused_as_busy() -> None:
     pool = TimedPool()
     estimates = Estimates(pool, cores=1)

@@ -42,8 +42,9 @@ Assumed by `client`:
 
 - page_is_one_file: `viser/client/build/index.html` is the whole client, with one `<head>`.
 - client_is_packed: the page has one script, which unpacks the client from base 88 and zstd.
-- worker_messages: the websocket lives in a worker that takes `set_server` and `send`, and reports
-  `connected` and `closed`, with `versionMismatch` (for close code 1002) and `closeReason`.
+- worker_messages: the websocket lives in a worker that takes `set_server`, `retry` and `send`, and
+  reports `connected` and `closed`, with `versionMismatch` (for close code 1002) and `closeReason`;
+  it closes an attempt to connect after five seconds.
 - query_parameters: the client reads `websocket`, `playbackPath` and those of `_ALLOWED_QUERY`.
 - reconnects_with_focus: the client reconnects only while `document.hasFocus()`.
 - code_from_strings: the client calls `Function` only for `RunJavascriptMessage`, which is blocked,

@@ -378,8 +378,10 @@ def test_worker_messages(client: str) -> None:
         "{type:`closed`,versionMismatch:",
         "closeReason:t.reason",
         "code===1002",
+        "type===`retry`",
     ):
         assert part in client
+    assert re.search(r"setTimeout\(\(\)=>\{\w+\.close\(\)\},5e3\)", client)
 
 
 def test_query_parameters(client: str) -> None:
