@@ -29,8 +29,8 @@ export function placeCaptions(wanted, bounds) {
 }
 
 /**
- * Labels as near as possible to where they are wanted, moved up or down from each other and from obstacles;
- * null for one that the bounds have no room for.
+ * Labels as near as possible to where they are wanted, moved up or down from each other and from obstacles,
+ * but never past each other; null for one that the bounds have no room for.
  * @param {Box[]} wanted
  * @param {Box[]} obstacles
  * @param {Box} bounds
@@ -39,30 +39,46 @@ export function placeLabels(wanted, obstacles, bounds) {
   const inOrder = wanted.map((one, number) => ({ number, box: shifted(one, bounds) }));
   inOrder.sort((a, b) => a.box.top - b.box.top);
   const boxes = inOrder.map(({ box }) => box);
-  const near = nearest(boxes, obstacles, bounds);
-  const placed = near.includes(null) ? stacked(boxes, obstacles, bounds) : near;
+  const downwards = nearest(boxes, obstacles, bounds, false);
+  const upwards = nearest([...boxes].reverse(), obstacles, bounds, true).reverse();
+  const [near] = [downwards, upwards].filter((some) => !some.includes(null))
+    .sort((a, b) => distance(a, boxes) - distance(b, boxes));
+  const placed = near ?? stacked(boxes, obstacles, bounds);
   /** @type {(Box | null)[]} */
   const found = wanted.map(() => null);
   inOrder.forEach(({ number }, n) => (found[number] = placed[n]));
   return found;
 }
 
+/** @type {(placed: (Box | null)[], wanted: Box[]) => number} */
+const distance = (placed, wanted) =>
+  wanted.reduce((sum, { top }, n) => sum + Math.abs((placed[n]?.top ?? top) - top), 0);
+
+/** @type {(a: Box, b: Box) => boolean} */
+const inOneColumn = (a, b) => a.left < b.left + b.width && b.left < a.left + a.width;
+
 /**
- * Each at the free place that is nearest to its own.
+ * Each at the free place nearest to its own that is below those before it, or else above.
  * @param {Box[]} boxes
  * @param {Box[]} obstacles
  * @param {Box} bounds
+ * @param {boolean} isAbove
  */
-function nearest(boxes, obstacles, bounds) {
-  const taken = [...obstacles];
+function nearest(boxes, obstacles, bounds, isAbove) {
+  /** @type {Box[]} */
+  const placed = [];
   return boxes.map((box) => {
+    const before = placed.filter((one) => inOneColumn(one, box));
     const bottom = bounds.top + bounds.height - box.height;
-    const tops = [box.top, ...taken.flatMap((one) => [one.top - box.height, one.top + one.height])]
-      .map((top) => within(top, bounds.top, bottom))
-      .sort((a, b) => Math.abs(a - box.top) - Math.abs(b - box.top));
-    const top = tops.find((one) => !taken.some((other) => overlap({ ...box, top: one }, other)));
-    if (top === undefined) return null;
-    taken.push({ ...box, top });
+    const low = isAbove ? bounds.top : Math.max(bounds.top, ...before.map((one) => one.top + one.height));
+    const high = isAbove ? Math.min(bottom, ...before.map((one) => one.top - box.height)) : bottom;
+    const taken = [...obstacles, ...placed];
+    const top = [box.top, ...taken.flatMap((one) => [one.top - box.height, one.top + one.height])]
+      .map((one) => within(one, low, high))
+      .sort((a, b) => Math.abs(a - box.top) - Math.abs(b - box.top))
+      .find((one) => !taken.some((other) => overlap({ ...box, top: one }, other)));
+    if (top === undefined || low > high) return null;
+    placed.push({ ...box, top });
     return { ...box, top };
   });
 }

@@ -92,11 +92,14 @@
       // later than that, so that none would succeed; the worker gives them up after five.
       if (message?.type === "retry" && isConnecting) return;
       if (message?.type === "retry" || message?.type === "set_server") isConnecting = true;
-      if (message?.type !== "set_server") return super.postMessage(message, ...rest);
+      if (message?.type !== "set_server") {
+        super.postMessage(message, ...rest);
+        return;
+      }
       socketWorker = this;
       this.addEventListener("message", onSocket);
       // Ignore the query's `websocket`: a stream from elsewhere could run scripts here.
-      return super.postMessage({ ...message, server: socketAddress() }, ...rest);
+      super.postMessage({ ...message, server: socketAddress() }, ...rest);
     }
   };
 

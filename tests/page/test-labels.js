@@ -13,6 +13,19 @@ function assertApart(boxes) {
   shown.forEach((one, n) => shown.slice(n + 1).forEach((other) => assert.ok(!overlap(one, other))));
 }
 
+/**
+ * @param {(import("../../static/js/labels.js").Box | null)[]} placed
+ * @param {import("../../static/js/labels.js").Box[]} wanted
+ */
+function assertInOrder(placed, wanted) {
+  const inOrder = placed.flatMap((one, n) => (one ? [{ ...one, line: wanted[n].top }] : []))
+    .sort((a, b) => a.line - b.line);
+  inOrder.forEach((one, n) => inOrder.slice(n + 1).forEach((other) => {
+    const isBeside = one.left + one.width <= other.left || other.left + other.width <= one.left;
+    assert.ok(isBeside || one.top < other.top, "labels have changed places");
+  }));
+}
+
 test("a label with room stays, and moves no further than it must", () => {
   assert.deepEqual(placeLabels([box(10, 50), box(10, 55), box(10, 120)], [], BOUNDS),
     [box(10, 50), box(10, 66), box(10, 120)]);
@@ -21,6 +34,13 @@ test("a label with room stays, and moves no further than it must", () => {
 
 test("a label that would leave the chart is moved back into it", () => {
   assert.deepEqual(placeLabels([box(290, 158)], [], BOUNDS), [box(240, 144)]);
+});
+
+test("labels keep the order of their lines at the edges of the chart", () => {
+  assert.deepEqual(placeLabels([box(10, 150), box(10, 140), box(10, 144)], [], BOUNDS),
+    [box(10, 144), box(10, 112), box(10, 128)]);
+  assert.deepEqual(placeLabels([box(10, 2), box(10, 0), box(10, 4)], [], BOUNDS),
+    [box(10, 16), box(10, 0), box(10, 32)]);
 });
 
 test("labels keep off captions", () => {
@@ -46,6 +66,7 @@ test("no two labels overlap at any width, and eight find room", () => {
     const placed = placeLabels(wanted, captions, bounds);
     assertApart([...placed, ...captions]);
     assert.ok(!placed.includes(null), `a label is missing at ${width} px`);
+    assertInOrder(placed, wanted);
     assert.ok(placed.every((one) => one && one.left >= 0 && one.left + one.width <= width + 1e-9));
   }
 });
