@@ -46,8 +46,8 @@ def _dominates(case: Case) -> Finding | None:
     wins = sum(one["n"] * one["beats_greedy_total"]["share"] for one in raced)
     return Finding.of(
         verdict,
-        f"Q-learning covers {listed(shares_of_greedy)}; {wins:.0f} of its {n} seeds came further "
-        "than greedy.",
+        f"Q-learning covers {listed(shares_of_greedy)}; {wins:.0f} of its {counted(n, 'walk')} "
+        "came further than greedy.",
     )
 
 
@@ -61,7 +61,7 @@ def _real_time(case: Case, steps: int) -> Finding | None:
     return Finding.of(
         bootstrap_exceeds(middle, REACHED_SHARE, fewest),
         f"When Q-learning has taken its 50 steps it has come {shares(relative)} as far as greedy, "
-        f"and {percent(pool['beats_greedy']['share'])} of the seeds are ahead. The paper's own "
+        f"and {percent(pool['beats_greedy']['share'])} of the walks are ahead. The paper's own "
         f"four gaits average {percent(_papers_share(steps))}.",
     )
 
@@ -100,7 +100,7 @@ def _on_par(case: Case) -> Finding | None:
     also = f" At time-out {percent(finished['share'])} are ahead of greedy." if finished else ""
     return Finding.of(
         Interval(reached["share"], reached["low"], reached["high"]).exceeds(0.5),
-        f"After 500 steps {shares(reached)} of {counted(pool['n'], 'seed')} reach "
+        f"After 500 steps {shares(reached)} of {counted(pool['n'], 'walk')} reach "
         f"{percent(REACHED_SHARE)} of greedy's total distance.{also}",
     )
 

@@ -4,7 +4,7 @@ import { setStage } from "../../actions.js";
 import { whole } from "../../format.js";
 import { chooseState, chosenState, followChosenState, giveUpState } from "../../posture.js";
 import { canPlay, shownRun } from "../../selectors.js";
-import { scene } from "../../store.js";
+import { ownStage, scene } from "../../store.js";
 import {
   chosenLane, chooseStep, explanation, firstState, followMoment, followStage, isFollowing, lastStep, moment, stateIndex,
   table, tableMoment,
@@ -54,7 +54,7 @@ function Navigator({ at }) {
           onClick=${() => chooseStep(step + 1)}>›</button>
       </div>
       ${isFollowing.value
-        ? html`<span class="dim">It follows the stage.</span>`
+        ? html`<span class="dim">${ownStage.value === null ? "It follows the stage." : "It follows the replay."}</span>`
         : html`
           <button class="secondary compact" onClick=${followStage}>Follow the stage</button>
           ${canPlay.value && shownRun.value?.kind === "training" && html`<${ShowOnStage} step=${step} />`}
