@@ -126,7 +126,9 @@ export const variedFields = (settings, fields) =>
   fields.filter((field) => new Set(settings.map((one) => one[field]).filter((one) => one !== null)).size > 1);
 
 /** @type {Record<string, (name: string) => string>} */
-const VALUE_TITLES = { gait: gaitTitle, agent: agentTitle, observation: observationTitle, robot: robotTitle };
+const VALUE_TITLES = {
+  gait: gaitTitle, agent: agentTitle, observation: observationTitle, robot: robotTitle, world: worldTitle,
+};
 
 /**
  * Whether the values of a field tell by themselves what they are: "Greedy", but not "0.3".

@@ -30,7 +30,7 @@ const nameOf = (setting, varied) => {
   const others = varied.filter((field) => field !== "agent" && setting[field] !== null);
   const words = others.map((field) => {
     const value = valueTitle(field, setting[field]);
-    return isNamedByValue(field) || field === "world" ? value : `${fieldTitle(field)} ${value}`;
+    return isNamedByValue(field) ? value : `${fieldTitle(field)} ${value}`;
   });
   return [valueTitle("agent", setting.agent), ...words].join(", ");
 };

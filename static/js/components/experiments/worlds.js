@@ -192,7 +192,7 @@ const shareOf = (interval) => valueOf(interval, percentage, (share) => percentag
 
 const untilOf = (until) => until && html`
   <b>${until.median_steps === null ? "not reached" : whole(until.median_steps)}</b>
-  <br /><span class="dim">by ${percentage(until.reached)}</span>
+  <br /><span class="dim">reached by ${percentage(until.reached)}</span>
 `;
 
 /** The value of a curve at one of its places, as an interval. */
