@@ -163,7 +163,8 @@ export function followQuery(name, read, write) {
   readHash();
   addEventListener("hashchange", readHash);
   effect(() => {
-    if (place.value !== name) return;
+    // The event that tells of another address comes after it.
+    if (place.value !== name || viewOf(location.hash) !== name) return;
     // A link that was followed is read before the state is written over it.
     readHash();
     const query = write();

@@ -1,10 +1,12 @@
 // Views, errors of the API, and titles.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
+import { signal } from "@preact/signals";
 import { refusal } from "../../static/js/api.js";
-import { goIfStillHere, place, viewOf } from "../../static/js/page.js";
+import { followQuery, goIfStillHere, place, viewOf } from "../../static/js/page.js";
 import { options } from "../../static/js/store.js";
 import { choicesOf, clockTitle, gaitTitle, observationTitle, simulatorTitle } from "../../static/js/titles.js";
+import { visit } from "./browser.js";
 import { OPTIONS } from "./options.js";
 
 beforeEach(() => (options.value = OPTIONS));
@@ -43,4 +45,16 @@ test("names of the vocabulary, unless the server has a title", () => {
   assert.equal(gaitTitle("unknown"), "unknown");
   assert.deepEqual(choicesOf(OPTIONS.simulators, simulatorTitle),
     [["mujoco", "MuJoCo physics"], ["kinematic", "Ideal (no slip)"]]);
+});
+
+test("a view that was just left does not write its query over the new address", () => {
+  const search = signal("");
+  place.value = "runs";
+  visit("/#runs");
+  followQuery("runs", () => {}, () => search.value);
+  search.value = "search=ben";
+  assert.equal(location.hash, "#runs?search=ben");
+  visit("/#"); // the event that tells of it comes later
+  search.value = "search=anna";
+  assert.equal(location.hash, "");
 });
