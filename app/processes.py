@@ -36,7 +36,8 @@ def kill_group(pid: int) -> None:
     Args:
         pid: id of the process that leads or led it.
     """
-    with suppress(ProcessLookupError):
+    # There is none any more, or none that may be killed, as macOS says of zombies.
+    with suppress(ProcessLookupError, PermissionError):
         os.killpg(pid, signal.SIGKILL)
 
 

@@ -265,11 +265,20 @@ class Job:
             self.end("failed", f"The job ended before it was done: {end.how}.")
 
     def _keep_checkpoint(self) -> None:
-        """Let the newest checkpoint be the table of a training that cannot save one any more."""
-        if self._store.artifact(self.run_id, TABLE) is None:
-            checkpoint = self._store.artifact(self.run_id, CHECKPOINT)
-            if checkpoint is not None:
-                self._store.put_artifact(self.run_id, TABLE, checkpoint)
+        """Let the newest checkpoint be the table of a training that cannot save one any more.
+
+        Raises:
+            StorageFailed: if the store cannot be used; to be retried.
+        """
+        try:
+            if self._store.artifact(self.run_id, TABLE) is None:
+                checkpoint = self._store.artifact(self.run_id, CHECKPOINT)
+                if checkpoint is not None:
+                    self._store.put_artifact(self.run_id, TABLE, checkpoint)
+        except StorageFailed:
+            raise
+        except HexapodError:  # a full disk, or a damaged file: the run ends all the same
+            _logger.warning("no table was kept", extra={"run_id": self.run_id}, exc_info=True)
 
     def _handle_with_retry(self, message: Message) -> None:
         """Handle a message, retrying while the database is unavailable.

@@ -19,9 +19,9 @@ from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.jobs.tasks import resumed_runs
 from app.runs.config import WalkingProblem, training_config
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Conflict, StorageFailed
+from app.storage.errors import Busy, Conflict, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
-from app.storage.run import QUEUED, Run
+from app.storage.run import QUEUED, TABLE, Run
 from app.storage.stored_tables import load_table
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.patience import LONG_S
@@ -183,6 +183,25 @@ def test_stop_keeps_what_was_learned_although_the_last_evaluation_takes_too_long
         "It did not answer when it was to stop, so it was ended after 3 s; what was done is kept.",
     )
     assert load_table(store, run.id).meta["step"] == stopped.done > 0
+
+
+def test_run_is_stopped_although_the_disk_has_no_room_for_its_table(
+    jobs: Jobs, store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put = store.put_artifact
+
+    def put_all_but_tables(run_id: str, name: str, data: bytes, **fields: Any) -> None:
+        if name == TABLE:
+            raise StorageFull("the disk is full")
+        put(run_id, name, data, **fields)
+
+    monkeypatch.setattr(store, "put_artifact", put_all_but_tables)
+    monkeypatch.setattr(Job, "stop_grace_s", 1.0)
+    run = jobs.train(training(steps=1000, agent="tests.own_agents:Slow"))
+    wait_for_progress(store, run)
+    assert jobs.stop(run.id).state == "stopped"
+    with pytest.raises(Conflict, match="before it kept a table"):
+        load_table(store, run.id)
 
 
 def test_number_of_live_changes_is_limited(

@@ -34,6 +34,7 @@ function Navigator({ at }) {
   const { step } = at;
   const last = lastStep.value;
   const lanes = scene.value?.lanes ?? [];
+  const followed = ownStage.value === null ? "stage" : "replay";
   const onInput = ({ target }) => {
     const number = Number(target.value);
     if (Number.isInteger(number) && number >= 1 && number <= last) chooseStep(number);
@@ -54,9 +55,9 @@ function Navigator({ at }) {
           onClick=${() => chooseStep(step + 1)}>›</button>
       </div>
       ${isFollowing.value
-        ? html`<span class="dim">${ownStage.value === null ? "It follows the stage." : "It follows the replay."}</span>`
+        ? html`<span class="dim">It follows the ${followed}.</span>`
         : html`
-          <button class="secondary compact" onClick=${followStage}>Follow the stage</button>
+          <button class="secondary compact" onClick=${followStage}>Follow the ${followed}</button>
           ${canPlay.value && shownRun.value?.kind === "training" && html`<${ShowOnStage} step=${step} />`}
         `}
     </div>
