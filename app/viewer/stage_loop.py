@@ -20,6 +20,7 @@ _logger = logging.getLogger(__name__)
 class StageLoop:
     """Draws the stage 30 times a second, and publishes a `scene` event at most five times a second.
 
+    Another run, and the end of a show, are published at once, as in `stage` events.
     `with loop:` runs it, once. Without motion the frame rate drops and no events are published.
     Without viewers it drops to that of the events: drawing a race takes a tenth of a core.
 
@@ -39,6 +40,7 @@ class StageLoop:
         self._thread = threading.Thread(target=self._run, name="stage", daemon=True)
         self._published: dict[str, object] | None = None
         self._published_s = -1.0
+        self._published_run: tuple[str | None, bool] = None, False
         self._has_failed = False
 
     def __enter__(self) -> None:
@@ -63,11 +65,13 @@ class StageLoop:
         try:
             frame = self._stage.frame()
             moved = self._scene.draw(frame, now)
-            if now - self._published_s >= 1 / SCENES_PER_S:
+            # Not each phase: a fast show changes that in each frame.
+            run = frame.run_id, frame.phase == "finished"
+            if run != self._published_run or now - self._published_s >= 1 / SCENES_PER_S:
                 scene = frame.scene()
                 if scene != self._published:
                     self._bus.publish("scene", scene)
-                self._published, self._published_s = scene, now
+                self._published, self._published_s, self._published_run = scene, now, run
         except Exception:
             # An error in one frame must not end the thread; it is logged once, not at each frame.
             if not self._has_failed:

@@ -88,6 +88,33 @@ def test_moving_race_publishes_scenes(parts: StageParts) -> None:
     assert len(set(times)) == 3
 
 
+def test_end_of_a_show_is_published_at_once(
+    monkeypatch: pytest.MonkeyPatch, parts: StageParts
+) -> None:
+    monkeypatch.setattr("app.viewer.stage_loop.SCENES_PER_S", 1e-3)
+    run = parts.finished_race()
+    stage = Stage(parts.store, parts.recordings, parts.bus)
+    stage.set(run_id=run.id, speed=8.0)
+
+    async def scenes_until_the_end() -> list[tuple[str, str]]:
+        events, scenes = parts.bus.subscribe(names=frozenset({"scene"})), []
+        async for event in events:
+            scene = json.loads(event.data)
+            scenes.append((scene["run_id"], scene["phase"]))
+            if scene["phase"] == "finished":
+                events.close()
+        return scenes
+
+    with (
+        in_process_viser() as server,
+        StageLoop(stage, StageScene(server), parts.bus, lambda: True),
+    ):
+        scenes = asyncio.run(asyncio.wait_for(scenes_until_the_end(), 30))
+
+    assert scenes[-1] == (run.id, "finished")
+    assert len(scenes) <= 2
+
+
 def test_without_viewers_a_motion_is_drawn_at_the_rate_of_stillness(parts: StageParts) -> None:
     run = parts.finished_race()
     stage = Stage(parts.store, parts.recordings, parts.bus)
