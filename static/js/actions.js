@@ -1,5 +1,5 @@
 // The user's actions. Each keeps its own error, which is shown beside the control that caused it.
-import { computed, effect, signal, untracked } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { configAtEnd } from "./changes.js";
 import { changesSomething, conditionsNow, textOf } from "./disturbances.js";
@@ -54,6 +54,31 @@ export async function attempt(place, action) {
   }
 }
 
+/**
+ * Requests at a place, one at a time: those made meanwhile are sent as one when it is answered.
+ * @template {object} Asked
+ * @param {string} place
+ * @param {(asked: Asked) => Promise<unknown>} send
+ */
+function oneAtATime(place, send) {
+  let sent = /** @type {Asked | null} */ (null);
+  let waiting = /** @type {Asked | null} */ (null);
+  const request = async (/** @type {Asked} */ asked) => {
+    if (pending.value[place]) {
+      waiting = /** @type {Asked} */ ({ ...waiting, ...asked });
+      return;
+    }
+    sent = asked;
+    await attempt(place, () => send(asked));
+    const next = waiting;
+    sent = waiting = null;
+    if (next) await request(next);
+  };
+  /** @type {() => Partial<Asked>} what is asked for, and not answered yet */
+  const unanswered = () => ({ ...sent, ...waiting });
+  return { request, unanswered };
+}
+
 /** @param {string} place */
 export const dismissProblem = (place) => setEntry(problems, place, null);
 
@@ -63,8 +88,7 @@ const racingLearners = computed(() => form.value.lanes.filter(learns));
 const hasLearner = computed(() => racingLearners.value.length > 0);
 
 /**
- * What a race is without, if the chosen learner has no lane while others have: a sentence, and the action that
- * gives it one.
+ * Set if the chosen learner has no lane in a race in which others have: a sentence, and the action that adds the lane.
  * @type {Signal<{ words: string, action: Action | null } | null>}
  */
 export const missingLane = computed(() => {
@@ -145,26 +169,23 @@ export const continueTraining = (table) =>
 
 // ---- running work
 
-export const pause = () => commandWork("pause");
-export const resume = () => commandWork("resume");
+export const pause = () => commands.request({ verb: "pause" });
+export const resume = () => commands.request({ verb: "resume" });
+export const stop = () => commands.request({ verb: "stop" });
 
-/** @param {Verb} verb */
-const commandWork = (verb) =>
-  attempt("work", async () => {
-    const current = work.value?.current;
-    if (!current) return;
-    await requestRun(() => api.command(current, verb));
-    if (commonStage.value?.run_id === current.id) await api.putStage({ playing: verb === "resume" });
-  });
+const commands = oneAtATime("work", async (/** @type {{ verb: Verb }} */ { verb }) => {
+  const { current, requested } = work.value ?? {};
+  if (!current || !requested || current.state === STATES[verb]) return;
+  const isStop = verb === "stop";
+  // A race that waits for its training stops that too.
+  await requestRun(() => api.command(isStop ? requested : current, verb));
+  if (isStop ? commonStage.value?.playing === false : commonStage.value?.run_id === current.id) {
+    await api.putStage({ playing: verb !== "pause" });
+  }
+});
 
-export const stop = () =>
-  attempt("work", async () => {
-    const requested = work.value?.requested;
-    if (!requested) return;
-    // A race that waits for its training stops that too.
-    await requestRun(() => api.command(requested, "stop"));
-    if (commonStage.value?.playing === false) await api.putStage({ playing: true });
-  });
+/** Verb → the state that it leads to. @type {Record<string, string>} */
+const STATES = { pause: "paused", resume: "running", stop: "stopped" };
 
 /** Pause or resume the training on stage, else the playback. */
 export function togglePause() {
@@ -175,8 +196,9 @@ export function togglePause() {
   if (!isOperator.value) return;
   const current = work.value?.current;
   if (current && current.id === stage.value?.run_id && current.kind === "training") {
-    if (current.state === "paused") resume();
-    else if (current.state === "running") pause();
+    const state = STATES[commands.unanswered().verb ?? ""] ?? current.state;
+    if (state === "paused") resume();
+    else if (state === "running") pause();
     return;
   }
   togglePlaying();
@@ -218,13 +240,13 @@ function refuseTuning(run, sent, error) {
   if (isActive(runs.value.get(run.id))) setEntry(problems, "tune", error);
 }
 
-// ---- what happens to robots
+// ---- disturbances
 
 /** Newest disturbance: an answer waits for the end of a step, in which the next leg may be clicked. */
 let lastChange = Promise.resolve(/** @type {{ id: string, changes: Change[] } | null} */ (null));
 
 /**
- * Let something happen to a training from its next step on, after what was to happen before, if it changes anything.
+ * Disturb a training from its next step on, after earlier disturbances were sent; skip one that changes nothing.
  * @param {Run} run
  * @param {Disturbance} disturbance without its step
  */
@@ -241,7 +263,7 @@ export function disturb(run, disturbance) {
 }
 
 /**
- * Race on from a step of a race, in which something happens.
+ * Branch a race: repeat it up to a step, and race on with disturbances.
  * @param {Run} race
  * @param {number} step how many steps both have in common
  * @param {object[]} disturbances without their step
@@ -257,7 +279,7 @@ export const branchRace = (race, step, disturbances) =>
 
 /** @param {Partial<Stage> & { time_s?: number }} changes */
 export function setStage(changes) {
-  if (ownRunId.value === null) return attempt("stage", () => requestStage(() => api.putStage(changes)));
+  if (ownRunId.value === null) return stageChanges.request(changes);
   const { time_s, playing, speed, clock } = changes;
   setEntry(problems, "stage", null);
   if (typeof speed === "number") setReplaySpeed(speed);
@@ -268,16 +290,9 @@ export function setStage(changes) {
   return setReplayClock(clock).catch((error) => setEntry(problems, "stage", error));
 }
 
-/** The newest moment to be shown that is not sent yet [s]. @type {Signal<number | null>} */
-const wantedMoment = signal(null);
-
-// Whoever seeks again before the stage has answered gets the newest moment, not the first.
-effect(() => {
-  const time_s = wantedMoment.value;
-  if (time_s === null || pending.value.stage) return;
-  wantedMoment.value = null;
-  untracked(() => setStage({ time_s }));
-});
+const stageChanges = oneAtATime(
+  "stage", (/** @type {Partial<Stage>} */ changes) => requestStage(() => api.putStage(changes)),
+);
 
 /**
  * A function that shows a moment of a run [s]; null if another run is on stage, or for who may not.
@@ -285,10 +300,11 @@ effect(() => {
  * @returns {((time_s: number) => void) | null}
  */
 export const seekIn = (id) =>
-  canPlay.value && scene.value?.run_id === id ? (time_s) => (wantedMoment.value = time_s) : null;
+  canPlay.value && scene.value?.run_id === id ? (time_s) => setStage({ time_s }) : null;
 
 export const togglePlaying = () => {
-  if (canPlay.value && stage.value?.run_id) setStage({ playing: !isPlaying.value });
+  const willPlay = stageChanges.unanswered().playing ?? isPlaying.value;
+  if (canPlay.value && stage.value?.run_id) setStage({ playing: !willPlay });
 };
 export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? undefined, playing: true });
 

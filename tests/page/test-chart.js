@@ -1,13 +1,10 @@
 // Charts over a common axis: zoom, keys, what is read, what fits, and the numbers as CSV.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { setImmediate } from "node:timers/promises";
-import { seekIn } from "../../static/js/actions.js";
 import {
   csvOf, fileNameOf, indexAfter, intervalAt, movedTo, nearestIndex, pinned, scaledAround, tableOf, thinnedPath, valueAt,
   valuesIn, within, zoomFactorOf, zoomOf, zoomTo,
 } from "../../static/js/chart.js";
-import { applyEvent } from "../../static/js/store.js";
 
 /** @import { Line, Range } from "../../static/js/chart.js" */
 
@@ -116,28 +113,4 @@ test("files are named after the chart", () => {
   assert.equal(fileNameOf("the learning curve"), "the-learning-curve");
   assert.equal(fileNameOf("Left-right, opposite"), "left-right-opposite");
   assert.equal(fileNameOf("α"), "chart");
-});
-
-test("of several seeks before the stage answers, the newest is sent next", async () => {
-  /** @type {unknown[]} */
-  const sent = [];
-  /** @type {(() => void)[]} */
-  const answers = [];
-  globalThis.fetch = (_, options) => {
-    sent.push(JSON.parse(String(options?.body)));
-    return new Promise((resolve) => {
-      answers.push(() => resolve(Response.json({ run_id: "a" })));
-    });
-  };
-  applyEvent("snapshot", { role: "operator", runs: [], scene: { run_id: "a", kind: "race" } });
-  const seek = seekIn("a");
-  assert.ok(seek);
-  assert.equal(seekIn("b"), null);
-  for (const time_s of [1, 2, 3]) seek(time_s);
-  assert.deepEqual(sent, [{ time_s: 1 }]);
-  answers[0]();
-  for (let n = 0; n < 100 && sent.length < 2; n += 1) await setImmediate();
-  assert.deepEqual(sent, [{ time_s: 1 }, { time_s: 3 }]);
-  applyEvent("snapshot", { role: "spectator", runs: [], scene: { run_id: "a", kind: "race" } });
-  assert.equal(seekIn("a"), null);
 });

@@ -1,0 +1,88 @@
+// Actions while the answer to the one before is awaited: on a slow connection none is lost.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import { setImmediate } from "node:timers/promises";
+import { pause, pending, seekIn, setStage, togglePause, togglePlaying } from "../../static/js/actions.js";
+import { applyEvent, options } from "../../static/js/store.js";
+import { makeRun, OPTIONS } from "./options.js";
+
+const STAGE = { run_id: "a", next_run_id: null, playing: true, ended: false, speed: 1, clock: "paper" };
+const SCENE = { run_id: "a", kind: "race" };
+
+/** Requests: the last part of the address, and the body. @type {unknown[]} */
+let sent = [];
+/** Each answers the oldest unanswered request. @type {((answer: unknown) => void)[]} */
+let answers = [];
+
+beforeEach(() => {
+  [sent, answers] = [[], []];
+  options.value = OPTIONS;
+  globalThis.fetch = (address, request) => {
+    const name = String(address).split("/").at(-1) ?? "";
+    sent.push(request?.body ? { [name]: JSON.parse(String(request.body)) } : name);
+    return new Promise((resolve) => {
+      answers.push((answer) => resolve(Response.json(answer)));
+    });
+  };
+});
+
+/** Answer requests in their order, until none is open any more. @param {(sent: unknown) => unknown} answerTo */
+async function answerAll(answerTo) {
+  for (let n = 0; n < 200; n += 1) {
+    const number = sent.length - answers.length;
+    answers.shift()?.(answerTo(sent[number]));
+    await setImmediate();
+  }
+  assert.deepEqual(Object.values(pending.value).filter(Boolean), []);
+}
+
+test("of several seeks before the stage answers, the newest is sent next", async () => {
+  applyEvent("snapshot", { role: "operator", runs: [], stage: STAGE, scene: SCENE });
+  const seek = seekIn("a");
+  assert.ok(seek);
+  assert.equal(seekIn("b"), null);
+  for (const time_s of [1, 2, 3]) seek(time_s);
+  assert.deepEqual(sent, [{ stage: { time_s: 1 } }]);
+  await answerAll(() => STAGE);
+  assert.deepEqual(sent, [{ stage: { time_s: 1 } }, { stage: { time_s: 3 } }]);
+  applyEvent("snapshot", { role: "spectator", runs: [], scene: SCENE });
+  assert.equal(seekIn("a"), null);
+});
+
+test("other settings of the stage are sent with it", async () => {
+  applyEvent("snapshot", { role: "operator", runs: [], stage: STAGE, scene: SCENE });
+  setStage({ time_s: 1 });
+  setStage({ clock: "wall" });
+  setStage({ speed: 4 });
+  togglePlaying();
+  await answerAll(() => STAGE);
+  assert.deepEqual(sent, [{ stage: { time_s: 1 } }, { stage: { clock: "wall", speed: 4, playing: false } }]);
+});
+
+test("play and pause pressed twice end as they began", async () => {
+  applyEvent("snapshot", { role: "operator", runs: [], stage: STAGE, scene: SCENE });
+  togglePlaying();
+  togglePlaying();
+  await answerAll(() => STAGE);
+  assert.deepEqual(sent, [{ stage: { playing: false } }, { stage: { playing: true } }]);
+});
+
+test("a training that is paused and resumed at once goes on", async () => {
+  const run = makeRun({ id: "a", state: "running", result: null, progress: { done: 5, total: 500 } });
+  applyEvent("snapshot", { role: "operator", runs: [run], stage: STAGE, scene: null });
+  togglePause();
+  togglePause();
+  const answer = (/** @type {unknown} */ request) =>
+    ({ pause: { ...run, state: "paused" }, resume: run })[String(request)] ?? STAGE;
+  await answerAll(answer);
+  assert.deepEqual(sent, ["pause", { stage: { playing: false } }, "resume", { stage: { playing: true } }]);
+});
+
+test("the same command twice is sent once", async () => {
+  const run = makeRun({ id: "a", state: "running", result: null, progress: { done: 5, total: 500 } });
+  applyEvent("snapshot", { role: "operator", runs: [run], stage: STAGE, scene: null });
+  pause();
+  pause();
+  await answerAll((request) => (request === "pause" ? { ...run, state: "paused" } : STAGE));
+  assert.deepEqual(sent, ["pause", { stage: { playing: false } }]);
+});
