@@ -169,7 +169,7 @@ class RMax(ModelAgent):
         became = self._value(state, column) != before
         summary = "It is known, and its value stays as it was planned."
         if became:
-            summary = "What it learned changes its plan, in which this step is known now."
+            summary = "The update changes its plan, in which this step is known now."
         return "r̂ + γ · V′", terms, summary
 
     def tune(self, **changes: Any) -> None:

@@ -57,6 +57,6 @@ Disturbances = Annotated[
     list[AnyDisturbance],
     Field(
         max_length=MAX_DISTURBANCES,
-        description="What happens to the robot and the ground, by step.",
+        description="Changes of the robot and the ground, by step.",
     ),
 ]

@@ -55,7 +55,9 @@ async def _client_slot(
         services.listeners.leave(listener)
 
 
-@router.get("", summary="What happens, as it happens", response_class=EventSourceResponse)
+@router.get(
+    "", summary="Stream the events of all runs and of the stage", response_class=EventSourceResponse
+)
 async def get_events(
     services: ServicesDep,
     role: RoleDep,

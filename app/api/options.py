@@ -133,7 +133,7 @@ _HELP = {
     "robot": "Which robot walks; it differs in servos and friction.",
     "simulator": "What computes the walking.",
     "lanes": "Which agents race.",
-    "disturbances": "What happens to the robot or to the ground, and from which step on.",
+    "disturbances": "Changes of the robot or the ground, each from a step on.",
     "clock": "What thinking costs in the race; it can change who wins.",
     "name": "What the run is called in the list.",
     "tag": "A word by which the list of runs is filtered.",

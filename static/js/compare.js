@@ -1,7 +1,7 @@
 // Runs that are compared: which, each one's letter, colour and dashes, their curves, settings and results.
 import { computed, effect, signal } from "@preact/signals";
 import { changesInWords, rateChanges } from "./changes.js";
-import { happeningsOf, inTime, joinedBySteps } from "./disturbances.js";
+import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, duration, listed, metres, percentage, sentence, whole } from "./format.js";
 import { followQuery, place } from "./page.js";
 import { formRobot } from "./robots.js";
@@ -158,12 +158,12 @@ const PLAIN = [
 const NOTHING = "nothing";
 
 /** Rows after the settings. @type {[string, string, (run: Run) => string | null][]} */
-const HAPPENINGS = [
+const DISTURBANCES = [
   ["continue_from", "Continues", ({ kind, config: { continue_from: id } }) => {
     if (kind === "race") return null;
     return id ? runs.value.get(id)?.name ?? id : NOTHING;
   }],
-  ["world", "What happens", (run) => joinedBySteps(happeningsOf(run)).map(inTime).join("; ") || NOTHING],
+  ["world", "Disturbances", (run) => joinedBySteps(disturbancesOf(run)).map(inTime).join("; ") || NOTHING],
   ["changes", "Changed while it ran", (run) =>
     (run.kind === "training" ? changesInWords(run.config.agent, rateChanges(run)).join(", ") || NOTHING : null)],
 ];
@@ -182,7 +182,7 @@ export const comparedSettings = computed(() => {
   });
   const told = (/** @type {typeof SETTINGS} */ list) =>
     list.map(([name, title, cell]) => row(name, title, all.map(cell)));
-  return [...told(SETTINGS), ...plain, ...own, ...told(HAPPENINGS)].filter(isTold);
+  return [...told(SETTINGS), ...plain, ...own, ...told(DISTURBANCES)].filter(isTold);
 });
 
 /** Whether any run has something of a row. @param {Row} row */

@@ -28,8 +28,8 @@ export const kindNamed = (name) => (options.value?.disturbances ?? []).find((kin
  */
 export const isSimulated = (kind, simulator) => kindNamed(kind)?.simulators.includes(simulator) ?? false;
 
-/** All that happens in a run, by its config and while it ran. @param {Pick<Run, "config" | "changes">} run */
-export const happeningsOf = ({ config, changes = [] }) => [
+/** All disturbances of a run, by its config and while it ran. @param {Pick<Run, "config" | "changes">} run */
+export const disturbancesOf = ({ config, changes = [] }) => [
   ...(config.disturbances ?? []),
   ...changes.flatMap(({ disturbance }) => (disturbance ? [disturbance] : [])),
 ];
@@ -60,14 +60,14 @@ const keysOf = (one) => partsOf(one).map(([key]) => key);
 
 /**
  * The disturbances that hold in a step, leg by leg: a later one of the same thing replaces an earlier one.
- * @param {Disturbance[]} happenings
+ * @param {Disturbance[]} disturbances
  * @param {number} step counted from 0
  * @param {RobotConfig} [robot] to which they happen
  */
-export function conditionsAt(happenings, step, robot) {
+export function conditionsAt(disturbances, step, robot) {
   /** @type {Map<string, Disturbance>} */
   const newest = new Map();
-  const lasting = happenings.filter((one) => one.kind !== PUSH && holdsAt(one, step));
+  const lasting = disturbances.filter((one) => one.kind !== PUSH && holdsAt(one, step));
   for (const one of lasting.sort((a, b) => a.at_step - b.at_step)) {
     for (const [key, part] of partsOf(one)) {
       [...newest.keys()].filter((old) => covers(key, old)).forEach((old) => newest.delete(old));
@@ -106,10 +106,10 @@ export function changesSomething(one, conditions, robot) {
 }
 
 /**
- * What is chosen to happen in one step, with something more, which takes the place of what it contradicts.
+ * Add a disturbance to those chosen for the same step. It replaces those that it contradicts.
  * @param {Disturbance[]} chosen
  * @param {Disturbance} one
- * @param {Disturbance[]} before what holds without them
+ * @param {Disturbance[]} before those that hold without them
  * @param {RobotConfig} [robot]
  */
 export function chosenWith(chosen, one, before, robot) {
@@ -120,13 +120,13 @@ export function chosenWith(chosen, one, before, robot) {
 }
 
 /**
- * What holds in a training that runs, with what has just been sent to it.
+ * The disturbances that hold in a training that runs, those just sent to it included.
  * @param {Run} run
  */
 export function conditionsNow(run) {
-  const happenings = happeningsOf(run);
+  const disturbances = disturbancesOf(run);
   const changed = (run.changes ?? []).map(({ step }) => step);
-  return conditionsAt(happenings, Math.max(run.progress.done, ...changed), run.config.robot);
+  return conditionsAt(disturbances, Math.max(run.progress.done, ...changed), run.config.robot);
 }
 
 // ---- words
@@ -195,7 +195,7 @@ function joined(parts) {
 export const conditionsInWords = (conditions) => joined(conditions).map(inWords);
 
 /**
- * What happens, and when: "legs 1, 4 limp from step 26 to step 30". What holds from the start says no step.
+ * A disturbance and its steps: "legs 1, 4 limp from step 26 to step 30". One that holds from the start names no step.
  * @param {Disturbance} one
  */
 export function inTime(one) {
@@ -207,13 +207,13 @@ export function inTime(one) {
 }
 
 /**
- * What happens in the same step as one, where it is alike.
- * @param {Disturbance[]} happenings
+ * Disturbances of the same kind and steps as one.
+ * @param {Disturbance[]} disturbances
  */
-export function joinedBySteps(happenings) {
-  const moments = [...new Set(happenings.map(({ at_step, until_step }) => `${at_step} ${until_step ?? ""}`))];
+export function joinedBySteps(disturbances) {
+  const moments = [...new Set(disturbances.map(({ at_step, until_step }) => `${at_step} ${until_step ?? ""}`))];
   return moments.flatMap((moment) =>
-    joined(happenings.filter(({ at_step, until_step }) => `${at_step} ${until_step ?? ""}` === moment)));
+    joined(disturbances.filter(({ at_step, until_step }) => `${at_step} ${until_step ?? ""}` === moment)));
 }
 
 /** @param {Disturbance} one */
@@ -231,8 +231,8 @@ export function legStates(conditions) {
 }
 
 /**
- * What pressing a leg means: that this happens to it, or, if it has already, that it is repaired. Nothing else can
- * happen to a leg that is gone.
+ * The disturbance that a press on a leg stands for: the wanted one, or a repair if that already holds. A lost leg can
+ * only be repaired.
  * @param {Disturbance[]} conditions
  * @param {number} leg
  * @param {{ kind: string, [field: string]: any }} wanted without the leg
@@ -355,7 +355,7 @@ export const splitWorlds = (text) =>
   text.split(/;|,(?=\s*(?:[a-z]|$))/i).map((one) => one.trim()).filter(Boolean);
 
 /**
- * What happens in a world, or why there is no such world.
+ * Disturbances of a world, or why there is no such world.
  * @param {string} text
  * @returns {Parsed<Disturbance[]>}
  */
@@ -364,15 +364,15 @@ export function parseWorld(text) {
   if (named) return { value: named.disturbances };
   if (!text.includes(":")) return { mistake: `${quoted(text)} is no world: choose among these, or say what happens` };
   /** @type {Disturbance[]} */
-  const happenings = [];
+  const disturbances = [];
   for (const part of text.split("+")) {
     const { value, mistake } = parseText(part.trim());
     if (mistake !== undefined) return { mistake };
-    happenings.push(value);
+    disturbances.push(value);
   }
-  return happenings.some(({ at_step, until_step }) => at_step > 0 || until_step)
+  return disturbances.some(({ at_step, until_step }) => at_step > 0 || until_step)
     ? { mistake: `${quoted(text)}: it holds from the start to the end, so leave out at and until` }
-    : { value: happenings };
+    : { value: disturbances };
 }
 
 /** @param {string} name */

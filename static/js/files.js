@@ -40,14 +40,14 @@ export function downloads(run) {
 }
 
 /**
- * What a training has learned. One that was interrupted, failed or never began has no result, and has stored nothing.
+ * Downloads of the learned state. A training that was interrupted, failed or never began has stored none.
  * @param {RunKey & Partial<Run>} run
  * @returns {[string, string][]}
  */
 function learned(run) {
   if (!run.result) return [];
   const npz = partOf(run, "q-table?format=npz");
-  if (!run.result.q_table_sha256) return [["What it learned (npz)", npz]];
+  if (!run.result.q_table_sha256) return [["Learned state (npz)", npz]];
   return [["Q-table (CSV)", partOf(run, "q-table?format=csv")], ["Q-table (npz)", npz]];
 }
 

@@ -162,7 +162,7 @@ export function unknownTo(simulator, kind) {
 }
 
 /**
- * Why a text of what happens is not valid; null if it is.
+ * Why a text of a disturbance is not valid; null if it is.
  * @param {string} text
  * @param {string} simulator
  */
@@ -237,8 +237,8 @@ export function toQuery() {
   const valid = Object.entries(everyValue()).map(([field, value]) => [field, written(value)]);
   const entries = valid.filter(([field, text]) => text !== "" && field !== REPEATED && !(field in wrong.value));
   const kept = Object.entries(wrong.value).filter(([field]) => field !== REPEATED);
-  const happenings = form.value.disturb.map((text) => [REPEATED, text]);
-  return new URLSearchParams([...entries, ...kept.map(([field, { text }]) => [field, text]), ...happenings]);
+  const disturbances = form.value.disturb.map((text) => [REPEATED, text]);
+  return new URLSearchParams([...entries, ...kept.map(([field, { text }]) => [field, text]), ...disturbances]);
 }
 
 /**
@@ -311,7 +311,7 @@ const select = (values, isWanted) =>
 
 const walkFields = () => ({ ...select(form.value, (field) => WALK_FIELDS.includes(field)), ...worldFields() });
 
-/** The named world and what happens besides, unless there is nothing. */
+/** The named world and the disturbances besides, unless there are none. */
 function worldFields() {
   const { world, disturb } = form.value;
   const disturbances = disturb.flatMap((text) => parseText(text).value ?? []);

@@ -37,7 +37,7 @@ async function loadOptions(attempt = 0) {
   followWhatIf();
 }
 
-/** What only spectators' pages need; if it could not be loaded, again once the connection is back. */
+/** Load the module of spectators' pages; if that fails, again once the connection is back. */
 function followSpectators() {
   const loaded = signal(/** @type {typeof import("./spectators.js") | null} */ (null));
   effect(() => {

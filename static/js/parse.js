@@ -5,7 +5,7 @@ import { kindOf, mistakeIn, rangeOf } from "./settings.js";
 /** @import { Limits, SettingOption, SettingValue } from "./types.js" */
 
 /**
- * What a text means, or why it is not valid.
+ * The value of a text, or the reason why it is not valid.
  * @template Value
  * @typedef {{ value: Value, mistake?: undefined } | { value?: undefined, mistake: string }} Parsed
  */

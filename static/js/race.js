@@ -197,7 +197,7 @@ function rowOf(race, config, number, time) {
 /** @typedef {ReturnType<typeof laneOf>} Lane */
 
 /**
- * What is known of a lane: its scene, its timeline and its result, each null while there is none.
+ * The data of a lane: its scene, its timeline and its result, each null while there is none.
  * @param {Run} race
  * @param {number} number
  * @param {number} time

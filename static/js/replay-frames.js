@@ -46,8 +46,8 @@ export function decode(data) {
 /** The messages about one entity by their slots. @typedef {Map<string, Message>} Slots */
 
 /**
- * What the 3D view shows of a run, as the newest message for each slot. A newer message replaces the one in its slot;
- * a node that is created or removed loses all that was said of it before, as in app/viewer/snapshot.py.
+ * State of the 3D view of a run: the newest message for each slot. A newer message replaces the one in its slot; a node
+ * that is created or removed loses all earlier messages about it, as in app/viewer/snapshot.py.
  */
 export class SceneState {
   /** @param {Frames} scene the scene at the start of the run, on which every segment is based */

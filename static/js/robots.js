@@ -9,7 +9,7 @@
 export const presetOf = (robot) => (typeof robot === "string" ? robot : robot?.preset);
 
 /**
- * What differs from the preset: [field, value].
+ * Fields that differ from the preset: [field, value].
  * @param {RobotConfig | undefined} robot
  */
 const differences = (robot) =>

@@ -1,6 +1,6 @@
 // Values derived from the store: rights, the runs that the panels are about, and their progress.
 import { computed, signal } from "@preact/signals";
-import { conditionsAt, conditionsInWords, happeningsOf } from "./disturbances.js";
+import { conditionsAt, conditionsInWords, disturbancesOf } from "./disturbances.js";
 import { form } from "./form.js";
 import { count, duration, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
@@ -81,12 +81,12 @@ export const trainingIds = (race) => [
 const get = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);
 
 /**
- * What a lane's search knows, where that is no matter of course: something happens, or somebody asked for it.
+ * The model that a lane's search plans with, if the race is disturbed or the model is not the default; else null.
  * @param {Run} race
  * @param {LaneConfig} lane
  */
 export const knowledgeIn = (race, { plans_with = null, plans_with_by_default }) =>
-  happeningsOf(race).length || plans_with_by_default === false ? plans_with : null;
+  disturbancesOf(race).length || plans_with_by_default === false ? plans_with : null;
 
 /** The run on stage. */
 export const shownRun = computed(() => get(stage.value?.run_id));
@@ -243,7 +243,7 @@ export const conditionsShown = computed(() => {
   const run = shownRun.value;
   if (!run || run.kind === "experiment" || scene.value?.run_id !== run.id) return [];
   const step = Math.max(1, ...scene.value.lanes.map((lane) => lane.step));
-  return conditionsInWords(conditionsAt(happeningsOf(run), step - 1, run.config.robot));
+  return conditionsInWords(conditionsAt(disturbancesOf(run), step - 1, run.config.robot));
 });
 
 /** The race whose replay is held: paused, or at its end. */

@@ -15,7 +15,7 @@ import { placeName } from "./training.js";
  * @typedef {{ run_id: string, lane: number, step: number }} Moment
  */
 /**
- * What the server answered to a moment. `again`: the server needs longer, and is asked again.
+ * The server's reply about a moment. `again`: the server needs longer, and is asked again.
  * @template Answer
  * @typedef {{ answer: Answer | null, error: Error | null, again: boolean }} Reply
  */

@@ -15,7 +15,7 @@ import { gaitTitle, robotTitle, simulatorTitle } from "./titles.js";
 const titleOf = (run) => run.name || run.id;
 
 /**
- * What the tables of a race must have in common: [name, the value, it in words].
+ * Settings that the tables of a race must share: [name, the value, it in words].
  * @type {[string, (run: Run) => unknown, (run: Run) => string][]}
  */
 const SHARED = [

@@ -62,7 +62,7 @@ export const choicesOf = (list, nameOf) => (list ?? []).map(({ name }) => [name,
 /** @type {Record<string, string>} */
 const LABELS = {
   gait: "Gait", robot: "Robot", simulator: "Simulator", observation: "Observation", agent: "Learner", lanes: "Lanes",
-  name: "Name", world: "World", disturb: "What happens", experiment: "Experiment", seeds: "Seeds", gaits: "Gaits",
+  name: "Name", world: "World", disturb: "Disturbances", experiment: "Experiment", seeds: "Seeds", gaits: "Gaits",
   robots: "Robots", observations: "Observation", agents: "Agents", worlds: "Worlds", tags: "Tags", notes: "Notes",
 };
 
@@ -163,7 +163,7 @@ const worldsIn = ({ worlds = [] }) =>
   worlds.some((/** @type {string} */ one) => one !== options.value?.worlds[0].name) ? worlds.map(worldTitle) : [];
 
 /**
- * What a sweep varies: "α 0.1, 0.3".
+ * The settings that a sweep varies: "α 0.1, 0.3".
  * @param {Run["config"]} config
  */
 const sweptIn = (config) =>

@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { getCurve, isLasting } from "./api.js";
 import { rateChanges } from "./changes.js";
-import { happeningsOf, joinedBySteps } from "./disturbances.js";
+import { disturbancesOf, joinedBySteps } from "./disturbances.js";
 import { followRuns } from "./runs.js";
 import { trainingInView } from "./selectors.js";
 import { bestKnown, connection, evaluations, references, runs, scene, setEntry } from "./store.js";
@@ -55,7 +55,7 @@ export const curve = computed(() => (trainingInView.value ? curveOf(trainingInVi
 
 /**
  * The curve of a training, with those that it continues. `blocks` are the steps at which one training
- * ended and the next continued it, `changes` those at which live settings changed; `happenings` are disturbances.
+ * ended and the next continued it, `changes` those at which live settings changed; `disturbances` are disturbances.
  * @param {Run} run
  * @param {(part: Run) => number} [upTo] the last step of a training that is shown
  */
@@ -68,7 +68,7 @@ export function curveOf(run, upTo = () => Infinity) {
   /** @type {RateChange[]} */
   const changes = [];
   /** @type {Disturbance[]} */
-  const happenings = [];
+  const disturbances = [];
   let from = 0;
   for (const part of trainings) {
     if (part !== trainings[0]) blocks.push(from);
@@ -76,14 +76,14 @@ export function curveOf(run, upTo = () => Infinity) {
     const shown = evaluationsOf(part.id).filter(({ step }) => step <= last);
     points.push(...shown.map((one) => ({ ...one, step: from + one.step })));
     changes.push(...rateChanges(part, from).filter(({ step }) => step <= from + last));
-    const happened = happeningsOf(part).filter(({ at_step }) => at_step <= last);
-    happenings.push(...happened.map((one) => movedBy(one, from)));
+    const happened = disturbancesOf(part).filter(({ at_step }) => at_step <= last);
+    disturbances.push(...happened.map((one) => movedBy(one, from)));
     if (part !== run) from += part.progress?.done ?? 0;
   }
   const greedy_m = [run, ...trainings].map(greedyOf).find(Number.isFinite) ?? null;
   const to = from + run.config.steps;
   const best_known_m = bestKnownOf(run);
-  return { run, points, from, to, greedy_m, best_known_m, blocks, changes, happenings: joinedBySteps(happenings) };
+  return { run, points, from, to, greedy_m, best_known_m, blocks, changes, disturbances: joinedBySteps(disturbances) };
 }
 
 /** A disturbance in the steps of all practice. @type {(one: Disturbance, from: number) => Disturbance} */

@@ -166,7 +166,7 @@ export interface FormValues {
   name: string;
   /** The name of a world. */
   world: string;
-  /** What happens besides, as on the command line. */
+  /** Disturbances besides, as on the command line. */
   disturb: string[];
   [setting: string]: FormValue;
 }

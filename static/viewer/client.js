@@ -1,4 +1,4 @@
-// What viser's client needs on every page that it is on, before it runs.
+// Preparations of viser's client that every page with it needs before it runs.
 (() => {
   "use strict";
 

@@ -21,7 +21,7 @@ _TRANSITIONS_HAVE_ENDED = """() => Promise.all(document.getAnimations()
 # A route of Playwright would stop each request of the page, to look at its address.
 _WITHOUT_3D = """Object.defineProperty(HTMLIFrameElement.prototype, "src", {set() {}})"""
 _STATUS = re.compile(r"status of (\d+)")
-"""In what Chromium says of an answer of 400 and above."""
+"""Part of Chromium's message about an answer of 400 and above."""
 _METRES = re.compile(r"−?\d+\.\d\d\sm")
 
 
@@ -67,7 +67,7 @@ class Dashboard:
 
     def unfold_settings(self) -> None:
         """Open every group of settings, and what is folded in them."""
-        for words in ("In what", "Against whom", "More settings"):
+        for words in ("Robot and world", "Race", "More settings"):
             self.page.locator(".settings summary", has_text=words).click()
 
     @property

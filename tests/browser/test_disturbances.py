@@ -95,7 +95,7 @@ def tells_others(browser: Browser, server: Serving) -> None:
     with new_page(browser, viewport={"width": 360, "height": 780}) as page:
         other = Dashboard(page, has_3d=False)
         other.open(server.address)
-        chip = other.page.locator(".chip.happening")
+        chip = other.page.locator(".chip.disturbance")
         expect(chip).to_contain_text(re.compile(r"^Legs\s3, 6 limp"))
         assert other.scroll_width() == 360
         assert other.complaints == []
@@ -127,7 +127,7 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     expect(board.get_by_role("row", name=re.compile(r"Best known 0\.51\sm$"))).to_be_visible()
     chart = page.get_by_role("img", name=re.compile(r"^The race after"))
     expect(chart).to_have_accessible_name(re.compile(r"; best known 0\.51\sm\.$"))
-    page.get_by_text("What if something had happened in this race?").click()
+    page.get_by_text("Disturb this race").click()
     expect(page.locator(".branch")).to_contain_text("From step 26: as it was")
     page.get_by_role("slider", name="Moment that is shown").fill("1")
     dashboard.button("Pause replay for everyone").click()

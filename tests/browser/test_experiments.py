@@ -218,7 +218,7 @@ def test_reports_fit_a_phone(flat_browser: Browser, small_runs: list[str]) -> No
         for address in small_runs:
             page.set_viewport_size(PHONE)
             page.goto(address)
-            expect(page.get_by_role("heading", name="How it was made")).to_be_visible()
+            expect(page.get_by_role("heading", name="Method")).to_be_visible()
             if address == small_runs[0]:
                 values = page.get_by_role("slider", name=re.compile("^Values of Left-right"))
                 values.first.press("ArrowLeft")
@@ -326,6 +326,6 @@ def test_spectators_see_the_report_without_controls(
             assert operator.complaints == []
 
         expect(head(dashboard).get_by_role("link", name="Open the report")).to_be_visible()
-        expect(page.get_by_role("heading", name="How it was made")).to_be_visible()
+        expect(page.get_by_role("heading", name="Method")).to_be_visible()
         for action in ("Run", "Pause", "Resume", "Stop", "Delete"):
             expect(page.get_by_role("button", name=re.compile(f"^{action}"))).to_have_count(0)

@@ -25,7 +25,7 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     expect(page.locator(".empty")).to_have_count(3)
     # Gaits and worlds are folded until someone asks for them.
     expect(page.locator(".group > summary")).to_contain_text(
-        ["Who learns Q-learning", "In what Left-right, opposite", "Against whom Q-learning, Greedy"]
+        ["Learner Q-learning", "Robot and world Left-right, opposite", "Race Q-learning, Greedy"]
     )
     expect(page.get_by_role("radio")).to_have_count(0)
     assert page.url == server.address
@@ -40,10 +40,10 @@ def test_the_first_lesson_is_skipped_once_and_opened_again(
     page = dashboard.page
     dashboard.open(shared_server.address)
     lesson = page.get_by_role("region", name="A first lesson")
-    for title in ("What moves", "What the colours on the feet", "What the learner tries"):
+    for title in ("Moves", "Colours on the feet", "Trial and error"):
         expect(lesson).to_contain_text(title)
         lesson.get_by_role("button", name="Next").click()
-    expect(lesson).to_contain_text("What to change first. Press “Train 500 steps, then race”")
+    expect(lesson).to_contain_text("First change. Press “Train 500 steps, then race”")
     assert dashboard.violations() == []
     dashboard.button("Skip the lesson").click()
     expect(lesson).to_have_count(0)
@@ -72,7 +72,7 @@ def test_the_button_and_the_scoreboard_stay_in_view(
     rate, its_help = dashboard.box("#field-alpha"), dashboard.box("#help-alpha")
     assert 0 <= its_help["y"] - rate["y"] - rate["height"] < 8
 
-    page.locator(".settings summary", has_text="In what").click()
+    page.locator(".settings summary", has_text="Robot and world").click()
     expect(page.get_by_role("radiogroup", name="Gait")).to_be_in_viewport(ratio=1)
     expect(dashboard.primary).to_be_in_viewport(ratio=1)
     expect(page.get_by_role("region", name="Scoreboard")).to_be_in_viewport(ratio=1)
@@ -101,7 +101,7 @@ def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> N
     dashboard.unfold_settings()
     page.get_by_role("radio", name="Front-back, mirrored").check(force=True)
     page.get_by_role("radio", name="Payload").check(force=True)
-    page.get_by_label("Add what happens").select_option("Two limp legs")
+    page.get_by_label("Add a disturbance").select_option("Two limp legs")
     dashboard.button("Leg 2").click()
     page.get_by_label("From step").fill("11")
     page.get_by_role("spinbutton", name="Practice, as a number").fill("750")

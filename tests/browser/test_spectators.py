@@ -69,7 +69,7 @@ def read_settings_on_stage(dashboard: Dashboard, address: str) -> None:
     expect(page.get_by_role("radio", name="Left-right, mirrored")).to_be_checked()
     expect(page.get_by_label("Simulator")).to_have_value("kinematic")
     expect(page.get_by_role("group", name="Sensor noise")).to_be_visible()
-    expect(page.get_by_label("Add what happens")).to_be_hidden()
+    expect(page.get_by_label("Add a disturbance")).to_be_hidden()
     settings = page.get_by_role("group", name="Settings", exact=True)
     assert settings.locator(":is(input, select):disabled").count() > 20
     assert settings.locator(":is(input, select, button):enabled").count() == 0

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  changesSomething, chosenWith, conditionsAt, conditionsInWords, conditionsNow, happeningsOf, inTime, inWords,
+  changesSomething, chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, inTime, inWords,
   isSimulated, legStates, nothingOf, parseText, parseWorld, pressed, splitWorlds, textOf, withField, worldTitle,
 } from "../../static/js/disturbances.js";
 import { azimuthsOf } from "../../static/js/robots.js";
@@ -14,16 +14,16 @@ beforeEach(() => (options.value = OPTIONS));
 const LIMP = { kind: "limp", at_step: 25, legs: [1, 4] };
 const SLOPE = { kind: "slope", at_step: 0, degrees: 8, direction_deg: 0 };
 
-/** @type {(happenings: any[], step: number) => string[]} */
-const wordsAt = (happenings, step) =>
-  conditionsInWords(conditionsAt(happenings, step)).map((words) => words.replaceAll("\u00a0", " "));
+/** @type {(disturbances: any[], step: number) => string[]} */
+const wordsAt = (disturbances, step) =>
+  conditionsInWords(conditionsAt(disturbances, step)).map((words) => words.replaceAll("\u00a0", " "));
 
 test("what happens holds from its step on, leg by leg, until it ends or is repaired", () => {
-  const happenings = [SLOPE, LIMP, { kind: "repair", at_step: 30, legs: [4] }, { ...SLOPE, at_step: 40, degrees: 0 }];
-  assert.deepEqual(wordsAt(happenings, 24), ["slope 8°"]);
-  assert.deepEqual(wordsAt(happenings, 25), ["slope 8°", "legs 1, 4 limp"]);
-  assert.deepEqual(wordsAt(happenings, 30), ["slope 8°", "leg 1 limp"]);
-  assert.deepEqual(wordsAt(happenings, 40), ["leg 1 limp"]);
+  const disturbances = [SLOPE, LIMP, { kind: "repair", at_step: 30, legs: [4] }, { ...SLOPE, at_step: 40, degrees: 0 }];
+  assert.deepEqual(wordsAt(disturbances, 24), ["slope 8°"]);
+  assert.deepEqual(wordsAt(disturbances, 25), ["slope 8°", "legs 1, 4 limp"]);
+  assert.deepEqual(wordsAt(disturbances, 30), ["slope 8°", "leg 1 limp"]);
+  assert.deepEqual(wordsAt(disturbances, 40), ["leg 1 limp"]);
   assert.deepEqual(wordsAt([{ ...LIMP, until_step: 27 }], 27), []);
 });
 
@@ -54,9 +54,9 @@ test("a training that runs has what its config says, and what was done to it", (
   const { config } = makeRun({});
   const changes = [{ step: 7, disturbance: { ...LIMP, at_step: 7 } }, { step: 8, alpha: 0.5 }];
   const run = makeRun({ config: { ...config, disturbances: [SLOPE] }, changes, progress: { done: 3, total: 500 } });
-  assert.deepEqual(happeningsOf(run).map(({ kind }) => kind), ["slope", "limp"]);
+  assert.deepEqual(disturbancesOf(run).map(({ kind }) => kind), ["slope", "limp"]);
   assert.deepEqual(conditionsInWords(conditionsNow(run)), ["slope 8°", "legs\u00a01, 4 limp"]);
-  assert.deepEqual(happeningsOf(makeRun({})), []);
+  assert.deepEqual(disturbancesOf(makeRun({})), []);
 });
 
 test("pressing a leg lets something happen to it, or repairs it where that has happened", () => {
@@ -98,8 +98,8 @@ test("declarations tell which simulator knows a kind", () => {
 });
 
 test("the friction with which a robot was built is nothing that has happened to it", () => {
-  const happenings = [0.1, 1].map((value, at_step) => ({ kind: "friction", at_step, value }));
-  const stateOf = (/** @type {any} */ robot) => conditionsInWords(conditionsAt(happenings, 1, robot));
+  const disturbances = [0.1, 1].map((value, at_step) => ({ kind: "friction", at_step, value }));
+  const stateOf = (/** @type {any} */ robot) => conditionsInWords(conditionsAt(disturbances, 1, robot));
   assert.deepEqual(stateOf("stiff"), []);
   assert.deepEqual(stateOf({ preset: "stiff", friction: 0.5 }), ["friction 1"]);
   assert.deepEqual([nothingOf("friction", { preset: "stiff", friction: 0.5 }), nothingOf("slope"), nothingOf("weak")],

@@ -18,7 +18,7 @@ test("each run offers the files that it has", () => {
   assert.deepEqual(labels(withTable), ["Curve (CSV)", "Q-table (CSV)", "Q-table (npz)", ...walk]);
   assert.deepEqual(labels({ ...withTable, started_at: null }), ["Curve (CSV)", "Q-table (CSV)", "Q-table (npz)"],
     "nothing was recorded of an imported table");
-  assert.deepEqual(labels({ result: { q_table_sha256: null } }), ["Curve (CSV)", "What it learned (npz)", ...walk]);
+  assert.deepEqual(labels({ result: { q_table_sha256: null } }), ["Curve (CSV)", "Learned state (npz)", ...walk]);
   assert.deepEqual(labels({ state: "interrupted" }), ["Curve (CSV)", ...walk]);
 });
 

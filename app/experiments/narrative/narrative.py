@@ -29,7 +29,7 @@ def narrate(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     written = [(heading, write(cases)) for heading, write in _NARRATIVES[summary["experiment"]]]
     texts = [{"heading": heading, "text": text} for heading, text in written if text]
     caution = _caution(summary)
-    return [*texts, {"heading": "How sure this is", "text": caution}] if texts else []
+    return [*texts, {"heading": "Uncertainty", "text": caution}] if texts else []
 
 
 def _caution(summary: Mapping[str, Any]) -> str:

@@ -27,11 +27,11 @@ from app.experiments.report.figures import panels
 from app.runs.best_known import COVERAGE, DEFINITION
 
 TITLES: Mapping[str, str] = {
-    "table1": "Table 1, many times over",
-    "figure4": "Figure 4, many times over",
+    "table1": "Table 1 over many seeds",
+    "figure4": "Figure 4 over many seeds",
     "sweep": "A sweep",
     "league": "A league of learners and searchers",
-    "recovery": "Recovery after something happened",
+    "recovery": "Recovery after a disturbance",
 }
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """The page's Content-Security-Policy, also set by a `<meta>` element of the page."""

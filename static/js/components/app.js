@@ -148,13 +148,13 @@ function StepsPanel() {
 
 /** [title, words]; the last is for those who can start a run. */
 const lessonSteps = () => [
-  ["What moves", "In each step a robot puts one pair of its legs in another place. Some moves carry it forward, some " +
+  ["Moves", "In each step a robot puts one pair of its legs in another place. Some moves carry it forward, some " +
     "back, and some nowhere: it has to find an order of moves that walks."],
-  ["What the colours on the feet mean", "The squares below a learner’s feet are the places that a foot can go to. " +
+  ["Colours on the feet", "The squares below a learner’s feet are the places that a foot can go to. " +
     "Dark: the learner expects little from that move. Light: it expects much."],
-  ["What the learner tries", "At first it moves at random. After each step it measures how far that took it, and " +
+  ["Trial and error", "At first it moves at random. After each step it measures how far that took it, and " +
     "corrects the value of that move in its table. The more it has practised, the more often it makes the best move."],
-  ["What to change first", `Press “${primaryAction.value.label}” and watch. Then change one thing, the practice ` +
+  ["First change", `Press “${primaryAction.value.label}” and watch. Then change one thing, the practice ` +
     "or the learning rate α, and race again. “What if?” tries the settings with thirty robots at once."],
 ];
 
@@ -365,7 +365,7 @@ function HelpDialog() {
         <dl class="keys">
           ${CHART_KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
         </dl>
-        <h2>What you see</h2>
+        <h2>Learning and racing</h2>
         <p>
           A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and
           keeps in a table what each move is worth. Then it races against two robots that simulate their moves

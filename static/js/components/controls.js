@@ -14,7 +14,7 @@ import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
 import { EstimateNote, goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
 import { Settings } from "./settings.js";
-import { Branch, LiveWorld } from "./what-happens.js";
+import { Branch, LiveWorld } from "./world-controls.js";
 
 export function Controls() {
   if (!isOperator.value) return html`<${Spectator} />`;
@@ -197,7 +197,7 @@ function Spectator() {
     ? `These are the settings of ${of}. ${START_WORDS}`
     : "Only “What if?” tries these settings; the stage goes on as it is.";
   return html`
-    <section class="panel controls" aria-label="What is shown">
+    <section class="panel controls" aria-label="Run on stage">
       <div class="watching">
         <h2>You are watching</h2>
         <p class="dim">${words}</p>

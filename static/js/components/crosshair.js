@@ -18,7 +18,7 @@ const DRAG_PX = 6;
 const DOUBLE_CLICK_MS = 250;
 
 /**
- * What a chart's keys, pointer and menu act on.
+ * The axis that a chart's keys, pointer and menu act on.
  * @typedef {object} Axis
  * @property {string} axis
  * @property {number[]} xs where there are values, ascending

@@ -249,7 +249,7 @@ const Numbers = ({ lanes, from, to }) => html`
     </table>
   </div>
   <details class=${`as-table ${lanes.length > MOST_EXPLAINED ? "" : "narrow-only"}`}>
-    <summary>What the figures mean</summary>
+    <summary>Definitions of the figures</summary>
     <dl class="walk-help">${FIGURES.map(([name, help]) => html`<dt>${name}</dt><dd>${help}</dd>`)}</dl>
   </details>
 `;

@@ -33,14 +33,14 @@ export function LearningChart() {
 }
 
 /** Lines: greedy's and the best known distance, where one training continued another, what changed, what happened. */
-const marksOf = ({ greedy_m, best_known_m, blocks, changes, happenings, run }) => [
+const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run }) => [
   ...(greedy_m ? [greedyMark(greedy_m)] : []),
   ...(best_known_m === null ? [] : [bestKnownMark(best_known_m)]),
   ...blocks.map((x) => ({ x, color: "--line" })),
   ...changes.map((change) => ({
     x: change.step, color: "--dim", dash: [2, 3], text: rateInWords(run.config.agent, change),
   })),
-  ...happenings.flatMap((one) => {
+  ...disturbances.flatMap((one) => {
     const mark = { color: "--warn", dash: [4, 3] };
     const begins = one.at_step > 0 ? [{ ...mark, x: one.at_step, text: inWords(one) }] : [];
     return one.until_step ? [...begins, { ...mark, x: one.until_step, text: `no ${inWords(one)}` }] : begins;
@@ -80,8 +80,8 @@ function Curve({ known }) {
     <${Chart} name="the learning curve" label=${captionOf(known)} x=${x} y=${y} lines=${[line]} xs=${steps}
       marks=${marksOf(known)} seek=${seekToStep(known)}>
       ${best_known_m !== null && html`<${BestKnownKey} distance=${best_known_m} />`}
-      ${known.happenings.length > 0 && html`
-        <p class="changes happened">Happened: ${known.happenings.map(inTime).join("; ")}</p>
+      ${known.disturbances.length > 0 && html`
+        <p class="changes happened">Happened: ${known.disturbances.map(inTime).join("; ")}</p>
       `}
       ${changed.length > 0 && html`<p class="changes dim">Changed: ${changed.join(", ")}</p>`}
     <//>
@@ -105,7 +105,7 @@ export function Knowledge() {
   const known = scene.value?.knowledge;
   return html`
     <section class="panel knowledge" aria-labelledby="knowledge-title">
-      <h2 id="knowledge-title">What the learner knows here</h2>
+      <h2 id="knowledge-title">Action values in this state</h2>
       <p class="dim">${ABOUT}</p>
       ${known
         ? html`

@@ -1,6 +1,6 @@
 // The race: its scoreboard, and its chart of distance against time.
 import { seekIn } from "../actions.js";
-import { happeningsOf, inTime, joinedBySteps } from "../disturbances.js";
+import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
 import {
@@ -40,7 +40,7 @@ export function Scoreboard() {
 function BranchWords() {
   const race = raceInView.value;
   const branch = race?.config.branch_from;
-  const happens = joinedBySteps(race ? happeningsOf(race) : []).map(inTime).join("; ");
+  const happens = joinedBySteps(race ? disturbancesOf(race) : []).map(inTime).join("; ");
   if (!branch) return happens && html`<p class="happened">${sentence(happens)}.</p>`;
   const original = originalRace.value;
   const title = original?.name || "another race";

@@ -17,19 +17,19 @@ import { HexapodGlyph, html } from "./elements.js";
 import {
   attributesOf, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
-import { Happenings, WorldPicker } from "./world.js";
+import { Disturbances, WorldPicker } from "./world.js";
 
 /** @import { Run } from "../types.js" */
 
 /** Maximum of the slider of the practice, less than the server accepts: any other number can be typed. */
 const PRACTICE = { min: 50, max: 2000, step: 50 };
 
-/** In the order of a thought: who learns, in what, against whom. Each group is one line when folded. */
+/** Each group is one line when folded. */
 export const Settings = () => html`
   <fieldset class="settings" disabled=${isReadOnly.value} aria-label="Settings">
-    <${Group} title="Who learns" chosen=${learnerChosen()} fields=${learnerFields()} isFirst><${WhoLearns} /><//>
-    <${Group} title="In what" chosen=${placeChosen()} fields=${PLACE_FIELDS}><${InWhat} /><//>
-    <${Group} title="Against whom" chosen=${rivalsChosen()} fields=${rivalFields()}><${AgainstWhom} /><//>
+    <${Group} title="Learner" chosen=${learnerChosen()} fields=${learnerFields()} isFirst><${LearnerGroup} /><//>
+    <${Group} title="Robot and world" chosen=${worldChosen()} fields=${WORLD_FIELDS}><${WorldGroup} /><//>
+    <${Group} title="Race" chosen=${raceChosen()} fields=${raceFields()}><${RaceGroup} /><//>
   </fieldset>
 `;
 
@@ -60,7 +60,7 @@ function Group({ title, chosen, fields, isFirst = false, children }) {
   `;
 }
 
-// ---- who learns
+// ---- the learner
 
 const learnerFields = () => [
   "agent", "steps", "seed", "observation", "pace", "steps_per_episode", "evaluate_every", "name",
@@ -72,7 +72,7 @@ function learnerChosen() {
   return [agentOf(agent).title, count(steps, "step"), ...ratesInWords(agent, form.value), seed && `seed ${seed}`];
 }
 
-const WhoLearns = () => html`
+const LearnerGroup = () => html`
     <div class="sliders">
       <${Learner} />
       <${Slider} field="steps" ...${PRACTICE}
@@ -221,11 +221,11 @@ const MoreSettings = () => html`
   </details>
 `;
 
-// ---- in what: gait, robot, world and damage
+// ---- robot and world: gait, robot, world and disturbances
 
-const PLACE_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "world", "disturb"];
+const WORLD_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "world", "disturb"];
 
-function placeChosen() {
+function worldChosen() {
   const { gait, robot, simulator, tolerance, world, disturb } = form.value;
   const happens = disturb.flatMap((text) => parseText(text).value ?? []).map(inTime);
   return [
@@ -235,10 +235,10 @@ function placeChosen() {
   ];
 }
 
-const InWhat = () => html`
+const WorldGroup = () => html`
   <${GaitPicker} />
   <${WorldPicker} />
-  <${Happenings} />
+  <${Disturbances} />
   <div class="more-fields">
     <${SelectField} field="robot" label="Robot" choices=${robotChoices()} />
     <${SelectField} field="simulator" label="Simulator"
@@ -249,14 +249,14 @@ const InWhat = () => html`
   </div>
 `;
 
-// ---- against whom
+// ---- the race
 
-const rivalFields = () => ["lanes", "race_steps", ...Object.keys(laneSettings(form.value.lanes))];
+const raceFields = () => ["lanes", "race_steps", ...Object.keys(laneSettings(form.value.lanes))];
 
-const rivalsChosen = () =>
+const raceChosen = () =>
   [form.value.lanes.map((agent) => agentOf(agent).title).join(", "), count(form.value.race_steps, "step")];
 
-const AgainstWhom = () => html`
+const RaceGroup = () => html`
   <div class="more-fields">
     <${Lanes} />
     <${Figure} field="race_steps" />

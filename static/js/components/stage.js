@@ -206,7 +206,7 @@ function GhostChip({ ghosts }) {
 /** Conditions in the step that is shown, as on every page that watches. */
 function WorldChip() {
   const words = conditionsShown.value;
-  return words.length > 0 && html`<p class="chip happening">${sentence(words.join(", "))}</p>`;
+  return words.length > 0 && html`<p class="chip disturbance">${sentence(words.join(", "))}</p>`;
 }
 
 function SpeedChip({ now }) {

@@ -1,7 +1,7 @@
 // The transport below the stage: play, seek, speed, clock, camera. The camera is this page's own; all else is shared by
 // every page, unless this one plays a replay of its own.
 import { setStage, skipToEnd, togglePlaying } from "../actions.js";
-import { conditionsAt, conditionsInWords, happeningsOf } from "../disturbances.js";
+import { conditionsAt, conditionsInWords, disturbancesOf } from "../disturbances.js";
 import { clockTime, count, metres, sentence } from "../format.js";
 import { isNarrow, view } from "../page.js";
 import {
@@ -90,7 +90,7 @@ function markTitle({ kind, lane, step, distance_m }) {
   if (kind === "evaluation") return `Evaluation after ${count(step, "step")}: ${metres(distance_m)}`;
   if (kind === "disturbance") {
     const run = shownRun.value;
-    const words = run ? conditionsInWords(conditionsAt(happeningsOf(run), step, run.config.robot)) : [];
+    const words = run ? conditionsInWords(conditionsAt(disturbancesOf(run), step, run.config.robot)) : [];
     const what = sentence(words.join(", ")) || "As built again";
     return names.length > 1 ? `${what}: ${names[lane]}, step ${step + 1}` : `${what}, step ${step + 1}`;
   }

@@ -1,4 +1,4 @@
-// The form's worlds: those with a name as small pictures, and what happens at which step.
+// The form's worlds: those with a name as small pictures, and disturbances with their steps.
 import { kindNamed, LEG_WORDS, legStates, shortName, splitText, textOf, withField } from "../disturbances.js";
 import { form, mistakeInText, setField, wrong } from "../form.js";
 import { azimuthsOf } from "../robots.js";
@@ -6,7 +6,7 @@ import { fullTitle } from "../settings.js";
 import { served } from "../store.js";
 import { html } from "./elements.js";
 import { Description, MistakeOf } from "./fields.js";
-import { classOf, firstFields, LegPicker } from "./what-happens.js";
+import { classOf, firstFields, LegPicker } from "./world-controls.js";
 
 // ---- named worlds
 
@@ -15,7 +15,7 @@ const LEGS_X = [30, 19, 7, -7, -19, -30];
 const GROUND_Y = 15;
 const ROUGH = "M-36 15l5-4 5 5 6-7 6 6 5-4 5 5 6-6 6 5 5-5 6 6 5-4 6 4";
 
-/** A world from the side: the robot on its ground, drawn by what happens there. */
+/** A world from the side: the robot on its ground, drawn by its disturbances. */
 export function WorldPicture({ disturbances }) {
   const of = (kind) => disturbances.find((one) => one.kind === kind);
   const states = legStates(disturbances);
@@ -68,12 +68,12 @@ export const WorldPicker = () => html`
   </fieldset>
 `;
 
-// ---- what happens, and at which step
+// ---- disturbances, each with its step
 
-const setHappenings = (texts) => setField("disturb", texts);
+const setDisturbances = (texts) => setField("disturb", texts);
 
 /** Disturbances to come, each with its fields; a text of a link that is no disturbance stands as it is. */
-export function Happenings() {
+export function Disturbances() {
   const texts = form.value.disturb;
   const worlds = served().worlds.filter(({ disturbances }) => disturbances.length);
   const at_step = Math.floor(form.value.race_steps / 2);
@@ -83,21 +83,21 @@ export function Happenings() {
       ? (worlds.find((one) => one.name === name)?.disturbances ?? []).map((one) => textOf({ ...one, at_step }))
       : [textOf({ kind: name, ...firstFields(name), at_step })];
     target.value = "";
-    setHappenings([...texts, ...added]);
+    setDisturbances([...texts, ...added]);
   };
   return html`
-    <fieldset class="happenings" id="field-disturb" tabindex="-1" aria-describedby="help-disturb">
-      <legend><h2>What happens</h2></legend>
+    <fieldset class="disturbances" id="field-disturb" tabindex="-1" aria-describedby="help-disturb">
+      <legend><h2>Disturbances</h2></legend>
       <p class="sentence" id="help-disturb">
         In the race, after practice in the world above; in the practice, if there is no race.
       </p>
       ${texts.map((text, number) => html`
-        <${Happening} key=${number} text=${text} number=${number}
-          onText=${(changed) => setHappenings(texts.map((one, n) => (n === number ? changed : one)))}
-          onRemove=${() => setHappenings(texts.filter((_, n) => n !== number))} />
+        <${DisturbanceRow} key=${number} text=${text} number=${number}
+          onText=${(changed) => setDisturbances(texts.map((one, n) => (n === number ? changed : one)))}
+          onRemove=${() => setDisturbances(texts.filter((_, n) => n !== number))} />
       `)}
-      <select class="add" aria-label="Add what happens" onChange=${add}>
-        <option value="">Add what happens…</option>
+      <select class="add" aria-label="Add a disturbance" onChange=${add}>
+        <option value="">Add a disturbance…</option>
         <optgroup label="Named">
           ${worlds.map(({ name, title }) => html`<option value=${`world ${name}`}>${title}</option>`)}
         </optgroup>
@@ -109,7 +109,7 @@ export function Happenings() {
   `;
 }
 
-function Happening({ text, number, onText, onRemove }) {
+function DisturbanceRow({ text, number, onText, onRemove }) {
   const { kind: name, fields } = splitText(text);
   const kind = kindNamed(name);
   const mistake = mistakeInText(text, form.value.simulator);
@@ -122,21 +122,21 @@ function Happening({ text, number, onText, onRemove }) {
   };
   const words = LEG_WORDS[name] ?? name;
   return html`
-    <div class="happening-row" role="group" aria-label=${kind?.title ?? text}>
-      <div class="happening-head">
+    <div class="disturbance-row" role="group" aria-label=${kind?.title ?? text}>
+      <div class="disturbance-head">
         <b>${kind?.title ?? text}</b>
         <button type="button" class="quiet square small" aria-label=${`Remove ${kind?.title ?? text}`}
           onClick=${onRemove}>✕</button>
       </div>
       ${kind && html`
-        <div class="happening-fields">
+        <div class="disturbance-fields">
           ${kind.fields.legs && html`
             <${LegPicker} azimuths=${azimuthsOf(robot, gait, served().gaits)} onLeg=${toggle}
               states=${new Map(legs.map((leg) => [leg, words]))}
               verbOf=${(leg) => (legs.includes(leg) ? "Leave out" : "Add")} />
           `}
           ${Object.entries(kind.fields).filter(([, field]) => !field.is_list).map(([field, setting]) => html`
-            <${HappeningField} key=${field} id=${`happening-${number}-${field}`} field=${field} setting=${setting}
+            <${DisturbanceField} key=${field} id=${`disturbance-${number}-${field}`} field=${field} setting=${setting}
               value=${given(field)} onValue=${(value) => onText(withField(text, field, value))} />
           `)}
         </div>
@@ -151,11 +151,11 @@ const AT = "at_step";
 const TITLES = { at_step: "From step", until_step: "To step" };
 const WHOLE = /^\d+$/;
 
-function HappeningField({ id, field, setting, value, onValue }) {
+function DisturbanceField({ id, field, setting, value, onValue }) {
   const title = TITLES[field] ?? fullTitle(setting);
   if (setting.choices.length) {
     return html`
-      <label class="happening-field" for=${id}>${title}
+      <label class="disturbance-field" for=${id}>${title}
         <select id=${id} title=${setting.help} onChange=${({ target }) => onValue(target.value)}>
           ${setting.choices.map((one) => html`<option value=${one} selected=${one === value}>${one}</option>`)}
         </select>
@@ -170,7 +170,7 @@ function HappeningField({ id, field, setting, value, onValue }) {
     onValue(isAt && WHOLE.test(typed) ? String(Number(typed) - 1) : typed);
   };
   return html`
-    <label class="happening-field" for=${id}>${title}
+    <label class="disturbance-field" for=${id}>${title}
       <input type="text" id=${id} inputmode="decimal" autocomplete="off" title=${setting.help} value=${shown}
         placeholder=${placeholder} onChange=${take} />
     </label>

@@ -58,15 +58,15 @@ function countTrials(experiment, values) {
  * @param {string} world empty where the experiment has none
  */
 function countInWorld(values, world) {
-  const happenings = world ? parseWorld(world).value ?? [] : [];
-  const varies = Boolean(values.tolerance) || happenings.some(({ kind }) => kind === NOISE);
+  const disturbances = world ? parseWorld(world).value ?? [] : [];
+  const varies = Boolean(values.tolerance) || disturbances.some(({ kind }) => kind === NOISE);
   const trialsOf = (/** @type {string} */ agent) => {
     const own = combinations(values, Object.keys(settingsOf([agent])));
     if (!learns(agent)) return varies ? own * values.seeds : own;
     return own * combinations(values, PRACTICE_FIELDS) * values.seeds;
   };
   const agents = [...new Set(["greedy", ...values.agents])];
-  const nominal = happenings.length || values.tolerance ? ["greedy"] : [];
+  const nominal = disturbances.length || values.tolerance ? ["greedy"] : [];
   return [...agents, ...nominal].reduce((total, agent) => total + trialsOf(agent), 0);
 }
 
@@ -171,8 +171,8 @@ function parseWorlds(text) {
 /** Why a world cannot be had in the chosen simulator. */
 function mistakeInWorlds() {
   const { worlds, simulator } = values.value;
-  const happenings = /** @type {string[]} */ (worlds ?? []).flatMap((one) => parseWorld(one).value ?? []);
-  const impossible = happenings.find(({ kind }) => !isSimulated(kind, simulator));
+  const disturbances = /** @type {string[]} */ (worlds ?? []).flatMap((one) => parseWorld(one).value ?? []);
+  const impossible = disturbances.find(({ kind }) => !isSimulated(kind, simulator));
   return impossible ? unknownTo(simulator, impossible.kind) : null;
 }
 

@@ -210,7 +210,7 @@ def test_the_page_requests_no_other_resource(shown: Page, tmp_path: Path) -> Non
     policy = shown.locator('meta[http-equiv="Content-Security-Policy"]')
     assert policy.get_attribute("content") == POLICY
     assert shown.locator("script").count() == 0
-    assert shown.locator("h1").inner_text() == "Table 1, many times over"
+    assert shown.locator("h1").inner_text() == "Table 1 over many seeds"
 
 
 def test_the_page_does_not_scroll_horizontally(shown: Page, tmp_path: Path) -> None:

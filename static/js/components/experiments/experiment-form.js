@@ -253,7 +253,7 @@ function Worlds() {
   `;
 }
 
-/** Worlds without a name, as on the command line. What is typed stays while it means the same. */
+/** Worlds without a name, as on the command line. The typed text stays while it means the same. */
 function OtherWorlds({ named, others }) {
   const [draft, setDraft] = useState("");
   const isKept = splitWorlds(draft).join("; ") === others;

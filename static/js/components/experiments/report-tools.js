@@ -59,7 +59,7 @@ export const StripKey = ({ signs = Object.keys(SIGNS), color }) => html`
 `;
 
 /**
- * What the best known distance is, and where it is known if some lack one.
+ * Definition of the best known distance, and the cases that have one if some lack it.
  * @param {{ distances: (number | null | undefined)[] }} props
  */
 export function BestKnownWords({ distances }) {

@@ -221,7 +221,7 @@ function Making({ known }) {
   ];
   return html`
     <section class="panel making" aria-labelledby="making">
-      <h2 id="making">How it was made</h2>
+      <h2 id="making">Method</h2>
       <dl>
         ${rows.filter(([, value]) => value !== undefined && value !== null).map(([name, value]) => html`
           <div><dt>${name}</dt><dd>${value}</dd></div>

@@ -15,7 +15,7 @@ import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./r
 const NOMINAL = "nominal";
 
 /** Question of each experiment. */
-const TITLES = { league: "Who walks, in which world", recovery: "Who recovers, from what" };
+const TITLES = { league: "Distances by agent and world", recovery: "Recovery by agent and disturbance" };
 const STEPS_OF = { league: "steps of practice", recovery: "steps after it happened" };
 
 export function Worlds({ known }) {

@@ -4,7 +4,7 @@ import {
   attempt, copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage,
 } from "../../actions.js";
 import { changesInWords, rateChanges } from "../../changes.js";
-import { happeningsOf, inTime, joinedBySteps } from "../../disturbances.js";
+import { disturbancesOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
 import { archiveAddress, downloads, saveFilm } from "../../files.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
@@ -74,7 +74,7 @@ function summaryOf(run) {
     config.simulator === simulator ? "" : simulatorTitle(config.simulator),
   ];
   const own = run.kind === "race" ? ofRace(config) : ofTraining(run);
-  return [learner, ...own, ...place, ...joinedBySteps(happeningsOf(run)).map(inTime)].filter(Boolean).join(" · ");
+  return [learner, ...own, ...place, ...joinedBySteps(disturbancesOf(run)).map(inTime)].filter(Boolean).join(" · ");
 }
 
 const ofRace = ({ lanes, steps }) => [listed(lanes.map(laneTitle)), count(steps, "step")];

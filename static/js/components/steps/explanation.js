@@ -1,4 +1,4 @@
-// An explained step: what happened, why this move, and how the values changed, as the rule with its numbers.
+// An explained step: the move, its reason, and the update of the values, as the rule with its numbers.
 import { agentOf } from "../../settings.js";
 import { count } from "../../format.js";
 import { comparedNumber, fineMillimetres, moveInWords, ruleNumber, stateInWords } from "../../steps.js";
@@ -120,17 +120,17 @@ const barOf = (score, low, high) => ({
   background: valueColours(score, low, high).background,
 });
 
-// ---- what it learned
+// ---- the update
 
 function Update({ told }) {
   const { update } = told;
   if (!update && !told.choice) return null;
   if (!update) {
-    return html`<section><h4>What it learned</h4><p class="dim">Nothing: it does not learn here.</p></section>`;
+    return html`<section><h4>Update</h4><p class="dim">Nothing: it does not learn here.</p></section>`;
   }
   return html`
     <section>
-      <h4>What it learned</h4>
+      <h4>Update</h4>
       <p>${update.summary}</p>
       ${update.direct && html`<${Rule} update=${update.direct} stored=${update.stored} />`}
       ${update.beliefs.length > 0 && html`<${Beliefs} beliefs=${update.beliefs} />`}
@@ -171,7 +171,7 @@ const withDeviation = (value, deviation, unit) => {
 
 const Beliefs = ({ beliefs }) => html`
   <table class="beliefs">
-    <caption class="dim">What its model believes of this step</caption>
+    <caption class="dim">Its model of this step</caption>
     <thead><tr><td></td><th scope="col">before</th><th scope="col">after</th></tr></thead>
     <tbody>
       ${beliefs.map(({ name, unit, before, after, deviation_before, deviation_after }) => html`

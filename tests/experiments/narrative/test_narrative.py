@@ -93,7 +93,7 @@ def test_the_clocks_are_compared_with_times_measured_on_this_machine() -> None:
 
 
 def test_the_caution_names_few_seeds_missing_trials_and_the_simulator() -> None:
-    text = text_under(summary_of("figure4", lambda _: around(0.3), seeds=3), "How sure this is")
+    text = text_under(summary_of("figure4", lambda _: around(0.3), seeds=3), "Uncertainty")
     assert "3 seeds a setting is few" in text
     assert "kinematic simulator" in text
     assert "missing" not in text

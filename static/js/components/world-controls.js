@@ -4,7 +4,7 @@ import { signal } from "@preact/signals";
 import { useRef, useState } from "preact/hooks";
 import { branchRace, disturb, pending } from "../actions.js";
 import {
-  chosenWith, conditionsAt, conditionsInWords, conditionsNow, happeningsOf, isSimulated,
+  chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, isSimulated,
   kindNamed, legStates, nothingOf, pressed, PUSH, withUnit,
 } from "../disturbances.js";
 import { listed } from "../format.js";
@@ -121,7 +121,7 @@ function firstValue(field) {
   return Math.max(min, Number((Math.round((min + (max - min) / 10) / step) * step).toPrecision(4)));
 }
 
-// ---- sliders for how much happens: slope, friction, payload, a push; below it, its other numbers
+// ---- sliders for the size of a disturbance: slope, friction, payload, a push; below it, its other numbers
 
 /** Kinds of disturbances of more than a leg, as the server lists them. */
 const kindsWithSize = () => served().disturbances.filter(({ size, fields }) => size && !fields.legs);
@@ -143,7 +143,7 @@ const isPressed = ({ name, nothing }) => name === PUSH || nothing === null;
  * The values of a kind as they hold, with what is being changed. A change takes effect when the slider, or its key,
  * has been let go: a run has only so many disturbances.
  */
-function useValues(kind, others, conditions, onHappen) {
+function useValues(kind, others, conditions, onDisturb) {
   const [draft, setDraft] = useState(/** @type {Record<string, number>} */ ({}));
   const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
   const held = conditions.find((other) => other.kind === kind.name);
@@ -152,11 +152,11 @@ function useValues(kind, others, conditions, onHappen) {
   const send = async (chosen) => {
     clearTimeout(timer.current);
     const given = [kind.size, ...others.map(([other]) => other)].filter((one) => chosen[one] !== undefined);
-    await onHappen({ kind: kind.name, ...Object.fromEntries(given.map((one) => [one, chosen[one]])) });
+    await onDisturb({ kind: kind.name, ...Object.fromEntries(given.map((one) => [one, chosen[one]])) });
     if (!isPressed(kind)) setDraft({});
   };
   const change = (name, value) => setDraft({ ...draft, [name]: value });
-  /** A direction alone is nothing that happens. */
+  /** A direction alone is no disturbance. */
   const finish = (name, value) => {
     const chosen = { ...values, [name]: value };
     clearTimeout(timer.current);
@@ -167,13 +167,13 @@ function useValues(kind, others, conditions, onHappen) {
   return { values, change, finish, send };
 }
 
-function KindSlider({ kind, conditions, config: { robot, simulator }, onHappen }) {
+function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb }) {
   const field = kind.fields[kind.size];
   const others = ownFieldsOf(kind).filter(([other]) => other !== kind.size);
-  const { values, change, finish, send } = useValues(kind, others, conditions, onHappen);
+  const { values, change, finish, send } = useValues(kind, others, conditions, onDisturb);
   const ends = sliderOf(field) ?? { min: 0, max: 1, step: 0.01 };
   const isDisabled = !isSimulated(kind.name, simulator);
-  const id = `happen-${kind.name}`;
+  const id = `disturb-${kind.name}`;
   const value = values[kind.size] ?? null;
   const nothing = nothingOf(kind.name, robot);
   const at = value ?? nothing ?? ends.min;
@@ -184,7 +184,7 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onHappen }
     onChange: ({ target }) => finish(name, Number(target.value)),
   });
   return html`
-    <div class="slider happen">
+    <div class="slider disturb">
       <label for=${id}>${kind.title}</label>
       <input type="range" id=${id} min=${ends.min} max=${ends.max} step=${ends.step} value=${at} disabled=${isDisabled}
         style=${shareIn(at, ends)} aria-valuetext=${words} aria-describedby=${`${id}-help`} ...${handlers(kind.size)} />
@@ -217,9 +217,9 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onHappen }
   `;
 }
 
-/** A number of what happens that is typed. */
+/** A number of a disturbance that is typed. */
 const OtherNumber = ({ id, of, setting, isDisabled, ...rest }) => html`
-  <div class="slider happen other">
+  <div class="slider disturb other">
     <label for=${`field-${id}`}><span class="sr-only">${of}: </span>${setting.title}</label>
     <${NumberField} field=${id} setting=${setting} step=${setting.is_whole ? 1 : TYPED_STEP} isOfForm=${false}
       isDisabled=${isDisabled} ...${rest} />
@@ -234,7 +234,7 @@ function OtherSlider({ id, of, setting, value: given, isDisabled, handlers }) {
   const words = withUnit(value, setting.unit);
   const step = setting.unit === "°" ? DIRECTION_STEP : ends.step;
   return html`
-    <div class="slider happen other">
+    <div class="slider disturb other">
       <label for=${id}><span class="sr-only">${of}: </span>${setting.title}</label>
       <input type="range" id=${id} min=${ends.min} max=${ends.max} step=${step} value=${value} disabled=${isDisabled}
         style=${shareIn(value, ends)} aria-valuetext=${words} aria-describedby=${`${id}-help`} ...${handlers} />
@@ -258,8 +258,8 @@ function reasonAgainst(simulator) {
   return `The ideal simulator has no ground and no servos: only ${titles} can happen there.`;
 }
 
-/** `conditions`: what holds; `onHappen` takes what is to happen, without its step. */
-function WorldControls({ id, config, conditions, onHappen, sentenceOf, children }) {
+/** `conditions`: what holds; `onDisturb` takes a disturbance without its step. */
+function WorldControls({ id, config, conditions, onDisturb, sentenceOf, children }) {
   const { robot, gait, simulator } = config;
   const [wish, setWish] = useState(() => firstWish(legKinds()[0].name));
   const reason = reasonAgainst(simulator);
@@ -268,7 +268,7 @@ function WorldControls({ id, config, conditions, onHappen, sentenceOf, children 
   return html`
     <div class="break">
       <${LegPicker} azimuths=${azimuthsOf(robot, gait, served().gaits)} states=${legStates(conditions)}
-        isDisabled=${Boolean(reason)} describedBy=${`${id}-words`} onLeg=${(leg) => onHappen(meant(leg))}
+        isDisabled=${Boolean(reason)} describedBy=${`${id}-words`} onLeg=${(leg) => onDisturb(meant(leg))}
         verbOf=${(leg) => (meant(leg).kind === "repair" ? "Repair" : "Break")} />
       <div class="break-words">
         <p id=${`${id}-words`} role="status">${sentenceOf(now)}</p>
@@ -283,7 +283,8 @@ function WorldControls({ id, config, conditions, onHappen, sentenceOf, children 
       <summary>Ground, load and servos</summary>
       <div class="sliders">
         ${kindsWithSize().map((kind) => html`
-          <${KindSlider} key=${kind.name} kind=${kind} conditions=${conditions} config=${config} onHappen=${onHappen} />
+          <${KindSlider} key=${kind.name} kind=${kind} conditions=${conditions} config=${config}
+            onDisturb=${onDisturb} />
         `)}
       </div>
     </details>
@@ -296,15 +297,15 @@ export function LiveWorld() {
   if (!run) return null;
   const words = (now) => (now.length ? html`<b>Now:</b> ${now.join(", ")}` : "Nothing has happened to this robot.");
   return html`
-    <section class="world-now" aria-label="What happens now">
+    <section class="world-now" aria-label="Disturbances now">
       <${WorldControls} id="live" config=${run.config} conditions=${conditionsNow(run)} sentenceOf=${words}
-        onHappen=${(one) => disturb(run, one)} />
+        onDisturb=${(one) => disturb(run, one)} />
       <${Problem} at="disturb" />
     </section>
   `;
 }
 
-// ---- a race that is held: something happens, and it is raced on from there
+// ---- a race that is held: it is disturbed, and raced on from there
 
 /** Shown while the replay of a race is held. */
 export const Branch = () => heldRace.value && html`<${BranchOf} key=${heldRace.value.id} race=${heldRace.value} />`;
@@ -317,7 +318,7 @@ function BranchOf({ race }) {
   const { config } = race;
   // At the end nothing is left to walk: the middle is offered.
   const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
-  const before = conditionsAt(happeningsOf(race), from - 1, config.robot);
+  const before = conditionsAt(disturbancesOf(race), from - 1, config.robot);
   const conditions = conditionsAt([...before, ...chosen].map((one) => ({ ...one, at_step: 0 })), 0, config.robot);
   const words = (now) => {
     const pushes = chosen.filter(({ kind }) => kind === PUSH).length ? ["a push"] : [];
@@ -330,9 +331,9 @@ function BranchOf({ race }) {
   return html`
     <details class="more branch" open=${isBranchOpen.value}
       onToggle=${({ target, currentTarget }) => target === currentTarget && (isBranchOpen.value = target.open)}>
-      <summary>What if something had happened in this race?</summary>
+      <summary>Disturb this race</summary>
       <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}
-        onHappen=${(one) => setChosen((all) => chosenWith(all, one, before, config.robot))}>
+        onDisturb=${(one) => setChosen((all) => chosenWith(all, one, before, config.robot))}>
         <button type="button" class="secondary" disabled=${!chosen.length || pending.value.branch} onClick=${start}>
           Race on from ${stepShown.value === null ? `step ${from}` : "here"}
         </button>
