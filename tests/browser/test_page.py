@@ -25,7 +25,7 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     expect(page.locator(".empty")).to_have_count(3)
     # Gaits and worlds are folded until someone asks for them.
     expect(page.locator(".group > summary")).to_contain_text(
-        ["Learner Q-learning", "Robot and world Left-right, opposite", "Race Q-learning, Greedy"]
+        ["Training Q-learning", "Robot and world Left-right, opposite", "Race Q-learning, Greedy"]
     )
     expect(page.get_by_role("radio")).to_have_count(0)
     assert page.url == server.address

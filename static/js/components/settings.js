@@ -27,7 +27,7 @@ const PRACTICE = { min: 50, max: 2000, step: 50 };
 /** Each group is one line when folded. */
 export const Settings = () => html`
   <fieldset class="settings" disabled=${isReadOnly.value} aria-label="Settings">
-    <${Group} title="Learner" chosen=${learnerChosen()} fields=${learnerFields()} isFirst><${LearnerGroup} /><//>
+    <${Group} title="Training" chosen=${trainingChosen()} fields=${trainingFields()} isFirst><${TrainingGroup} /><//>
     <${Group} title="Robot and world" chosen=${worldChosen()} fields=${WORLD_FIELDS}><${WorldGroup} /><//>
     <${Group} title="Race" chosen=${raceChosen()} fields=${raceFields()}><${RaceGroup} /><//>
   </fieldset>
@@ -60,19 +60,19 @@ function Group({ title, chosen, fields, isFirst = false, children }) {
   `;
 }
 
-// ---- the learner
+// ---- the training
 
-const learnerFields = () => [
+const trainingFields = () => [
   "agent", "steps", "seed", "observation", "pace", "steps_per_episode", "evaluate_every", "name",
   ...Object.keys(settingsOf([form.value.agent])),
 ];
 
-function learnerChosen() {
+function trainingChosen() {
   const { agent, steps, seed } = form.value;
   return [agentOf(agent).title, count(steps, "step"), ...ratesInWords(agent, form.value), seed && `seed ${seed}`];
 }
 
-const LearnerGroup = () => html`
+const TrainingGroup = () => html`
     <div class="sliders">
       <${Learner} />
       <${Slider} field="steps" ...${PRACTICE}
