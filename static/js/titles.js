@@ -128,6 +128,7 @@ export const variedFields = (settings, fields) =>
 /** @type {Record<string, (name: string) => string>} */
 const VALUE_TITLES = {
   gait: gaitTitle, agent: agentTitle, observation: observationTitle, robot: robotTitle, world: worldTitle,
+  plans_with: knowledgeTitle,
 };
 
 /**

@@ -3,9 +3,9 @@ import assert from "node:assert/strict";
 import { afterEach, beforeEach, mock, test } from "node:test";
 import { signal } from "@preact/signals";
 import { pending } from "../../static/js/actions.js";
-import { followTrials, hasReplay, problemOf, repeatable, seedsOf } from "../../static/js/experiments/seeds.js";
-import { applyEvent, connection } from "../../static/js/store.js";
-import { makeRun } from "./options.js";
+import { followTrials, hasReplay, namesOf, problemOf, repeatable, seedsOf } from "../../static/js/experiments/seeds.js";
+import { applyEvent, connection, options } from "../../static/js/store.js";
+import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { Run } from "../../static/js/types.js" */
 
@@ -102,5 +102,15 @@ test("an error of theirs is told without hindering that a seed is run, and they 
 
 test("no single run repeats a practice in blocks", () => {
   const settings = [{ blocks: 1, n: 2 }, { blocks: 4, n: 2 }, { blocks: 0, n: 1 }, { blocks: 1, n: 0 }];
-  assert.deepEqual(repeatable(/** @type {any} */ (settings)).map(({ blocks }) => blocks), [1, 0]);
+  assert.deepEqual(repeatable(/** @type {any} */ ({ settings })).map(({ blocks }) => blocks), [1, 0]);
+});
+
+test("searches that plan with different models have different names", () => {
+  options.value = OPTIONS;
+  const one = { agent: "greedy", gait: "tripod", steps: 500, blocks: 0, n: 1 };
+  const settings = [{ ...one, key: "a" }, { ...one, key: "b" }, { ...one, key: "c", agent: "sarsa" }];
+  const worlds = [{ key: "a", plans_with: "world" }, { key: "b", plans_with: "nominal" }];
+  const found = repeatable(/** @type {any} */ ({ settings, worlds }));
+  assert.deepEqual([...namesOf(found, ["steps"]).values()],
+    ["Greedy, true model", "Greedy, nominal model", "sarsa"]);
 });

@@ -6,11 +6,11 @@ import { isLasting } from "../api.js";
 import { goIfStillHere } from "../page.js";
 import { isActive } from "../selectors.js";
 import { connection, requestRuns, runs } from "../store.js";
-import { messageOf } from "../titles.js";
+import { fieldTitle, isNamedByValue, messageOf, valueTitle, variedFields } from "../titles.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../api.js" */
-/** @import { Page, Run, Setting, Trial } from "../types.js" */
+/** @import { Page, Run, Setting, Summary, Trial } from "../types.js" */
 
 /** The trials of an experiment by setting, as far as they were requested. */
 /** @type {Signal<{ id: string, trials: Map<string, Trial[]> } | null>} */
@@ -128,8 +128,34 @@ function bySetting(trials) {
 
 // ---- what is shown of them
 
-/** Settings of which a single run repeats a trial: in blocks, none does. @param {Setting[]} settings */
-export const repeatable = (settings) => settings.filter(({ blocks, n }) => blocks <= 1 && n > 0);
+/**
+ * Settings of which a single run repeats a trial (of a practice in blocks none does), with the model of a search.
+ * @param {Summary} known
+ * @returns {Setting[]}
+ */
+export function repeatable({ settings, worlds = [] }) {
+  const models = new Map(worlds.map((/** @type {Setting} */ { key, plans_with }) => [key, plans_with]));
+  return settings.filter(({ blocks, n }) => blocks <= 1 && n > 0)
+    .map((one) => ({ ...one, plans_with: models.get(one.key) ?? null }));
+}
+
+/** Fields in which settings may differ, in the order in which a name tells them. */
+const NAMED_FIELDS = ["plans_with", "gait", "observation", "robot", "world"];
+
+/**
+ * The names of settings: the agent, and the other fields in which they differ: "Q-learning, 500 steps".
+ * @param {Setting[]} settings
+ * @param {string[]} parameters
+ * @returns {Map<string, string>} key → name
+ */
+export function namesOf(settings, parameters) {
+  const varied = variedFields(settings, [...NAMED_FIELDS, ...parameters]);
+  const wordsOf = (/** @type {Setting} */ setting) => varied.filter((field) => setting[field] !== null).map((field) => {
+    const value = valueTitle(field, setting[field]);
+    return isNamedByValue(field) ? value : `${fieldTitle(field)} ${value}`;
+  });
+  return new Map(settings.map((one) => [one.key, [valueTitle("agent", one.agent), ...wordsOf(one)].join(", ")]));
+}
 
 /** Note of the server on a run that it made of a trial. */
 const NOTE = /Trial (.+#\d+) of experiment (\w+)\./;

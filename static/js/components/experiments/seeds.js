@@ -3,15 +3,14 @@ import { useEffect, useRef } from "preact/hooks";
 import { pending } from "../../actions.js";
 import { chosenRun } from "../../experiments/runs.js";
 import {
-  chosen, followTrials, hasReplay, isOpen, problemOf, repeatable, runTrial, seedsOf,
+  chosen, followTrials, hasReplay, isOpen, namesOf, problemOf, repeatable, runTrial, seedsOf,
 } from "../../experiments/seeds.js";
 import { count, metres } from "../../format.js";
 import { isOperator } from "../../selectors.js";
-import { fieldTitle, isNamedByValue, valueTitle, variedFields } from "../../titles.js";
 import { html, Problem } from "../elements.js";
 
 export function Seeds({ known }) {
-  const settings = repeatable(known.settings);
+  const settings = repeatable(known);
   if (settings.length === 0) return null;
   return html`
     <section class="panel seeds" id="seeds" aria-labelledby="seeds-title">
@@ -25,23 +24,13 @@ export function Seeds({ known }) {
   `;
 }
 
-/** The agent, and the other fields in which settings differ: "Q-learning, 500 steps". */
-const nameOf = (setting, varied) => {
-  const others = varied.filter((field) => field !== "agent" && setting[field] !== null);
-  const words = others.map((field) => {
-    const value = valueTitle(field, setting[field]);
-    return isNamedByValue(field) ? value : `${fieldTitle(field)} ${value}`;
-  });
-  return [valueTitle("agent", setting.agent), ...words].join(", ");
-};
-
 function Chosen({ settings, parameters }) {
   const run = chosenRun.value;
   useEffect(() => followTrials(() => chosenRun.value), []);
   const { setting, distance_m } = chosen.value;
   const first = settings.find(({ role }) => role === "learner") ?? settings[0];
   const { key } = settings.find((one) => one.key === setting) ?? first;
-  const varied = variedFields(settings, ["gait", "agent", "observation", "robot", "world", ...parameters]);
+  const names = namesOf(settings, parameters);
   const seeds = run && seedsOf(run.id, key);
   const problem = run && problemOf(run.id);
   return html`
@@ -53,7 +42,7 @@ function Chosen({ settings, parameters }) {
       <span>Setting</span>
       <select onChange=${({ target }) => (chosen.value = { setting: target.value, distance_m: null })}>
         ${settings.map((one) => html`
-          <option value=${one.key} selected=${one.key === key}>${nameOf(one, varied)}</option>
+          <option value=${one.key} selected=${one.key === key}>${names.get(one.key)}</option>
         `)}
       </select>
     </label>
