@@ -73,14 +73,17 @@ export const table = signal({ answer: null, error: null, again: false });
 export const firstState = signal(0);
 
 /**
- * The table of a moment: as the learner had it when it chose the step. A lane has that of its training at its end.
+ * The table of a moment: as the learner had it when it chose the step. A lane has that of its training at its end;
+ * a training that has not begun has none.
  * @type {Signal<{ training_id: string, step: number | null } | null>}
  */
 export const tableMoment = computed(() => {
   const run = shownRun.value;
   const at = moment.value;
   if (!run || !at) return null;
-  if (run.kind === "training") return { training_id: run.id, step: Math.max(at.step - 1, 0) };
+  if (run.kind === "training") {
+    return run.progress.done ? { training_id: run.id, step: Math.max(at.step - 1, 0) } : null;
+  }
   const training_id = run.config.lanes?.[at.lane]?.training_id;
   return training_id ? { training_id, step: null } : null;
 });

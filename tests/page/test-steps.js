@@ -44,6 +44,14 @@ test("the step of the stage is looked at until another is chosen", () => {
   assert.equal(moment.value?.step, 40);
 });
 
+test("a training that has not begun has no table to ask for", () => {
+  const run = makeRun({ state: "queued", progress: { done: 0, total: 100 } });
+  show(run, [{ step: 0, steps: 100 }]);
+  assert.equal(tableMoment.value, null);
+  applyEvent("run", { ...run, state: "running", progress: { done: 3, total: 100 } });
+  assert.deepEqual(tableMoment.value, { training_id: run.id, step: 0 });
+});
+
 test("another run on stage is followed from its own step", () => {
   show(makeRun({}), [{ step: 7, steps: 100 }]);
   chooseStep(3);
