@@ -89,7 +89,7 @@ const Axis = ({ known, far }) => html`
   <p class="tried-axis dim" aria-hidden="true">
     <span>0 m</span>
     <span style=${{ left: `${(50 * known.greedy_m) / far}%` }}>half</span>
-    <span style=${{ left: `${(100 * known.greedy_m) / far}%` }}>greedy ${metres(known.greedy_m)}</span>
+    <span class="greedy" style=${{ "--at": `${(100 * known.greedy_m) / far}%` }}>greedy ${metres(known.greedy_m)}</span>
   </p>
 `;
 
