@@ -189,7 +189,7 @@ def _unready_reason(jobs: Jobs, store: RunStore) -> str | None:
         store.check_disk_space()
         store.list(limit=1)
     except HexapodError as error:
-        return f"No run can be started, and what is kept may be looked at: {error}."
+        return f"No run can be started: {error}."
     return None
 
 

@@ -71,14 +71,14 @@ class Database:
             write is retried.
         fencing_token: number of this server's ownership, which every write compares with the one
             in the database; None, before the database is claimed, skips the check.
-        is_available: circuit breaker; while it returns False every call fails at once, so that
-            threads do not pile up behind a database that hangs.
+        check_available: circuit breaker; while it raises `StorageFailed` every call fails at once,
+            so that threads do not pile up behind a database that hangs.
     """
 
     def __init__(self, engine: Engine, on_disk_full: Callable[[], bool] = lambda: False) -> None:
         self.engine, self.on_disk_full = engine, on_disk_full
         self.fencing_token: int | None = None
-        self.is_available: Callable[[], bool] = lambda: True
+        self.check_available: Callable[[], None] = lambda: None
         # SQLite's busy handler polls, and the pool's queue is not fair, so waiters would starve.
         is_sqlite = engine.dialect.name == "sqlite"
         self._writers = FairSemaphore(1) if is_sqlite else None
@@ -128,8 +128,7 @@ class Database:
         began_s, pause_s = time.monotonic(), _FIRST_RETRY_S
         while True:
             try:
-                if not self.is_available():
-                    raise _unreachable_error()
+                self.check_available()
                 return attempt()
             except OwnershipLost:
                 raise
@@ -254,7 +253,7 @@ def _translated(error: DBAPIError) -> HexapodError:
     if state == "55P03":
         return _busy_error()
     if isinstance(error, OperationalError | InterfaceError):
-        return _unreachable_error()
+        return unreachable_error()
     return StorageFailed(f"the database refuses ({type(error.orig).__name__})")
 
 
@@ -273,7 +272,8 @@ def _sqlite_error(error: sqlite3.Error) -> HexapodError:
     return make_error() if make_error else StorageFailed(f"the database cannot be used ({error})")
 
 
-def _unreachable_error() -> StorageFailed:
+def unreachable_error() -> StorageFailed:
+    """Return the error of a PostgreSQL server that does not answer."""
     return StorageFailed("the PostgreSQL server does not answer; see that it runs")
 
 

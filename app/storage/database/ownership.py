@@ -1,5 +1,9 @@
 """Single-writer ownership of a database: advisory lock, fencing token, and a monitor thread.
 
+The monitor also opens the circuit breaker of a database that is out of reach: a PostgreSQL server
+that does not answer, or a SQLite file that was removed or replaced. Of such a file all that is
+written is lost with the last process that has it open, without any error of SQLite.
+
 PostgreSQL releases an advisory lock when the connection that holds it ends, so the lock alone does
 not exclude a second writer after the database was restarted. The *fencing token* does: a number in
 the database that every server increments when it claims the database, and that every write compares
@@ -12,14 +16,17 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Executable, insert, select, text, update
 from sqlalchemy.exc import SQLAlchemyError
 
 from app.domain.errors import HexapodError, InvalidInput
-from app.storage.database.engine import Database, translate_errors
+from app.storage.database.engine import Database, translate_errors, unreachable_error
 from app.storage.database.schema import ABOUT
+from app.storage.database.sqlite_file import file_identity
+from app.storage.errors import StorageFailed
 
 _LOCK_NUMBER = 0x6865_7861_706F_6473
 _TRY_LOCK = text("SELECT pg_try_advisory_lock(:number)").bindparams(number=_LOCK_NUMBER)
@@ -64,6 +71,10 @@ def claim(database: Database) -> Claim:
     return claimed
 
 
+class FileReplaced(StorageFailed):
+    """The path of an open SQLite database has no file any more, or another one."""
+
+
 class Ownership:
     """Holds the advisory lock, reacquires it after an outage, and detects a new owner.
 
@@ -77,7 +88,9 @@ class Ownership:
         self._is_postgresql = database.engine.dialect.name == "postgresql"
         self._connection: Connection | None = None
         self._poll_began_s: float | None = None
-        self._failed = False
+        self._problem: StorageFailed | None = None
+        self._path = None if self._is_postgresql else Path(database.engine.url.database or "")
+        self._file = self._path and file_identity(self._path)
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._monitor, name="ownership", daemon=True)
 
@@ -101,7 +114,7 @@ class Ownership:
     @contextmanager
     def watched(self) -> Iterator[None]:
         """Run the monitor thread for as long as the context lasts."""
-        self._database.is_available = self._is_available
+        self._database.check_available = self._check_available
         self._thread.start()
         try:
             yield
@@ -122,12 +135,14 @@ class Ownership:
                 connection.invalidate()
                 connection.close()
 
-    def _is_available(self) -> bool:
-        poll_began_s = self._poll_began_s
+    def _check_available(self) -> None:
+        poll_began_s, problem = self._poll_began_s, self._problem
         if threading.current_thread() is self._thread:
-            return True
-        hangs = poll_began_s is not None and time.monotonic() - poll_began_s > _HANG_S
-        return not (self._failed or hangs)
+            return
+        if poll_began_s is not None and time.monotonic() - poll_began_s > _HANG_S:
+            raise unreachable_error()
+        if problem is not None:
+            raise StorageFailed(str(problem))
 
     def _monitor(self) -> None:
         while not self._closing.wait(WATCH_EVERY_S):
@@ -135,24 +150,42 @@ class Ownership:
             try:
                 owner = self._read_owner()
             except HexapodError as error:
-                if not self._failed:
-                    _logger.warning("The database does not answer: %s", error)
-                self._failed = self._is_postgresql
+                self._note_failure(error)
                 continue
             finally:
                 self._poll_began_s = None
-            if self._failed:
+            if self._problem is not None:
                 _logger.warning("The database answers again")
-            self._failed = False
+            self._problem = None
             if owner != self._database.fencing_token:
                 _logger.error("Another server has taken this database over")
                 self._on_lost()
                 return
 
+    def _note_failure(self, error: HexapodError) -> None:
+        if self._problem is None:
+            _logger.warning("The database does not answer: %s", error)
+        if self._is_postgresql:
+            self._problem = unreachable_error()
+        elif isinstance(error, FileReplaced):
+            self._problem = error
+        else:
+            # SQLite that is busy or damaged says so itself, in the call that needs it.
+            self._problem = None
+
+    def _check_file(self) -> None:
+        if self._path is not None and file_identity(self._path) != self._file:
+            raise FileReplaced(
+                f"the database file {self._path} was removed or replaced while the server runs, "
+                "and nothing more is written: put the same file back, or start the server again "
+                "with a backup"
+            )
+
     def _read_owner(self) -> int:
         """Return the fencing token of the present owner; first reacquire a lost advisory lock."""
         query = select(ABOUT.c.owner)
         if not self._is_postgresql:
+            self._check_file()
             owner: int = self._database.read(lambda c: c.execute(query).scalar_one())
             return owner
         self._try_lock()

@@ -47,6 +47,15 @@ def create_file(path: Path, on_disk_full: Callable[[], bool]) -> None:
     sync_folder(path.parent)
 
 
+def file_identity(path: Path) -> tuple[int, int] | None:
+    """Return device and inode of a file; None if there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
+
+
 def check_file(path: Path, artifacts: Path) -> None:
     """Check that an existing database file has its tables; a missing file is accepted.
 

@@ -1,0 +1,62 @@
+"""Ownership of a SQLite database whose file is removed or replaced; see also promise 31."""
+
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from app.storage.database.opening import DATABASE_FILE
+from app.storage.errors import StorageFailed
+from tests.storage.stores import opened, training
+
+REPLACED = "was removed or replaced while the server runs"
+
+
+def eventually_refused(read: Callable[[], object]) -> str:
+    """Read until it is refused, and return the reason."""
+    deadline = time.monotonic() + 30
+    while time.monotonic() < deadline:
+        try:
+            read()
+        except StorageFailed as error:
+            return str(error)
+        time.sleep(0.05)
+    raise AssertionError("it was not refused")
+
+
+def eventually_accepted(read: Callable[[], object]) -> None:
+    """Read until it is not refused any more."""
+    deadline = time.monotonic() + 30
+    while True:
+        try:
+            read()
+            return
+        except StorageFailed:
+            assert time.monotonic() < deadline
+            time.sleep(0.05)
+
+
+def test_nothing_is_written_into_a_file_that_was_moved_away(tmp_path: Path) -> None:
+    file, elsewhere = tmp_path / DATABASE_FILE, tmp_path / "elsewhere.db"
+    with opened(tmp_path, None) as store:
+        store.create(training("kept"))
+        file.rename(elsewhere)
+        assert REPLACED in eventually_refused(store.list)
+        with pytest.raises(StorageFailed, match=REPLACED):
+            store.create(training("refused"))
+
+        elsewhere.rename(file)
+        eventually_accepted(store.list)
+        store.create(training("later"))
+    with opened(tmp_path, None) as store:
+        assert {run.id for run in store.list().runs} == {"kept", "later"}
+
+
+def test_a_copy_is_another_file(tmp_path: Path) -> None:
+    file = tmp_path / DATABASE_FILE
+    with opened(tmp_path, None) as store:
+        backup = shutil.copy(file, tmp_path / "backup.db")
+        Path(backup).replace(file)
+        assert REPLACED in eventually_refused(store.list)
