@@ -88,6 +88,7 @@ class Ownership:
         self._is_postgresql = database.engine.dialect.name == "postgresql"
         self._connection: Connection | None = None
         self._poll_began_s: float | None = None
+        self._failing = False
         self._problem: StorageFailed | None = None
         self._path = None if self._is_postgresql else Path(database.engine.url.database or "")
         self._file = self._path and file_identity(self._path)
@@ -140,7 +141,7 @@ class Ownership:
         if threading.current_thread() is self._thread:
             return
         if poll_began_s is not None and time.monotonic() - poll_began_s > _HANG_S:
-            raise unreachable_error()
+            raise _hanging_error(self._is_postgresql)
         if problem is not None:
             raise StorageFailed(str(problem))
 
@@ -154,24 +155,23 @@ class Ownership:
                 continue
             finally:
                 self._poll_began_s = None
-            if self._problem is not None:
+            if self._failing:
                 _logger.warning("The database answers again")
-            self._problem = None
+            self._failing, self._problem = False, None
             if owner != self._database.fencing_token:
                 _logger.error("Another server has taken this database over")
                 self._on_lost()
                 return
 
     def _note_failure(self, error: HexapodError) -> None:
-        if self._problem is None:
+        if not self._failing:
             _logger.warning("The database does not answer: %s", error)
+        self._failing = True
         if self._is_postgresql:
             self._problem = unreachable_error()
-        elif isinstance(error, FileReplaced):
-            self._problem = error
         else:
             # SQLite that is busy or damaged says so itself, in the call that needs it.
-            self._problem = None
+            self._problem = error if isinstance(error, FileReplaced) else None
 
     def _check_file(self) -> None:
         if self._path is not None and file_identity(self._path) != self._file:
@@ -205,3 +205,9 @@ class Ownership:
         except HexapodError:
             self._drop_connection()
             raise
+
+
+def _hanging_error(is_postgresql: bool) -> StorageFailed:
+    return (
+        unreachable_error() if is_postgresql else StorageFailed("the data folder does not answer")
+    )
