@@ -18,7 +18,7 @@ from app.domain.settings import Value
 from app.experiments.config import ExperimentName
 from app.runs.clocks import Clock
 from app.runs.config import SimulatorName
-from app.runs.lane import Knowledge
+from app.runs.lane import PlanningModel
 from app.storage.run import State
 
 Preset = Annotated[str, Field(json_schema_extra={"enum": list(PRESETS)})]
@@ -110,7 +110,7 @@ class LaneView(Answer):
     agent: str
     keep_learning: bool
     plans_with: Annotated[
-        Knowledge | None, Field(description="what its search knows; null if it does not search")
+        PlanningModel | None, Field(description="what its search knows; null if it does not search")
     ]
     plans_with_by_default: Annotated[bool, Field(description="whether `plans_with` was left out")]
     observation: Observation
@@ -249,7 +249,7 @@ class LaneResult(Answer):
     decision_s: float
     simulated_transitions: Count
     clocks: LaneFigures
-    plans_with: Knowledge | None = None
+    plans_with: PlanningModel | None = None
     fell_at_step: Count | None = None
     heading_deg: float | None = None
 

@@ -8,7 +8,7 @@ from app.api.answers import Answer, Count, ExperimentConfigView
 from app.domain.observation import Observation
 from app.domain.settings import Value
 from app.experiments.config import ExperimentName
-from app.runs.lane import Knowledge
+from app.runs.lane import PlanningModel
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Decided = Literal["yes", "no", "not established"]
@@ -247,7 +247,7 @@ class WorldView(Named):
     key: str
     role: Literal["learner", "reference"]
     gait: str
-    plans_with: Knowledge | None
+    plans_with: PlanningModel | None
     n: Count
     greedy_m: float | None
     greedy_nominal_m: float | None

@@ -158,7 +158,7 @@ def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
             msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
             msgspec.convert((step.decision_s, step.transitions), tuple[Seconds, Large])
             _check_motion(step.motion, config, 1)
-            _check_choice(step.observation, step.action, step.knowledge, config)
+            _check_choice(step.observation, step.action, step.action_values, config)
             for future in step.futures:
                 _check_choice(step.observation, future.action, None, config)
                 msgspec.convert((future.reward_m, future.return_m), tuple[Metres, Metres])
@@ -186,7 +186,7 @@ def _check_practice(config: TrainingConfig, files: Mapping[str, bytes]) -> None:
         msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
         msgspec.convert(step.epsilon, Share)
         _check_motion(step.motion, config, 1)
-        _check_choice(step.observation, step.action, step.knowledge, config)
+        _check_choice(step.observation, step.action, step.action_values, config)
     for evaluation in recording.evaluations:
         msgspec.convert(evaluation.epsilon, Share)
         msgspec.convert(evaluation.distance_m, Metres)
@@ -248,19 +248,19 @@ def _check_poses(qpos: NDArray[np.float32], walk: WalkingProblem) -> None:
 
 
 def _check_choice(
-    observation: Cells, action: Action, knowledge: ActionValues | None, walk: WalkingProblem
+    observation: Cells, action: Action, action_values: ActionValues | None, walk: WalkingProblem
 ) -> None:
     pairs, cells = len(walk.resolved_gait.pairs), len(walk.grid)
     if len(observation) != pairs or not _are_below(observation, cells):
         raise ValueError("what it saw is on no foot grid")
     if not _are_below([action.pair], pairs) or not _are_below([action.cell], cells):
         raise ValueError("what it did cannot be done")
-    if knowledge is not None:
-        shapes = {np.shape(knowledge.values), np.shape(knowledge.visits)}
+    if action_values is not None:
+        shapes = {np.shape(action_values.values), np.shape(action_values.visits)}
         if shapes != {(pairs, cells)}:
             raise ValueError("what it knew is of another problem")
         # NaN marks impossible actions.
-        if np.isinf(knowledge.values).any() or np.isinf(knowledge.visits).any():
+        if np.isinf(action_values.values).any() or np.isinf(action_values.visits).any():
             raise ValueError("what it knew is no number")
 
 

@@ -29,7 +29,7 @@ from app.experiments.config import ExperimentConfig
 from app.jobs.submissions import MAX_WORKERS, check_training, check_walk, plan_of
 from app.runs.clocks import CLOCKS
 from app.runs.config import TrainingConfig
-from app.runs.lane import Knowledge, check_lane
+from app.runs.lane import PlanningModel, check_lane
 from app.runs.race_config import MAX_LANES, RaceConfig
 from app.storage.errors import Conflict
 from app.storage.run import (
@@ -86,7 +86,7 @@ class _LaneResult(UntrustedInput, frozen=True):
     decision_s: Seconds
     simulated_transitions: Large
     clocks: dict[str, _Figures]
-    plans_with: Knowledge | None = None
+    plans_with: PlanningModel | None = None
     fell_at_step: Step | None = None
     heading_deg: Annotated[float, Meta(ge=-180, le=180)] | None = None
 

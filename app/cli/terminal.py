@@ -19,7 +19,7 @@ from rich.text import Text
 
 from app.agents.appearance import name_of
 from app.runs.best_known import best_known_in_race_m
-from app.runs.lane import KNOWLEDGE_TITLES, plans_with
+from app.runs.lane import PLANNING_MODEL_TITLES, plans_with
 from app.runs.race_config import RaceConfig
 
 
@@ -84,7 +84,7 @@ def show_lanes(config: RaceConfig, result: dict[str, Any], clock: str) -> None:
     for own, lane in sorted(lanes, key=lambda both: both[1]["clocks"][clock]["rank"]):
         name = name_of(own.agent, own.settings, own.keep_learning, title=own.agent)
         known = plans_with(own, config)
-        name += f"\n   plans with the {KNOWLEDGE_TITLES[known]}" if known else ""
+        name += f"\n   plans with the {PLANNING_MODEL_TITLES[known]}" if known else ""
         timed, total = lane["clocks"][clock], lane["total_distance_m"]
         rows.append(
             (

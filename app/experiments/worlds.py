@@ -9,7 +9,7 @@ import numpy as np
 
 from app.experiments.setting_results import SettingResults, setting_fields
 from app.experiments.statistics import Points, iqm_interval, share_at_least
-from app.runs.lane import Knowledge, LaneConfig, plans_with
+from app.runs.lane import LaneConfig, PlanningModel, plans_with
 
 LEAGUE_SHARE = 0.95
 """Share of a reference's distance from which a learner of a league counts as having reached it."""
@@ -45,7 +45,7 @@ def compare_in_worlds(settings: Sequence[SettingResults], seed: int) -> list[dic
     return [_entry(one, references[one.conditions], seed) for one in settings if one.total_m]
 
 
-def _plans_with(one: SettingResults) -> Knowledge | None:
+def _plans_with(one: SettingResults) -> PlanningModel | None:
     trial = one.setting.trial
     lane = LaneConfig(agent=trial.training.agent, plans_with=trial.plans_with)
     return plans_with(lane, trial.training)

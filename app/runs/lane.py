@@ -10,22 +10,22 @@ from app.domain.observation import Observation, check_observation
 from app.domain.settings import Setting, SettingValues, Value, complete, declared_fields
 from app.runs.config import WalkingProblem, agent_settings
 
-Knowledge = Literal["world", "start", "nominal"]
+PlanningModel = Literal["world", "start", "nominal"]
 """What a search knows: `world` is the world as it is in each step, `start` as it was at the start,
 `nominal` the robot as it was designed, on flat ground."""
-KNOWLEDGE_TITLES: Mapping[Knowledge, str] = {
+PLANNING_MODEL_TITLES: Mapping[PlanningModel, str] = {
     "world": "true model",
     "start": "model of the start",
     "nominal": "nominal model",
 }
 PlansWith = Annotated[
-    Knowledge,
+    PlanningModel,
     Setting(
         title="Plans with",
         help="What a search knows: the true model is the world as it is in each step, the model of "
         "the start the world as it was then, the nominal model the robot as it was designed, on "
         "flat ground. By default the start.",
-        choice_titles=tuple(KNOWLEDGE_TITLES.values()),
+        choice_titles=tuple(PLANNING_MODEL_TITLES.values()),
     ),
 ]
 LaneObservation = Annotated[
@@ -136,7 +136,7 @@ def lane_config(
     return replace(lane, settings=complete(agent_settings(agent), settings, agent))
 
 
-def plans_with(lane: LaneConfig, walk: WalkingProblem) -> Knowledge | None:
+def plans_with(lane: LaneConfig, walk: WalkingProblem) -> PlanningModel | None:
     """Return what a lane's search knows in a race; None if its agent does not search.
 
     What is left out in the lane, the start, is called `world` where nothing changes after it, and

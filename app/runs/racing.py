@@ -66,7 +66,7 @@ def _lane_step(
             started_s = timer()
             next_action = walker.learn(last.observation, last.action, last.reward_m)
             learning_s = timer() - started_s
-        knowledge = walker.knowledge()
+        action_values = walker.action_values()
         started_s = timer()
         action = walker.decide() if next_action is None else next_action
         decision_s = learning_s + timer() - started_s
@@ -90,6 +90,6 @@ def _lane_step(
         walker.transitions - transitions_before,
         decision_s,
         cast(Motion, outcome.motion),
-        knowledge,
+        action_values,
         futures,
     )

@@ -55,7 +55,7 @@ class LaneRecording:
     @property
     def size(self) -> int:
         """Approximate size in memory [bytes]."""
-        return sum(_size_of(step.motion, step.knowledge) for step in self.steps)
+        return sum(_size_of(step.motion, step.action_values) for step in self.steps)
 
 
 FIRST_STEPS, NEWEST_STEPS = 20, 500
@@ -106,12 +106,12 @@ class PracticeRecording:
     @property
     def size(self) -> int:
         """Approximate size in memory [bytes]."""
-        steps = sum(_size_of(step.motion, step.knowledge) for step in self.steps)
+        steps = sum(_size_of(step.motion, step.action_values) for step in self.steps)
         return steps + sum(_size_of(one.motion) for one in self.evaluations)
 
 
-def _size_of(motion: Motion | None, knowledge: ActionValues | None = None) -> int:
-    values = (knowledge.values, knowledge.visits) if knowledge else ()
+def _size_of(motion: Motion | None, action_values: ActionValues | None = None) -> int:
+    values = (action_values.values, action_values.visits) if action_values else ()
     arrays: tuple[NDArray[Any] | None, ...] = (*(motion or ()), *values)
     return _STEP_OVERHEAD_BYTES + sum(array.nbytes for array in arrays if array is not None)
 
@@ -162,10 +162,10 @@ def race_arrays(lanes: Sequence[LaneRecording]) -> Arrays:
         scalars = ("reward_m", "distance_m", "transitions", "decision_s")
         table = [[getattr(s, name) for name in scalars] for s in lane.steps]
         arrays[key + "scalars"] = np.array(table, float)
-        knowledge = [s.knowledge for s in lane.steps if s.knowledge]
-        if knowledge:
-            arrays[key + "values"] = np.array([k.values for k in knowledge], np.float32)
-            arrays[key + "visits"] = np.array([k.visits for k in knowledge], np.float32)
+        action_values = [s.action_values for s in lane.steps if s.action_values]
+        if action_values:
+            arrays[key + "values"] = np.array([k.values for k in action_values], np.float32)
+            arrays[key + "visits"] = np.array([k.visits for k in action_values], np.float32)
         arrays |= {key + name: array for name, array in _future_arrays(lane.steps).items()}
     arrays["meta"] = np.array(json.dumps(meta))
     return arrays
@@ -222,10 +222,10 @@ def race_recording(arrays: Arrays) -> list[LaneRecording]:
 
 def _lane_step(arrays: Arrays, key: str, lane: int, step: int, frames: slice) -> LaneStep:
     reward, distance, transitions, decision = arrays[key + "scalars"][step].tolist()
-    knowledge = None
+    action_values = None
     if key + "values" in arrays:
         values, visits = (arrays[key + name][step].astype(float) for name in ("values", "visits"))
-        knowledge = ActionValues(values, visits)
+        action_values = ActionValues(values, visits)
     return LaneStep(
         lane,
         step + 1,
@@ -236,7 +236,7 @@ def _lane_step(arrays: Arrays, key: str, lane: int, step: int, frames: slice) ->
         int(transitions),
         decision,
         Motion(*(_column(arrays, key + name, frames) for name in Motion._fields)),
-        knowledge,
+        action_values,
     )
 
 

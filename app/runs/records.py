@@ -33,7 +33,7 @@ class StepTaken:
     distance_m: float
     """Along the track since the training started."""
     motion: Motion | None
-    knowledge: ActionValues | None
+    action_values: ActionValues | None
     """Before the step."""
 
 
@@ -88,7 +88,7 @@ class LaneStep:
     decision_s: float
     """Duration of the decision by the race's timer [s]."""
     motion: Motion
-    knowledge: ActionValues | None
+    action_values: ActionValues | None
     futures: tuple[Future, ...] = ()
     """Findings of a search about the actions, in the order in which it made them."""
 

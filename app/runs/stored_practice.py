@@ -26,13 +26,13 @@ def practice_arrays(recording: PracticeRecording) -> Arrays:
         "scalars": np.array([[getattr(s, n) for n in _SCALARS] for s in steps], float),
         "observation": np.array([s.observation for s in steps]),
         "action": np.array([s.action for s in steps]),
-        "is_known": np.array([s.knowledge is not None for s in steps]),
+        "is_known": np.array([s.action_values is not None for s in steps]),
         **_motion_arrays([s.motion for s in steps]),
     }
-    knowledge = [s.knowledge for s in steps if s.knowledge]
-    if knowledge:
-        arrays["values"] = np.array([k.values for k in knowledge], np.float32)
-        arrays["visits"] = np.array([k.visits for k in knowledge], np.float32)
+    action_values = [s.action_values for s in steps if s.action_values]
+    if action_values:
+        arrays["values"] = np.array([k.values for k in action_values], np.float32)
+        arrays["visits"] = np.array([k.visits for k in action_values], np.float32)
     return arrays
 
 
@@ -66,7 +66,7 @@ def rewound(recording: PracticeRecording, step: int) -> PracticeRecording:
 
 def _steps(arrays: Arrays) -> list[StepTaken]:
     motions = _motions(arrays)
-    knowledge = iter(_knowledge(arrays))
+    action_values = iter(_action_values(arrays))
     steps = []
     for number, row in enumerate(arrays["scalars"].tolist()):
         step, episode, epsilon, reward, distance = row
@@ -80,13 +80,13 @@ def _steps(arrays: Arrays) -> list[StepTaken]:
                 reward,
                 distance,
                 motions[number],
-                next(knowledge) if arrays["is_known"][number] else None,
+                next(action_values) if arrays["is_known"][number] else None,
             )
         )
     return steps
 
 
-def _knowledge(arrays: Arrays) -> list[ActionValues]:
+def _action_values(arrays: Arrays) -> list[ActionValues]:
     if "values" not in arrays:
         return []
     both = zip(arrays["values"].astype(float), arrays["visits"].astype(float), strict=True)

@@ -157,7 +157,7 @@ def _evaluate_if_due(
 def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> StepTaken:
     """Take one step: choose an action, carry it out, learn from the transition."""
     walker = learner.walker
-    observation, knowledge = walker.observed, walker.knowledge() if record else None
+    observation, action_values = walker.observed, walker.action_values() if record else None
     measured = walker.measured if learner.logged is not None else ()
     action = walker.decide() if learner.next_action is None else learner.next_action
     step = walker.carry_out(action, record)
@@ -183,7 +183,7 @@ def _practise(learner: Learner, episode: int, epsilon: float, record: bool) -> S
         step.reward_m,
         distance,
         step.motion,
-        knowledge,
+        action_values,
     )
 
 

@@ -280,7 +280,7 @@ class Walker:
         )
         return next_action
 
-    def knowledge(self) -> ActionValues | None:
+    def action_values(self) -> ActionValues | None:
         """Return the action values of the current state; None if the agent has none."""
         if not isinstance(self.agent, Valuing):
             return None

@@ -211,7 +211,7 @@ class PracticeShow:
         ]
         self._step_numbers = [recorded.step.step for recorded in self._recorded]
         for step in steps[bisect_right(steps, self._range.last_step, key=attrgetter("step")) :]:
-            self._range.include(step.step, step.knowledge)
+            self._range.include(step.step, step.action_values)
         world, last = self._world(), self.steps - 1
         self._evaluations = [
             Ghost(e.step, e.distance_m, world.as_of(min(e.step, last)))
@@ -279,7 +279,7 @@ class PracticeShow:
             done=self.ended,
             marching=self._marching(index),
             fell_at_step=self._fall_so_far(),
-            knowledge=self._action_values(step),
+            action_values=self._action_values(step),
             conditions=world.as_of(step.step - 1),
             pushes=() if self.ended else world.pushes_at(step.step - 1),
             origin=self._origin,
@@ -318,7 +318,7 @@ class PracticeShow:
         return gained < MARCHING_M
 
     def _action_values(self, step: StepTaken) -> ActionValuesView | None:
-        learned = step.knowledge
+        learned = step.action_values
         if learned is None:
             return None
         low, high = self._range.at(step.step)

@@ -139,7 +139,7 @@ class RaceLane:
             crossed=self._crossed(time_s),
             marching=self._marching(moment.step),
             fell_at_step=self._fall_before(moment.step),
-            knowledge=self._action_values(moment.step),
+            action_values=self._action_values(moment.step),
             conditions=self._world.as_of(moment.step),
             pushes=self._world.pushes_at(moment.step),
         )
@@ -160,7 +160,7 @@ class RaceLane:
             marching=self._marching(steps_taken),
             failure=lane.failure,
             fell_at_step=self._fall_before(steps_taken),
-            knowledge=self._action_values(steps_taken - 1),
+            action_values=self._action_values(steps_taken - 1),
             conditions=self._world.as_of(max(0, steps_taken - complete)),
         )
 
@@ -182,11 +182,11 @@ class RaceLane:
 
     def _action_values(self, step: int) -> ActionValuesView | None:
         step_taken = self.recording.steps[step] if 0 <= step < len(self.recording.steps) else None
-        if step_taken is None or step_taken.knowledge is None:
+        if step_taken is None or step_taken.action_values is None:
             return None
-        learned = step_taken.knowledge
+        learned = step_taken.action_values
         for earlier in self.recording.steps[self._range.last_step : step + 1]:
-            self._range.include(earlier.step, earlier.knowledge)
+            self._range.include(earlier.step, earlier.action_values)
         low, high = self._range.at(step_taken.step)
         return ActionValuesView(
             learned.values, learned.visits, step_taken.observation, step_taken.action, low, high

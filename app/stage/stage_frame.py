@@ -100,7 +100,7 @@ class LaneView:
     failure: str | None = None
     fell_at_step: int | None = None
     """First step in which it fell, counted from 0; None if it has not fallen so far."""
-    knowledge: ActionValuesView | None = None
+    action_values: ActionValuesView | None = None
     conditions: World = UNDISTURBED
     """Conditions in the step that is shown, a result of `World.as_of`."""
     pushes: tuple[Push, ...] = ()
@@ -161,7 +161,7 @@ class StageFrame:
                 for ghost in self.ghosts
             ],
             "ghost_lanes": self._ghost_lanes(),
-            "knowledge": self._knowledge(),
+            "action_values": self._action_values(),
         }
 
     def _lane(self, number: int) -> dict[str, Any]:
@@ -191,9 +191,11 @@ class StageFrame:
             if ghost is not None
         ]
 
-    def _knowledge(self) -> dict[str, Any] | None:
+    def _action_values(self) -> dict[str, Any] | None:
         """Return the action values of the first lane that has any."""
-        learners = ((n, lane.knowledge) for n, lane in enumerate(self.lanes) if lane.knowledge)
+        learners = (
+            (n, lane.action_values) for n, lane in enumerate(self.lanes) if lane.action_values
+        )
         lane, known = next(learners, (0, None))
         if known is None:
             return None

@@ -81,7 +81,7 @@ class FootGridDrawing:
             legs = range(1, len(self._pair_of_leg) + 1)
             for tiles in self._tiles:
                 tiles.show(np.array([leg not in lost for leg in legs]))
-        action_values = lane.knowledge
+        action_values = lane.action_values
         if action_values is None or _is_unchanged(action_values, self._drawn):
             return
         self._drawn = action_values

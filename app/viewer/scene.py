@@ -176,7 +176,7 @@ class _RunScene:
             self._payloads[number].draw(lane)
             self._pushes[number].draw(lane)
         for number, lane in enumerate(frame.lanes):
-            if lane.knowledge is not None and number not in self._grids:
+            if lane.action_values is not None and number not in self._grids:
                 root, x = grid_root(number), self.xs[number]
                 self._grids[number] = FootGridDrawing(self._server, root, self.spec, x)
             if number in self._grids:

@@ -33,7 +33,7 @@ export const ghost = signal({ answer: null, error: null, again: false });
 export const whyNoGhost = computed(() => {
   if (!drawHere.value) return "The 3D view is not there yet";
   // It stands on the foot grid, which the first step brings.
-  return scene.value?.knowledge ? null : "There is no ghost before the first step";
+  return scene.value?.action_values ? null : "There is no ghost before the first step";
 });
 
 /** Choose a state in the table. @type {(cells: number[], move: Move) => void} */
@@ -63,7 +63,7 @@ export function moveAt({ node, instance }, { pairs, cell_names }) {
 
 /** The state that a lane is in; null until it is known. @param {number} lane @returns {number[] | null} */
 function presentCells(lane) {
-  const known = scene.value?.knowledge;
+  const known = scene.value?.action_values;
   if (known?.lane === lane) return known.current;
   const told = explanation.value.answer;
   const isOfLane = told && told.run_id === scene.value?.run_id && (told.lane ?? 0) === lane;
@@ -100,7 +100,7 @@ function followView() {
 
 function answerClick() {
   const click = clickedCell.value;
-  const grid = scene.value?.knowledge;
+  const grid = scene.value?.action_values;
   const at = stageMoment.value;
   if (!click || !grid || !at) return;
   const found = moveAt(click, grid);

@@ -32,9 +32,9 @@ export const chosenLane = signal(null);
 
 /** The moment on stage; null where no run with steps is on it. @type {Signal<Moment | null>} */
 export const stageMoment = computed(() => {
-  const { run_id = null, kind = "idle", lanes = [], knowledge = null } = scene.value ?? {};
+  const { run_id = null, kind = "idle", lanes = [], action_values = null } = scene.value ?? {};
   if (run_id === null || kind === "idle" || shownRun.value?.id !== run_id || !lanes.length) return null;
-  const lane = Math.min(chosenLane.value ?? knowledge?.lane ?? 0, lanes.length - 1);
+  const lane = Math.min(chosenLane.value ?? action_values?.lane ?? 0, lanes.length - 1);
   return { run_id, lane, step: lanes[lane].step };
 });
 

@@ -33,7 +33,7 @@ const titleOfChoice = (field, choice) => {
 /** @param {string} name */
 export const observationTitle = (name) => titleOfChoice("observation", name);
 /** Model that a search plans with: "nominal model". @param {string} name */
-export const knowledgeTitle = (name) => titleOfChoice("plans_with", name);
+export const planningModelTitle = (name) => titleOfChoice("plans_with", name);
 /** @param {string} name */
 export const simulatorTitle = (name) => find(options.value?.simulators, name)?.title ?? SIMULATORS[name] ?? name;
 /** @param {string} name */
@@ -128,7 +128,7 @@ export const variedFields = (settings, fields) =>
 /** @type {Record<string, (name: string) => string>} */
 const VALUE_TITLES = {
   gait: gaitTitle, agent: agentTitle, observation: observationTitle, robot: robotTitle, world: worldTitle,
-  plans_with: knowledgeTitle,
+  plans_with: planningModelTitle,
 };
 
 /**

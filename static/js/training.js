@@ -10,7 +10,7 @@ import { bestKnown, connection, evaluations, references, runs, scene, setEntry }
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
 /** @import { RateChange } from "./changes.js" */
-/** @import { Disturbance, Evaluation, Knowledge, Run } from "./types.js" */
+/** @import { Disturbance, Evaluation, ActionValues, Run } from "./types.js" */
 
 /** A point of the curve; steps count all practice. @typedef {{ step: number, distance_m: number }} CurvePoint */
 
@@ -153,7 +153,7 @@ const MOST_NAMED_CELLS = 5;
 
 /**
  * The move of the highest value; pair and cell are -1 where there is none.
- * @param {Pick<Knowledge, "values_m">} known
+ * @param {Pick<ActionValues, "values_m">} known
  */
 export function bestMove({ values_m }) {
   let best = { pair: -1, cell: -1, value: -Infinity };
@@ -167,7 +167,7 @@ export function bestMove({ values_m }) {
 
 /**
  * The name of a cell: "front left", or on finer grids "20 left, 10 front".
- * @param {Pick<Knowledge, "cell_names" | "cells_m">} known
+ * @param {Pick<ActionValues, "cell_names" | "cells_m">} known
  * @param {number} cell
  * @param {string} unit after each number
  */

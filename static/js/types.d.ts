@@ -501,7 +501,7 @@ export interface SceneLane {
 }
 
 /** The learner's action values in its current state. */
-export interface Knowledge {
+export interface ActionValues {
   agent: string;
   lane: number;
   pairs: [number, number][];
@@ -528,7 +528,7 @@ export interface Scene {
   shown_speed: number;
   replay: boolean;
   lanes: SceneLane[];
-  knowledge: Knowledge | null;
+  action_values: ActionValues | null;
   /** The robots of another run that are shown as ghosts. */
   ghost_lanes?: { lane: number; name: string; distance_m: number; step: number }[];
 }

@@ -175,7 +175,7 @@ def test_evaluation_and_display_do_not_change_what_is_learned(agent: str) -> Non
     watched, unwatched = trained(config, 47), trained(config, 47)
     for _ in range(2):
         evaluate(watched, config, 0)
-        watched.walker.knowledge()
+        watched.walker.action_values()
         snapshot(watched, config)
     for one in (watched, unwatched):
         for _ in train(one, config, record=one is watched):

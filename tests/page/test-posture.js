@@ -37,9 +37,9 @@ function encoded(messages) {
 
 /** Show a step of a race of two lanes, the second of which has learned. @param {string} id @param {number} time_s */
 function show(id, time_s) {
-  const knowledge = time_s > 0 ? { ...GRID, lane: 1, current: [4, 0, 2] } : null;
+  const action_values = time_s > 0 ? { ...GRID, lane: 1, current: [4, 0, 2] } : null;
   const lanes = [{ step: 5, steps: 50 }, { step: 6, steps: 50 }];
-  applyEvent("scene", { run_id: id, kind: "race", phase: "race", time_s, lanes, knowledge });
+  applyEvent("scene", { run_id: id, kind: "race", phase: "race", time_s, lanes, action_values });
 }
 
 /** Put a race on stage. */

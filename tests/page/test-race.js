@@ -7,7 +7,7 @@ import {
 import { stageIds } from "../../static/js/runs.js";
 import { heldRace, stepShown } from "../../static/js/selectors.js";
 import { applyEvent, options } from "../../static/js/store.js";
-import { flatParts, knowledgeTitle } from "../../static/js/titles.js";
+import { flatParts, planningModelTitle } from "../../static/js/titles.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 /** @import { TimelinePoint } from "../../static/js/types.js" */
@@ -43,7 +43,7 @@ const sceneLane = (/** @type {object} */ changes) => ({
 /** @param {{ phase: string, time_s: number, lanes: object[] }} scene */
 const showScene = (scene) => {
   applyEvent("stage", { ...STAGE, run_id: RACE.id });
-  applyEvent("scene", { run_id: RACE.id, kind: "race", clock: "paper", duration_s: 9, knowledge: null, ...scene });
+  applyEvent("scene", { run_id: RACE.id, kind: "race", clock: "paper", duration_s: 9, action_values: null, ...scene });
 };
 
 beforeEach(() => {
@@ -70,7 +70,7 @@ test("what a search knows is told if something happens in the race, or if it was
   assert.equal(knownIn({}, { plans_with: "nominal", plans_with_by_default: false }), "nominal");
   const limp = { kind: "limp", at_step: 25, legs: [1] };
   assert.equal(knownIn({ disturbances: [limp] }, { plans_with: "nominal" }), "nominal");
-  assert.deepEqual(["world", "start", "nominal"].map(knowledgeTitle),
+  assert.deepEqual(["world", "start", "nominal"].map(planningModelTitle),
     ["true model", "model of the start", "nominal model"]);
 });
 
@@ -181,7 +181,7 @@ test("a fall is told once it is shown, and the heading at the end", () => {
     applyEvent("snapshot", {
       runs: [race], stage: { ...STAGE, run_id: "fall" },
       scene: {
-        run_id: "fall", kind: "race", clock: "paper", phase: "race", time_s: 1, knowledge: null,
+        run_id: "fall", kind: "race", clock: "paper", phase: "race", time_s: 1, action_values: null,
         lanes: [sceneLane({ step, done: step === 50 }), sceneLane({ lane: 1, rank: 2 })],
       },
     });

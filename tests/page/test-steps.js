@@ -25,7 +25,7 @@ beforeEach(() => {
 /** Put a run on stage. @param {ReturnType<typeof makeRun>} run @param {object[]} lanes */
 function show(run, lanes) {
   applyEvent("snapshot", { runs: [run], stage: { ...STAGE, run_id: run.id }, scene: null });
-  applyEvent("scene", { run_id: run.id, kind: run.kind, phase: "practice", lanes, knowledge: null });
+  applyEvent("scene", { run_id: run.id, kind: run.kind, phase: "practice", lanes, action_values: null });
 }
 
 test("the step of the stage is looked at until another is chosen", () => {

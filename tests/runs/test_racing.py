@@ -189,9 +189,9 @@ def test_lane_that_keeps_learning_learns_as_a_training_does(agent: str) -> None:
             other.action,
             other.reward_m,
         )
-        assert one.knowledge is not None
-        assert other.knowledge is not None
-        np.testing.assert_array_equal(one.knowledge.values, other.knowledge.values)
+        assert one.action_values is not None
+        assert other.action_values is not None
+        np.testing.assert_array_equal(one.action_values.values, other.action_values.values)
 
 
 def test_race_does_not_change_the_table_that_its_lanes_learn_from() -> None:

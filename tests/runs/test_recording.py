@@ -78,10 +78,10 @@ def assert_same(one: LaneStep, other: LaneStep) -> None:
             assert array.dtype == again.dtype
             assert np.array_equal(array, again)
     assert one.futures == other.futures
-    assert (one.knowledge is None) == (other.knowledge is None)
-    if one.knowledge and other.knowledge:
-        assert np.allclose(one.knowledge.values, other.knowledge.values, equal_nan=True)
-        assert np.array_equal(one.knowledge.visits, other.knowledge.visits, equal_nan=True)
+    assert (one.action_values is None) == (other.action_values is None)
+    if one.action_values and other.action_values:
+        assert np.allclose(one.action_values.values, other.action_values.values, equal_nan=True)
+        assert np.array_equal(one.action_values.visits, other.action_values.visits, equal_nan=True)
 
 
 def test_race_round_trips_through_a_file_without_pickle(
@@ -98,7 +98,7 @@ def test_race_round_trips_through_a_file_without_pickle(
         for one, other in zip(lane_before.steps, lane_after.steps, strict=True):
             assert_same(one, other)
     assert [s.lane for s in back[2].steps] == [2] * 6
-    assert [s.knowledge is not None for s in (lane.steps[0] for lane in back)] == [1, 0, 0]
+    assert [s.action_values is not None for s in (lane.steps[0] for lane in back)] == [1, 0, 0]
 
 
 def test_a_race_records_what_its_servos_did(race: list[LaneRecording]) -> None:

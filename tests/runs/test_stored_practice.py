@@ -55,14 +55,14 @@ def assert_same(one: PracticeRecording, other: PracticeRecording) -> None:
     assert np.array_equal(one.rest_qpos, other.rest_qpos)
     assert len(one.steps) == len(other.steps)
     for step, same in zip(one.steps, other.steps, strict=True):
-        assert replace(step, motion=None, knowledge=None) == replace(
-            same, motion=None, knowledge=None
+        assert replace(step, motion=None, action_values=None) == replace(
+            same, motion=None, action_values=None
         )
         assert_same_motion(step.motion, same.motion)
-        assert (step.knowledge is None) == (same.knowledge is None)
-        if step.knowledge and same.knowledge:
+        assert (step.action_values is None) == (same.action_values is None)
+        if step.action_values and same.action_values:
             for name in ("values", "visits"):
-                before, after = getattr(step.knowledge, name), getattr(same.knowledge, name)
+                before, after = getattr(step.action_values, name), getattr(same.action_values, name)
                 np.testing.assert_allclose(before, after, rtol=1e-6)
     assert len(one.evaluations) == len(other.evaluations)
     for evaluation, same_one in zip(one.evaluations, other.evaluations, strict=True):
@@ -80,7 +80,7 @@ def assert_same_motion(one: Motion | None, other: Motion | None) -> None:
 @pytest.mark.parametrize(("steps", "simulator"), [(35, "mujoco"), (700, "kinematic")])
 def test_recording_round_trips_through_arrays(steps: int, simulator: str) -> None:
     recording = practise(steps, simulator)
-    assert recording.steps[0].knowledge is not None
+    assert recording.steps[0].action_values is not None
     assert recording.evaluations[0].motion is not None
     assert_same(stored(recording), recording)
 
@@ -93,7 +93,7 @@ def test_records_without_motion_or_action_values_round_trip() -> None:
             replace(
                 step,
                 motion=step.motion if number % 2 else None,
-                knowledge=step.knowledge if number % 3 else None,
+                action_values=step.action_values if number % 3 else None,
             )
         )
     for evaluation in whole.evaluations:

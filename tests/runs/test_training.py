@@ -120,10 +120,10 @@ def test_step_records_observation_and_action_values() -> None:
     assert first.observation == (0, 0, 0)
     assert first.motion is not None
     assert first.motion.qpos.shape == (16, 25)
-    assert first.knowledge is not None
-    assert np.nansum(first.knowledge.visits) == 0  # before the step
-    assert last.knowledge is not None
-    assert np.isnan(last.knowledge.values[range(3), last.observation]).all()
+    assert first.action_values is not None
+    assert np.nansum(first.action_values.visits) == 0  # before the step
+    assert last.action_values is not None
+    assert np.isnan(last.action_values.values[range(3), last.observation]).all()
     _, unrecorded = run(replace(CONFIG, steps=1, evaluate_every=0))
     assert steps(unrecorded)[0].motion is None
 

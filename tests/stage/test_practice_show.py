@@ -142,7 +142,7 @@ def test_seek_into_a_gap_goes_to_the_next_recorded_step(parts: StageParts) -> No
 
 def test_colour_scale_only_grows(parts: StageParts) -> None:
     parts.stage.set(run_id=parts.finished_training(200).id)
-    views = [frame.lanes[0].knowledge for frame in parts.watch_to_end()]
+    views = [frame.lanes[0].action_values for frame in parts.watch_to_end()]
     highs = [view.high_m for view in views if view]
 
     assert highs == sorted(highs)

@@ -195,7 +195,7 @@ def test_scene_is_plain_json(parts: StageParts) -> None:
 
         assert scene["run_id"] == run.id
         assert scene["lanes"][0]["color"] == "#E69F00"
-        view = scene["knowledge"]
+        view = scene["action_values"]
         assert len(view["values_m"]) == len(view["pairs"]) == 3
         for pair, current in enumerate(view["current"]):
             assert view["values_m"][pair][current] is None

@@ -137,7 +137,7 @@ def test_cells_are_coloured_by_value_but_for_the_current_one(
     server: InProcessViser,
 ) -> None:
     spec, scene = race_of(1), StageScene(server)
-    lane = replace(frame_at_rest(spec).lanes[0], knowledge=action_values(spec))
+    lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))
     scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
     fills = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3)
@@ -154,7 +154,7 @@ def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProces
     spec, scene = race_of(1), StageScene(server)
     known = action_values(spec)
     known.visits[2, 3:] = 0
-    lane = replace(frame_at_rest(spec).lanes[0], knowledge=known)
+    lane = replace(frame_at_rest(spec).lanes[0], action_values=known)
     scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
     fills = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3).astype(int)
@@ -169,7 +169,7 @@ def test_a_lost_leg_has_no_cells_until_it_is_repaired(server: InProcessViser) ->
 
     def sizes(world: World) -> list[bool]:
         lane = replace(
-            frame_at_rest(spec).lanes[0], knowledge=action_values(spec), conditions=world
+            frame_at_rest(spec).lanes[0], action_values=action_values(spec), conditions=world
         )
         scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
         scales = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]["batched_scales"]
@@ -184,7 +184,7 @@ def test_a_lost_leg_has_no_cells_until_it_is_repaired(server: InProcessViser) ->
 @pytest.mark.parametrize("divisions", [2, 3, 8])
 def test_grids_of_all_sizes_can_be_drawn(server: InProcessViser, divisions: int) -> None:
     spec = replace(race_of(1), grid=FootGrid(0.04, divisions))
-    lane = replace(frame_at_rest(spec).lanes[0], knowledge=action_values(spec))
+    lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))
 
     StageScene(server).draw(replace(frame_at_rest(spec), lanes=(lane,)))
 

@@ -19,7 +19,7 @@ from app.experiments.plan import EARNING_STEPS
 from app.experiments.published import COLUMNS, DISTANCES, published
 from app.experiments.statistics import CONFIDENCE
 from app.experiments.worlds import LEAGUE_SHARE, RECOVERY_SHARE
-from app.runs.lane import KNOWLEDGE_TITLES, Knowledge
+from app.runs.lane import PLANNING_MODEL_TITLES, PlanningModel
 
 UNITS: Mapping[str, str] = {
     "m": "metres",
@@ -207,8 +207,8 @@ def place_name(place: tuple[str, ...], summary: Mapping[str, Any]) -> str:
 
 def agent_name(one: Mapping[str, Any]) -> str:
     """Return an agent's title, and of a searcher the model that it plans with."""
-    known: Knowledge | None = one["plans_with"]
-    return title_of(one["agent"]) + ("" if known is None else f", {KNOWLEDGE_TITLES[known]}")
+    known: PlanningModel | None = one["plans_with"]
+    return title_of(one["agent"]) + ("" if known is None else f", {PLANNING_MODEL_TITLES[known]}")
 
 
 def _world_table(

@@ -14,7 +14,7 @@ import { connection, isLockedOut, options, setEntry, viewers } from "../store.js
 import { Controls } from "./controls.js";
 import { html, Icon } from "./elements.js";
 import { LazyPanel } from "./lazy.js";
-import { Knowledge, LearningChart } from "./learning.js";
+import { ActionValues, LearningChart } from "./learning.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Stage } from "./stage.js";
 import { SharedChoices } from "./transport.js";
@@ -79,7 +79,7 @@ const RaceView = ({ isHidden }) => html`
       <${LearningChart} />
       <${RaceChart} />
       <${LazyPanel} title="Gait analysis" style="gait-analysis" load=${loadGait} />
-      <${Knowledge} />
+      <${ActionValues} />
       <${StepsPanel} />
     </div>
     ${isPresenting.value && html`<${Loaded} name="address for others" load=${loadAudience} />`}

@@ -101,11 +101,11 @@ const ABOUT = "Millimetres forward that it expects from moving a pair of legs to
 const TABLE_INVITATION =
   "When a learner is on stage, its table is shown here: one value for each pair of legs and each place.";
 
-export function Knowledge() {
-  const known = scene.value?.knowledge;
+export function ActionValues() {
+  const known = scene.value?.action_values;
   return html`
-    <section class="panel knowledge" aria-labelledby="knowledge-title">
-      <h2 id="knowledge-title">Action values in this state</h2>
+    <section class="panel action-values" aria-labelledby="action-values-title">
+      <h2 id="action-values-title">Action values in this state</h2>
       <p class="dim">${ABOUT}</p>
       ${known
         ? html`

@@ -9,7 +9,7 @@ import {
 import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, served } from "../store.js";
-import { clockTitle, flatParts, knowledgeTitle } from "../titles.js";
+import { clockTitle, flatParts, planningModelTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { html, Icon } from "./elements.js";
@@ -112,7 +112,7 @@ const Lane = ({ row, longest }) => html`
               Original: ${metres(row.original.finished_m)} at time-out, ${metres(row.original.total_m)} in all
             </span>
           `}
-          <span>${knowledgeOf(row)}</span>
+          <span>${planningModelOf(row)}</span>
         </p>
         ${row.isMarching && html`<p class="marching"><b>Marching on the spot:</b> ${reasonForMarching(row)}</p>`}
       </td>
@@ -148,7 +148,7 @@ function postureOf({ fell_at_step, heading_deg }) {
 }
 
 /** Model that a search plans with; empty if the agent does not search, or if nothing happens. */
-const knowledgeOf = ({ plans_with }) => (plans_with ? `plans with the ${knowledgeTitle(plans_with)}` : "");
+const planningModelOf = ({ plans_with }) => (plans_with ? `plans with the ${planningModelTitle(plans_with)}` : "");
 
 function activityOf(row) {
   if (row.failure) return `Stopped: ${row.failure}`;

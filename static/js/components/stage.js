@@ -156,7 +156,7 @@ function StageLabels() {
           </p>
         `)}
       </div>
-      ${scene.value?.knowledge && html`
+      ${scene.value?.action_values && html`
         <p class="chip legend" aria-label=${GRID_COLOURS}>
           worth less<span class="ramp" aria-hidden="true"></span>more<i aria-hidden="true"></i>never tried
         </p>

@@ -7,7 +7,7 @@ import {
 import { count, percentage, whole } from "../../format.js";
 import { largest } from "../../scale.js";
 import { agentOf } from "../../settings.js";
-import { agentTitle, gaitTitle, knowledgeTitle } from "../../titles.js";
+import { agentTitle, gaitTitle, planningModelTitle } from "../../titles.js";
 import { Chart } from "../charts.js";
 import { html, Segments } from "../elements.js";
 import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
@@ -68,7 +68,7 @@ export function Worlds({ known }) {
 /** [field of an entry, kind of line, name] */
 const knownLevels = () => [
   ["greedy_m", "greedy", "Greedy"],
-  ["greedy_nominal_m", "nominal", `Greedy, ${knowledgeTitle(NOMINAL)}`],
+  ["greedy_nominal_m", "nominal", `Greedy, ${planningModelTitle(NOMINAL)}`],
   ["best_known_m", "best-known", "Best known"],
 ];
 
@@ -83,7 +83,7 @@ const levelsOf = (entry) =>
 
 /** Names of entries: of one agent several, if the experiment practises for several numbers of steps. */
 const nameOf = ({ agent, plans_with, steps, role }, { config }) => [
-  agentTitle(agent), plans_with && knowledgeTitle(plans_with),
+  agentTitle(agent), plans_with && planningModelTitle(plans_with),
   role === "learner" && config.steps.length > 1 && count(steps, "step"),
 ].filter(Boolean).join(", ");
 
