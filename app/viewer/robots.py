@@ -154,7 +154,7 @@ class NameLabel:
     ) -> None:
         self._lane_spec, self._x_m = lane_spec, x_m
         self._label = server.scene.add_label(
-            f"{root}/plate", lane_spec.name, anchor="bottom-center", font_screen_scale=_TEXT_SCALE
+            f"{root}/label", lane_spec.name, anchor="bottom-center", font_screen_scale=_TEXT_SCALE
         )
         shape = flag(_FLAG_M)
         self._flag = server.scene.add_mesh_simple(

@@ -15,7 +15,7 @@ from app.viewer.robot_mesh import RobotMesh
 from app.viewer.robots import NameLabel, Robots
 from app.viewer.track import LAMP, SQUARE_M, WORLD, Position, draw_ground, draw_lanes
 
-SCENE_ROOT = f"{WORLD}/cast"
+SCENE_ROOT = f"{WORLD}/run"
 _SMOOTHING_S = 0.25
 _STEP_FORWARD_M = 0.45
 """Shift of the follow point that brings the camera nearer to a single robot [m]."""

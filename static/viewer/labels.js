@@ -64,7 +64,7 @@
   };
 
   const paint = ({ name, element }) => {
-    const lane = /\/lane(\d+)\/plate$/.exec(name)?.[1];
+    const lane = /\/lane(\d+)\/label$/.exec(name)?.[1];
     if (lane && lanes[lane]) element.style.setProperty("--agent", lanes[lane]);
   };
 

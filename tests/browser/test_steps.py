@@ -99,7 +99,7 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     assert dashboard.violations() == []
 
 
-GHOST = "/world/cast/lane0/grid/posture"
+GHOST = "/world/run/lane0/grid/posture"
 HAS_NODE = "name => Boolean(__viserMutable.nodeRefFromName[name])"
 # Of a cell of the foot grid in the window of the 3D view [px], as labels.js has that of labels.
 PLACE_OF_CELL = """([name, instance]) => {
@@ -147,7 +147,7 @@ def test_a_state_is_shown_in_the_scene_and_found_from_it(
     # A cell in the scene is found in the table, whose panel opens.
     panel.get_by_role("button", name="Close").click()
     page.locator(".picture").scroll_into_view_if_needed()
-    cells = "/world/cast/lane0/grid/others/fills"
+    cells = "/world/run/lane0/grid/others/fills"
     place = view.evaluate(PLACE_OF_CELL, [cells, 2 * 4 + 1])
     page.locator(".picture iframe").click(position=place)
     expect(note).to_contain_text("Clicked in the scene: legs 3+6 to front right.")

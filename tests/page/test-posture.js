@@ -17,7 +17,7 @@ const GRID = {
   cells_m: /** @type {[number, number][]} */ ([]),
 };
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
-const NODE = "/world/cast/lane1/grid/posture";
+const NODE = "/world/run/lane1/grid/posture";
 
 /** @type {Message[]} */
 let drawn = [];
@@ -73,13 +73,13 @@ afterEach(() => {
 });
 
 test("a cell of a foot grid is a move of its lane, by its number in its batch", () => {
-  const node = "/world/cast/lane2/grid/others/fills";
+  const node = "/world/run/lane2/grid/others/fills";
   assert.deepEqual(moveAt({ node, instance: 0 }, GRID), { lane: 2, move: [0, 1] });
   assert.deepEqual(moveAt({ node, instance: 11 }, GRID), { lane: 2, move: [2, 4] }, "leg 3");
   assert.deepEqual(moveAt({ node, instance: 23 }, GRID), { lane: 2, move: [2, 4] }, "its partner, leg 6");
-  assert.deepEqual(moveAt({ node: "/world/cast/lane0/grid/home/fills", instance: 4 }, GRID), { lane: 0, move: [1, 0] });
+  assert.deepEqual(moveAt({ node: "/world/run/lane0/grid/home/fills", instance: 4 }, GRID), { lane: 0, move: [1, 0] });
   assert.equal(moveAt({ node, instance: 24 }, GRID), null);
-  assert.equal(moveAt({ node: "/world/cast/robots/3", instance: 0 }, GRID), null);
+  assert.equal(moveAt({ node: "/world/run/robots/3", instance: 0 }, GRID), null);
 });
 
 test("a chosen state is drawn in the 3D view until it is given up", async () => {
@@ -132,7 +132,7 @@ test("there is no ghost without a foot grid or a 3D view", async () => {
 test("a cell clicked in the scene is that move in the present state, of the lane it is on", () => {
   const race = stageRace();
   chosenMoment.value = { run_id: race.id, lane: 1, step: 2 };
-  const cell = { node: "/world/cast/lane1/grid/others/fills", instance: 5 };
+  const cell = { node: "/world/run/lane1/grid/others/fills", instance: 5 };
   clickedCell.value = { ...cell, run_id: "another" };
   assert.equal(chosenState.value, null);
   clickedCell.value = { ...cell, run_id: race.id };

@@ -266,9 +266,9 @@ def test_labels_follow_the_theme_and_do_not_overlap(
     covered = {"left": 0, "top": 0, "right": 480, "bottom": 60}
     dashboard.evaluate("wanted => show(wanted)", {"lanes": ["#E69F00"] * 6, "covered": [covered]})
     add_label = scene.viser_server.scene.add_label
-    plates = [
+    handles = [
         add_label(
-            f"/world/lane{lane}/plate",
+            f"/world/lane{lane}/label",
             f"Robot {lane}\n0.10 m",
             position=(1.0 + 0.01 * lane, 0.5, 0.0),
             anchor="bottom-center",
@@ -287,12 +287,12 @@ def test_labels_follow_the_theme_and_do_not_overlap(
     assert [pair for pair in combinations(boxes(), 2) if intersect(*pair)] == []
     assert labels.first.evaluate("one => getComputedStyle(one).color") == "rgb(233, 237, 243)"
 
-    plates[0].text = "Another"
+    handles[0].text = "Another"
     wait_until(lambda: "Another" in labels.all_inner_texts())
-    plates[0].remove()
+    handles[0].remove()
     wait_until(lambda: "Another" not in labels.all_inner_texts())
 
-    for label in (*plates[1:], line):
+    for label in (*handles[1:], line):
         label.remove()
     wait_until(lambda: labels.count() == 0)
 

@@ -16,7 +16,7 @@ from app.viewer.scene import StageScene
 from app.viewer.viser_internals.server import InProcessViser
 from tests.viewer.drawing import frame_at_rest, frame_of, race_of, scene_nodes
 
-GROUND = "/world/cast/lane0/ground"
+GROUND = "/world/run/lane0/ground"
 
 
 def drawn(
@@ -70,7 +70,7 @@ def test_higher_ground_is_lighter(server: InProcessViser) -> None:
 def test_lines_lie_over_the_bumps(server: InProcessViser) -> None:
     drawn(server, Rough(amplitude_m=0.02))
 
-    assert scene_nodes(server)["/world/cast/track/finish"]["position"][2] > 0.02
+    assert scene_nodes(server)["/world/run/track/finish"]["position"][2] > 0.02
 
 
 def test_patch_lies_where_it_is_slippery(server: InProcessViser) -> None:
@@ -133,5 +133,5 @@ def test_each_lane_has_its_own_ground_and_nothing_is_left_of_it(server: InProces
     scene.draw(frame_of(spec, lane, lane))
 
     assert added
-    assert all(name.startswith("/world/cast/lane1/ground") for name in added)
+    assert all(name.startswith("/world/run/lane1/ground") for name in added)
     assert scene_nodes(server).keys() == before

@@ -14,7 +14,7 @@ from app.viewer.scene import StageScene
 from app.viewer.viser_internals.server import InProcessViser
 from tests.viewer.drawing import frame_at_rest, frame_of, race_of, scene_nodes
 
-CUBE, ARROW = "/world/cast/lane0/payload/cube", "/world/cast/lane0/push/arrow0"
+CUBE, ARROW = "/world/run/lane0/payload/cube", "/world/run/lane0/push/arrow0"
 
 
 def test_payload_is_drawn_where_it_is_simulated(server: InProcessViser) -> None:

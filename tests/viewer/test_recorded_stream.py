@@ -63,8 +63,8 @@ def test_film_of_a_fork_has_the_original_as_ghosts(parts: StageParts) -> None:
         config, lanes, original=original_of(config, parts.store, parts.recordings)
     )
 
-    assert "/world/cast/ghost-robots/0" in node_names(with_ghosts)
-    assert "/world/cast/ghost-robots/0" not in node_names(recorded_stream(config, lanes))
+    assert "/world/run/ghost-robots/0" in node_names(with_ghosts)
+    assert "/world/run/ghost-robots/0" not in node_names(recorded_stream(config, lanes))
 
 
 def test_long_race_is_played_faster(parts: StageParts) -> None:

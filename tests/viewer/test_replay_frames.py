@@ -129,8 +129,8 @@ def test_ghosts_are_drawn_over_their_lanes_and_beside_with_the_name_of_their_own
     for ghost, positions in zip(ghosts, drawn, strict=True):
         offset = positions - mesh.body_poses(ghost.qpos).positions[links]
         assert offset[:, 1:] == pytest.approx(0, abs=1e-5)
-    assert "ghost Greedy 0." in state[f"{SCENE_ROOT}/lane0/plate text"]
-    assert state[f"{SCENE_ROOT}/lane1/plate text"].startswith("Two-step")
+    assert "ghost Greedy 0." in state[f"{SCENE_ROOT}/lane0/label text"]
+    assert state[f"{SCENE_ROOT}/lane1/label text"].startswith("Two-step")
     assert frames.segment(run.id, "paper", 0, 1, other.id) != frames.segment(run.id, "paper", 0, 1)
     first = frames.segment(run.id, "paper", 0, 1, other.id)
     assert frames.segment(run.id, "paper", 0, 1, other.id) is first

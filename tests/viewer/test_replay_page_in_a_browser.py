@@ -111,8 +111,8 @@ def test_a_race_plays_from_its_file_and_in_a_foreign_page(offline: Page, race_fi
     offline.goto(host.as_uri())
     frame = offline.frame_locator("iframe")
     expect(frame.locator(".player")).to_be_visible(timeout=60_000)
-    plate = frame.locator(".labels > div", has_text="Greedy")
-    expect(plate).to_be_visible(timeout=60_000)
+    label = frame.locator(".labels > div", has_text="Greedy")
+    expect(label).to_be_visible(timeout=60_000)
     for message in (
         {
             "type": "hexapods:draw",
@@ -126,7 +126,7 @@ def test_a_race_plays_from_its_file_and_in_a_foreign_page(offline: Page, race_fi
         offline.evaluate("message => say(message)", message)
     offline.evaluate("say({ type: 'hexapods:seek', time_s: 1.5 })")
     expect(frame.locator(".clock")).to_contain_text("1.5 of")
-    expect(plate).to_be_visible()
+    expect(label).to_be_visible()
     told = offline.evaluate("heard.findLast(({ type }) => type === 'hexapods:timeupdate')")
     assert (told["time_s"], told["paused"]) == (1.5, True)
     offline.evaluate("say({ type: 'hexapods:play' })")

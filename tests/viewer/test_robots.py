@@ -28,7 +28,7 @@ def looks(
     """Return the looks of the parts of each leg of a lane's robot; leg 0 is the torso."""
     nodes, found = scene_nodes(server), dict[int, list[Look]]()
     for number, part in enumerate(RobotMesh(spec.robot).parts):
-        node, count = nodes[f"/world/cast/{root}/{number}"], len(part.links)
+        node, count = nodes[f"/world/run/{root}/{number}"], len(part.links)
         colors = node["batched_colors"].reshape(-1, 3)[lane * count :][:count]
         scales = node["batched_scales"]
         own = np.ones(count) if scales is None else scales[lane * count :][:count]
@@ -81,7 +81,7 @@ def test_scene_without_disturbances_sends_no_scales(server: InProcessViser) -> N
     spec = race_of(1)
     StageScene(server).draw(frame_of(spec, lane_in(spec)))
 
-    assert scene_nodes(server)["/world/cast/robots/0"]["batched_scales"] is None
+    assert scene_nodes(server)["/world/run/robots/0"]["batched_scales"] is None
 
 
 def test_original_is_a_ghost_on_the_lane_of_the_fork(server: InProcessViser) -> None:
@@ -95,11 +95,11 @@ def test_original_is_a_ghost_on_the_lane_of_the_fork(server: InProcessViser) -> 
     original = replace(lane, qpos=ahead, distance_m=0.4)
     forked = frame_of(spec, lane_in(spec, Lost(legs=(2,))), lane)
     scene.draw(replace(forked, ghost_lanes=(original, None)))
-    node = scene_nodes(server)["/world/cast/ghost-robots/0"]
+    node = scene_nodes(server)["/world/run/ghost-robots/0"]
 
     assert 0 < node["opacity"] < 1
     y = node["batched_positions"].reshape(2, -1, 3)[0, 0, 1]
-    robot = scene_nodes(server)["/world/cast/robots/0"]["batched_positions"].reshape(2, -1, 3)
+    robot = scene_nodes(server)["/world/run/robots/0"]["batched_positions"].reshape(2, -1, 3)
     assert y - robot[0, 0, 1] == pytest.approx(0.4, abs=1e-6)
     parts = looks(server, spec, root="ghost-robots")
     assert {scale for leg in parts.values() for _, scale in leg} == {1.0}, "it has all its legs"

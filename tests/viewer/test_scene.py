@@ -68,7 +68,7 @@ def test_lanes_are_side_by_side_with_their_labels(server: InProcessViser) -> Non
     assert xs[0] == -xs[2]
     assert xs[2] > 2 * spec.robot.home_radius_m, "they cannot touch"
     assert scene.follow_position("4") is None
-    labels = [m["text"] for n, m in scene_nodes(server).items() if n.endswith("/plate")]
+    labels = [m["text"] for n, m in scene_nodes(server).items() if n.endswith("/label")]
     assert labels == [f"{lane_spec.name}\n0.00\u00a0m, step 3" for lane_spec in spec.lane_specs]
 
 
@@ -78,7 +78,7 @@ def test_start_and_finish_lines_are_labelled_and_coloured(server: InProcessViser
     labels = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
 
     assert labels == {"Start", "Finish"}
-    red, green = nodes["/world/cast/track/finish"], nodes["/world/cast/track/start"]
+    red, green = nodes["/world/run/track/finish"], nodes["/world/run/track/start"]
     assert np.argmax(red["color"]) == 0
     assert np.argmax(green["color"]) == 1
 
@@ -139,7 +139,7 @@ def test_cells_are_coloured_by_value_but_for_the_current_one(
     spec, scene = race_of(1), StageScene(server)
     lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))
     scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
-    fills = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]
+    fills = scene_nodes(server)["/world/run/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3)
 
     leader, partner = spec.gait.pairs[2]
@@ -156,7 +156,7 @@ def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProces
     known.visits[2, 3:] = 0
     lane = replace(frame_at_rest(spec).lanes[0], action_values=known)
     scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
-    fills = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]
+    fills = scene_nodes(server)["/world/run/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3).astype(int)
 
     leader = spec.gait.pairs[2][0] - 1
@@ -172,7 +172,7 @@ def test_a_lost_leg_has_no_cells_until_it_is_repaired(server: InProcessViser) ->
             frame_at_rest(spec).lanes[0], action_values=action_values(spec), conditions=world
         )
         scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
-        scales = scene_nodes(server)["/world/cast/lane0/grid/others/fills"]["batched_scales"]
+        scales = scene_nodes(server)["/world/run/lane0/grid/others/fills"]["batched_scales"]
         shown = np.ones(24) if scales is None else np.asarray(scales)
         return [bool(leg.all()) for leg in np.split(shown, 6)]
 
@@ -219,10 +219,10 @@ def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: InProcessViser) 
     frame = frame_at_rest(spec)
     scene.draw(frame)
     scene.draw(replace(frame, lanes=(replace(frame.lanes[0], done=True),)))
-    assert not scene_nodes(server)["/world/cast/lane0/flag"]["visible"], "time-out is no crossing"
+    assert not scene_nodes(server)["/world/run/lane0/flag"]["visible"], "time-out is no crossing"
 
     scene.draw(replace(frame, lanes=(replace(frame.lanes[0], crossed=True),)))
-    shown = scene_nodes(server)["/world/cast/lane0/flag"]
+    shown = scene_nodes(server)["/world/run/lane0/flag"]
     assert shown["visible"]
     assert shown["position"][1] == pytest.approx(FINISH_LINE_M)
 

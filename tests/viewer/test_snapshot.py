@@ -62,11 +62,11 @@ def test_only_the_newest_pose_is_kept(
 
 
 def test_creation_precedes_updates(viser_server: InProcessViser, record: Record) -> None:
-    label = viser_server.scene.add_label("/world/plate", "one")
+    label = viser_server.scene.add_label("/world/label", "one")
     label.text = "two"
     label.visible = False
 
-    types = message_types(catch_up_frame(record()), "/world/plate")
+    types = message_types(catch_up_frame(record()), "/world/label")
 
     assert types[0] == "LabelMessage"
     assert set(types[1:]) >= {"SceneNodeUpdateMessage", "SetSceneNodeVisibilityMessage"}
@@ -126,13 +126,13 @@ def test_recreated_node_follows_the_removal(viser_server: InProcessViser, record
 def test_replacement_drops_the_updates_of_the_old_node(
     viser_server: InProcessViser, record: Record
 ) -> None:
-    viser_server.scene.add_label("/world/plate", "old").font_screen_scale = 7
-    viser_server.scene.add_label("/world/plate", "new")
+    viser_server.scene.add_label("/world/label", "old").font_screen_scale = 7
+    viser_server.scene.add_label("/world/label", "new")
 
     snapshot = catch_up_frame(record())
 
     assert "font_screen_scale" not in str([m for m in snapshot.messages if "updates" in m])
-    assert message_types(snapshot, "/world/plate").count("LabelMessage") == 1
+    assert message_types(snapshot, "/world/label").count("LabelMessage") == 1
 
 
 def test_full_snapshot_ends_with_replay_done(record: Record) -> None:
@@ -166,7 +166,7 @@ def test_catch_up_is_equivalent_to_all_frames(
 ) -> None:
     for step in range(6):
         robots.move_to(step)
-        viser_server.scene.add_label("/world/plate", f"step {step}").visible = False
+        viser_server.scene.add_label("/world/label", f"step {step}").visible = False
         record()
         ghost = viser_server.scene.add_frame("/world/ghost")
         record()
