@@ -75,7 +75,7 @@ class Beam(Search):
                 number if first[parent] == -1 else first[parent]
                 for number, parent in enumerate(parents)
             ]
-            self._foresee([root[number] for number in first], sums.tolist(), step + 1)
+            self._record_futures([root[number] for number in first], sums.tolist(), step + 1)
             kept = np.argsort(-sums, kind="stable")[: self._width].tolist()
             nodes, sums, first = [children[i] for i in kept], sums[kept], [first[i] for i in kept]
         return root[first[0]]

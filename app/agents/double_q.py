@@ -42,7 +42,7 @@ class DoubleQ(TabularLearner):
         own, other, before = values[column], valuing.row(state)[0][column], means[column]
         values[column] = (1 - self._alpha) * own + self._alpha * target
         means[column] = (values[column] + other) / 2
-        if self._journal is not None:
+        if self._update_log is not None:
             terms = (
                 Term("α", self._alpha, "learning rate"),
                 Term("Q₁", float(own), f"value in table {chosen + 1}, which was drawn to learn"),
@@ -51,7 +51,7 @@ class DoubleQ(TabularLearner):
                 Term("Q₂", float(other), "value in the other table"),
             )
             rule = "((1 − α) · Q₁ + α · (r + γ · Q₂′) + Q₂) / 2"
-            self._journal.note((state, column), rule, terms, (before, means[column]))
+            self._update_log.record((state, column), rule, terms, (before, means[column]))
 
     def _explain_target(
         self,

@@ -36,13 +36,13 @@ class DynaQ(PlanningLearner):
             pair = pairs[number]
             reward, best = self._imagined_reward_m(pair), self.table.best(pair.last_next)
             self._move_towards(pair.state, pair.column, reward + self._gamma * best)
-            if self._journal is not None:
+            if self._update_log is not None:
                 terms = (
                     Term("r̂", reward, "imagined reward [m]"),
                     Term("γ", self._gamma, "discount"),
                     Term("Q′", best, "highest value in the state that followed last time"),
                 )
-                self._journal.explain_target("r̂ + γ · Q′", terms)
+                self._update_log.explain_target("r̂ + γ · Q′", terms)
 
     def _imagined_reward_m(self, pair: TriedPair) -> float:
         """Return the reward [m] of an imagined step."""

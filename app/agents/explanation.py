@@ -155,7 +155,7 @@ class Future(NamedTuple):
 
 
 @runtime_checkable
-class Foreseeing(Protocol):
+class ExplainingSearch(Protocol):
     """Search that tells what it found for its newest decision.
 
     Its class says in `compares` what `Future.return_m` is.
@@ -176,7 +176,7 @@ class Explaining(Protocol):
         """Learn as `learn` does, and explain how what is known changes."""
 
 
-class Move(NamedTuple):
+class ValueChange(NamedTuple):
     """Change of a table's value, as a learner notes it."""
 
     state: int
@@ -186,7 +186,7 @@ class Move(NamedTuple):
     before: float
     after: float
 
-    def with_target(self, rule: str, terms: Sequence[Term]) -> "Move":
+    def with_target(self, rule: str, terms: Sequence[Term]) -> "ValueChange":
         """Return it with what its target, the term `T`, was computed from."""
         if "T" not in {term.symbol for term in self.terms}:
             return self
@@ -196,36 +196,36 @@ class Move(NamedTuple):
         return self._replace(rule=self.rule.replace("T", f"({rule})"), terms=(*kept, *added))
 
 
-class Journal:
-    """Notes the changes of values while a learner learns from one transition.
+class UpdateLog:
+    """Records the changes of values while a learner learns from one transition.
 
     Attributes:
         transition: the transition.
         rule, terms: what the target of the direct update is computed from.
-        moves: the changes so far.
+        changes: the changes so far.
     """
 
     def __init__(self, transition: Transition, rule: str, terms: Sequence[Term]) -> None:
         self.transition, self.rule, self.terms = transition, rule, terms
-        self.moves: list[Move] = []
+        self.changes: list[ValueChange] = []
 
-    def note(
-        self, place: tuple[int, int], rule: str, terms: Sequence[Term], values: Sequence[float]
+    def record(
+        self, entry: tuple[int, int], rule: str, terms: Sequence[Term], values: Sequence[float]
     ) -> None:
-        """Note a change.
+        """Record a change.
 
         Args:
-            place: row and column of the table.
+            entry: row and column of the table.
             rule: as in `ValueUpdate`.
             terms: of the rule.
             values: the value before and after.
         """
         before, after = map(float, values)
-        self.moves.append(Move(*place, rule, tuple(terms), before, after))
+        self.changes.append(ValueChange(*entry, rule, tuple(terms), before, after))
 
     def explain_target(self, rule: str, terms: Sequence[Term]) -> None:
         """Tell what the target of the newest change was computed from."""
-        self.moves[-1] = self.moves[-1].with_target(rule, terms)
+        self.changes[-1] = self.changes[-1].with_target(rule, terms)
 
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

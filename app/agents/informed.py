@@ -60,10 +60,10 @@ class Informed(Search):
         for step, share in enumerate(self._shares, 1):
             layer = self._simulate(self._candidates(layer)[:share])
             firsts = [one.first for one in layer if one.first is not None]
-            self._foresee(firsts, [one.sum_m for one in layer], step)
+            self._record_futures(firsts, [one.sum_m for one in layer], step)
         after = self._model.best_rewards(np.array([one.node.offsets_m for one in layer]))
         values = [one.sum_m for one in layer] + after
-        self._foresee(firsts, values.tolist(), len(self._shares) + 1)
+        self._record_futures(firsts, values.tolist(), len(self._shares) + 1)
         return firsts[int(values.argmax())]
 
     def _candidates(self, layer: Sequence["_Sequence"]) -> list["_Candidate"]:

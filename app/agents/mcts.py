@@ -18,7 +18,7 @@ EXPLORATION = 1 / math.sqrt(2)
 
 
 @dataclass
-class _Place:
+class _TreeNode:
     """Node of the tree: its simulated actions, and the returns of the sequences through it."""
 
     node: Node
@@ -27,7 +27,7 @@ class _Place:
     visits: int = 0
     total_m: float = 0.0
     """Sum of the returns of the sequences that came through."""
-    children: dict[Action, "_Place"] = field(default_factory=dict)
+    children: dict[Action, "_TreeNode"] = field(default_factory=dict)
 
 
 class Mcts(Search):
@@ -58,7 +58,7 @@ class Mcts(Search):
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the action that most of the simulated sequences began with."""
-        root = _Place(self._expand.here)
+        root = _TreeNode(self._expand.here)
         self._left = self._budget
         self._lowest, self._highest = math.inf, -math.inf
         # Once all sequences are known, further ones cost nothing: their number is limited too.
@@ -75,24 +75,24 @@ class Mcts(Search):
         }
         return max(root.children, key=lambda one: _rank(root.children[one]))
 
-    def _simulate(self, root: _Place) -> None:
+    def _simulate(self, root: _TreeNode) -> None:
         """Simulate one sequence of steps, and add its return to all nodes on its way."""
-        path, place, is_known = [root], root, True
+        path, tree_node, is_known = [root], root, True
         while len(path) <= self._horizon:
-            untried = [one for one in place.node.legal if one not in place.children]
+            untried = [one for one in tree_node.node.legal if one not in tree_node.children]
             if untried and is_known:
                 is_known = False
                 action = self._random(untried)
             elif is_known:
-                action = self._most_promising(place)
+                action = self._most_promising(tree_node)
             else:
-                action = self._random(place.node.legal)
-            if action not in place.children:
+                action = self._random(tree_node.node.legal)
+            if action not in tree_node.children:
                 if self._left == 0:
                     break
-                place.children[action] = self._step(place, action)
-            place = place.children[action]
-            path.append(place)
+                tree_node.children[action] = self._step(tree_node, action)
+            tree_node = tree_node.children[action]
+            path.append(tree_node)
         stretch = self._horizon / (len(path) - 1)  # over 1 if the budget cut it short
         total_m = stretch * sum(one.reward_m for one in path)
         self._lowest, self._highest = min(self._lowest, total_m), max(self._highest, total_m)
@@ -100,28 +100,28 @@ class Mcts(Search):
             one.visits += 1
             one.total_m += total_m
 
-    def _step(self, place: _Place, action: Action) -> _Place:
-        (node,), (reward_m,) = self._expand([place.node], [action])
+    def _step(self, tree_node: _TreeNode, action: Action) -> _TreeNode:
+        (node,), (reward_m,) = self._expand([tree_node.node], [action])
         self._left -= 1
-        return _Place(node, float(reward_m))
+        return _TreeNode(node, float(reward_m))
 
     def _random(self, actions: Sequence[Action]) -> Action:
         return actions[int(self._rng.integers(len(actions)))]
 
-    def _most_promising(self, place: _Place) -> Action:
+    def _most_promising(self, tree_node: _TreeNode) -> Action:
         """Return the action with the highest upper confidence bound (UCB1)."""
         span = max(self._highest - self._lowest, 1e-12)
-        logarithm = math.log(max(1, place.visits))
+        logarithm = math.log(max(1, tree_node.visits))
 
         def bound(action: Action) -> float:
-            child = place.children[action]
+            child = tree_node.children[action]
             if child.visits == 0:
                 return math.inf
             mean = (child.total_m / child.visits - self._lowest) / span
             return mean + 2 * EXPLORATION * math.sqrt(logarithm / child.visits)
 
-        return max(place.children, key=bound)
+        return max(tree_node.children, key=bound)
 
 
-def _rank(place: _Place) -> tuple[int, float]:
-    return place.visits, place.total_m / max(1, place.visits)
+def _rank(tree_node: _TreeNode) -> tuple[int, float]:
+    return tree_node.visits, tree_node.total_m / max(1, tree_node.visits)

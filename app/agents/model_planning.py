@@ -36,17 +36,17 @@ class Plan(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Elsewhere:
+class UniformTransitions:
     """Transitions to any state of the problem with the same probability, also to unseen ones.
 
     Attributes:
-        shares: probability of it for each pair of the model.
-        unseen_m: the best reward in a state that was never seen [m].
+        probabilities: of such a transition, for each pair of the model.
+        unseen_reward_m: the best reward in a state that was never seen [m].
         states: number of states of the problem.
     """
 
-    shares: FloatArray
-    unseen_m: float
+    probabilities: FloatArray
+    unseen_reward_m: float
     states: int
 
 
@@ -91,7 +91,7 @@ class ModelArrays:
         shares: FloatArray,
         untried_m: FloatArray,
         gamma: float,
-        elsewhere: Elsewhere | None = None,
+        uniform: UniformTransitions | None = None,
     ) -> Plan:
         """Return the optimal values by value iteration, to within `TOLERANCE_M`, from zero.
 
@@ -99,9 +99,9 @@ class ModelArrays:
             rewards_m: expected reward of each pair [m].
             shares: probability of each outcome.
             untried_m: value of the best untried action of each state [m], −inf without one; with
-                `elsewhere` its reward, since it leads there.
+                `uniform` its reward, since it leads there.
             gamma: discount factor γ.
-            elsewhere: further transitions of the pairs.
+            uniform: further transitions of the pairs.
         """
         pairs, mean, unseen = len(rewards_m), 0.0, 0.0
         values, states = rewards_m, np.zeros(len(self.states))
@@ -110,11 +110,11 @@ class ModelArrays:
             weights = shares * states[self.outcome_places]
             later = np.bincount(self.outcome_pairs, weights, pairs).astype(np.float64)
             others = untried_m
-            if elsewhere is not None:
-                mean = _mean(states, unseen, elsewhere.states)
-                later = later + elsewhere.shares * mean
+            if uniform is not None:
+                mean = _mean(states, unseen, uniform.states)
+                later = later + uniform.probabilities * mean
                 others = untried_m + gamma * mean
-                unseen = elsewhere.unseen_m + gamma * mean
+                unseen = uniform.unseen_reward_m + gamma * mean
             values, before, states = rewards_m + gamma * later, states, others.copy()
             if pairs:
                 best = np.maximum.reduceat(values[self._order], self._starts)

@@ -7,9 +7,9 @@ from typing import Annotated, Any
 import numpy as np
 from annotated_types import Ge, Le
 
-from app.agents.explanation import Journal, Term, UpdateExplanation
+from app.agents.explanation import Term, UpdateExplanation, UpdateLog
 from app.agents.protocol import AgentState, Transition
-from app.agents.q_table import check_places
+from app.agents.q_table import check_entries
 from app.agents.tabular import TabularLearner
 from app.domain.settings import Setting
 
@@ -78,15 +78,15 @@ class NStepSarsa(TabularLearner):
             Term("Q′", value, "value of the next action, which is chosen already"),
         )
 
-    def _explanation(self, journal: Journal) -> UpdateExplanation:
+    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
         """Return the explanation of the change of the value n − 1 steps ago, if there is one."""
         late = self._return_steps - 1
-        if not journal.moves:
+        if not update_log.changes:
             return UpdateExplanation(
                 f"No value changes yet: a step is judged when {self._return_steps} rewards are "
                 f"known, and {len(self._waiting)} of them are."
             )
-        explained = super()._explanation(journal)
+        explained = super()._explanation(update_log)
         if late == 0:
             return explained
         ago = "one step" if late == 1 else f"{late} steps"
@@ -117,4 +117,4 @@ class NStepSarsa(TabularLearner):
             raise ValueError("its rewards are no list of numbers")
         if len(rewards) >= MAX_RETURN_STEPS:
             raise ValueError("it has more steps to judge than there can be")
-        check_places(state["places"], len(rewards), state["shape"])
+        check_entries(state["places"], len(rewards), state["shape"])

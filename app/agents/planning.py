@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 from annotated_types import Ge, Le
 
-from app.agents.explanation import Journal, UpdateExplanation, ValueUpdate
+from app.agents.explanation import UpdateExplanation, UpdateLog, ValueUpdate
 from app.agents.protocol import AgentState, Problem
 from app.agents.tabular import TabularLearner
 from app.agents.tabular_model import TabularModel, check_problem
@@ -51,9 +51,9 @@ class PlanningLearner(TabularLearner):
         self._planning_steps = planning_steps
         self._model = TabularModel(problem)
 
-    def _explanation(self, journal: Journal) -> UpdateExplanation:
+    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
         """Return the explanation of the direct update, and what was planned after it."""
-        explained = super()._explanation(journal)
+        explained = super()._explanation(update_log)
         planned = planning_summary(explained.others)
         return replace(explained, summary=f"{explained.summary} {planned}")
 

@@ -8,7 +8,7 @@ import numpy as np
 from annotated_types import Ge, Gt, Le
 
 from app.agents.explanation import Belief, ChoiceExplanation, Term
-from app.agents.model_planning import Elsewhere, ModelAgent
+from app.agents.model_planning import ModelAgent, UniformTransitions
 from app.agents.protocol import AgentState
 from app.agents.q_table import legal_columns
 from app.domain.settings import Setting
@@ -128,13 +128,13 @@ class PosteriorSampling(ModelAgent):
         is_open[arrays.places, arrays.columns] = False
         best = np.where(is_open, untried, -np.inf).max(axis=1)
         actions = table.actions - table.pairs
-        elsewhere = Elsewhere(
+        uniform = UniformTransitions(
             unseen / total,
             float(self._prior_m * rng.standard_normal(actions).max()),
             table.states,
         )
         shares = seen / total[arrays.outcome_pairs]
-        plan = arrays.solve(rewards, shares, best, self._gamma, elsewhere)
+        plan = arrays.solve(rewards, shares, best, self._gamma, uniform)
         values = untried + self._gamma * plan.mean_value
         values[arrays.places, arrays.columns] = plan.pair_values
         self._drawn = rewards, plan.later

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 from annotated_types import Ge, Le
 
-from app.agents.explanation import Journal, Term, UpdateExplanation
+from app.agents.explanation import Term, UpdateExplanation, UpdateLog
 from app.agents.planning import PlanningLearner, planning_summary
 from app.agents.protocol import AgentState, Transition
 from app.agents.tabular import Alpha, summary_of
@@ -70,14 +70,14 @@ class PrioritizedSweeping(PlanningLearner):
         before = self.table.best(pair.state)
         later = self._later(pair)
         self._move_towards(pair.state, pair.column, self._planned_target(pair, later))
-        if self._journal is not None:
+        if self._update_log is not None:
             terms = (
                 Term("r̄", pair.mean_reward_m, "mean reward of all tries [m]"),
                 Term("γ", self._gamma, "discount"),
                 Term("Σ", later, "sum of the highest values in the states that followed"),
                 Term("N", pair.tries, "number of tries"),
             )
-            self._journal.explain_target("r̄ + γ · Σ / N", terms)
+            self._update_log.explain_target("r̄ + γ · Σ / N", terms)
         if self.table.best(pair.state) != before:
             for number in self._model.leading_to(pair.state):
                 self._enqueue(number)
@@ -97,11 +97,11 @@ class PrioritizedSweeping(PlanningLearner):
         """Return nothing: a step is added to the model, and its value follows by planning."""
         return "", ()
 
-    def _explanation(self, journal: Journal) -> UpdateExplanation:
+    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
         """Return the explanation of the first change of this step's value, if it was due."""
-        sweeps = [self._value_update(move) for move in journal.moves]
-        place = journal.transition.observation, journal.transition.action
-        own = [one for one in sweeps if (one.observation, one.action) == place]
+        sweeps = [self._value_update(one) for one in update_log.changes]
+        entry = update_log.transition.observation, update_log.transition.action
+        own = [one for one in sweeps if (one.observation, one.action) == entry]
         others = [one for one in sweeps if not own or one is not own[0]]
         if own:
             summary = summary_of(own[0])

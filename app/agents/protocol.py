@@ -22,8 +22,8 @@ class state the rest:
 - `is_on_policy = True`: it chooses its next action before it learns from the last one, so that a
   changed exploration rate acts a step later.
 
-Optional methods: those of `Tunable`, `Valuing` and `Tabular`, of `Explaining` and `Foreseeing` in
-`app.agents.explanation`, and two static methods:
+Optional methods: those of `Tunable`, `Valuing` and `Tabular`, of `Explaining` and
+`ExplainingSearch` in `app.agents.explanation`, and two static methods:
 `check_state(state)` raises `ValueError` or `InvalidInput` for a state that `load` cannot restore,
 such as one in an untrusted file; `check_problem(problem, **settings)` raises `InvalidInput` for
 settings that are too much for a problem, before a run is queued.

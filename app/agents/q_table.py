@@ -246,7 +246,7 @@ def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: i
         raise TableMismatch(NOT_RISING)
 
 
-def check_places(places: NDArray[Any], count: int, shape: NDArray[Any]) -> None:
+def check_entries(places: NDArray[Any], count: int, shape: NDArray[Any]) -> None:
     """Check that places are the (state, column) of `count` entries of a table, (count, 2).
 
     Raises:

@@ -57,7 +57,9 @@ class Search:
         """Return what was found about each action that was simulated for the newest decision."""
         return tuple(self._futures.values())
 
-    def _foresee(self, firsts: Sequence[Action], sums_m: Sequence[float], steps: int) -> None:
+    def _record_futures(
+        self, firsts: Sequence[Action], sums_m: Sequence[float], steps: int
+    ) -> None:
         """Keep the highest sum of rewards for each first action; longer sequences count only.
 
         Args:

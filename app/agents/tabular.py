@@ -10,10 +10,10 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from app.agents.explanation import (
     ChoiceExplanation,
-    Journal,
-    Move,
     Term,
     UpdateExplanation,
+    UpdateLog,
+    ValueChange,
     ValueUpdate,
     copy_of,
     in_millimetres,
@@ -201,7 +201,7 @@ class TabularLearner(TabularAgent):
         self._steps_per_episode = steps_per_episode
         self._learned = 0
         self._fixed_epsilon: float | None = None
-        self._journal: Journal | None = None
+        self._update_log: UpdateLog | None = None
         """Notes each change of a value while an update is explained."""
 
     next_meaning = "value of the next state"
@@ -246,12 +246,12 @@ class TabularLearner(TabularAgent):
 
     def explain_update(self, transition: Transition) -> UpdateExplanation:
         """Learn as `learn` does, and explain how the values change."""
-        self._journal = journal = Journal(transition, *self._explain_target(transition))
+        self._update_log = update_log = UpdateLog(transition, *self._explain_target(transition))
         try:
             self.learn(transition)
         finally:
-            self._journal = None
-        return self._explanation(journal)
+            self._update_log = None
+        return self._explanation(update_log)
 
     def _explain_target(self, transition: Transition) -> tuple[str, Sequence[Term]]:
         """Return what the target of the update is computed from, before it is made."""
@@ -268,18 +268,18 @@ class TabularLearner(TabularAgent):
         """Return what `_next_value` is computed from."""
         return "Q′", (Term("Q′", self._next_value(transition), self.next_meaning),)
 
-    def _explanation(self, journal: Journal) -> UpdateExplanation:
+    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
         """Return the explanation of an update whose first noted change is the direct one."""
-        first, *others = journal.moves
-        update = self._value_update(first.with_target(journal.rule, journal.terms))
+        first, *others = update_log.changes
+        update = self._value_update(first.with_target(update_log.rule, update_log.terms))
         return UpdateExplanation(
             summary_of(update), update, [self._value_update(one) for one in others]
         )
 
-    def _value_update(self, move: Move) -> ValueUpdate:
+    def _value_update(self, change: ValueChange) -> ValueUpdate:
         table = self.table
-        observation, action = table.cells_at(move.state), table.action_at(move.column)
-        return ValueUpdate(observation, action, *move[2:])
+        observation, action = table.cells_at(change.state), table.action_at(change.column)
+        return ValueUpdate(observation, action, *change[2:])
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Apply the update rule for a transition from row `state` by the action in `column`.
@@ -300,14 +300,14 @@ class TabularLearner(TabularAgent):
         values, _ = self.table.row(state)
         before = values[column]
         values[column] = (1 - self._alpha) * before + self._alpha * target
-        if self._journal is not None:
+        if self._update_log is not None:
             terms = (
                 Term("Q", float(before), "value before"),
                 Term("α", self._alpha, "learning rate"),
                 Term("T", float(target), "target"),
             )
             change = before, values[column]
-            self._journal.note((state, column), "(1 − α) · Q + α · T", terms, change)
+            self._update_log.record((state, column), "(1 − α) · Q + α · T", terms, change)
 
     def _best_next(self, transition: Transition) -> float:
         """Return max Q(s′, ·)."""

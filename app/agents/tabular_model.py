@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.agents.protocol import AgentState, Problem
-from app.agents.q_table import check_places, table_size
+from app.agents.q_table import check_entries, table_size
 from app.domain.errors import InvalidInput
 
 MAX_MODEL_VALUES = 300_000
@@ -137,7 +137,7 @@ class TabularModel:
             raise ValueError("its model is no list of whole numbers")
         if rewards.shape != (count, 2) or not np.isfinite(rewards).all():
             raise ValueError("its model has rewards that are no numbers")
-        check_places(pairs[:, :2], count, state["shape"])
+        check_entries(pairs[:, :2], count, state["shape"])
         if len(np.unique(pairs[:, :2], axis=0)) < count or len(
             np.unique(outcomes[:, :2], axis=0)
         ) < len(outcomes):

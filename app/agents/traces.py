@@ -4,9 +4,9 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from app.agents.explanation import Journal, Term, UpdateExplanation
+from app.agents.explanation import Term, UpdateExplanation, UpdateLog
 from app.agents.protocol import AgentState, Transition
-from app.agents.q_table import check_places
+from app.agents.q_table import check_entries
 from app.agents.tabular import Share, TabularLearner, summary_of
 from app.domain.settings import Setting, declare
 
@@ -52,25 +52,25 @@ class TraceLearner(TabularLearner):
             values, at = self.table.row(place[0])[0], place[1]
             before = values[at]
             values[at] += self._alpha * error * trace
-            if self._journal is not None:
+            if self._update_log is not None:
                 terms = (
                     Term("Q", float(before), "value before"),
                     Term("α", self._alpha, "learning rate"),
                     Term("δ", float(error), "what came, less what this step was worth before"),
                     Term("e", trace, "trace: how much the step counts for it"),
                 )
-                self._journal.note(place, "Q + α · δ · e", terms, (before, values[at]))
+                self._update_log.record(place, "Q + α · δ · e", terms, (before, values[at]))
             if trace * decay >= _MIN_TRACE:
                 kept[place] = trace * decay
         self._traces = kept
 
-    def _explanation(self, journal: Journal) -> UpdateExplanation:
+    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
         """Return the explanation of the newest trace's change, and those of the other traces."""
-        *others, own = journal.moves
+        *others, own = update_log.changes
         by_symbol = {term.symbol: term for term in own.terms}
         shown = own._replace(
-            rule=f"Q + α · ({journal.rule} − Q) · e",
-            terms=(by_symbol["Q"], by_symbol["α"], *journal.terms, by_symbol["e"]),
+            rule=f"Q + α · ({update_log.rule} − Q) · e",
+            terms=(by_symbol["Q"], by_symbol["α"], *update_log.terms, by_symbol["e"]),
         )
         update = self._value_update(shown)
         earlier = "the step before" if len(others) == 1 else f"{len(others)} steps before"
@@ -106,6 +106,6 @@ class TraceLearner(TabularLearner):
         traces = state["traces"]
         if traces.ndim != 1 or traces.dtype.kind != "f":
             raise ValueError("its traces are no list of numbers")
-        check_places(state["places"], len(traces), state["shape"])
+        check_entries(state["places"], len(traces), state["shape"])
         if not ((traces > 0) & (traces <= 1)).all():
             raise ValueError("its traces are not from 0 to 1")

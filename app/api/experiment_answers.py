@@ -292,7 +292,7 @@ class ClaimView(Answer):
     where: list[Finding]
 
 
-class Told(Answer):
+class NarrativeSection(Answer):
     """A short text under a heading."""
 
     heading: str
@@ -317,4 +317,4 @@ class SummaryView(Answer):
     timed: list[TimedView]
     worlds: list[WorldView] = Field(default_factory=list)
     claims: list[ClaimView]
-    story: list[Told]
+    story: list[NarrativeSection]

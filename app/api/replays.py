@@ -90,18 +90,18 @@ def get_replay_posture(
     return _response(request, services.replays.posture(run_id, clock, time_s, lane, state))
 
 
-class Place(NamedTuple):
-    """Which segment."""
+class SegmentKey(NamedTuple):
+    """Level and number of a segment."""
 
     level: int
     number: int
 
 
-def _place(
+def _segment_key(
     level: Annotated[int, Path(ge=LOWEST_LEVEL, le=HIGHEST_LEVEL, description=VALID["level"])],
     number: Annotated[int, Path(ge=0, lt=1 << 40, description=VALID["number"])],
-) -> Place:
-    return Place(level, number)
+) -> SegmentKey:
+    return SegmentKey(level, number)
 
 
 @router.get(
@@ -115,12 +115,12 @@ def get_replay_segment(
     services: ServicesDep,
     request: Request,
     run_id: RunPath,
-    place: Annotated[Place, Depends(_place)],
+    segment: Annotated[SegmentKey, Depends(_segment_key)],
     clock: ClockQuery = "paper",
     ghost: GhostQuery = None,
 ) -> Response:
     """Return the frames of a segment; fewer than it can have where the run still computes."""
-    return _response(request, services.replays.segment(run_id, clock, *place, ghost))
+    return _response(request, services.replays.segment(run_id, clock, *segment, ghost))
 
 
 def _response(request: Request, frames: bytes) -> Response:

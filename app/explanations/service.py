@@ -12,7 +12,7 @@ from app.agents.protocol import Tabular, Valuing
 from app.assembly import rebuild_lane, rebuild_learner
 from app.cache import BytesCache
 from app.domain.errors import InvalidInput
-from app.explanations.plain import Search, explanation_as_json, table_as_json
+from app.explanations.explanation_json import Search, explanation_as_json, table_as_json
 from app.explanations.rebuilt_practice import Changes, RebuiltPractice, Steps
 from app.runs.config import TrainingConfig
 from app.runs.race_config import RaceConfig

@@ -5,7 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from app.agents.explanation import Foreseeing
+from app.agents.explanation import ExplainingSearch
 from app.domain.errors import Diverged, HexapodError
 from app.domain.simulator import Motion
 from app.runs.race_config import RaceConfig
@@ -71,7 +71,7 @@ def _lane_step(
         action = walker.decide() if next_action is None else next_action
         decision_s = learning_s + timer() - started_s
         agent = walker.agent
-        futures = tuple(agent.futures()) if isinstance(agent, Foreseeing) else ()
+        futures = tuple(agent.futures()) if isinstance(agent, ExplainingSearch) else ()
     except HexapodError as error:
         return LaneFailed(lane, step, str(error))
     except Exception as error:  # a user-supplied agent may raise anything

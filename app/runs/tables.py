@@ -101,7 +101,7 @@ def restore(learner: Learner, checkpoint: Checkpoint) -> None:
     learner.fell_at_step = meta.get("fell_at_step")
     learner.newest_epsilon = meta.get("newest_epsilon", 0.0)
     walker.agent.load(checkpoint.part(_AGENT))
-    walker.place(walker.simulator.load(checkpoint.part(_STATE)))
+    walker.set_state(walker.simulator.load(checkpoint.part(_STATE)))
     seeding.load(learner.rng, meta["rng"])
     learner.step, learner.episode_reward_m = meta["step"], meta["episode_reward_m"]
     learner.greedy_distance_m = meta["greedy_distance_m"]

@@ -206,9 +206,9 @@ class Walker:
         self.simulator, self.agent, self.observation = simulator, agent, observation
         self.keeps_learning = False
         self._expand, self._sensors = expand, sensors or Sensors(simulator)
-        self.place(simulator.rest())
+        self.set_state(simulator.rest())
 
-    def place(self, state: WalkState) -> None:
+    def set_state(self, state: WalkState) -> None:
         """Set the current state, and update the observation and the legal actions."""
         self.state = state
         self._sensors.at(state)
@@ -257,7 +257,7 @@ class Walker:
     def carry_out(self, action: Action, record: bool = False, effort: bool = False) -> Step[Any]:
         """Simulate an action as `Simulator.step`; its result becomes the current state."""
         step = self.simulator.step(self.state, action, record, effort)
-        self.place(step.state)
+        self.set_state(step.state)
         return step
 
     def learn(self, observation: Cells, action: Action, reward_m: float) -> Action | None:

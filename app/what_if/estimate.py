@@ -28,7 +28,7 @@ from app.storage.errors import Busy
 from app.what_if.step_time import Steps, step_s_of
 
 MAX_MEASURED = 24
-"""Kinds of steps of an experiment that are timed; others count as the mean of their sort."""
+"""Kinds of steps of an experiment that are timed; others count as the mean of their cost class."""
 MAX_CACHED = 256
 CACHED_S = 600.0
 """After this time the machine may be busier, or less."""
@@ -36,8 +36,8 @@ MAX_AT_ONCE = 4
 """Requests whose steps are timed, or wait for that; each holds a thread of the server."""
 
 
-class _Sort(NamedTuple):
-    """What a step's time depends on most: two-step takes a hundred times as long as a table."""
+class _CostClass(NamedTuple):
+    """Agent and simulator, which dominate a step's time: two-step takes 100 times a table's."""
 
     agent: str
     simulator: str
@@ -97,13 +97,15 @@ class Estimates:
     def _experiment_s(self, config: ExperimentConfig, workers: int) -> float:
         plan = plan_of(config)
         parts = [*_trials(plan)]
-        measured = self._measured(_each_sort_first(one.steps for one in parts))
-        by_sort: defaultdict[_Sort, list[float]] = defaultdict(list)
+        measured = self._measured(_one_per_class_first(one.steps for one in parts))
+        by_class: defaultdict[_CostClass, list[float]] = defaultdict(list)
         for steps, step_s in measured.items():
-            by_sort[_sort(steps)].append(step_s)
+            by_class[_cost_class(steps)].append(step_s)
         total = sum(
             one.number
-            * measured.get(one.steps, fmean(by_sort[_sort(one.steps)] or [*measured.values()]))
+            * measured.get(
+                one.steps, fmean(by_class[_cost_class(one.steps)] or [*measured.values()])
+            )
             for one in parts
         )
         return total / max(1, min(workers, plan.total))
@@ -150,16 +152,16 @@ def _seconds(parts: Iterable[_Part], measured: Mapping[Steps, float]) -> float:
     return sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
 
 
-def _sort(steps: Steps) -> _Sort:
-    return _Sort(steps.training.agent, steps.training.simulator)
+def _cost_class(steps: Steps) -> _CostClass:
+    return _CostClass(steps.training.agent, steps.training.simulator)
 
 
-def _each_sort_first(kinds: Iterable[Steps]) -> list[Steps]:
-    """Return the kinds without repetitions: first one of each sort, then a second one of each."""
-    by_sort: defaultdict[_Sort, list[Steps]] = defaultdict(list)
+def _one_per_class_first(kinds: Iterable[Steps]) -> list[Steps]:
+    """Return the kinds without repetitions: first one of each cost class, then a second one."""
+    by_class: defaultdict[_CostClass, list[Steps]] = defaultdict(list)
     for kind in dict.fromkeys(kinds):
-        by_sort[_sort(kind)].append(kind)
-    return [kind for kinds in zip_longest(*by_sort.values()) for kind in kinds if kind]
+        by_class[_cost_class(kind)].append(kind)
+    return [kind for kinds in zip_longest(*by_class.values()) for kind in kinds if kind]
 
 
 def _kind(config: TrainingConfig) -> Steps:

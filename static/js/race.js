@@ -2,9 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { askForNewest, getTimeline, isLasting } from "./api.js";
 import { count, listed, metres } from "./format.js";
-import {
-  clock, isActive, isToCome, originalRace, planningModelIn, raceInView, raceScene, shownRun,
-} from "./selectors.js";
+import { clock, isActive, isToCome, modelOfLane, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, scene, stage } from "./store.js";
 import { messageOf } from "./titles.js";
@@ -184,7 +182,7 @@ function rowOf(race, config, number, time) {
     lane: number,
     agent,
     training_id,
-    plans_with: planningModelIn(race, config),
+    plans_with: modelOfLane(race, config),
     steps: seen?.steps ?? race.config.steps,
     decision_s: result?.steps ? result.decision_s / result.steps : null,
     ...placeOf(agent, seen, result),

@@ -85,7 +85,7 @@ const get = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);
  * @param {Run} race
  * @param {LaneConfig} lane
  */
-export const planningModelIn = (race, { plans_with = null, plans_with_by_default }) =>
+export const modelOfLane = (race, { plans_with = null, plans_with_by_default }) =>
   disturbancesOf(race).length || plans_with_by_default === false ? plans_with : null;
 
 /** The run on stage. */

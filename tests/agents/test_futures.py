@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.explanation import Foreseeing
+from app.agents.explanation import ExplainingSearch
 from app.agents.registry import OURS, compares, searches
 from app.assembly import build_walkers
 from app.runs.lane import lane_config
@@ -25,7 +25,7 @@ def walker_of(agent: str, **settings: Any) -> Walker:
 @pytest.mark.parametrize("name", SEARCHES)
 def test_what_is_found_is_what_is_simulated(name: str) -> None:
     walker = walker_of(name)
-    assert isinstance(walker.agent, Foreseeing)
+    assert isinstance(walker.agent, ExplainingSearch)
     for _ in range(4):
         legal, before = walker.legal, walker.transitions
         action = walker.decide()
@@ -44,7 +44,7 @@ def test_greedy_and_two_step_take_the_highest_return() -> None:
     for name, steps in (("greedy", 1), ("two-step", 2)):
         walker = walker_of(name)
         action = walker.decide()
-        assert isinstance(walker.agent, Foreseeing)
+        assert isinstance(walker.agent, ExplainingSearch)
         found = list(walker.agent.futures())
         highest = max(one.return_m for one in found)
 
@@ -56,9 +56,9 @@ def test_greedy_and_two_step_take_the_highest_return() -> None:
 def test_two_step_adds_the_best_second_step() -> None:
     walker = walker_of("two-step")
     walker.decide()
-    assert isinstance(walker.agent, Foreseeing)
+    assert isinstance(walker.agent, ExplainingSearch)
     for one in walker.agent.futures():
-        walker.place(walker.simulator.rest())
+        walker.set_state(walker.simulator.rest())
         first = walker.carry_out(one.action).reward_m
         second = max(walker.simulator.step(walker.state, a).reward_m for a in walker.legal)
         assert one.return_m == first + second
@@ -67,7 +67,7 @@ def test_two_step_adds_the_best_second_step() -> None:
 def test_what_a_beam_dropped_is_known_less_far() -> None:
     walker = walker_of("beam", width=2, depth=3)
     action = walker.decide()
-    assert isinstance(walker.agent, Foreseeing)
+    assert isinstance(walker.agent, ExplainingSearch)
     found = {one.action: one for one in walker.agent.futures()}
 
     assert found[action].steps == 3

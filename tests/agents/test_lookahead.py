@@ -86,12 +86,12 @@ def test_first_action_of_the_best_sequence_is_chosen(depth: int) -> None:
     def best_sum(state: object, left: int) -> float:
         if left == 0:
             return 0.0
-        robot.place(state)  # type: ignore[arg-type]
+        robot.set_state(state)  # type: ignore[arg-type]
         sums = []
         for action in robot.legal:
             step = simulator.step(state, action)
             sums.append(step.reward_m + best_sum(step.state, left - 1))
-            robot.place(state)  # type: ignore[arg-type]
+            robot.set_state(state)  # type: ignore[arg-type]
         return max(sums)
 
     for _ in range(3 if depth == 3 else 8):
@@ -100,7 +100,7 @@ def test_first_action_of_the_best_sequence_is_chosen(depth: int) -> None:
         step = simulator.step(state, chosen)
         worth = step.reward_m + best_sum(step.state, depth - 1)
         assert worth == pytest.approx(best_sum(state, depth), abs=1e-12)
-        robot.place(state)
+        robot.set_state(state)
         robot.carry_out(robot.legal[int(rng.integers(len(robot.legal)))])
 
 

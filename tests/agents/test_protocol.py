@@ -92,7 +92,7 @@ def test_agent_continues_identically_from_a_loaded_state(agent: str) -> None:
     original, copy = learner(agent, seed=1), learner(agent, seed=2)
     walk(original, steps_for(agent))
     copy.walker.agent.load(original.walker.agent.state())
-    copy.walker.place(original.walker.state)
+    copy.walker.set_state(original.walker.state)
     seeding.load(copy.rng, seeding.dump(original.rng))
     assert written(copy) == written(original)
 

@@ -149,7 +149,7 @@ def test_diverging_physics_ends_the_lane_and_names_the_step(agent: str) -> None:
     for record in race(walkers, asked.steps, ticking()):
         records.append(record)
         if (record.lane, record.step) == (0, 2):
-            walkers[0].place(with_a_broken_joint(walkers[0].state))
+            walkers[0].set_state(with_a_broken_joint(walkers[0].state))
     failed = of_lane(records, 0)[-1]
 
     assert isinstance(failed, LaneFailed)

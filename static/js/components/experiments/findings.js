@@ -189,8 +189,8 @@ function Verdict({ verdict }) {
 
 // ---- conclusions in prose, written by the server from this run's numbers
 
-export const Story = ({ parts }) => parts.length > 0 && html`
-  <section class="panel story" aria-label="Findings">
+export const Narrative = ({ parts }) => parts.length > 0 && html`
+  <section class="panel narrative" aria-label="Findings">
     ${parts.map(({ heading, text }) => html`
       <h2>${heading}</h2>
       ${text.split("\n\n").map((paragraph) => html`<p>${paragraph}</p>`)}

@@ -8,7 +8,7 @@ import { isActive, isOperator } from "../../selectors.js";
 import { describeRun, messageOf, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Icon, Problem, ProgressBar } from "../elements.js";
 import { FigureFour } from "./figure-four.js";
-import { AtAGlance, Claims, FairClocks, Story, Versus } from "./findings.js";
+import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
 import { Seeds } from "./seeds.js";
 import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
@@ -39,7 +39,7 @@ function Findings({ known }) {
     ${!known.worlds?.length && html`<${AtAGlance} known=${known} />`}
     <${Versus} known=${known} />
     <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
-    <${Story} parts=${known.story ?? []} />
+    <${Narrative} parts=${known.story ?? []} />
     <${FairClocks} timed=${known.timed ?? []} />
     <${Making} known=${known} />
   `;

@@ -22,13 +22,13 @@ export function Selection() {
           onClick=${() => (isAll ? clearSelection() : selectAll())} />
         ${length ? `${count(length, "run")} selected` : "Select all"}
       </label>
-      ${length > 0 && html`<${Deeds} />`}
+      ${length > 0 && html`<${SelectionActions} />`}
       <${Problem} at="selection" />
     </div>
   `;
 }
 
-function Deeds() {
+function SelectionActions() {
   const { count: exportable, most, address } = exported.value;
   return html`
     <${CompareThem} />

@@ -24,14 +24,14 @@ MAX_OTHERS = 24
 """Further updates of values that are told one by one, those with the largest changes."""
 
 
-class Words:
+class ActionNames:
     """Names of the actions and states of a walking problem."""
 
     def __init__(self, walk: WalkingProblem) -> None:
         self._pairs, self._grid = walk.resolved_gait.pairs, walk.grid
 
     def move(self, action: Action) -> str:
-        """Return an action in words: "legs 1 and 4 to front left"."""
+        """Return the name of an action: "legs 1 and 4 to front left"."""
         legs = " and ".join(map(str, self._pairs[action.pair]))
         return f"legs {legs} to {self._grid.name(action.cell)}"
 
@@ -65,21 +65,21 @@ def explanation_as_json(
         search: what a search found; None for an agent that does not search.
         unexplained: why there is no explanation of its choice.
     """
-    words, logged = Words(walk), explained.logged
+    names, logged = ActionNames(walk), explained.logged
     return {
         "run_id": run_id,
         "lane": lane,
         "step": explained.step,
         "agent": agent,
-        **words.as_json(),
+        **names.as_json(),
         "observation": list(logged.observation),
         "action": list(logged.action),
         "reward_m": logged.reward_m,
         "next_observation": list(logged.next_observation) or None,
         "visits": None if explained.visits is None else _rows(explained.visits),
-        "choice": None if explained.choice is None else _choice(explained, words),
-        "update": None if explained.update is None else _update(explained.update, words),
-        "search": None if search is None else _search(search, logged, words),
+        "choice": None if explained.choice is None else _choice(explained, names),
+        "update": None if explained.update is None else _update(explained.update, names),
+        "search": None if search is None else _search(search, logged, names),
         "unexplained": unexplained,
     }
 
@@ -98,7 +98,7 @@ class Search(NamedTuple):
     futures: Sequence[Future]
 
 
-def _search(search: Search, logged: Logged, words: Words) -> dict[str, Any]:
+def _search(search: Search, logged: Logged, names: ActionNames) -> dict[str, Any]:
     best_first = sorted(
         search.futures, key=lambda one: (one.action != logged.action, -one.return_m)
     )
@@ -106,26 +106,26 @@ def _search(search: Search, logged: Logged, words: Words) -> dict[str, Any]:
         "compares": search.compares,
         "transitions": search.transitions,
         "futures": [{**one._asdict(), "action": list(one.action)} for one in best_first],
-        "sentences": _foreseen(search, best_first, logged, words),
+        "sentences": _search_sentences(search, best_first, logged, names),
     }
 
 
-def _foreseen(
-    search: Search, best_first: Sequence[Future], logged: Logged, words: Words
+def _search_sentences(
+    search: Search, best_first: Sequence[Future], logged: Logged, names: ActionNames
 ) -> list[str]:
-    """Return what a search foresaw, in words; the first of the futures is that of its action."""
+    """Return the findings of a search in sentences; the first future is that of its action."""
     chosen, *others = best_first
     steps = "step" if search.transitions == 1 else "steps"
     sentences = [
         f"It simulated {search.transitions:,} {steps} before it took this one, and compared the "
-        f"{search.compares}. {words.move(chosen.action).capitalize()} came first: "
+        f"{search.compares}. {names.move(chosen.action).capitalize()} came first: "
         f"{in_millimetres(chosen.return_m)} in {chosen.steps} "
         f"step{'s' * (chosen.steps != 1)}, of which {in_millimetres(chosen.reward_m)} at once."
     ]
     if others:
         other = others[0]
         sentences.append(
-            f"The next highest, {words.move(other.action)}, promised "
+            f"The next highest, {names.move(other.action)}, promised "
             f"{in_millimetres(other.return_m)} in {other.steps} step{'s' * (other.steps != 1)}."
         )
     missed = logged.reward_m - chosen.reward_m
@@ -139,10 +139,10 @@ def _foreseen(
     return sentences
 
 
-def _choice(explained: ExplainedStep, words: Words) -> dict[str, Any]:
+def _choice(explained: ExplainedStep, names: ActionNames) -> dict[str, Any]:
     choice = explained.choice
     assert choice is not None  # noqa: S101 - the caller has checked
-    sentences = _reasons(choice, words)
+    sentences = _reasons(choice, names)
     if explained.chose_early:
         sentences.append("It chose so before it learned from the step before, by the values then.")
     return {
@@ -159,9 +159,9 @@ def _choice(explained: ExplainedStep, words: Words) -> dict[str, Any]:
     }
 
 
-def _reasons(choice: ChoiceExplanation, words: Words) -> list[str]:
+def _reasons(choice: ChoiceExplanation, names: ActionNames) -> list[str]:
     """Return why an action was chosen, why no other, and when another would be."""
-    move, count = words.move(choice.action), int(np.isfinite(choice.scores).sum())
+    move, count = names.move(choice.action), int(np.isfinite(choice.scores).sum())
     sentences = []
     if choice.kind == "unknown":
         sentences.append(f"It tries {move} because it does not know yet what that brings.")
@@ -173,7 +173,7 @@ def _reasons(choice: ChoiceExplanation, words: Words) -> list[str]:
             f"It explores: {choice.draw:.3f} was drawn, below ε = {choice.epsilon:.3f}, so one of "
             f"{count} moves was taken by lot: {move}."
         )
-        sentences.append(f"By its {choice.criterion} it would {_wanted(choice, words)}.")
+        sentences.append(f"By its {choice.criterion} it would {_wanted(choice, names)}.")
         return sentences
     drawn = ""
     if choice.draw is not None:
@@ -186,7 +186,7 @@ def _reasons(choice: ChoiceExplanation, words: Words) -> list[str]:
         sentences.append(f"{len(choice.best)} moves are tied; one was drawn by lot.")
     elif choice.runner_up is not None and choice.margin is not None:
         sentences.append(
-            f"The next best, {words.move(choice.runner_up)}, is {in_millimetres(choice.margin)} "
+            f"The next best, {names.move(choice.runner_up)}, is {in_millimetres(choice.margin)} "
             "worse: were it better by more than that, it would take it."
         )
     if choice.epsilon:
@@ -197,37 +197,37 @@ def _reasons(choice: ChoiceExplanation, words: Words) -> list[str]:
     return sentences
 
 
-def _wanted(choice: ChoiceExplanation, words: Words) -> str:
+def _wanted(choice: ChoiceExplanation, names: ActionNames) -> str:
     if choice.action in choice.best:
         return "have done the same"
     if len(choice.best) > 1:
         return f"have drawn one of {len(choice.best)} tied moves"
     (best,) = choice.best
-    return f"have moved {words.move(best)}, {in_millimetres(-(choice.margin or 0))} better"
+    return f"have moved {names.move(best)}, {in_millimetres(-(choice.margin or 0))} better"
 
 
-def _update(explained: UpdateExplanation, words: Words) -> dict[str, Any]:
+def _update(explained: UpdateExplanation, names: ActionNames) -> dict[str, Any]:
     others = explained.others
     changed = {(one.observation, one.action) for one in others if one.before != one.after}
     largest = sorted(others, key=lambda one: -abs(one.after - one.before))[:MAX_OTHERS]
     return {
         "summary": explained.summary,
-        "direct": None if explained.update is None else _value_update(explained.update, words),
+        "direct": None if explained.update is None else _value_update(explained.update, names),
         "stored": explained.stored,
         "others": {
             "count": len(others),
             "values_changed": len(changed),
-            "largest": [_value_update(one, words) for one in others if one in largest],
+            "largest": [_value_update(one, names) for one in others if one in largest],
         },
         "beliefs": [belief._asdict() for belief in explained.beliefs],
     }
 
 
-def _value_update(update: ValueUpdate, words: Words) -> dict[str, Any]:
+def _value_update(update: ValueUpdate, names: ActionNames) -> dict[str, Any]:
     return {
         "observation": list(update.observation),
         "action": list(update.action),
-        "move": words.move(update.action),
+        "move": names.move(update.action),
         "rule": update.rule,
         "numbers": update.numbers,
         "terms": [_term(term) for term in update.terms],
@@ -263,7 +263,7 @@ def table_as_json(
     values = [agent.values(state) for state in states]
     return {
         "step": step,
-        **Words(walk).as_json(),
+        **ActionNames(walk).as_json(),
         "states": total,
         "first": first,
         "values": [_flat(row) for row in values],
