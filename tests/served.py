@@ -13,10 +13,9 @@ from typing import IO, Any
 import httpx2
 import psutil
 
-from tests import patience
 from tests.forked import HEXAPODS, start_hexapods
+from tests.timeouts import LONG_S, ProgressTimeout
 
-LONG_S = patience.LONG_S
 BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
 ENDLESS = {**BODY, "steps": 10_000_000, "pace": 20, "evaluate_every": 0}
 Events = Iterator[tuple[str, Any, str]]
@@ -89,9 +88,9 @@ class Served:
 
     def until(self, run: dict[str, Any], is_so: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         """The run once it is as it should be, for as long as it gets on."""
-        waiting = patience.Patience()
+        stall_check = ProgressTimeout()
         while not is_so(now := self.look(run)):
-            waiting.check(now)
+            stall_check.check(now)
             time.sleep(0.1)
         return now
 

@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from tests.served import BODY, LONG_S, Served
+from tests.served import BODY, Served
+from tests.timeouts import LONG_S
 
 LANES = [{"agent": "q-learning", "training": {"steps": 100}}, {"agent": "greedy"}]
 

@@ -15,7 +15,8 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from tests.forked import HEXAPODS
-from tests.served import BODY, ENDLESS, LONG_S, Events, Served, environ, is_job, serving_from
+from tests.served import BODY, ENDLESS, Events, Served, environ, is_job, serving_from
+from tests.timeouts import LONG_S
 
 TOKEN = "a-token-for-tests"
 

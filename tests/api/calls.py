@@ -8,7 +8,7 @@ import httpx2
 from httpx2 import ByteStream
 from starlette.testclient import TestClient
 
-from tests.patience import Patience
+from tests.timeouts import ProgressTimeout
 
 ADDRESS = "http://127.0.0.1:8000"
 WALK = {"gait": "left-right-origin", "simulator": "kinematic"}
@@ -79,10 +79,10 @@ class Api:
         return shown
 
     def until(self, run: dict[str, Any], condition: Any) -> dict[str, Any]:
-        patience = Patience()
+        stall_check = ProgressTimeout()
         while not condition(now := self.look(run)):
             assert now["state"] not in ENDED, now
-            patience.check(now)
+            stall_check.check(now)
             time.sleep(0.03)
         return now
 

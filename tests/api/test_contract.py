@@ -28,7 +28,7 @@ from app.domain.errors import HexapodError
 from app.server import create_app
 from app.settings import Settings
 from tests.api.calls import WALK, Api
-from tests.experiments.made import around, summary_of, walked
+from tests.experiments.sample_experiments import around, summary_of, walked
 from tests.storage.stores import temporary_store
 
 PAGES = {"/", "/docs", "/favicon.ico", "/openapi.json", "/static", "/viewer", "/viewer/"}

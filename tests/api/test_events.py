@@ -17,8 +17,8 @@ from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.json_text import json_text
 from app.storage.run import LIVE, QUEUED
-from tests.patience import LONG_S
 from tests.storage.stores import training
+from tests.timeouts import LONG_S
 
 
 class ReceivedEvent(NamedTuple):

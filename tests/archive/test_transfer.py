@@ -28,7 +28,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
 from app.storage.stored_recordings import PRACTICE, RACE, evaluations_file, transitions_file
-from tests.storage.ended import ended_race, ended_training
+from tests.storage.ended_runs import ended_race, ended_training
 from tests.storage.stores import ODD, opened, temporary_store, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"

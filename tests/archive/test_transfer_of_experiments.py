@@ -19,7 +19,7 @@ from app.experiments.trial import run_trial
 from app.storage.database.store import RunStore
 from app.storage.run import SUMMARY, State
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
-from tests.storage.ended import ended_experiment
+from tests.storage.ended_runs import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened
 
 RUN_ID = "00000000000e1"

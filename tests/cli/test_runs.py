@@ -14,7 +14,7 @@ import pytest
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE
 from tests.cli.running import ROOT, in_process, output, refusal
-from tests.storage.ended import ended_experiment, ended_race, ended_training
+from tests.storage.ended_runs import ended_experiment, ended_race, ended_training
 from tests.storage.stores import opened, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"

@@ -9,7 +9,7 @@ import pytest
 
 from tests.cli.running import hexapods, in_process, output, refusal
 from tests.served import Served
-from tests.storage.ended import ended_race, ended_training
+from tests.storage.ended_runs import ended_race, ended_training
 from tests.storage.stores import opened, training
 
 TRAINING, RACED, TOKEN = "00000000000t1", "00000000000r1", "a-token-for-tests"

@@ -7,7 +7,8 @@ from pathlib import Path
 import httpx2
 
 from tests.forked import HEXAPODS
-from tests.served import LONG_S, environ
+from tests.served import environ
+from tests.timeouts import LONG_S
 
 
 def test_shared_links_are_printed_when_the_server_answers(tmp_path: Path) -> None:

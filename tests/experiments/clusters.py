@@ -10,7 +10,7 @@ from app.experiments.engine import Outcome
 from app.experiments.plan import Plan, Trial
 from app.experiments.trial import TrialResult, run_trial
 
-POISONOUS = "tests.experiments.poison:Poisonous"
+CRASHING = "tests.experiments.crashing_agent:CrashingAgent"
 
 
 def small(seeds: int = 20, agent: str = "q-learning", steps: int = 30) -> ExperimentConfig:

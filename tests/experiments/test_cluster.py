@@ -19,8 +19,8 @@ from app.experiments.cluster import ClusterLost, ClusterSpec, connect
 from app.experiments.engine import run_trials
 from app.experiments.own_cluster import cores
 from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
-from tests.experiments.foreign import scheduler
-from tests.patience import LONG_S
+from tests.experiments.existing_cluster import scheduler
+from tests.timeouts import LONG_S
 
 
 @pytest.mark.parametrize(
@@ -100,13 +100,13 @@ def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(
     tmp_path: Path,
 ) -> None:
     trials = trials_of(small(seeds=20))
-    with scheduler(tmp_path, tls=True) as foreign:
-        foreign.worker()
-        assert results(run_trials(trials, foreign.where)) == one_by_one(trials)
-        running = run_trials(trials, foreign.where)
+    with scheduler(tmp_path, tls=True) as cluster:
+        cluster.worker()
+        assert results(run_trials(trials, cluster.where)) == one_by_one(trials)
+        running = run_trials(trials, cluster.where)
         next(running)
-        assert foreign.process.poll() is None, "a shared cluster must not be shut down"
-        foreign.process.kill()
+        assert cluster.process.poll() is None, "a shared cluster must not be shut down"
+        cluster.process.kill()
         with pytest.raises(ClusterLost, match="what was done is kept"):
             list(running)
 
@@ -121,17 +121,17 @@ def test_a_scheduler_that_dies_as_the_client_reconnects_is_lost(
         stream.close()
         raise ValueError("IOStream is not idle; cannot convert to SSL")
 
-    with scheduler(tmp_path, tls=True) as foreign:
-        foreign.worker()
-        running = run_trials(trials_of(small(seeds=20)), foreign.where)
+    with scheduler(tmp_path, tls=True) as cluster:
+        cluster.worker()
+        running = run_trials(trials_of(small(seeds=20)), cluster.where)
         next(running)
         # Tornado raises this if the connection is closed between connecting and the handshake.
         monkeypatch.setattr(
             "tornado.tcpclient.IOStream.start_tls", connection_that_closed_meanwhile
         )
-        foreign.process.kill()
-        foreign.process.wait()
-        port = int(str(foreign.where.scheduler).rpartition(":")[2])
+        cluster.process.kill()
+        cluster.process.wait()
+        port = int(str(cluster.where.scheduler).rpartition(":")[2])
         with (
             socket.create_server(("127.0.0.1", port)),
             pytest.raises(ClusterLost, match="what was done is kept"),

@@ -13,9 +13,9 @@ from app.experiments.config import experiment_config
 from app.experiments.engine import Outcome, run_trials
 from app.experiments.plan import Trial
 from app.experiments.trial import TrialResult
-from tests.experiments import poison
+from tests.experiments import crashing_agent
 from tests.experiments.clusters import (
-    POISONOUS,
+    CRASHING,
     one_by_one,
     results,
     small,
@@ -37,9 +37,9 @@ def expected(trials: list[Trial]) -> dict[str, TrialResult]:
 
 
 @pytest.fixture
-def poisoned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The folder that configures which trials of the poisonous agent kill their worker."""
-    monkeypatch.setenv(poison.FOLDER, str(tmp_path))
+def crash_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder that configures which trials of the crashing agent kill their worker."""
+    monkeypatch.setenv(crashing_agent.FOLDER, str(tmp_path))
     return tmp_path
 
 
@@ -85,23 +85,25 @@ def test_stopped_workers_are_replaced(
 
 
 def test_a_trial_is_set_aside_after_three_dead_workers_or_one_exception(
-    poisoned: Path,
+    crash_folder: Path,
 ) -> None:
-    trials = trials_of(small(seeds=20, agent=POISONOUS))
+    trials = trials_of(small(seeds=20, agent=CRASHING))
     killer, breaker, quitter = [t for t in trials if t.setting.role == "learner"][5:8]
     ends = [(killer, "kill"), (breaker, "raise"), (quitter, "exit")]
-    poison.poison(poisoned, [(trial.config.training.seed, end) for trial, end in ends])
+    crashing_agent.set_crashes(
+        crash_folder, [(trial.config.training.seed, end) for trial, end in ends]
+    )
 
     outcomes = {outcome.key: outcome for outcome in run_trials(trials, TWO)}
 
-    assert sorted(poison.tries(poisoned)) == ["exit", "kill", "kill", "kill", "raise"]
+    assert sorted(crashing_agent.tries(crash_folder)) == ["exit", "kill", "kill", "kill", "raise"]
     aside = {key: o.set_aside for key, o in outcomes.items() if o.result is None}
     assert aside == {
         killer.key: "it ended its worker's process 3 times",
         breaker.key: "something in it broke (RuntimeError: I tripped)",
         quitter.key: "something in it broke (SystemExit: enough)",
     }
-    poison.poison(poisoned, [])
+    crashing_agent.set_crashes(crash_folder, [])
     healthy = [trial for trial in trials if trial.key not in aside]
     assert {key: o.result for key, o in outcomes.items() if o.result} == one_by_one(healthy)
 

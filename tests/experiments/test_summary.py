@@ -12,12 +12,12 @@ from app.experiments.published import published
 from app.experiments.summary import summarise
 from app.experiments.trial import TrialResult
 from app.runs.best_known import kept
-from tests.experiments.made import (
+from tests.experiments.sample_experiments import (
     GREEDY_M,
     ROBOTS,
     around,
     config,
-    made_up,
+    sample_results,
     setting,
     summary_of,
     walked,
@@ -64,7 +64,7 @@ def test_figure4_has_learning_curves_over_its_blocks() -> None:
 
 def test_a_setting_has_its_averages_and_the_distances_of_all_seeds() -> None:
     tried = config("table1", seeds=8, gaits=(LRO,))
-    results = made_up(tried, lambda _: lambda number: 0.1 * number)
+    results = sample_results(tried, lambda _: lambda number: 0.1 * number)
     found = setting(summarise(tried, results), Q500)
     assert found["total"]["points_m"] == pytest.approx([0.1 * n for n in range(8)])
     assert found["total"]["iqm_m"] == pytest.approx(0.35)
@@ -78,7 +78,7 @@ def test_a_setting_has_its_averages_and_the_distances_of_all_seeds() -> None:
 
 def test_a_published_value_has_its_quantile_among_our_seeds() -> None:
     tried = config("table1", seeds=8, gaits=(LRO,))
-    results = made_up(tried, lambda _: lambda number: 0.1 * number)
+    results = sample_results(tried, lambda _: lambda number: 0.1 * number)
     found = setting(summarise(tried, results), Q500)["published"]
     assert found["total_m"] == found["finished_m"] == 0.25
     assert found["total_quantile"] == 3 / 8
@@ -122,7 +122,7 @@ def test_pooled_intervals_need_enough_seeds_in_each_gait(seeds: int, known: bool
 @pytest.mark.parametrize("done", [0, 3, 11, 40])
 def test_a_partly_filled_experiment_has_the_same_shape(experiment: str, done: int) -> None:
     tried = config(experiment, seeds=4)
-    whole = made_up(tried, lambda _: around(0.3))
+    whole = sample_results(tried, lambda _: around(0.3))
     part = dict(list(whole.items())[:done])
     summary = summarise(tried, part)
     assert summary.keys() == summarise(tried, whole).keys()
@@ -138,14 +138,14 @@ def test_a_partly_filled_experiment_has_the_same_shape(experiment: str, done: in
 
 def test_the_summary_does_not_depend_on_the_order_of_results() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
-    results = made_up(tried, lambda _: around(0.3))
+    results = sample_results(tried, lambda _: around(0.3))
     backwards = dict(reversed(results.items()))
     assert json.dumps(summarise(tried, results)) == json.dumps(summarise(tried, backwards))
 
 
 def test_a_failed_trial_is_excluded_from_all_measures_and_listed() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
-    results = made_up(tried, lambda _: around(0.3))
+    results = sample_results(tried, lambda _: around(0.3))
     results[f"{Q500}#2"] = TrialResult(failure="the physics diverged")
     summary = summarise(tried, results, {f"{Q500}#3": "it killed its worker three times"})
     found = setting(summary, Q500)
@@ -159,7 +159,7 @@ def test_a_failed_trial_is_excluded_from_all_measures_and_listed() -> None:
 
 def test_without_greedys_result_relative_measures_are_none() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
-    results = made_up(tried, lambda _: around(0.3))
+    results = sample_results(tried, lambda _: around(0.3))
     del results[f"{LRO}/measured/stiff/greedy#0"]
     found = setting(summarise(tried, results), Q500)
     assert found["n"] == 4
@@ -169,7 +169,7 @@ def test_without_greedys_result_relative_measures_are_none() -> None:
 
 def test_a_greedy_agent_that_hardly_moves_is_not_used_as_a_reference() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
-    results = made_up(tried, lambda _: around(0.3))
+    results = sample_results(tried, lambda _: around(0.3))
     key = f"{LRO}/measured/stiff/greedy#0"
     results[key] = replace(results[key], distances_m=(-0.002,), finished_distance_m=0.0)
     assert setting(summarise(tried, results), Q500)["relative"] is None
@@ -243,7 +243,7 @@ def test_the_summary_has_config_cost_versions_and_machine() -> None:
 
 def test_results_outside_the_plan_are_ignored() -> None:
     tried = config("table1", seeds=4, gaits=(LRO,))
-    results = made_up(tried, lambda _: around(0.3))
+    results = sample_results(tried, lambda _: around(0.3))
     fewer = summarise(replace(tried, seeds=3), results)
     assert setting(fewer, Q500)["n"] == 3
     assert fewer["trials"]["done"] == fewer["trials"]["total"]

@@ -151,7 +151,10 @@ def test_choices_have_no_ends() -> None:
     [
         ({"agent": "greedy"}, "greedy does not learn, so there is nothing to tune; choose one of"),
         ({"agent": "skynet"}, "linear-model, greedy"),
-        ({"agent": "tests.experiments.poison:Poisonous", "settings": ("x",)}, "setting"),
+        (
+            {"agent": "tests.experiments.crashing_agent:CrashingAgent", "settings": ("x",)},
+            "setting",
+        ),
         ({"settings": ("alpha", "beta")}, "alpha, gamma"),
         ({"settings": ("alpha",), "ranges": ("gamma=0.1:0.9",)}, "not one of the settings to tune"),
         ({"ranges": ("alpha=0.1:1", "alpha=0.2:1")}, "given twice"),

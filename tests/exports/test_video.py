@@ -24,8 +24,8 @@ from app.exports.video_renderer import VideoRenderer
 from app.jobs import process_pool
 from app.storage.errors import Busy
 from tests.jobs.waiting import wait_until
-from tests.patience import LONG_S
 from tests.stage.stage_parts import StageParts
+from tests.timeouts import LONG_S
 
 SMALL = VideoOptions(width=160, height=120, fps=5, clock="free")
 PICTURES = 11  # 6 steps of 0.32 s at 5 a second, and the end

@@ -7,7 +7,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from tests.served import BODY, ENDLESS, LONG_S, Served, serving_from
+from tests.served import BODY, ENDLESS, Served, serving_from
+from tests.timeouts import LONG_S
 
 
 @pytest.fixture

@@ -20,9 +20,9 @@ from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import QUEUED
 from tests.jobs.waiting import wait_for_progress, wait_until
-from tests.patience import LONG_S
 from tests.storage.queries import recorded_queries
 from tests.storage.stores import PLAIN, training
+from tests.timeouts import LONG_S
 
 ENDLESS = TrainingConfig(
     gait="left-right-origin", simulator="kinematic", steps=10_000_000, pace=20, evaluate_every=0

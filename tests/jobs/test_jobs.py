@@ -24,8 +24,8 @@ from app.storage.recordings import Recordings
 from app.storage.run import QUEUED, TABLE, Run
 from app.storage.stored_tables import load_table
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
-from tests.patience import LONG_S
 from tests.storage.stores import of_type
+from tests.timeouts import LONG_S
 
 WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
 

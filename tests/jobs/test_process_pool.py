@@ -10,7 +10,7 @@ from app.domain.errors import InvalidInput
 from app.jobs.process_pool import ProcessPool
 from app.storage.errors import Busy
 from tests.jobs.waiting import wait_until
-from tests.patience import LONG_S
+from tests.timeouts import LONG_S
 
 
 def test_workers_exit_when_idle_and_when_closed() -> None:

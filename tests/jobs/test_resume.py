@@ -27,7 +27,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run
 from tests.jobs.test_jobs import WALK, pid_of
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
-from tests.storage.ended import ended_training
+from tests.storage.ended_runs import ended_training
 from tests.storage.stores import training
 
 SLOW = training_config(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)

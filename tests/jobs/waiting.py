@@ -6,7 +6,7 @@ from typing import Any
 
 from app.storage.database.store import RunStore
 from app.storage.run import NOT_ENDED, Run
-from tests.patience import LONG_S, Patience
+from tests.timeouts import LONG_S, ProgressTimeout
 
 
 def wait_until(is_so: Callable[[], Any]) -> None:
@@ -19,7 +19,7 @@ def wait_until(is_so: Callable[[], Any]) -> None:
 
 def wait_until_ended(store: RunStore, run: Run) -> Run:
     """Wait until a run has ended, and return it; fail if it makes no progress."""
-    stall_check = Patience()
+    stall_check = ProgressTimeout()
     while (now := store.get(run.id)).state in NOT_ENDED:
         stall_check.check((now.state, now.done))
         time.sleep(0.02)

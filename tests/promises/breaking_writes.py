@@ -42,7 +42,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import TABLE, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
 from app.storage.stored_tables import load_table
-from tests.storage.ended import GAIT, ended_experiment, ended_training
+from tests.storage.ended_runs import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training
 
 KEPT_ID, MOVED_ID, EXPERIMENT_ID, LEARNING_ID = (

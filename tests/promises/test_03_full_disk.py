@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.patience import LONG_S
 from tests.promises.length import at_length
 from tests.promises.processes import start_script
+from tests.timeouts import LONG_S
 
 
 def mount_namespace() -> tuple[str, ...] | None:

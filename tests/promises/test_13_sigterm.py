@@ -14,8 +14,9 @@ import psutil
 from app.events.run_view import run_view
 from tests.promises.length import at_length
 from tests.promises.trainings import checkpoint_step
-from tests.served import ENDLESS, LONG_S, Served
+from tests.served import ENDLESS, Served
 from tests.storage.stores import opened
+from tests.timeouts import LONG_S
 
 ENDED_S = at_length(LONG_S, 10.0)
 

@@ -16,7 +16,8 @@ import pytest
 
 from tests.jobs.experiments import sweep, tried
 from tests.promises.length import at_length
-from tests.served import BODY, ENDLESS, LONG_S, Served
+from tests.served import BODY, ENDLESS, Served
+from tests.timeouts import LONG_S
 
 SEEDS = at_length(10, 16)
 NOTICED_S = at_length(LONG_S, 5.0)

@@ -14,7 +14,7 @@ from app.runs.clocks import (
     distance_at,
     motion_s,
 )
-from tests.runs.made_up import lane, step
+from tests.runs.sample_lanes import lane, step
 
 # Two steps of a second each: 10 cm, then 20 cm; 10 and 20 transitions; 0.7 and 0.1 s of thought.
 WALK = lane(

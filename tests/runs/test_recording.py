@@ -26,7 +26,7 @@ from app.runs.recording import (
 from app.runs.records import Evaluated, LaneStep, StepTaken
 from app.runs.tables import snapshot
 from app.runs.training import train
-from tests.runs.made_up import lane, qpos, step
+from tests.runs.sample_lanes import lane, qpos, step
 
 START = np.array(qpos(0), np.float32)
 

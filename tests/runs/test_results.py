@@ -6,7 +6,7 @@ import pytest
 
 from app.runs.recording import LaneRecording
 from app.runs.results import finish_s, race_result
-from tests.runs.made_up import lane, step
+from tests.runs.sample_lanes import lane, step
 
 
 def hare() -> LaneRecording:

@@ -12,7 +12,7 @@ from app.storage import stored_recordings
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.stored_recordings import CACHE_RECORDINGS
-from tests.runs.made_up import lane, step
+from tests.runs.sample_lanes import lane, step
 from tests.runs.test_stored_practice import assert_same, practise
 from tests.storage.stores import copy_new_database, opened, race, training
 

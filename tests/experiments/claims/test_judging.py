@@ -6,7 +6,14 @@ import pytest
 
 from app.experiments.plan import Setting
 from app.experiments.summary import summarise
-from tests.experiments.made import ROBOTS, around, claim, config, made_up, summary_of
+from tests.experiments.sample_experiments import (
+    ROBOTS,
+    around,
+    claim,
+    config,
+    sample_results,
+    summary_of,
+)
 
 ODD_GAIT = "left-right-vertical"
 Far = Callable[[Setting], Callable[[int], float]]
@@ -161,7 +168,7 @@ def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
 
 def test_tuning_is_judged_only_over_the_same_gaits_while_trials_are_incomplete() -> None:
     tried = config("sweep", seeds=6, alpha=(0.1, 0.3, 0.6))
-    results = made_up(tried, everywhere(0.3))
+    results = sample_results(tried, everywhere(0.3))
     parts = [dict(list(results.items())[:done]) for done in range(len(results) + 1)]
     found = [[one["id"] for one in summarise(tried, part)["claims"]] for part in parts]
     # 4 greedy, and of each of 3 rates the first seed in each of 4 gaits; the second rate is
@@ -176,7 +183,7 @@ def test_tuning_is_not_judged_without_the_papers_values() -> None:
 
 def test_claims_are_added_as_trials_complete() -> None:
     tried = config("table1", seeds=6)
-    results = made_up(tried, everywhere(0.4))
+    results = sample_results(tried, everywhere(0.4))
     assert summarise(tried, {})["claims"] == []
     some = summarise(tried, dict(list(results.items())[:60]))
     assert 0 < len(some["claims"]) < len(summarise(tried, results)["claims"])

@@ -7,7 +7,7 @@ import pytest
 
 from app.domain.observation import OBSERVATIONS
 from app.experiments.plan import Setting
-from tests.experiments.made import ROBOTS, around, summary_of
+from tests.experiments.sample_experiments import ROBOTS, around, summary_of
 
 ODD_GAIT = "left-right-vertical"
 
@@ -128,6 +128,6 @@ def test_a_sweep_of_learners_names_what_varies_for_each_and_not_what_only_some_h
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
 def test_an_experiment_without_trials_has_no_narrative(experiment: str) -> None:
     from app.experiments.summary import summarise
-    from tests.experiments.made import config
+    from tests.experiments.sample_experiments import config
 
     assert summarise(config(experiment), {})["story"] == []

@@ -18,7 +18,7 @@ from app.experiments.report.drawing import (
 )
 from app.experiments.report.figures import panels, sheets
 from app.experiments.summary import summarise
-from tests.experiments.made import ROBOTS, around, config, made_up, summary_of
+from tests.experiments.sample_experiments import ROBOTS, around, config, sample_results, summary_of
 
 EXPERIMENTS = ("table1", "figure4", "sweep")
 _BEGINS = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
@@ -43,7 +43,7 @@ def test_a_figure_renders_to_the_same_bytes_each_time_without_a_date(experiment:
 @pytest.mark.parametrize("done", [0, 2, 5])
 def test_figures_of_an_incomplete_experiment_can_be_drawn(experiment: str, done: int) -> None:
     tried = config(experiment, seeds=2, gaits=("left-right-origin",), robots=ROBOTS[:1])
-    results = made_up(tried, lambda _: around(0.3))
+    results = sample_results(tried, lambda _: around(0.3))
     summary = summarise(tried, dict(list(results.items())[:done]))
     for _, group in panels(summary):
         for one in group:

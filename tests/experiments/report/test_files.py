@@ -22,7 +22,15 @@ from app.experiments.report.page import POLICY, command, page
 from app.experiments.report.trials_csv import trials_csv
 from app.experiments.summary import summarise
 from app.experiments.trial import TrialResult
-from tests.experiments.made import ROBOTS, Results, around, config, made_up, summary_of, walked
+from tests.experiments.sample_experiments import (
+    ROBOTS,
+    Results,
+    around,
+    config,
+    sample_results,
+    summary_of,
+    walked,
+)
 
 MOST_BYTES = 1_400_000
 NASTY = '<img src=x onerror="alert(1)"><script>alert(2)</script>'
@@ -33,14 +41,14 @@ def small(experiment: str = "table1", **given: Any) -> tuple[Any, Results]:
     """Return summary and results of one gait in one case with three seeds."""
     only = {"gaits": (LRO,), "observations": ("measured",), "robots": ROBOTS[:1], **given}
     tried = config(experiment, seeds=3, **only)
-    results = made_up(tried, lambda _: around(0.3))
+    results = sample_results(tried, lambda _: around(0.3))
     return summarise(tried, results), results
 
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4"])
 def test_a_whole_report_of_thirty_seeds_is_small_enough_to_commit(experiment: str) -> None:
     tried = config(experiment, seeds=30)
-    results = made_up(tried, lambda _: around(0.3, 0.2))
+    results = sample_results(tried, lambda _: around(0.3, 0.2))
     files = dict(report_files(summarise(tried, results), results))
     name = experiment
     figures = [f"figures/{name}.{kind}" for kind in ("png", "svg", "pdf")]
@@ -111,7 +119,7 @@ def test_the_csv_has_a_row_for_every_block_of_every_trial() -> None:
 
 def test_trials_without_a_result_are_named_on_the_page_and_in_the_csv() -> None:
     tried = config("table1", seeds=3, gaits=(LRO,))
-    results = made_up(tried, lambda _: around(0.3))
+    results = sample_results(tried, lambda _: around(0.3))
     bad, worse = (f"{LRO}/measured/stiff/q-learning/500#{n}" for n in (1, 2))
     results[bad] = TrialResult(failure="=the physics diverged")
     del results[worse]

@@ -14,13 +14,13 @@ import psutil
 from distributed.security import Security
 
 from app.experiments.cluster import ClusterSpec
-from tests.patience import LONG_S
+from tests.timeouts import LONG_S
 
 _START_S = 30.0
 _OPTIONS = {"tls_ca": "--tls-ca-file", "tls_cert": "--tls-cert", "tls_key": "--tls-key"}
 
 
-class Foreign:
+class ExistingCluster:
     """A scheduler process and its workers. Created by `scheduler`."""
 
     def __init__(self, folder: Path, tls: bool, stack: ExitStack) -> None:
@@ -63,7 +63,7 @@ class Foreign:
 
 
 @contextmanager
-def scheduler(folder: Path, tls: bool = False) -> Iterator[Foreign]:
+def scheduler(folder: Path, tls: bool = False) -> Iterator[ExistingCluster]:
     """Start a scheduler on loopback without workers; all processes end with the context.
 
     Args:
@@ -71,7 +71,7 @@ def scheduler(folder: Path, tls: bool = False) -> Iterator[Foreign]:
         tls: whether to require client certificates.
     """
     with ExitStack() as stack:
-        yield Foreign(folder, tls, stack)
+        yield ExistingCluster(folder, tls, stack)
 
 
 def _certificates(folder: Path) -> dict[str, Any]:

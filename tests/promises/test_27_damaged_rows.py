@@ -42,7 +42,7 @@ from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.worst_values import BROKEN_TEXT, IMPORTED, STORED, paths_to_values, put_value
 from tests.served import Served
-from tests.storage.ended import ended_experiment, ended_race, ended_training
+from tests.storage.ended_runs import ended_experiment, ended_race, ended_training
 from tests.storage.stores import opened, training
 
 SOUND, TRAINING, RACE, EXPERIMENT = (

@@ -1,4 +1,4 @@
-"""Promise 23: a poisonous trial is set aside.
+"""Promise 23: a poisonous trial is quarantined.
 
 A trial that kills its worker's process with SIGKILL at each attempt is tried three times and then
 set aside: it is named in the summary and in the report, and all others complete with the results
@@ -17,8 +17,8 @@ from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.plan import Plan
 from app.experiments.report.page import page
 from app.experiments.summary import summarise
-from tests.experiments.clusters import POISONOUS, one_by_one
-from tests.experiments.poison import FOLDER, poison, tries
+from tests.experiments.clusters import CRASHING, one_by_one
+from tests.experiments.crashing_agent import FOLDER, set_crashes, tries
 from tests.promises.length import at_length
 
 CONFIG: ExperimentConfig = experiment_config(
@@ -26,7 +26,7 @@ CONFIG: ExperimentConfig = experiment_config(
     {
         "seeds": at_length(10, 25),
         "simulator": at_length("kinematic", "mujoco"),
-        "agents": (POISONOUS, "tests.own_agents:Restless"),
+        "agents": (CRASHING, "tests.own_agents:Restless"),
         "gaits": ("left-right-origin", "front-back-origin"),
         "steps": (20,),
     },
@@ -47,26 +47,26 @@ def test_a_trial_that_kills_its_worker_three_times_is_set_aside_and_the_rest_com
 ) -> None:
     monkeypatch.setenv(FOLDER, str(tmp_path))
     trials = list(Plan(CONFIG).trials())
-    poisonous = [t for t in trials if t.config.training.agent == POISONOUS][3::9]
-    poisonous = poisonous[: at_length(1, 5)]
-    poison(tmp_path, [(trial.config.training.seed, "kill") for trial in poisonous])
+    crashing = [t for t in trials if t.config.training.agent == CRASHING][3::9]
+    crashing = crashing[: at_length(1, 5)]
+    set_crashes(tmp_path, [(trial.config.training.seed, "kill") for trial in crashing])
 
     with open_results(tmp_path / "results", CONFIG) as folder:
         run_undone(folder)
-        assert tries(tmp_path) == ["kill"] * 3 * len(poisonous)
+        assert tries(tmp_path) == ["kill"] * 3 * len(crashing)
         run_undone(folder)
-        assert len(tries(tmp_path)) == 3 * len(poisonous), (
+        assert len(tries(tmp_path)) == 3 * len(crashing), (
             "a trial set aside must not be tried again"
         )
         summary = summarise(CONFIG, folder.results, folder.set_aside)
         results = dict(folder.results)
 
-    keys = {trial.key for trial in poisonous}
+    keys = {trial.key for trial in crashing}
     reasons = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
     assert reasons == dict.fromkeys(keys, "it ended its worker's process 3 times")
-    assert summary["trials"]["done"] == len(trials) - len(poisonous)
+    assert summary["trials"]["done"] == len(trials) - len(crashing)
     report = unescape(page(summary))
     for one in summary["trials"]["set_aside"]:
         assert f"{one['label']} was set aside: {one['reason']}" in report
-    poison(tmp_path, [])
+    set_crashes(tmp_path, [])
     assert results == one_by_one(trial for trial in trials if trial.key not in keys)

@@ -18,7 +18,7 @@ from app.storage.database.engine import SQLITE_FILES
 from tests.browser.serving import Serving
 from tests.promises.files import database_files
 from tests.promises.length import at_length
-from tests.promises.test_12_browsers_come_back import Events
+from tests.promises.test_12_reconnect import Events
 from tests.viewer.serving import PATIENCE_S, Viewer
 
 WARM_UP = at_length(2, 50)

@@ -17,8 +17,8 @@ import pytest
 
 from app.viewer.viser_internals import stream
 from tests.browser.serving import Serving
-from tests.patience import LONG_S
 from tests.promises.length import at_length
+from tests.timeouts import LONG_S
 from tests.viewer.serving import PATIENCE_S, Viewer
 
 DROPS = 100

@@ -33,7 +33,7 @@ def around(middle_m: float, spread_m: float = 0.02) -> Callable[[int], float]:
     return lambda number: middle_m + spread_m * float(np.sin(1 + 7 * number))
 
 
-def made_up(
+def sample_results(
     tried: ExperimentConfig, distance_m: Callable[[Setting], Callable[[int], float]]
 ) -> Results:
     """Make up results in which each seed covers the given distance, and greedy half a metre.
@@ -79,7 +79,7 @@ def summary_of(
 ) -> dict[str, Any]:
     """Summarise a made-up experiment."""
     tried = config(experiment, **given)
-    return summarise(tried, made_up(tried, distance_m))
+    return summarise(tried, sample_results(tried, distance_m))
 
 
 def setting(summary: dict[str, Any], key: str) -> dict[str, Any]:

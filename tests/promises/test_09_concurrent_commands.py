@@ -14,7 +14,8 @@ import httpx2
 import pytest
 
 from tests.promises.length import at_length
-from tests.served import ENDLESS, LONG_S, Served
+from tests.served import ENDLESS, Served
+from tests.timeouts import LONG_S
 
 RUNS = at_length(1, 10)
 PAIRS_A_RUN = at_length(60, 100)

@@ -20,8 +20,8 @@ import pytest
 
 from benchmarks.viewers import measure
 from tests.browser.serving import Serving
-from tests.patience import LONG_S
 from tests.promises.length import at_length
+from tests.timeouts import LONG_S
 
 VIEWERS = at_length(30, 200)
 SECONDS = at_length(5.0, 600.0)

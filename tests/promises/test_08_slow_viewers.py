@@ -12,7 +12,7 @@ import pytest
 from tests.browser.serving import Serving
 from tests.promises.length import at_length
 from tests.promises.raw import watched_memory
-from tests.promises.test_07_many_watch import start_moving, watch
+from tests.promises.test_07_many_viewers import start_moving, watch
 
 STALLED = 20
 OTHERS = 10

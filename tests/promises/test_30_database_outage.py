@@ -22,8 +22,9 @@ from app.storage.recordings import Recordings
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.postgresql import PostgresServer, postgres_server
 from tests.promises.length import at_length
-from tests.served import BODY, LONG_S, Served
+from tests.served import BODY, Served
 from tests.storage.stores import opened
+from tests.timeouts import LONG_S
 
 MOMENTS = at_length(3, 20)
 LONGEST_S = at_length(1.0, 60.0)

@@ -1,4 +1,4 @@
-"""Timeouts of tests: they wait for as long as something gets on, and no longer."""
+"""Timeouts of tests: a test waits while there is progress, and `LONG_S` without any."""
 
 import time
 from typing import Any
@@ -7,7 +7,7 @@ LONG_S = 180.0
 """Only a broken server stands still for so long; a busy machine is slow, and gets on."""
 
 
-class Patience:
+class ProgressTimeout:
     """Fails once what it is shown has stayed the same for `LONG_S`."""
 
     def __init__(self) -> None:

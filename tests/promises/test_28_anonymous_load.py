@@ -25,7 +25,8 @@ import pytest
 
 from tests.promises.length import at_length
 from tests.promises.processes import start_script
-from tests.served import BODY, ENDLESS, LONG_S, Served
+from tests.served import BODY, ENDLESS, Served
+from tests.timeouts import LONG_S
 
 CONNECTIONS = at_length(1_600, 10_000)
 SECONDS = at_length(5.0, 120.0)
@@ -43,15 +44,15 @@ OPERATOR = {"Authorization": f"Bearer {TOKEN}"}
 
 
 @contextmanager
-def crowd(port: int, paths: list[str]) -> Iterator[list[dict[str, int]]]:
-    """Run the processes of `crowd`, which keep connections open; yields the list of their reports.
+def idle_connections(port: int, paths: list[str]) -> Iterator[list[dict[str, int]]]:
+    """Run the processes of `idle_connections`; yields the list of their reports.
 
     The reports are added at the end of the context.
     """
     reports: list[dict[str, int]] = []
     arguments = [str(port), str(CONNECTIONS // PROCESSES), str(ADDRESSES), *paths]
     scripts = [
-        start_script("tests.promises.crowd", *arguments, before=LOW_PRIORITY)
+        start_script("tests.promises.idle_connections", *arguments, before=LOW_PRIORITY)
         for _ in range(PROCESSES)
     ]
     try:
@@ -160,7 +161,7 @@ def test_anonymous_load_fails_no_run(launch: Callable[..., Served], tmp_path: Pa
         port = int(server.address.rpartition(":")[2])
         with (
             watched(server.process.pid) as peak,
-            crowd(port, paths) as strangers,
+            idle_connections(port, paths) as idle,
             readers(port, heavy) as reads,
         ):
             latencies_s, runs = operate(server, time.monotonic() + SECONDS)
@@ -172,9 +173,9 @@ def test_anonymous_load_fails_no_run(launch: Callable[..., Served], tmp_path: Pa
         log_bytes = (tmp_path / "log").stat().st_size
         logging.getLogger(__name__).info(
             "%d requests, p95 %.0f ms, most %.0f ms; %d trainings; most %s; log %d bytes; "
-            "strangers %s; reads %s",
+            "idle connections %s; reads %s",
             *(len(latencies_s), p95_s * 1e3, max(latencies_s) * 1e3, len(runs), peak, log_bytes),
-            *(strangers, reads),
+            *(idle, reads),
         )
         assert now["state"] == "running", now["error"]
         assert now["progress"]["done"] > 0
@@ -184,7 +185,5 @@ def test_anonymous_load_fails_no_run(launch: Callable[..., Served], tmp_path: Pa
         assert peak["files"] < FILES
         assert log_bytes < LOG_BYTES
         assert reads["200"] > 0, reads
-        assert sum(one["came_back"] for one in strangers) > 0, (
-            "the server never closed a connection"
-        )
+        assert sum(one["came_back"] for one in idle) > 0, "the server never closed a connection"
         assert server.end() == 0

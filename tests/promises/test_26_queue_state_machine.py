@@ -33,8 +33,9 @@ from app.storage.errors import StorageFailed
 from tests.api.calls import ADDRESS
 from tests.jobs.waiting import wait_until
 from tests.promises.length import at_length
-from tests.served import BODY, ENDLESS, LONG_S, Served
+from tests.served import BODY, ENDLESS, Served
 from tests.storage.stores import opened
+from tests.timeouts import LONG_S
 
 VERBS = at_length(250, 100_000)
 RUNS = 10

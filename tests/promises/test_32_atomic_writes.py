@@ -25,7 +25,7 @@ from tests.promises.breaking_writes import OPERATIONS
 from tests.promises.length import at_length
 from tests.promises.processes import start_script
 from tests.served import Served
-from tests.storage.ended import ended_training
+from tests.storage.ended_runs import ended_training
 from tests.storage.stores import opened
 
 SHARE = at_length(1 / 12, 1.0)

@@ -15,7 +15,8 @@ import pytest
 
 from tests.promises.length import at_length
 from tests.promises.trainings import uninterrupted
-from tests.served import BODY, LONG_S, Served
+from tests.served import BODY, Served
+from tests.timeouts import LONG_S
 
 SIGNALS = [signal.SIGKILL, signal.SIGSTOP] * at_length(1, 20)
 NOTICED_S = at_length(LONG_S, 10.0)

@@ -19,8 +19,8 @@ from app.runs.config import training_config
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import Run
-from tests.patience import LONG_S
 from tests.storage.stores import opened, training
+from tests.timeouts import LONG_S
 
 DAY = timedelta(days=1)
 both_ways = pytest.mark.parametrize("jump", [DAY, -DAY], ids=["forward", "back"])

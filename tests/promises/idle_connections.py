@@ -1,10 +1,10 @@
 """Load generator of idle and slow connections.
 
-Usage: `python -m tests.promises.crowd PORT COUNT ADDRESSES PATH…`. Opens connections and keeps them
-open, each of one of these kinds in turn: one that sends nothing, one that sends a header byte by
-byte (slowloris), one that does so with a body, and one that sends a request and does not read the
-answer. Connections that the server closes are opened again at a limited rate. Prints a line of JSON
-once all were tried, and another when standard input ends, and exits.
+Usage: `python -m tests.promises.idle_connections PORT COUNT ADDRESSES PATH…`. Opens connections and
+keeps them open, each of one of these kinds in turn: one that sends nothing, one that sends a header
+byte by byte (slowloris), one that does so with a body, and one that sends a request and does not
+read the answer. Connections that the server closes are opened again at a limited rate. Prints a
+line of JSON once all were tried, and another when standard input ends, and exits.
 """
 
 import json
@@ -22,7 +22,7 @@ _RECEIVE_BYTES = 2048
 _KINDS = 4
 
 
-class Stranger:
+class IdleConnection:
     """One anonymous connection, which can be reopened."""
 
     def __init__(self, number: int, port: int, address: str, paths: Sequence[str]) -> None:
@@ -75,24 +75,24 @@ def main(port: int, count: int, addresses: int, paths: Sequence[str]) -> None:
     """Keep connections open from 127.0.0.1, 127.0.0.2 … until standard input ends."""
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
-    crowd = [
-        Stranger(number, port, f"127.0.0.{1 + number % addresses}", paths)
+    connections = [
+        IdleConnection(number, port, f"127.0.0.{1 + number % addresses}", paths)
         for number in range(count)
     ]
-    for one in crowd:
+    for one in connections:
         one.open()
-    _emit(open=sum(one.sock is not None for one in crowd))
+    _emit(open=sum(one.sock is not None for one in connections))
     came_back = 0
     while not select.select([sys.stdin], [], [], 1.0)[0]:
-        _close_lost(crowd)
-        away = [one for one in crowd if one.sock is None]
+        _close_lost(connections)
+        away = [one for one in connections if one.sock is None]
         for one in away[:REOPENED_PER_S]:
             one.open()
             came_back += one.sock is not None
         if int(time.monotonic()) % int(TRICKLE_S) == 0:
-            for one in crowd:
+            for one in connections:
                 one.trickle()
-    _emit(open=sum(one.sock is not None for one in crowd), came_back=came_back)
+    _emit(open=sum(one.sock is not None for one in connections), came_back=came_back)
 
 
 def _emit(**figures: int) -> None:
@@ -100,15 +100,15 @@ def _emit(**figures: int) -> None:
     sys.stdout.flush()
 
 
-def _close_lost(crowd: Sequence[Stranger]) -> None:
+def _close_lost(connections: Sequence[IdleConnection]) -> None:
     """Close the connections that the server has closed, detected without reading (MSG_PEEK)."""
     with selectors.DefaultSelector() as selector:
-        for one in crowd:
+        for one in connections:
             if one.sock is not None:
                 selector.register(one.sock, selectors.EVENT_READ, one)
         ready = selector.select(0) if selector.get_map() else []
     for key, _ in ready:
-        stranger: Stranger = key.data
+        connection: IdleConnection = key.data
         try:
             is_lost = key.fileobj.recv(1, socket.MSG_PEEK) == b""  # type: ignore[union-attr]
         except BlockingIOError:
@@ -116,7 +116,7 @@ def _close_lost(crowd: Sequence[Stranger]) -> None:
         except OSError:
             is_lost = True
         if is_lost:
-            stranger.close()
+            connection.close()
 
 
 if __name__ == "__main__":

@@ -24,8 +24,9 @@ from app.storage.server_lock import LOCK_FILE
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.trainings import uninterrupted
-from tests.served import BODY, LONG_S, NotStartedError, serving_from
+from tests.served import BODY, NotStartedError, serving_from
 from tests.storage.stores import BACKENDS, database_url, training
+from tests.timeouts import LONG_S
 
 ROUNDS = at_length(1, 20)
 PACED = {**BODY, "steps": 600, "pace": 20, "evaluate_every": 100, "seed": 31}

@@ -46,16 +46,16 @@ def refusal(viewer: Viewer) -> tuple[int, str]:
 @pytest.mark.timeout(600)
 def test_one_address_cannot_take_all_viewer_places(server: Served) -> None:
     with ExitStack() as stack:
-        crowd = [open_viewer(server, stack, "127.0.0.2") for _ in range(SHARE)]
-        crowd[-1].frame()
+        viewers = [open_viewer(server, stack, "127.0.0.2") for _ in range(SHARE)]
+        viewers[-1].frame()
         assert refusal(open_viewer(server, stack, "127.0.0.2")) == (1013, "address full")
         others = [open_viewer(server, stack, "127.0.0.3") for _ in range(PLACES - SHARE)]
         others[-1].frame()
         # All places are taken now.
         assert open_viewer(server, stack, "127.0.0.4").frame().raw
-        assert refusal(crowd[-1]) == (1013, "place taken")
+        assert refusal(viewers[-1]) == (1013, "place taken")
         assert open_viewer(server, stack, "127.0.0.2", operator=True).frame().raw
-        assert refusal(crowd[-2]) == (1013, "place taken")
+        assert refusal(viewers[-2]) == (1013, "place taken")
 
 
 def open_event_stream(

@@ -13,15 +13,15 @@ from app.agents.protocol import Problem
 from app.domain.types import Action, Cells
 from tests.own_agents import Restless
 
-FOLDER = "HEXAPODS_TESTS_POISON"
+FOLDER = "HEXAPODS_TESTS_CRASHES"
 """Environment variable with the path of a folder.
 
-Its file `poisoned` has a trial's seed and its end per line; to `tried` each attempt is appended.
+Its file `crashes` has a trial's seed and its end per line; to `tried` each attempt is appended.
 """
 
 
-class Poisonous(Restless):
-    """Acts at random; in a poisoned trial it kills its process, exits or raises."""
+class CrashingAgent(Restless):
+    """Acts at random; in a listed trial it kills its process, exits or raises."""
 
     def __init__(self, rng: np.random.Generator, problem: Problem) -> None:
         super().__init__(rng, problem)
@@ -29,27 +29,27 @@ class Poisonous(Restless):
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         folder = Path(os.environ[FOLDER])
-        for line in (folder / "poisoned").read_text("utf-8").splitlines():
+        for line in (folder / "crashes").read_text("utf-8").splitlines():
             seed, end = line.split()
             if int(seed) == self._seed:
                 with (folder / "tried").open("a", encoding="utf-8") as tried:
                     tried.write(line + "\n")
-                _meet(end)
+                _crash(end)
         return super().act(observation, legal)
 
 
-def poison(folder: Path, ends: Iterable[tuple[int, str]]) -> None:
-    """Configure which trials are poisoned, by seed, and how each ends: kill, exit or raise."""
+def set_crashes(folder: Path, ends: Iterable[tuple[int, str]]) -> None:
+    """Configure which trials crash, by seed, and how each ends: kill, exit or raise."""
     (folder / "tried").touch()
-    (folder / "poisoned").write_text("".join(f"{seed} {end}\n" for seed, end in ends), "utf-8")
+    (folder / "crashes").write_text("".join(f"{seed} {end}\n" for seed, end in ends), "utf-8")
 
 
 def tries(folder: Path) -> list[str]:
-    """Return how each attempt at a poisoned trial has ended so far."""
+    """Return how each attempt at a listed trial has ended so far."""
     return [line.split()[1] for line in (folder / "tried").read_text("utf-8").splitlines()]
 
 
-def _meet(end: str) -> NoReturn:
+def _crash(end: str) -> NoReturn:
     if end == "kill":
         os.kill(os.getpid(), signal.SIGKILL)
     if end == "exit":
