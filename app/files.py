@@ -1,11 +1,14 @@
 """Write files by atomic rename or in chunks, and lock them between processes."""
 
+import errno
 import io
 import os
 import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
+
+_DISK_FULL_ERRNOS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -39,6 +42,11 @@ def sync_folder(folder: Path) -> None:
         os.fsync(handle)
     finally:
         os.close(handle)
+
+
+def is_disk_full(error: OSError) -> bool:
+    """Whether a write failed because the disk, a quota or the allowed file size is used up."""
+    return error.errno in _DISK_FULL_ERRNOS
 
 
 class DrainedBuffer(io.RawIOBase):

@@ -26,11 +26,12 @@ from app.domain.observation import Observation
 from app.domain.robot import robot
 from app.experiments.config import (
     MAX_SEEDS,
+    MAX_WORKERS,
     ExperimentConfig,
     ExperimentName,
     experiment_config,
 )
-from app.jobs.submissions import MAX_WORKERS, ExperimentStart
+from app.jobs.submissions import ExperimentStart
 from app.runs.config import SimulatorName
 
 MAX_VALUES = 100

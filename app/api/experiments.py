@@ -13,10 +13,11 @@ from app.api.formats import attachment, file_response, negotiated
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import TrialBody
 from app.experiments.config import ExperimentConfig
+from app.experiments.file_names import REPORT, SUMMARY
 from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
-from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run, config_as_json
+from app.storage.run import NOT_ENDED, Run, config_as_json
 from app.storage.stored_trials import trials_as_csv
 
 REPORT_POLICY = (

@@ -25,8 +25,8 @@ from app.archive.untrusted_input import (
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
 from app.domain.robot import robot
 from app.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, check_tags
-from app.experiments.config import ExperimentConfig
-from app.jobs.submissions import MAX_WORKERS, check_training, check_walk, plan_of
+from app.experiments.config import MAX_WORKERS, ExperimentConfig
+from app.jobs.submissions import check_training, check_walk, plan_of
 from app.runs.clocks import CLOCKS
 from app.runs.config import TrainingConfig
 from app.runs.lane import PlanningModel, check_lane
@@ -46,6 +46,9 @@ from app.storage.run import (
 FORMAT = 1
 MAX_JSON_BYTES = 64_000_000
 _MAX_PART_BYTES = 256_000  # of a config or a result
+_MAX_CHANGES = 10_000
+"""More than a run here may get (`app.jobs.jobs.MAX_CHANGES`): earlier versions had no limit, and
+changes that wait for acknowledgement at the same time may pass it by some."""
 
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
 _OptionalMetres = Metres | None  # null if it was not measured; JSON has no NaN
@@ -108,7 +111,7 @@ class _EndedRun(UntrustedInput, frozen=True):
     continued_from: _Id | None
     done: Count
     total: Count
-    changes: Annotated[list[dict[Name, _Change]], Meta(max_length=10_000)]
+    changes: Annotated[list[dict[Name, _Change]], Meta(max_length=_MAX_CHANGES)]
     greedy_distance_m: _OptionalMetres
     result: Raw
     error: PortableText | None

@@ -14,8 +14,9 @@ from app.archive.untrusted_input import Large, Metres, Name, PortableText, Secon
 from app.domain.errors import DamagedFile
 from app.domain.text import is_formula
 from app.experiments.config import ExperimentConfig
+from app.experiments.file_names import SUMMARY
 from app.jobs.submissions import plan_of
-from app.storage.run import SUMMARY, Run
+from app.storage.run import Run
 
 TRIALS = "trials.json"
 _REPORT_FILE = re.compile(

@@ -14,6 +14,7 @@ from app.cli.terminal import progress, show_table
 from app.domain.errors import InvalidInput
 from app.experiments.cluster import ClusterSpec
 from app.experiments.config import DISTURBED, ExperimentConfig
+from app.experiments.file_names import REPORT
 from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.own_cluster import cores
 from app.experiments.plan import Trial
@@ -119,7 +120,7 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
         print(f"{claim['verdict']:>15}: {claim['claim']}")
     print(
         f"{trials['done']:,} trials in {cost['wall_s']:,.0f} s, {cost['trials_per_s']:.2f} a "
-        f"second. The report is {path / 'report.html'}."
+        f"second. The report is {path / REPORT}."
     )
 
 

@@ -39,6 +39,7 @@ from app.domain.world import WORLDS
 from app.experiments.cluster import ClusterSpec, connect
 from app.experiments.config import MAX_SEEDS
 from app.experiments.engine import Outcome
+from app.experiments.file_names import REPORT
 from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.formatting import counted
 from app.experiments.own_cluster import cores
@@ -244,7 +245,7 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
         print(f"Tuned: {options_text(search['candidates'][search['best']]['values'])}")
     print(
         f"{summary['trials']['done']:,} trials in {summary['cost']['wall_s']:,.0f} s. The report "
-        f"is {path / 'report.html'}."
+        f"is {path / REPORT}."
     )
 
 

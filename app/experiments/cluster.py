@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.domain.checks import check_whole
 from app.domain.errors import HexapodError, InvalidInput
+from app.experiments.config import MAX_WORKERS
 from app.experiments.own_cluster import cores, own_cluster
 from app.experiments.worker import difference, versions
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from distributed import Client
     from distributed.security import Security
 
-MAX_WORKERS = 512
 ANSWER_S = 8.0
 """Timeout for connecting to a scheduler and for its answers."""
 

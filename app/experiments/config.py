@@ -26,6 +26,7 @@ ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
 MAX_SEEDS = 10_000
 MAX_TRIALS = 200_000
+MAX_WORKERS = 512
 FIGURE4_BLOCKS = 8
 
 GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")

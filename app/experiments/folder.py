@@ -4,7 +4,6 @@ Each result is appended to `trials.jsonl` as its trial ends, so that no trial is
 partial last line, left by a killed process, is truncated on opening.
 """
 
-import errno
 import json
 import os
 import time
@@ -16,16 +15,15 @@ from typing import IO, Any
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput
 from app.experiments.config import ExperimentConfig, as_json, from_json
 from app.experiments.engine import Outcome
+from app.experiments.file_names import SUMMARY
 from app.experiments.progress import Progress
 from app.experiments.worker import difference, versions
-from app.files import lock_file
+from app.files import is_disk_full, lock_file
 
 FORMAT = 1
 TRIALS = "trials.jsonl"
 """JSON lines, append-only: a header, then one line per trial."""
-SUMMARY = "summary.json"
 
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _SYNC_S = 0.5
 _GROWING = ("seeds", "candidates")
 _EARLIER_KINDS = {"ExperimentConfig": "experiment", "TuningConfig": "tuning"}
@@ -103,7 +101,7 @@ class ResultsFolder(Progress):
         except OSError as error:
             with suppress(OSError):
                 self._file.truncate(self._end)
-            why = "the disk is full" if error.errno in _FULL else error.strerror
+            why = "the disk is full" if is_disk_full(error) else error.strerror
             raise NotKept(
                 f"cannot write to {self.path / TRIALS}: {why}; what was done is kept, and the "
                 "same command goes on once it can be written"

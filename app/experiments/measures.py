@@ -19,7 +19,7 @@ from app.experiments.statistics import (
 WALKER_SHARE = 0.5
 """Share of greedy's total distance from which a seed counts as a walker."""
 REACHED_SHARE = 0.95
-"""Share of greedy's total distance from which a seed counts as having reached greedy."""
+"""Share of a reference's distance from which a seed counts as having reached that reference."""
 
 
 @dataclass(frozen=True)

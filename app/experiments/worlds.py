@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from app.experiments.measures import REACHED_SHARE
 from app.experiments.setting_results import SettingResults, setting_fields
 from app.experiments.statistics import Points, iqm_interval, share_at_least
 from app.runs.lane import LaneConfig, PlanningModel, plans_with
 
-LEAGUE_SHARE = 0.95
-"""Share of a reference's distance from which a learner of a league counts as having reached it."""
 RECOVERY_SHARE = 0.9
-"""The same in a recovery."""
+"""In a recovery, in place of `REACHED_SHARE`."""
 MIN_REFERENCE_M = 0.01
 """A reference that walks less has nothing that one could have a share of."""
 Curves = Sequence[Points]
@@ -90,7 +89,7 @@ def _practice(
     distances = [tuple(column) for column in zip(*(w.distances_m for w in walks), strict=True)]
     earned = [tuple(column) for column in zip(*(w.earned_m for w in walks), strict=True)]
     areas = tuple(mean_distance_m(steps, walk.distances_m) for walk in walks)
-    share = RECOVERY_SHARE if is_recovery else LEAGUE_SHARE
+    share = RECOVERY_SHARE if is_recovery else REACHED_SHARE
     return {
         "curve": {"steps": steps, **_curve(distances, seed)},
         "mean_m": _interval(areas, seed),

@@ -13,10 +13,10 @@ from typing import Any
 
 from app.experiments.cluster import ClusterSpec
 from app.experiments.engine import Outcome
+from app.experiments.file_names import SUMMARY
 from app.experiments.progress import Progress
 from app.experiments.trial import TrialResult
 from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Reported, TrialsDone
-from app.storage.run import SUMMARY
 from app.storage.stored_trials import outcomes_of
 
 BATCHES_PER_S = 5

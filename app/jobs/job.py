@@ -15,6 +15,7 @@ from app.domain.errors import HexapodError
 from app.domain.robot import as_mapping
 from app.events.bus import EventBus
 from app.events.run_view import run_view
+from app.experiments.file_names import SUMMARY
 from app.jobs.messages import (
     Batch,
     Began,
@@ -40,7 +41,7 @@ from app.storage.database.engine import retry_during_outage
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost, StorageFailed
 from app.storage.recordings import Recordings
-from app.storage.run import ANNOTATIONS, CHECKPOINT, LIVE, RUNNING, SUMMARY, TABLE, Run, State
+from app.storage.run import ANNOTATIONS, CHECKPOINT, LIVE, RUNNING, TABLE, Run, State
 
 MAX_OUTAGE_S = 600.0
 """Longest database outage that a job waits out; after that its run becomes `interrupted`."""

@@ -306,7 +306,6 @@ TITLES = {
     "league": "League",
     "recovery": "Recovery",
 }
-MAX_WORKERS = 512
 MAX_SETTINGS = 2_000
 """All of them are summarised again and again while trials come in, and drawn in one report."""
 

@@ -9,12 +9,13 @@ runs the trials that are not done yet.
 from dataclasses import replace
 
 from app.experiments.config import ExperimentConfig
+from app.experiments.file_names import SUMMARY
 from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
 from app.runs.config import TrainingConfig
 from app.runs.race_config import RaceConfig
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.run import NOT_ENDED, RESUMABLE, SUMMARY, Run
+from app.storage.run import NOT_ENDED, RESUMABLE, Run
 from app.storage.stored_tables import load_checkpoint, load_table
 from app.storage.stored_trials import wall_s_of
 

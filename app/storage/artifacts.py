@@ -5,7 +5,6 @@ database maps runs and artifact names to these files. Replacing an artifact ther
 new file before the old one is deleted, and a crash leaves at most orphaned files.
 """
 
-import errno
 import hashlib
 import os
 import re
@@ -17,12 +16,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.domain.errors import DamagedFile
-from app.files import write_atomically
+from app.files import is_disk_full, write_atomically
 from app.storage.artifact_file import ArtifactFile, SharedFile
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import StorageFailed, StorageFull
 
-_DISK_FULL_ERRNOS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _HASH_CHUNK_BYTES = 1 << 20
 _ARTIFACT_NAME = re.compile(r"\.?[0-9a-f]{32}(\.part)?")
 
@@ -68,7 +66,7 @@ class ArtifactFiles:
             write_atomically(self._folder / name, data)
         except OSError as error:
             self.remove(name)
-            if error.errno in _DISK_FULL_ERRNOS:
+            if is_disk_full(error):
                 raise StorageFull(
                     "the disk of the data folder is full; delete runs, or make room there"
                 ) from error

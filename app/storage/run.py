@@ -51,10 +51,6 @@ TABLE = "q-table.npz"
 """Artifact of a training: its learned Q-table."""
 CHECKPOINT = "checkpoint.npz"
 """Artifact of a training: the checkpoint from which it resumes after an interruption."""
-SUMMARY = "summary.json"
-"""Artifact of an experiment: statistics and claims computed from its trials so far."""
-REPORT = "report.html"
-"""Artifact of an ended experiment: its report as one self-contained HTML file."""
 KEY_LIFETIME = timedelta(days=1)
 """Lifetime of an idempotency key."""
 MAX_KEYS = 10_000

@@ -7,9 +7,9 @@ from typing import Any
 from app.domain.errors import DamagedFile
 from app.experiments.config import ExperimentConfig
 from app.experiments.engine import Outcome
+from app.experiments.file_names import SUMMARY
 from app.experiments.progress import Progress
 from app.experiments.report.trials_csv import trials_csv
-from app.storage.run import SUMMARY
 
 
 def outcomes_of(rows: Iterable[Mapping[str, Any]]) -> Iterator[Outcome]:

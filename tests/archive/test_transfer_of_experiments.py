@@ -14,10 +14,11 @@ from app.archive.archived_trials import TRIALS
 from app.archive.transfer import export_run
 from app.experiments.config import experiment_config
 from app.experiments.engine import Outcome
+from app.experiments.file_names import SUMMARY
 from app.experiments.plan import Plan
 from app.experiments.trial import run_trial
 from app.storage.database.store import RunStore
-from app.storage.run import SUMMARY, State
+from app.storage.run import State
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
 from tests.storage.ended_runs import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened

@@ -13,13 +13,14 @@ import pytest
 from app.domain.errors import InvalidInput, Unreachable
 from app.events.bus import EventBus
 from app.experiments.config import ExperimentConfig, experiment_config
+from app.experiments.file_names import REPORT, SUMMARY
 from app.experiments.plan import Plan
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import ExperimentStart
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, StorageFull
 from app.storage.recordings import Recordings
-from app.storage.run import NOT_ENDED, REPORT, SUMMARY, Run
+from app.storage.run import NOT_ENDED, Run
 from tests.experiments.clusters import workers_of
 from tests.jobs.experiments import stored_results, sweep, tried
 from tests.jobs.waiting import wait_until, wait_until_ended

@@ -6,6 +6,7 @@ import time
 import numpy as np
 
 from app.assembly import build_learner, build_walkers, finish_training
+from app.experiments.file_names import SUMMARY
 from app.experiments.plan import Plan
 from app.experiments.summary import summarise
 from app.experiments.trial import run_trial
@@ -19,7 +20,7 @@ from app.runs.tables import from_bytes, snapshot, to_bytes
 from app.runs.training import train
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.run import SUMMARY, TABLE, Run
+from app.storage.run import TABLE, Run
 from app.storage.stored_trials import trials_as_csv
 from tests.jobs.experiments import sweep
 from tests.storage.stores import training

@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import Any
 
 from app.experiments.config import from_json
+from app.experiments.file_names import REPORT, SUMMARY, TRIALS_TABLE
 from app.experiments.report.drawing import FORMATS, render
 from app.experiments.report.figures import sheets
 from app.experiments.report.page import page
 from app.experiments.report.trials_csv import trials_csv
 from app.experiments.trial import TrialResult
 from app.files import write_atomically
-
-PAGE = "report.html"
 
 
 def report_files(
@@ -27,14 +26,14 @@ def report_files(
         summary: as by `summarise`.
         results: the results that were summarised, by trial key.
     """
-    yield "summary.json", (json.dumps(summary, allow_nan=False) + "\n").encode()
+    yield SUMMARY, (json.dumps(summary, allow_nan=False) + "\n").encode()
     set_aside = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
-    yield "trials.csv", trials_csv(from_json(summary["config"]), results, set_aside)
+    yield TRIALS_TABLE, trials_csv(from_json(summary["config"]), results, set_aside)
     for kind in FORMATS:
         # Drawn again for each format: rendering changes a figure's constrained layout slightly.
         for picture in sheets(summary):
             yield f"figures/{picture.name}.{kind}", render(picture.figure, kind)
-    yield PAGE, page(summary).encode()
+    yield REPORT, page(summary).encode()
 
 
 def write_report(
@@ -49,4 +48,4 @@ def write_report(
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(path, content)
-    return folder / PAGE
+    return folder / REPORT

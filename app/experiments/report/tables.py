@@ -14,11 +14,12 @@ from app.experiments.formatting import (
     shares,
     world_name,
 )
+from app.experiments.measures import REACHED_SHARE
 from app.experiments.narrative.sweep import combination_name
 from app.experiments.plan import EARNING_STEPS
 from app.experiments.published import COLUMNS, DISTANCES, published
 from app.experiments.statistics import CONFIDENCE
-from app.experiments.worlds import LEAGUE_SHARE, RECOVERY_SHARE
+from app.experiments.worlds import RECOVERY_SHARE
 from app.runs.lane import PLANNING_MODEL_TITLES, PlanningModel
 
 UNITS: Mapping[str, str] = {
@@ -219,7 +220,7 @@ def _world_table(
     ordered = sorted(rows, key=lambda one: -float(one["distance"]["iqm"]))
     learner = next((one for one in rows if one["curve"]), None)
     at: list[int] = learner["curve"]["steps"] if learner and is_recovery else []
-    share = percent(RECOVERY_SHARE if is_recovery else LEAGUE_SHARE)
+    share = percent(RECOVERY_SHARE if is_recovery else REACHED_SHARE)
     columns = [f"After {step:,}" for step in at] or ["Distance", "Mean over practice"]
     earning = [step for step in at if step % EARNING_STEPS == 0]
     columns += [f"Earned in {step + 1:,}–{step + EARNING_STEPS:,}" for step in earning]

@@ -10,6 +10,7 @@ from typing import Any
 
 from app.agents.appearance import title_of
 from app.domain.text import metres, text_cell
+from app.experiments.file_names import REPORT, SUMMARY, TRIALS_TABLE
 from app.experiments.formatting import counted, gait_name, number, world_name
 from app.experiments.plan import Trial
 from app.experiments.progress import Progress
@@ -31,7 +32,6 @@ from app.files import write_atomically
 from app.runs.best_known import DEFINITION
 from app.runs.config import agent_settings
 
-PAGE = "report.html"
 BEST = 10
 """Number of the best candidates in the page's table; the summary has all."""
 _PAST_END = 1.1
@@ -68,9 +68,9 @@ def tuning_files(
         progress: the outcomes of its trials.
         summary: as by `summarise_tuning`.
     """
-    yield "summary.json", (json.dumps(summary, allow_nan=False) + "\n").encode()
-    yield "trials.csv", _trials_csv(tuning, progress)
-    yield PAGE, tuning_page(summary).encode()
+    yield SUMMARY, (json.dumps(summary, allow_nan=False) + "\n").encode()
+    yield TRIALS_TABLE, _trials_csv(tuning, progress)
+    yield REPORT, tuning_page(summary).encode()
 
 
 def write_tuning(
