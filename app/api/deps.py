@@ -27,7 +27,7 @@ from app.stage.stage import Stage
 from app.storage.database.store import RunStore
 from app.storage.idempotency import Idempotency, Import, Start
 from app.storage.recordings import Recordings
-from app.storage.run import Run
+from app.storage.run import MAX_KEY_LENGTH, Run
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
 
@@ -166,7 +166,9 @@ async def _start_request(
     body: Annotated[bytes, Depends(_body)],
     idempotency_key: Annotated[
         str | None,
-        Header(pattern=r"^[\x21-\x7e]{1,200}$", description=VALID["idempotency-key"]),
+        Header(
+            pattern=rf"^[\x21-\x7e]{{1,{MAX_KEY_LENGTH}}}$", description=VALID["idempotency-key"]
+        ),
     ] = None,
 ) -> StartRequest:
     return StartRequest(f"{request.url.path}?{request.url.query}", body, idempotency_key)

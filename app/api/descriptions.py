@@ -20,7 +20,7 @@ from app.runs.lane import LaneConfig
 from app.runs.race_config import MAX_LANES
 from app.stage import show
 from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
-from app.storage.run import KINDS, SORTS, STATES
+from app.storage.run import KINDS, MAX_KEY_LENGTH, SORTS, STATES
 
 MAX_PAGE = 100
 MAX_SEARCH = MAX_NAME
@@ -97,7 +97,7 @@ VALID: Mapping[str, str] = {
     "sort": f"{_one_of(SORTS)}: by time of creation, A to Z, or the longest first",
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
-    "idempotency-key": "1 to 200 printable ASCII characters without spaces",
+    "idempotency-key": f"1 to {MAX_KEY_LENGTH} printable ASCII characters without spaces",
     "level": f"a whole number from {LOWEST_LEVEL} to {HIGHEST_LEVEL}",
     "number": "a whole number, 0 or more",
     "from_s": "a number of seconds of robot time, 0 or more; by default the beginning of the walk",

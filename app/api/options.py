@@ -35,6 +35,8 @@ from app.experiments.config import (
     settings_by_name,
 )
 from app.experiments.config import as_json as experiment_as_json
+from app.exports.video import VideoOptions
+from app.exports.video_renderer import MAX_SERVED_FRAMES
 from app.jobs.submissions import MAX_SETTINGS, TITLES
 from app.runs import best_known
 from app.runs.config import (
@@ -144,6 +146,7 @@ _HELP = {
     "best_known": best_known.DEFINITION,
     "best_known_where": best_known.COVERAGE,
     "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",
+    "video_s": "How long a film may be, in seconds, at the default number of pictures a second.",
     "agent": "Which agent learns.",
     "seeds": "How often each setting is tried, each time with other random numbers.",
     "gaits": "Which gaits are tried.",
@@ -370,6 +373,7 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "import_bytes": [1, MAX_FILE_BYTES],
         "archive_runs": [1, MAX_RUNS],
         "gait_window_s": [0, MAX_WINDOW_S],
+        "video_s": [0, MAX_SERVED_FRAMES / VideoOptions.fps],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],
         "settings": [1, MAX_SETTINGS],

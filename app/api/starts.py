@@ -14,6 +14,7 @@ from app.api.experiment_body import ExperimentBody
 from app.api.runs import RunPath, accepted, find
 from app.api.schemas import BranchBody, ChangeBody, RaceBody, TrainingBody
 from app.domain.errors import InvalidInput
+from app.what_if.what_if import MAX_STEPS, SEEDS
 
 
 def start_routes(agents: tuple[str, ...]) -> APIRouter:
@@ -103,10 +104,14 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         "/what-if",
         tags=["what-if"],
         response_model=WhatIfView,
-        summary="How far 30 seeds would come after a practice, and by default",
+        summary=f"How far {SEEDS} seeds would come after a practice, and by default",
+        description=(
+            f"Take a training's body, of at most {MAX_STEPS:,} steps; always use the kinematic "
+            "simulator."
+        ),
     )
     def ask(services: ServicesDep, body: Annotated[TrainingBody, bodies.training]) -> Response:
-        """Take a training's body, of at most 2,000 steps; always use the kinematic simulator."""
+        """Return what a practice with these settings would give, on the kinematic simulator."""
         if body.continue_from is not None:
             raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
         return JSONResponse(services.what_if.ask(body.start().config))

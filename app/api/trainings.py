@@ -18,6 +18,7 @@ from app.api.runs import RunPath, find, run_routes
 from app.archive import table_import
 from app.domain.disturbances import as_mapping
 from app.domain.errors import InvalidInput
+from app.explanations.service import MAX_VALUES_SHOWN
 from app.runs import tables
 from app.runs.best_known import best_known_m
 from app.runs.config import TrainingConfig
@@ -112,6 +113,12 @@ def _best_known_m(run: Run) -> float | None:
     "/{run_id}/table",
     summary="The table of any moment of the practice",
     response_model=TableView,
+    description=(
+        "Return values, visits and best actions as they were after a step, built again from its "
+        "log.\n\nThe index of a state is the number whose digits are its cells, the first pair's "
+        f"the most significant. An answer has at most {MAX_VALUES_SHOWN:,} values; `first` and "
+        "`count` choose which."
+    ),
 )
 def get_table_at(
     services: ServicesDep,
@@ -120,11 +127,7 @@ def get_table_at(
     first: Annotated[int, Query(ge=0, description="index of the first state")] = 0,
     count: Annotated[int, Query(ge=1, description="number of states, as far as they fit")] = 1000,
 ) -> Response:
-    """Return values, visits and best actions as they were after a step, built again from its log.
-
-    The index of a state is the number whose digits are its cells, the first pair's the most
-    significant. An answer has at most 30,000 values; `first` and `count` choose which.
-    """
+    """Return a part of the table as it was after a step."""
     find(services, "training", run_id)
     answer = services.explanations.table(run_id, step, first, count)
     return Response(answer, media_type="application/json")

@@ -53,6 +53,8 @@ CHECKPOINT = "checkpoint.npz"
 """Artifact of a training: the checkpoint from which it resumes after an interruption."""
 KEY_LIFETIME = timedelta(days=1)
 """Lifetime of an idempotency key."""
+MAX_KEY_LENGTH = 200
+"""Characters of an idempotency key."""
 MAX_KEYS = 10_000
 """Idempotency keys stored at most; the oldest are dropped first."""
 

@@ -1,5 +1,6 @@
 // Files that the browser downloads: the addresses of a run's, and those that the page makes.
 import { addressOf, getFilm, getReplay, idQuery, pathOf } from "./api.js";
+import { limitsOf } from "./settings.js";
 
 /** @import { RunKey } from "./api.js" */
 /** @import { Run } from "./types.js" */
@@ -64,8 +65,8 @@ export const fileAddress = (run, name) =>
 // ---- files of the page
 
 const KEPT_MS = 60_000;
-/** A film that the server renders at once has at most 900 pictures, 30 a second. */
-const FILM_S = 29;
+/** Kept below the longest film that the server renders, since each recorded part is rounded up to a picture [s]. */
+const FILM_MARGIN_S = 1;
 
 /** @type {(content: Blob, name: string) => void} */
 export function saveFile(content, name) {
@@ -79,7 +80,8 @@ export function saveFile(content, name) {
 /** The playback speed at which all that is recorded fits into a film. @param {[number, number][]} recorded_s [s] */
 export function filmSpeed(recorded_s) {
   const length_s = recorded_s.reduce((sum, [begin, end]) => sum + end - begin, 0);
-  return Math.max(1, Math.ceil((10 * length_s) / FILM_S) / 10);
+  const longest_s = (limitsOf("video_s").maximum ?? Infinity) - FILM_MARGIN_S;
+  return Math.max(1, Math.ceil((10 * length_s) / longest_s) / 10);
 }
 
 /** Have a film of a run rendered, and save it. @param {Run} run */

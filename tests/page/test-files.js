@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { downloads, fileAddress, filmSpeed } from "../../static/js/files.js";
-import { makeRun } from "./options.js";
+import { options } from "../../static/js/store.js";
+import { makeRun, OPTIONS } from "./options.js";
 
 test("addresses of files are escaped part by part", () => {
   const run = { kind: /** @type {const} */ ("experiment"), id: "a b" };
@@ -23,6 +24,7 @@ test("each run offers the files that it has", () => {
 });
 
 test("a film shows all that is recorded, faster where that would be too long for one", () => {
+  options.value = OPTIONS;
   assert.equal(filmSpeed([[0, 12]]), 1);
   assert.equal(filmSpeed([[0, 10], [500, 577]]), 3);
   assert.equal(filmSpeed([[0, 90.88]]), 3.2);
