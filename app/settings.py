@@ -23,6 +23,7 @@ LogLevel = Literal["debug", "info", "warning", "error"]
 
 PREFIX = "HEXAPODS_"
 MIN_QUOTA_MB = 10
+MAX_PORT = 65535
 _CHOICES = {"spectators": get_args(Spectators), "log_level": get_args(LogLevel)}
 _WHOLE_NUMBERS = {
     "quota_mb": (MIN_QUOTA_MB, None, " of megabytes"),
@@ -84,8 +85,8 @@ class Settings:
     log_level: LogLevel = "info"
 
     def __post_init__(self) -> None:
-        if isinstance(self.port, bool) or not 0 <= self.port <= 65535:
-            raise InvalidInput(f"the port must be from 0 to 65535, not {self.port}")
+        if isinstance(self.port, bool) or not 0 <= self.port <= MAX_PORT:
+            raise _invalid_port(self.port)
         if self.token is not None and not _TOKEN.fullmatch(self.token):
             raise InvalidInput(
                 f"{PREFIX}TOKEN must have {MIN_TOKEN_LENGTH} to {MAX_TOKEN_LENGTH} printable ASCII "
@@ -192,8 +193,12 @@ def is_loopback(host: str) -> bool:
 
 def _port(text: str) -> int:
     if not text.isascii() or not text.isdigit():
-        raise InvalidInput(f"the port must be from 0 to 65535, not {text!r}")
+        raise _invalid_port(text)
     return int(text)
+
+
+def _invalid_port(given: int | str) -> InvalidInput:
+    return InvalidInput(f"the port must be from 0 to {MAX_PORT}, not {given!r}")
 
 
 def _whole_number(name: str, what: str, text: str) -> int:

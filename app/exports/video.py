@@ -34,7 +34,7 @@ MIN_SPEED, MAX_SPEED = 0.05, 64
 MAX_FRAMES = 9000
 """Pictures of one film; each takes about 0.1 s in software."""
 _GAP_M = 0.25
-_SMOOTHING_S = 0.25
+_SMOOTHING_S = 0.25  # as in the live view (app/viewer/scene.py)
 _BACKGROUND, _GROUND, _GROUND_LINES = (0.05, 0.07, 0.1), (0.16, 0.2, 0.26), (0.3, 0.36, 0.44)
 _CAPTION, _CAPTION_BOX = (236, 240, 245, 255), (13, 17, 23, 190)
 

@@ -12,10 +12,10 @@ ICE: Rgb = (64, 160, 228)
 GRIP: Rgb = (150, 104, 62)
 """Ground with more friction than before."""
 PAYLOAD: Rgb = (186, 190, 196)
-PUSH: Rgb = (226, 33, 52)
+RED: Rgb = (226, 33, 52)
+"""Pushes, and links whose joint is stuck."""
 UPHILL: Rgb = (245, 196, 60)
 _NO_TORQUE: Rgb = (126, 130, 136)
-_STUCK: Rgb = (226, 33, 52)
 _HIGHEST_SHARE = 0.7
 """Share of grey of a leg with hardly any torque; limp ones are grey altogether."""
 
@@ -39,7 +39,7 @@ def link_color(color: Rgb, conditions: World, leg: int, joint: str) -> Rgb | Non
         if isinstance(one, Weak) and leg in one.legs:
             color = mix(color, _NO_TORQUE, _HIGHEST_SHARE * (1 - one.torque_share))
     stuck = conditions.all_of(Stuck)
-    return _STUCK if any((one.leg, one.joint) == (leg, joint) for one in stuck) else color
+    return RED if any((one.leg, one.joint) == (leg, joint) for one in stuck) else color
 
 
 def ground_color(ground: Friction | Patch, friction: float) -> Rgb:

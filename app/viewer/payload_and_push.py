@@ -9,7 +9,7 @@ import viser
 from app.domain.disturbances import Payload
 from app.physics.conditions import direction, payload_center_m, payload_half_side_m
 from app.stage.stage_frame import LaneView, SceneSpec
-from app.viewer.condition_colors import PAYLOAD, PUSH
+from app.viewer.condition_colors import PAYLOAD, RED
 from app.viewer.shapes import arrow
 from app.viewer.temporary import Temporary
 
@@ -80,7 +80,7 @@ class PushArrows(Temporary):
                 f"{self._root}/arrow{number}",
                 shape.vertices,
                 shape.faces,
-                color=PUSH,
+                color=RED,
                 side="double",
                 receive_shadow=False,
                 position=(float(x), float(y), float(lane.qpos[2])),

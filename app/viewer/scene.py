@@ -17,6 +17,7 @@ from app.viewer.track import LAMP, SQUARE_M, WORLD, Position, draw_ground, draw_
 
 SCENE_ROOT = f"{WORLD}/run"
 _SMOOTHING_S = 0.25
+"""Time constant with which the camera follows the leader [s]."""
 _STEP_FORWARD_M = 0.45
 """Shift of the follow point that brings the camera nearer to a single robot [m]."""
 _LANES_IN_VIEW, _STEP_BACK_M = 3, 0.5

@@ -18,7 +18,7 @@ import { curveOf, followCurves } from "./training.js";
 /** With more, their lines cannot be told apart. */
 export const MOST_COMPARED = 8;
 const LETTERS = "ABCDEFGH";
-/** Okabe and Ito's colours, as of agents, and dashes for who cannot tell colours apart. */
+/** Of runs, which may all have the same agent: Okabe and Ito's colours, and dashes for who cannot tell them apart. */
 const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8A6D3B", "#7F7F7F"];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 3], [12, 3, 2, 3, 2, 3], [1, 2], [14, 5]];
 

@@ -12,6 +12,7 @@ const ARRAYS = {
   "<f4": Float32Array, "<f8": Float64Array, "|u1": Uint8Array, "<u2": Uint16Array, "<u4": Uint32Array,
   "|i1": Int8Array, "<i2": Int16Array, "<i4": Int32Array,
 };
+/** Time constant with which the leader is followed, as in the live view (app/viewer/scene.py) [s]. */
 const SMOOTHING_S = 0.25;
 /** Of so many frames at once only the last is shown. */
 const MOST_STEPS = 4;
