@@ -50,8 +50,8 @@ const zooms = signal({});
 export const zoomOf = (axis) => zooms.value[axis] ?? null;
 
 /** A part that is shorter shows nothing more. */
-const LEAST_PART = 1e-3;
-const LEAST_SHARE_OF_Y = 0.02;
+const MIN_PART = 1e-3;
+const MIN_SHARE_OF_Y = 0.02;
 const MARGIN_OF_Y = 0.1;
 
 /**
@@ -74,7 +74,7 @@ export function zoomTo(axis, part, whole) {
  */
 export function within(part, whole) {
   const [low, high] = whole;
-  const length = Math.min(high - low, Math.max(Math.abs(part[1] - part[0]), LEAST_PART * (high - low)));
+  const length = Math.min(high - low, Math.max(Math.abs(part[1] - part[0]), MIN_PART * (high - low)));
   const from = Math.max(low, Math.min(Math.min(...part), high - length));
   return [from, from + length];
 }
@@ -209,7 +209,7 @@ export function valuesIn(lines, [from, to], whole) {
     }
   }
   if (!(most >= least)) return whole;
-  const length = Math.max(most - least, LEAST_SHARE_OF_Y * (whole[1] - whole[0]));
+  const length = Math.max(most - least, MIN_SHARE_OF_Y * (whole[1] - whole[0]));
   const middle = (least + most) / 2;
   return [middle - (0.5 + MARGIN_OF_Y) * length, middle + (0.5 + MARGIN_OF_Y) * length];
 }

@@ -11,7 +11,7 @@ import { messageOf } from "./titles.js";
 /** @import { FootCells, Move, Run, StateTable } from "./types.js" */
 
 /** More rows are not asked for, as a large table has many answers. */
-export const MOST_STATES = 5000;
+export const MAX_STATES = 5000;
 /** The table of a training that runs is asked for again after so long at the earliest. */
 const EVERY_MS = 3000;
 
@@ -103,7 +103,7 @@ async function wholeTable(id, isWanted) {
     if (!part) return null;
     parts.push(part);
     first += part.values.length;
-  } while (first < Math.min(parts[0].states, MOST_STATES));
+  } while (first < Math.min(parts[0].states, MAX_STATES));
   const { pairs, cells_m, cell_names, states } = parts[0];
   return {
     pairs, cells_m, cell_names, states,

@@ -16,7 +16,7 @@ import { curveOf, followCurves } from "./training.js";
 /** @import { LaneResult, Run } from "./types.js" */
 
 /** With more, their lines cannot be told apart. */
-export const MOST_COMPARED = 8;
+export const MAX_COMPARED = 8;
 const LETTERS = "ABCDEFGH";
 /** Of runs, which may all have the same agent: Okabe and Ito's colours, and dashes for who cannot tell them apart. */
 const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8A6D3B", "#7F7F7F"];
@@ -33,7 +33,7 @@ export const leftOut = signal(0);
 /** @param {URLSearchParams} query */
 export function readCompared(query) {
   const named = [...new Set((query.get("runs") ?? "").split(",").map((id) => id.trim()).filter(Boolean))];
-  comparedIds.value = named.slice(0, MOST_COMPARED);
+  comparedIds.value = named.slice(0, MAX_COMPARED);
   leftOut.value = named.length - comparedIds.value.length;
 }
 
@@ -53,7 +53,7 @@ export function followCompared() {
   followCurves(computed(() => (place.value === "compare" ? comparedTrainings.value : [])));
   // The note on a link that was too long is of that link only.
   effect(() => {
-    if (comparedIds.value.length < MOST_COMPARED) leftOut.value = 0;
+    if (comparedIds.value.length < MAX_COMPARED) leftOut.value = 0;
   });
 }
 

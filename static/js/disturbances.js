@@ -131,13 +131,13 @@ export function conditionsNow(run) {
 
 // ---- words
 
-const LEAST_METRES = 0.1;
+const MIN_METRES = 0.1;
 const JOIN = "\u00a0";
 
 /** @type {(value: any, unit: string | null) => string} */
 export function withUnit(value, unit) {
   const text = String(value).replace("-", "\u2212");
-  if (unit === "m" && value !== 0 && Math.abs(value) < LEAST_METRES) {
+  if (unit === "m" && value !== 0 && Math.abs(value) < MIN_METRES) {
     return `${Number((1000 * value).toPrecision(4))}${JOIN}mm`;
   }
   return unit === "°" ? `${text}°` : `${text}${unit ? JOIN + unit : ""}`;

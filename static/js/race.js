@@ -333,7 +333,7 @@ export function announceOutcomes() {
 
 // ---- who leads or has won and by which rule, in sentences
 
-const LEAST_MM = 1;
+const MIN_MM = 1;
 
 /** @type {(row: Standing) => number} */
 const distanceOf = (row) => row.finished_m ?? row.distance_m ?? 0;
@@ -388,7 +388,7 @@ function marginOf(rows, winner) {
   const next = Math.max(...others);
   if (!others.length || metres(next) !== metres(distanceOf(winner))) return "";
   const millimetres = Math.round(1000 * (distanceOf(winner) - next));
-  return millimetres < LEAST_MM ? ` by under ${LEAST_MM} mm` : ` by ${millimetres} mm`;
+  return millimetres < MIN_MM ? ` by under ${MIN_MM} mm` : ` by ${millimetres} mm`;
 }
 
 /**

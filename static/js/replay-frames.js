@@ -15,7 +15,7 @@ const ARRAYS = {
 /** Time constant with which the leader is followed, as in the live view (app/viewer/scene.py) [s]. */
 const SMOOTHING_S = 0.25;
 /** Of so many frames at once only the last is shown. */
-const MOST_STEPS = 4;
+const MAX_STEPS = 4;
 const HEAD_BYTES = 4;
 const ALIGNMENT_BYTES = 8;
 
@@ -117,7 +117,7 @@ export class SceneState {
    * @param {number} shown index of the frame of this segment that is shown, -1 if none is
    */
   showFrame(frames, index, shown) {
-    const isNext = shown >= 0 && shown < index && index - shown <= MOST_STEPS;
+    const isNext = shown >= 0 && shown < index && index - shown <= MAX_STEPS;
     const messages = frames.slice(isNext ? shown + 1 : 0, index + 1).flatMap((one) => one.messages);
     return isNext ? this.follow(messages) : this.jump(messages);
   }

@@ -14,7 +14,7 @@ import { commonStage, options, ownStage, role, runs, scene, stage } from "./stor
 const ACTIVE = new Set(["queued", "running", "paused"]);
 /** @type {Set<State>} */
 const WITH_TABLE = new Set(["finished", "stopped"]);
-const MOST_OWN_RUNS = 50;
+const MAX_OWN_RUNS = 50;
 
 /** @type {<T>(value: T | null | undefined) => value is T} */
 const isKnown = (value) => value !== null && value !== undefined;
@@ -42,7 +42,7 @@ const ownRuns = signal(readOwnRuns());
 
 /** @param {string} id */
 export const markAsMine = (id) => {
-  ownRuns.value = [id, ...ownRuns.value].slice(0, MOST_OWN_RUNS);
+  ownRuns.value = [id, ...ownRuns.value].slice(0, MAX_OWN_RUNS);
   try {
     sessionStorage.setItem("hexapods:mine", JSON.stringify(ownRuns.value));
   } catch {

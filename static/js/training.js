@@ -149,7 +149,7 @@ export const trainingsInView = computed(() => (trainingInView.value ? [trainingI
 // ---- the action values of one state: the best move, and the names of places on the foot grid
 
 /** Grids with more cells are named by distances, in millimetres. */
-const MOST_NAMED_CELLS = 5;
+const MAX_NAMED_CELLS = 5;
 
 /**
  * The move of the highest value; pair and cell are -1 where there is none.
@@ -172,7 +172,7 @@ export function bestMove({ values_m }) {
  * @param {string} unit after each number
  */
 export function placeName({ cell_names, cells_m }, cell, unit = "") {
-  if (cell === 0 || cell_names.length <= MOST_NAMED_CELLS) return cell_names[cell];
+  if (cell === 0 || cell_names.length <= MAX_NAMED_CELLS) return cell_names[cell];
   const [x, y] = cells_m[cell].map((metres) => Math.round(1000 * metres));
   const parts = [
     x && `${Math.abs(x)}${unit} ${x < 0 ? "left" : "right"}`,

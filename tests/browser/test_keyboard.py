@@ -30,14 +30,14 @@ SMALL = urlencode(
         "robots": "stiff",
     }
 )
-MOST_TABS = 150
+MAX_TABS = 150
 """More than the page has places to stop at."""
 
 
 def tab_to(page: Page, target: Locator) -> None:
     """Press Tab until the target has the focus, which must be visible there."""
     expect(target).to_be_visible()
-    for _ in range(MOST_TABS):
+    for _ in range(MAX_TABS):
         page.keyboard.press("Tab")
         if target.evaluate("element => element === document.activeElement"):
             assert target.evaluate("element => element.matches(':focus-visible')")

@@ -12,8 +12,8 @@ from tests.browser.serving import Serving
 
 pytestmark = pytest.mark.timeout(300)
 
-MOST_REQUESTS = 60
-MOST_BYTES = 300_000
+MAX_REQUESTS = 60
+MAX_BYTES = 300_000
 
 
 @dataclass
@@ -61,5 +61,5 @@ def test_a_first_visit_transfers_little(dashboard: Dashboard, server: Serving) -
     scripts = [path for path in paths if path.endswith(".js")]
     assert "/static/js/main.js" in scripts
     assert len({*scripts}) == len(scripts)
-    assert len(paths) < MOST_REQUESTS, paths
-    assert traffic.total_bytes < MOST_BYTES
+    assert len(paths) < MAX_REQUESTS, paths
+    assert traffic.total_bytes < MAX_BYTES

@@ -18,7 +18,7 @@ from tests.browser.serving import Serving
 from tests.promises.raw import watched_memory
 
 UNPACKED_BYTES = 320_000_000
-MOST_BYTES = 50_000_000
+MAX_BYTES = 50_000_000
 
 
 @cache
@@ -88,4 +88,4 @@ def test_a_bomb_is_refused_without_allocating_memory(
         answer = httpx2.post(quiet_server.address[:-1] + path, content=data, timeout=60)
 
     assert answer.status_code == 422, answer.text
-    assert memory.grown_bytes < MOST_BYTES
+    assert memory.grown_bytes < MAX_BYTES

@@ -17,7 +17,7 @@ from tests.promises.test_07_many_viewers import start_moving, watch
 STALLED = 20
 OTHERS = 10
 SECONDS = at_length(3.0, 60.0)
-LEAST_SHARE = at_length(0.0, 0.95)
+MIN_SHARE = at_length(0.0, 0.95)
 FLAT_BYTES = 20_000_000
 
 
@@ -33,7 +33,7 @@ def test_stalled_viewers_cost_the_others_no_frames_and_the_server_no_memory(
     assert with_stalled["viewers_lost"] == 0
     frames_alone, frames = (one["frames_per_s_median"] for one in (alone, with_stalled))
     assert min(frames_alone, frames) > 0
-    assert frames >= LEAST_SHARE * frames_alone
+    assert frames >= MIN_SHARE * frames_alone
     assert memory.grown_bytes < FLAT_BYTES
     merged = next(
         line

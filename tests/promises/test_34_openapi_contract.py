@@ -40,7 +40,7 @@ from tests.promises.short_contract import shortened
 from tests.served import Served, serving_from
 
 CASES = at_length(2000, 5000)
-MOST_PER_OPERATION = at_length(1, 100)
+MAX_PER_OPERATION = at_length(1, 100)
 TOKEN = "a-token-for-the-contract"
 ENDLESS = "/api/v1/events"
 ROOT = Path(__file__).parents[2]
@@ -132,7 +132,7 @@ def stopping_runs(server: Served) -> Iterator[None]:
 def test_all_schemathesis_checks_pass(server: Served, tmp_path: Path) -> None:
     options = ("--checks", "all", "--exclude-checks", "object_level_authorization,ignored_auth")
     with stopping_runs(server):
-        count = schemathesis(server, tmp_path, *options, "-n", str(MOST_PER_OPERATION))
+        count = schemathesis(server, tmp_path, *options, "-n", str(MAX_PER_OPERATION))
     assert count >= CASES
     assert server.client.get("/readyz").status_code == 200
 

@@ -29,7 +29,7 @@ from tests.promises.raw import watched_memory
 from tests.served import BODY, Served, serving_from
 
 READERS = 25
-MOST_BYTES = 100_000_000
+MAX_BYTES = 100_000_000
 VISITED_STATES = at_length(40_000, 250_000)
 SETTLED_S = at_length(0.5, 10.0)
 RACE = {**BODY, "steps": 60, "lanes": [{"agent": "greedy"}] * 4}
@@ -137,7 +137,7 @@ def test_unread_answers_use_bounded_memory(server: Served, paths: list[str]) -> 
         assert answered == {b"HTTP/1.1 200"}, path
         grown[path] = memory.grown_bytes
 
-    assert max(grown.values()) < MOST_BYTES, grown
+    assert max(grown.values()) < MAX_BYTES, grown
 
 
 @pytest.mark.timeout(1800)

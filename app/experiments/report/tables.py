@@ -27,7 +27,7 @@ UNITS: Mapping[str, str] = {
     "h": "half grid sides",
     "r": "of greedy",
 }
-MOST_ROWS = 200
+MAX_ROWS = 200
 _DISTANCE_NAMES: Mapping[str, str] = {"finished": "At time-out", "total": "Total"}
 _NONE = "–"
 
@@ -299,9 +299,9 @@ def sweep(case: Case) -> dict[str, Any]:
                     (f"{one['n']:,}", ""),
                 ],
             }
-            for one in best[:MOST_ROWS]
+            for one in best[:MAX_ROWS]
         ],
-        "left_out": max(0, len(best) - MOST_ROWS),
+        "left_out": max(0, len(best) - MAX_ROWS),
     }
 
 
@@ -331,7 +331,7 @@ def versus(summary: Mapping[str, Any]) -> dict[str, Any]:
                     (furthest[one["verdict"]], ""),
                 ],
             }
-            for one in pairs[:MOST_ROWS]
+            for one in pairs[:MAX_ROWS]
         ],
-        "left_out": max(0, len(pairs) - MOST_ROWS),
+        "left_out": max(0, len(pairs) - MAX_ROWS),
     }

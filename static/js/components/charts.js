@@ -25,7 +25,7 @@ const REGULAR = 400;
 /** Narrower charts have fewer ticks. */
 const WIDE_PX = 300;
 /** More lines of seeds cannot be told apart. */
-const MOST_SEEDS = 200;
+const MAX_SEEDS = 200;
 
 /**
  * Lines over an axis, in a picture that follows the width, the theme and the data. Charts with the same `x.axis`
@@ -157,7 +157,7 @@ function Curve({ line: { color, dash = [], xs, ys, low, high, seeds = [], dots }
   const hasBand = low?.length && low.every((value) => value !== null);
   return html`
     <g style=${{ "--agent": cssColour(color) }} class=${low ? "with-band" : ""}>
-      ${thinned(each, MOST_SEEDS).map((values) => html`<path class="seed-line" d=${path(values)} />`)}
+      ${thinned(each, MAX_SEEDS).map((values) => html`<path class="seed-line" d=${path(values)} />`)}
       ${hasBand && html`<path class="band" d=${`${path(low)}L${at(high).reverse().join("L")}Z`} />`}
       <path class="curve" d=${path(ys)} stroke-dasharray=${dash.length ? dash.join(" ") : undefined} />
       ${dots && ys.map((value, n) => html`
@@ -234,7 +234,7 @@ function ChartMenu({ chart, axis, host }) {
 
 // ---- the numbers of a chart as a table, folded
 
-const MOST_ROWS = 100;
+const MAX_ROWS = 100;
 
 /** Numbers as a table, folded; `columns` and `rows` return them, and are called when it is opened. */
 export function AsTable({ caption, columns, rows }) {
@@ -260,7 +260,7 @@ export function AsTable({ caption, columns, rows }) {
 }
 
 function ChartAsTable({ caption, chart: { x, y, lines, marks, xs } }) {
-  const table = () => tableOf({ lines, marks, xs: thinned(xs, MOST_ROWS), titles: { x: sentence(x.unit) } });
+  const table = () => tableOf({ lines, marks, xs: thinned(xs, MAX_ROWS), titles: { x: sentence(x.unit) } });
   const words = (value) => (value === null ? "–" : y.text(value));
   const rows = () => table().rows.map(([at, ...values]) => [x.text(at), ...values.map(words)]);
   return html`<${AsTable} caption=${caption} columns=${() => table().columns} rows=${rows} />`;

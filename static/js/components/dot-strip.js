@@ -7,7 +7,7 @@ import { widthOf } from "./line-labels.js";
 const DOT_PX = 3;
 const APART_PX = 5;
 /** More cannot be told apart; an even selection stands for all. */
-const MOST_DOTS = 600;
+const MAX_DOTS = 600;
 /** Height below the dots for the mean and its interval, where they hide none. */
 const LANE_PX = 12;
 /** Height of the axis' numbers, and about how many there are: strips may be narrow. */
@@ -36,7 +36,7 @@ export function DotStrip({
 }) {
   const [host, width] = useWidth();
   const at = (value) => percent(shareOf(value, low, high));
-  const drawn = points.length > MOST_DOTS ? thinned([...points].sort((a, b) => a - b), MOST_DOTS) : points;
+  const drawn = points.length > MAX_DOTS ? thinned([...points].sort((a, b) => a - b), MAX_DOTS) : points;
   const rows = swarm(drawn.map((value) => shareOf(value, low, high)));
   const tallest = largest(rows.map(Math.abs), 1);
   const middle = (height - LANE_PX) / 2;

@@ -221,10 +221,10 @@ function Line({ series: { name }, lines: { lines, low, high, range }, views, isA
 // ---- the figures, and the footfalls as a table
 
 /** With more lanes there is no room beside the figures for what they mean. */
-const MOST_EXPLAINED = 3;
+const MAX_EXPLAINED = 3;
 
 const Numbers = ({ lanes, from, to }) => html`
-  <div class=${`scroller walk-figures ${lanes.length > MOST_EXPLAINED ? "many" : ""}`}
+  <div class=${`scroller walk-figures ${lanes.length > MAX_EXPLAINED ? "many" : ""}`}
     tabindex="0" role="region" aria-label="Figures of the gait">
     <table>
       <caption class="dim">From ${from.toFixed(1)} to ${to.toFixed(1)} s of robot time</caption>
@@ -248,19 +248,19 @@ const Numbers = ({ lanes, from, to }) => html`
       </tbody>
     </table>
   </div>
-  <details class=${`as-table ${lanes.length > MOST_EXPLAINED ? "" : "narrow-only"}`}>
+  <details class=${`as-table ${lanes.length > MAX_EXPLAINED ? "" : "narrow-only"}`}>
     <summary>Definitions of the figures</summary>
     <dl class="walk-help">${FIGURES.map(([name, help]) => html`<dt>${name}</dt><dd>${help}</dd>`)}</dl>
   </details>
 `;
 
-const MOST_SWINGS = 40;
+const MAX_SWINGS = 40;
 
 function rowsOf(lanes) {
   return lanes.flatMap(({ title, figures }) => figures.legs.map(({ leg, stance, duty_factor }) => {
     const swings = swingsOf(stance, figures);
-    const shown = swings.slice(0, MOST_SWINGS).map(([a, b]) => `${a.toFixed(2)}–${b.toFixed(2)}`).join(", ");
-    const more = swings.length > MOST_SWINGS ? ` and ${swings.length - MOST_SWINGS} more` : "";
+    const shown = swings.slice(0, MAX_SWINGS).map(([a, b]) => `${a.toFixed(2)}–${b.toFixed(2)}`).join(", ");
+    const more = swings.length > MAX_SWINGS ? ` and ${swings.length - MAX_SWINGS} more` : "";
     return [`${title}, leg ${leg}`, duty_factor.toFixed(2), shown ? `${shown}${more}` : "never"];
   }));
 }

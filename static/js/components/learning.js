@@ -14,9 +14,9 @@ import { HexapodGlyph, html } from "./elements.js";
 // ---- the learning curve: distance in an evaluation against steps of practice, with greedy's distance
 
 /** With more, single points are not marked. */
-const MOST_MARKED_POINTS = 45;
+const MAX_MARKED_POINTS = 45;
 /** The axis reaches at least so far [m]. */
-const LEAST_TOP_M = 0.5;
+const MIN_TOP_M = 0.5;
 const HEADROOM = 1.16;
 
 const CURVE_INVITATION = "Each evaluation adds a point here, on its way to greedy’s line.";
@@ -66,14 +66,14 @@ function Curve({ known }) {
   const steps = points.map(({ step }) => step);
   const distances = points.map(({ distance_m }) => distance_m);
   const line = {
-    name: title, color, xs: steps, ys: distances, dots: points.length < MOST_MARKED_POINTS,
+    name: title, color, xs: steps, ys: distances, dots: points.length < MAX_MARKED_POINTS,
     end: points.length > 1 ? metres(distances.at(-1)) : "",
   };
   const levels = [greedy_m ?? 0, best_known_m ?? 0];
   const changed = changesInWords(run.config.agent, known.changes);
   const x = { axis: `practice of ${run.id}`, max: to, unit: "steps of practice", text: (step) => count(step, "step") };
   const y = {
-    min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest([...levels, ...distances], LEAST_TOP_M),
+    min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest([...levels, ...distances], MIN_TOP_M),
     unit: "m", text: metres,
   };
   return html`

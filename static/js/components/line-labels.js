@@ -26,9 +26,9 @@ const CAPTION_PX = 14;
 const END_DOT_PX = 4;
 const TEXT_FROM_DOT_PX = 9;
 const TEXT_FROM_LINE_PX = 6;
-const LEAST_ROOM_PX = 12;
+const MIN_ROOM_PX = 12;
 /** A longer label moves back over its line. */
-const MOST_ROOM_PX = 132;
+const MAX_ROOM_PX = 132;
 const DEFAULT_MARK_PX = 1.5;
 
 /** @type {CanvasRenderingContext2D | null} */
@@ -51,7 +51,7 @@ export function widthOf(text, weight = LABEL_WEIGHT) {
  */
 export function roomFor(lines) {
   const widest = Math.max(0, ...lines.map(({ end }) => (end ? TEXT_FROM_DOT_PX + widthOf(end) + 4 : 0)));
-  return Math.round(Math.min(MOST_ROOM_PX, Math.max(LEAST_ROOM_PX, widest)));
+  return Math.round(Math.min(MAX_ROOM_PX, Math.max(MIN_ROOM_PX, widest)));
 }
 
 /** A colour, or the name of a custom property, as CSS has it. @param {string} color */

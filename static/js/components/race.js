@@ -137,12 +137,12 @@ const factsOf = ({ decision_s, simulated }) =>
     .filter(Boolean).join(", ");
 
 /** A robot that has turned less is said to walk straight [°]. */
-const LEAST_TURN_DEG = 20;
+const MIN_TURN_DEG = 20;
 
 /** Whether it fell or turned. */
 function postureOf({ fell_at_step, heading_deg }) {
   const fell = typeof fell_at_step === "number" && `fell at step ${whole(fell_at_step + 1)}`;
-  const turned = Math.abs(heading_deg ?? 0) > LEAST_TURN_DEG &&
+  const turned = Math.abs(heading_deg ?? 0) > MIN_TURN_DEG &&
     `turned ${Math.round(Math.abs(heading_deg))}° ${heading_deg > 0 ? "left" : "right"}`;
   return sentence([fell, turned].filter(Boolean).join(", "));
 }
@@ -209,7 +209,7 @@ function StartList() {
 // ---- the chart: distance against race time up to the moment that is shown
 
 const HEADROOM = 1.16;
-const MOST_MOMENTS = 250;
+const MAX_MOMENTS = 250;
 /** The time axis shows at least so much of a race that has just begun [s]. */
 const FIRST_VIEW_S = 20;
 
@@ -276,7 +276,7 @@ function keptEnd(key, until) {
 
 /** The moments at which the crosshair stops: each half second, in a long race fewer, and the one that is shown. */
 function momentsOf(until, last) {
-  const step = Math.max(0.5, Math.ceil(last / MOST_MOMENTS));
+  const step = Math.max(0.5, Math.ceil(last / MAX_MOMENTS));
   const even = Array.from({ length: Math.floor(last / step) + 1 }, (_, n) => n * step);
   return [...new Set([...even, until])].sort((a, b) => a - b);
 }

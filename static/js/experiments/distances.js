@@ -114,7 +114,7 @@ export const UNIT_NAMES = {
 // ---- axes of charts of distance against steps, in the unit that is shown; all of a report are read together
 
 const HEADROOM = 1.06;
-const LEAST_TOP = 1e-9;
+const MIN_TOP = 1e-9;
 
 /**
  * @param {Line[]} lines of all charts
@@ -132,7 +132,7 @@ export function distanceAxis(charts) {
     ...marks.map(({ y }) => y),
   ]).filter((one) => typeof one === "number");
   return {
-    min: -largest(values.map((one) => -one), 0), max: HEADROOM * largest(values, LEAST_TOP),
+    min: -largest(values.map((one) => -one), 0), max: HEADROOM * largest(values, MIN_TOP),
     unit: UNIT_NAMES[unit.value], text: shown,
   };
 }

@@ -32,7 +32,7 @@ from tests.experiments.sample_experiments import (
     walked,
 )
 
-MOST_BYTES = 1_400_000
+MAX_BYTES = 1_400_000
 NASTY = '<img src=x onerror="alert(1)"><script>alert(2)</script>'
 LRO = "left-right-origin"
 
@@ -53,7 +53,7 @@ def test_a_whole_report_of_thirty_seeds_is_small_enough_to_commit(experiment: st
     name = experiment
     figures = [f"figures/{name}.{kind}" for kind in ("png", "svg", "pdf")]
     assert sorted(files) == sorted(["report.html", "summary.json", "trials.csv", *figures])
-    assert sum(map(len, files.values())) < MOST_BYTES
+    assert sum(map(len, files.values())) < MAX_BYTES
 
 
 def test_the_same_trials_give_the_same_bytes() -> None:

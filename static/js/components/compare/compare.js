@@ -1,5 +1,5 @@
 // The view that compares runs: which, their learning curves, results, settings, policies, and replays.
-import { compared, comparable, followCompared, leaveOut, leftOut, MOST_COMPARED } from "../../compare.js";
+import { compared, comparable, followCompared, leaveOut, leftOut, MAX_COMPARED } from "../../compare.js";
 import { count } from "../../format.js";
 import { isActive } from "../../selectors.js";
 import { html } from "../elements.js";
@@ -23,7 +23,7 @@ export function Compare() {
         <ul class="compared">${all.map((one) => html`<${ComparedRun} key=${one.id} one=${one} />`)}</ul>
         ${leftOut.value > 0 && html`
           <p class="notice" role="status">
-            Up to ${MOST_COMPARED} runs are compared; the link names ${leftOut.value} more, which are left out.
+            Up to ${MAX_COMPARED} runs are compared; the link names ${leftOut.value} more, which are left out.
           </p>
         `}
         <div class="compare-foot">

@@ -5,7 +5,7 @@ import { largest } from "../../scale.js";
 import { Chart } from "../charts.js";
 import { html } from "../elements.js";
 
-const LEAST_TOP_M = 0.1;
+const MIN_TOP_M = 0.1;
 const HEADROOM = 1.16;
 
 export function Curves() {
@@ -36,7 +36,7 @@ function CurvesChart({ shown }) {
     text: (step) => count(step, "step"),
   };
   const y = {
-    min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest(distances, LEAST_TOP_M),
+    min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest(distances, MIN_TOP_M),
     unit: "m", text: metres,
   };
   return html`

@@ -12,7 +12,7 @@ import { html, Segments } from "../elements.js";
 import { BestKnownWords, StripKey, UnitSwitch } from "./report-tools.js";
 
 const ORDERS = [["grid", "In the grid’s order"], ["best", "Furthest first"]];
-const MOST_ROWS = 60;
+const MAX_ROWS = 60;
 const STRIP_TITLE = "Total distance in 50 steps, a dot for each seed";
 
 export function SweepTable({ known }) {
@@ -37,13 +37,13 @@ export function SweepTable({ known }) {
         <table class="facts-table stacking" role="table">
           <${Head} columns=${columns} />
           <tbody role="rowgroup">
-            ${(isWhole ? sorted : sorted.slice(0, MOST_ROWS)).map((row) => html`
+            ${(isWhole ? sorted : sorted.slice(0, MAX_ROWS)).map((row) => html`
               <${Row} key=${row.setting.key} row=${row} columns=${columns} high=${high} />
             `)}
           </tbody>
         </table>
       </div>
-      ${!isWhole && sorted.length > MOST_ROWS && html`
+      ${!isWhole && sorted.length > MAX_ROWS && html`
         <div class="older">
           <button class="secondary" onClick=${() => setWhole(true)}>Show all ${count(sorted.length, "setting")}</button>
         </div>

@@ -18,7 +18,7 @@ const STATES = ["running", "paused", "queued", "finished", "stopped", "failed", 
 const SORTS = [
   ["newest", "newest first"], ["oldest", "oldest first"], ["name", "by name"], ["distance", "longest first"],
 ];
-const MOST_TAGS = 12;
+const MAX_TAGS = 12;
 
 followRunList();
 
@@ -75,7 +75,7 @@ const Choice = ({ label, choices, value, onValue }) => html`
 /** The tags in use, to filter by. */
 function Tags() {
   const { tag } = filters.value;
-  const known = knownTags.value.slice(0, MOST_TAGS);
+  const known = knownTags.value.slice(0, MAX_TAGS);
   const all = tag === "" || known.includes(tag) ? known : [tag, ...known];
   if (all.length === 0) return null;
   return html`

@@ -6,7 +6,7 @@ import { shownRuns } from "../../run-list.js";
 import {
   clearSelection, deletable, deleteSelected, exported, selectAll, selected, tagSelected,
 } from "../../run-selection.js";
-import { compareAddress, MOST_COMPARED } from "../../compare.js";
+import { compareAddress, MAX_COMPARED } from "../../compare.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html, Problem } from "../elements.js";
@@ -45,7 +45,7 @@ function SelectionActions() {
 function CompareThem() {
   const ids = selected.value.filter(({ kind }) => kind !== "experiment").map(({ id }) => id);
   if (ids.length < 2) return null;
-  if (ids.length > MOST_COMPARED) return html`<span class="dim">Up to ${MOST_COMPARED} runs compare.</span>`;
+  if (ids.length > MAX_COMPARED) return html`<span class="dim">Up to ${MAX_COMPARED} runs compare.</span>`;
   return html`<a class="secondary compact button" href=${compareAddress(ids)}>Compare ${ids.length}</a>`;
 }
 

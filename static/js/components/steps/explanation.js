@@ -8,7 +8,7 @@ import { html } from "../elements.js";
 /** Products are not broken over two lines. @param {string} text */
 const unbroken = (text) => text.replaceAll(" · ", "\u00a0·\u00a0");
 
-const MOST_MOVES = 6;
+const MAX_MOVES = 6;
 const SHORTEST_BAR = 0.02;
 
 export function ExplainedStep({ told }) {
@@ -92,7 +92,7 @@ function Scores({ told }) {
 function Ranking({ told, caption, rows }) {
   const all = rows.toSorted((a, b) => b.score - a.score);
   const isMade = ({ move }) => move[0] === told.action[0] && move[1] === told.action[1];
-  const first = all.slice(0, MOST_MOVES);
+  const first = all.slice(0, MAX_MOVES);
   const shown = first.some(isMade) ? first : [...first.slice(0, -1), ...all.filter(isMade)];
   const [high, low] = [all[0].score, all.at(-1).score];
   return html`
