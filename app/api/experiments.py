@@ -12,8 +12,7 @@ from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.formats import attachment, file_response, negotiated
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import TrialBody
-from app.experiments.config import ExperimentConfig
-from app.experiments.file_names import REPORT, SUMMARY
+from app.experiments.config import REPORT, SUMMARY, ExperimentConfig
 from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite

@@ -13,8 +13,7 @@ from msgspec import UNSET, Meta, UnsetType
 from app.archive.untrusted_input import Large, Metres, Name, PortableText, Seconds, UntrustedInput
 from app.domain.errors import DamagedFile
 from app.domain.text import is_formula
-from app.experiments.config import ExperimentConfig
-from app.experiments.file_names import SUMMARY
+from app.experiments.config import SUMMARY, ExperimentConfig
 from app.jobs.submissions import plan_of
 from app.storage.run import Run
 

@@ -13,8 +13,7 @@ from typing import Any
 from app.cli.terminal import progress, show_table
 from app.domain.errors import InvalidInput
 from app.experiments.cluster import ClusterSpec
-from app.experiments.config import DISTURBED, ExperimentConfig
-from app.experiments.file_names import REPORT
+from app.experiments.config import DISTURBED, REPORT, ExperimentConfig
 from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.own_cluster import cores
 from app.experiments.plan import Trial

@@ -37,9 +37,8 @@ from app.domain.robot import PRESETS
 from app.domain.settings import declared_fields
 from app.domain.world import WORLDS
 from app.experiments.cluster import ClusterSpec, connect
-from app.experiments.config import MAX_SEEDS
+from app.experiments.config import MAX_SEEDS, REPORT
 from app.experiments.engine import Outcome
-from app.experiments.file_names import REPORT
 from app.experiments.folder import ResultsFolder, open_results
 from app.experiments.formatting import counted
 from app.experiments.own_cluster import cores

@@ -6,7 +6,7 @@
   cluster or start a local one; `worker`: the code that runs on a worker, and the check that
   all machines have the same versions.
 - `progress`: runs the remaining trials of an experiment and collects their outcomes; `folder`: the
-  same with an append-only results file, from which it resumes; `file_names`: the result files.
+  same with an append-only results file, from which it resumes.
 - `statistics`, `measures`, `setting_results`, `summary`: interquartile means, bootstrap intervals
   and comparisons, from single results up to the summary document; `worlds`: the part of a league
   or recovery.

@@ -29,6 +29,13 @@ MAX_TRIALS = 200_000
 MAX_WORKERS = 512
 FIGURE4_BLOCKS = 8
 
+SUMMARY = "summary.json"
+"""File of a report: statistics and claims computed from the trials so far."""
+REPORT = "report.html"
+"""The report as one self-contained page."""
+TRIALS_TABLE = "trials.csv"
+"""Every trial, with its result."""
+
 GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")
 """Fields that a sweep varies beside agent, gait, observation, robot and the agents' settings;
 table1 and figure4 keep them at the paper's values."""

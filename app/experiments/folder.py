@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from app.domain.errors import DamagedFile, HexapodError, InvalidInput
-from app.experiments.config import ExperimentConfig, as_json, from_json
+from app.experiments.config import SUMMARY, ExperimentConfig, as_json, from_json
 from app.experiments.engine import Outcome
-from app.experiments.file_names import SUMMARY
 from app.experiments.progress import Progress
 from app.experiments.worker import difference, versions
 from app.files import is_disk_full, lock_file

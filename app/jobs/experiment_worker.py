@@ -12,8 +12,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
 from app.experiments.cluster import ClusterSpec
+from app.experiments.config import SUMMARY
 from app.experiments.engine import Outcome
-from app.experiments.file_names import SUMMARY
 from app.experiments.progress import Progress
 from app.experiments.trial import TrialResult
 from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Reported, TrialsDone

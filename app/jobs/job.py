@@ -15,7 +15,7 @@ from app.domain.errors import HexapodError
 from app.domain.robot import as_mapping
 from app.events.bus import EventBus
 from app.events.run_view import run_view
-from app.experiments.file_names import SUMMARY
+from app.experiments.config import SUMMARY
 from app.jobs.messages import (
     Batch,
     Began,

@@ -8,8 +8,7 @@ runs the trials that are not done yet.
 
 from dataclasses import replace
 
-from app.experiments.config import ExperimentConfig
-from app.experiments.file_names import SUMMARY
+from app.experiments.config import SUMMARY, ExperimentConfig
 from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
 from app.runs.config import TrainingConfig
 from app.runs.race_config import RaceConfig

@@ -5,9 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from app.domain.errors import DamagedFile
-from app.experiments.config import ExperimentConfig
+from app.experiments.config import SUMMARY, ExperimentConfig
 from app.experiments.engine import Outcome
-from app.experiments.file_names import SUMMARY
 from app.experiments.progress import Progress
 from app.experiments.report.trials_csv import trials_csv
 

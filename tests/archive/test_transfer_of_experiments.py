@@ -12,9 +12,8 @@ from app.agents.registry import OURS
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
 from app.archive.transfer import export_run
-from app.experiments.config import experiment_config
+from app.experiments.config import SUMMARY, experiment_config
 from app.experiments.engine import Outcome
-from app.experiments.file_names import SUMMARY
 from app.experiments.plan import Plan
 from app.experiments.trial import run_trial
 from app.storage.database.store import RunStore

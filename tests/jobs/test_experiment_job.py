@@ -12,8 +12,7 @@ import pytest
 
 from app.domain.errors import InvalidInput, Unreachable
 from app.events.bus import EventBus
-from app.experiments.config import ExperimentConfig, experiment_config
-from app.experiments.file_names import REPORT, SUMMARY
+from app.experiments.config import REPORT, SUMMARY, ExperimentConfig, experiment_config
 from app.experiments.plan import Plan
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import ExperimentStart

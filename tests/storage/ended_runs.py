@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from app.assembly import build_learner, build_walkers, finish_training
-from app.experiments.file_names import SUMMARY
+from app.experiments.config import SUMMARY
 from app.experiments.plan import Plan
 from app.experiments.summary import summarise
 from app.experiments.trial import run_trial

@@ -5,8 +5,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from app.experiments.config import from_json
-from app.experiments.file_names import REPORT, SUMMARY, TRIALS_TABLE
+from app.experiments.config import REPORT, SUMMARY, TRIALS_TABLE, from_json
 from app.experiments.report.drawing import FORMATS, render
 from app.experiments.report.figures import sheets
 from app.experiments.report.page import page

@@ -10,7 +10,7 @@ from typing import Any
 
 from app.agents.appearance import title_of
 from app.domain.text import metres, text_cell
-from app.experiments.file_names import REPORT, SUMMARY, TRIALS_TABLE
+from app.experiments.config import REPORT, SUMMARY, TRIALS_TABLE
 from app.experiments.formatting import counted, gait_name, number, world_name
 from app.experiments.plan import Trial
 from app.experiments.progress import Progress
