@@ -129,7 +129,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         agents=usable_agents(),
         audience=lambda: viewer.hub.counters,
         ready=lambda: _unready_reason(jobs, store),
-        film=viewer.recorded_stream,
+        recorded_stream=viewer.recorded_stream,
         replays=replays,
         replay_page=partial(replay_page, replays),
         videos=VideoRenderer(),
@@ -291,7 +291,7 @@ class _Server(uvicorn.Server):
         return await super().on_tick(counter) or self._lost.is_set()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        # uvicorn waits for all connections: an event stream would not end by itself, and a film or
+        # uvicorn waits for all connections: an event stream would not end by itself, and a video or
         # an export not in time.
         self._app.state.services.bus.close()
         await self._app.state.viewer.hub.stop()

@@ -4,7 +4,7 @@ Debian's Chromium where apt-get may install it, else Playwright's own. Its headl
 first: the same engine without the windows of a desktop, which Chromium draws unseen as pages of
 their own, in two fifths of the browser tests' time. A browser counts only if it starts, because
 Ubuntu's `chromium` may be a stub that asks for snap, and Playwright's own may lack system
-libraries. Films, which are drawn off screen, need OpenGL by EGL too.
+libraries. Videos, which are drawn off screen, need OpenGL by EGL too.
 """
 
 import os
@@ -30,7 +30,7 @@ WHAT_PLAYWRIGHT_NEEDS = (
 
 # Names of packages and of their commands.
 _HEADLESS_SHELL, _CHROMIUM = "chromium-headless-shell", "chromium"
-# Playwright's driver needs libatomic, which a slim Debian has not; films are drawn with EGL.
+# Playwright's driver needs libatomic, which a slim Debian has not; videos are drawn with EGL.
 _LIBRARIES = ["libatomic1", "libegl1", "libgl1-mesa-dri"]
 
 _PLAYWRIGHT_VERSION = [sys.executable, "-m", "playwright", "--version"]
@@ -83,9 +83,7 @@ def _give_up(why: str) -> int:
 
 
 def _install_debian_packages() -> None:
-    print(
-        f"The tests of the page and of films need {_HEADLESS_SHELL} and {' and '.join(_LIBRARIES)}."
-    )
+    print(f"Tests of the page and of videos need {_HEADLESS_SHELL} and {' and '.join(_LIBRARIES)}.")
     as_root = _as_root()
     if shutil.which("apt-get") is None or as_root is None:
         print("apt-get cannot install them: it is not here, or needs root or passwordless sudo.")

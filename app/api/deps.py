@@ -83,10 +83,10 @@ class Services:
         what_if: computes what-ifs.
         explanations: explains steps, and shows tables of any moment.
         estimates: estimates how long runs would take.
-        film: encodes a race's recording as a recorded stream for viser.
+        recorded_stream: encodes a race's recording as a recorded stream for viser.
         replays: encodes frames of runs for pages that play them by themselves.
         replay_page: builds pages that need no server.
-        videos: renders films.
+        videos: renders videos.
         stopping: ends what takes long in threads when the server stops.
         listeners: slots of event streams.
         exports: memory budget of exports that clients are still reading.
@@ -103,7 +103,7 @@ class Services:
     agents: tuple[str, ...]
     audience: Callable[[], HubCounters]
     ready: Callable[[], str | None]
-    film: StreamEncoder
+    recorded_stream: StreamEncoder
     replays: ReplayFrames
     replay_page: PageBuilder
     videos: VideoRenderer

@@ -115,7 +115,7 @@ def get_mcap(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper"
 
 @router.post(
     "/video",
-    summary="A film of the run",
+    summary="A video of the run",
     response_class=Response,
     responses=answers(200, {"video/mp4": BINARY, "image/gif": BINARY}, headers=ATTACHMENT),
     description=(
@@ -125,7 +125,7 @@ def get_mcap(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper"
     ),
 )
 def render(services: ServicesDep, run_id: RunPath, options: VideoDep) -> Response:
-    """Return a film of the run."""
+    """Return a video of the run."""
     run = services.store.get(run_id)
     video = services.videos.render(_walks(services, run), options)
     media_type = "image/gif" if options.ending == ".gif" else "video/mp4"

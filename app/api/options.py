@@ -146,7 +146,7 @@ _HELP = {
     "best_known": best_known.DEFINITION,
     "best_known_where": best_known.COVERAGE,
     "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",
-    "video_s": "How long a film may be, in seconds, at the default number of pictures a second.",
+    "video_s": "How long a video may be, in seconds, at the default number of pictures a second.",
     "agent": "Which agent learns.",
     "seeds": "How often each setting is tried, each time with other random numbers.",
     "gaits": "Which gaits are tried.",

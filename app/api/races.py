@@ -41,8 +41,8 @@ def get_recording(
     run, config, _ = _find_recorded(services, run_id)
     kind = negotiated(request, format, ("json", "npz"))
     if kind == "viser":
-        film = _recorded_stream(services, run, config, clock)
-        return attachment(film, "application/octet-stream", f"race-{run_id}.viser")
+        stream = _recorded_stream(services, run, config, clock)
+        return attachment(stream, "application/octet-stream", f"race-{run_id}.viser")
     if kind == "npz":
         return attachment(
             _stored_recording(services, run), "application/x-npz", f"race-{run_id}.npz"
@@ -71,7 +71,7 @@ def _stored_recording(services: Services, run: Run) -> ArtifactFile:
     file = None if run.state in NOT_ENDED else services.store.open_artifact(run.id, RACE)
     if file is None:
         raise Conflict(
-            f"race {run.id} is {run.state}; its arrays can be had once it ended", run.state
+            f"race {run.id} is {run.state}; its arrays are available once it has ended", run.state
         )
     return file
 
@@ -83,14 +83,15 @@ def _recorded_stream(
     lanes = services.recordings.race(run.id)
     if run.state in NOT_ENDED or lanes is None:
         raise Conflict(
-            f"race {run.id} is {run.state}; its film can be had once it ended", run.state
+            f"race {run.id} is {run.state}; its recorded stream is available once it has ended",
+            run.state,
         )
     name = f"film-{clock}.viser"
-    while (film := services.store.open_artifact(run.id, name)) is None:
+    while (stream := services.store.open_artifact(run.id, name)) is None:
         original = original_of(config, services.store, services.recordings)
-        encoded = services.film(config, lanes, run.name, clock, original)
+        encoded = services.recorded_stream(config, lanes, run.name, clock, original)
         services.store.put_artifact(run.id, name, encoded)
-    return film
+    return stream
 
 
 def _find_recorded(services: Services, run_id: str) -> tuple[Run, RaceConfig, list[LaneRecording]]:

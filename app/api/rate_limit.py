@@ -25,7 +25,7 @@ class RateLimit(HttpMiddleware):
     """Middleware that limits starts per minute, by client address and role.
 
     Besides runs it counts imports, resumes, and what takes seconds to encode: a race's recorded
-    stream, pages that need no server, films and logs. What-ifs of spectators have a limit of their
+    stream, pages that need no server, videos and logs. What-ifs of spectators have a limit of their
     own; those of operators have none.
     """
 

@@ -52,7 +52,7 @@ _TRANSITIONS = re.compile(r"transitions-\d{4}\.npz", re.ASCII)
 
 
 def is_file_of(name: str, kind: str) -> bool:
-    """Whether a run of this kind may have a file of this name; films are not archived."""
+    """Whether an archive of a run of this kind may have a file of this name."""
     if kind == "experiment":
         return is_report_file(name)
     if kind == "race":

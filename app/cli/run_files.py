@@ -39,7 +39,7 @@ def add_to(verbs: "argparse._SubParsersAction[CommandParser]") -> None:
     table = _add(verbs, "trajectory", "joint angles and feet over time", _trajectory, _TABLES)
     table.add_argument("--lane", type=integer, help="of a race, from 0 on; all by default")
     page = _add(verbs, "page", "a replay that plays in any browser, offline", _page, (".html",))
-    video = _add(verbs, "video", "a film, rendered off screen", _video, (".mp4", ".gif"))
+    video = _add(verbs, "video", "a video, rendered off screen", _video, (".mp4", ".gif"))
     video.add_argument("--width", type=integer, default=640, help="pixels, default 640")
     video.add_argument("--height", type=integer, default=360, help="pixels, default 360")
     video.add_argument("--fps", type=integer, default=30, help="pictures a second, default 30")
@@ -128,7 +128,7 @@ def _video(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
     # MuJoCo loads the OpenGL of MUJOCO_GL when it is imported, and PyOpenGL fails in many ways.
     except (ImportError, AttributeError, RuntimeError) as error:
         raise no_opengl(error) from error
-    film = VideoOptions(
+    video = VideoOptions(
         ending=Path(options.out).suffix,
         width=options.width,
         height=options.height,
@@ -136,7 +136,7 @@ def _video(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
         speed=options.speed,
         clock=options.clock,
     )
-    return [render_video(source.walks, film)]
+    return [render_video(source.walks, video)]
 
 
 def _mcap(source: Source, options: argparse.Namespace) -> Iterable[bytes]:

@@ -1,4 +1,4 @@
-"""A recorded walk as a film, MP4 or GIF, rendered off screen by MuJoCo.
+"""A recorded walk as a video, MP4 or GIF, rendered off screen by MuJoCo.
 
 Nothing is simulated: each picture shows the recorded poses, interpolated as in a replay. OpenGL
 draws in software where there is no graphics card (Mesa's llvmpipe), with EGL, or with OSMesa if the
@@ -32,7 +32,7 @@ VIDEO_EXTRA = "video"
 MIN_SIDE, MAX_WIDTH, MAX_HEIGHT, MAX_FPS = 64, 1920, 1080, 60
 MIN_SPEED, MAX_SPEED = 0.05, 64
 MAX_FRAMES = 9000
-"""Pictures of one film; each takes about 0.1 s in software."""
+"""Pictures of one video; each takes about 0.1 s in software."""
 _GAP_M = 0.25
 _SMOOTHING_S = 0.25  # as in the live view (app/viewer/scene.py)
 _BACKGROUND, _GROUND, _GROUND_LINES = (0.05, 0.07, 0.1), (0.16, 0.2, 0.26), (0.3, 0.36, 0.44)
@@ -41,12 +41,12 @@ _CAPTION, _CAPTION_BOX = (236, 240, 245, 255), (13, 17, 23, 190)
 
 @dataclass(frozen=True)
 class VideoOptions:
-    """Settings of a rendered film.
+    """Settings of a rendered video.
 
     Attributes:
         ending: `.mp4` or `.gif`.
         width, height: of the picture [px], even.
-        fps: pictures a second of the film.
+        fps: pictures a second of the video.
         speed: times the run's own time.
         clock: times a race.
     """
@@ -73,7 +73,7 @@ class VideoOptions:
 
 
 def render_video(walks: RecordedWalks, options: VideoOptions) -> bytes:
-    """Return the film of a run; raises as `write_video`."""
+    """Return the video of a run; raises as `write_video`."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"video{options.ending}"
         write_video(walks, options, file)
@@ -81,7 +81,7 @@ def render_video(walks: RecordedWalks, options: VideoOptions) -> bytes:
 
 
 def write_video(walks: RecordedWalks, options: VideoOptions, file: Path) -> None:
-    """Render the film of a run to a file.
+    """Render the video of a run to a file.
 
     Raises:
         MissingExtra: if a package of the extra, or OpenGL, is not installed.
@@ -100,7 +100,7 @@ def write_video(walks: RecordedWalks, options: VideoOptions, file: Path) -> None
 
 
 def check_length(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> None:
-    """Check that a film would not be too long.
+    """Check that a video would not be too long.
 
     Raises:
         InvalidInput: if it would have more pictures.
@@ -142,8 +142,8 @@ def _times_s(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> li
         times_s.append(time_s)
         if len(times_s) >= max_frames:
             raise InvalidInput(
-                f"the film would have more than {max_frames:,} pictures; choose a higher speed, or "
-                "fewer pictures a second"
+                f"the video would have more than {max_frames:,} pictures; choose a higher speed, "
+                "or fewer pictures a second"
             )
 
 

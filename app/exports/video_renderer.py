@@ -1,4 +1,4 @@
-"""Renders films for a server: one at a time, in a process of lower priority."""
+"""Renders videos for a server: one at a time, in a process of lower priority."""
 
 import os
 import tempfile
@@ -13,14 +13,14 @@ from app.jobs.process_pool import ProcessPool
 from app.storage.errors import Busy
 
 MAX_SERVED_FRAMES = 900
-"""Pictures of a film over REST, half a minute at 30 a second."""
+"""Frames of a video over REST, half a minute at 30 a second."""
 TIMEOUT_S = 900.0
 """A second for each picture; a large one takes about 0.4 s in software."""
 _IDLE_S = 10.0
 _RETRY_S = 20
 
 
-class _Film(NamedTuple):
+class _VideoTask(NamedTuple):
     walks: RecordedWalks
     options: VideoOptions
     file: Path
@@ -30,16 +30,16 @@ class VideoRenderer:
     """Renders in a process of its own, since OpenGL in software takes all cores. Thread-safe."""
 
     def __init__(self, timeout_s: float = TIMEOUT_S) -> None:
-        """Create a renderer that is free; the first film starts its process.
+        """Create a renderer that is free; the first video starts its process.
 
         Args:
-            timeout_s: time after which a film is given up [s].
+            timeout_s: time after which a video is given up [s].
         """
         self._rendering = threading.Lock()
         self._pool = ProcessPool(count=1, idle_s=_IDLE_S, timeout_s=timeout_s)
 
     def render(self, walks: RecordedWalks, options: VideoOptions) -> bytes:
-        """Render the film of a run.
+        """Render the video of a run.
 
         Raises:
             Busy: if another one is being rendered, its process ends, it takes too long, or the
@@ -49,29 +49,29 @@ class VideoRenderer:
         """
         check_length(walks, options, MAX_SERVED_FRAMES)
         if not self._rendering.acquire(blocking=False):
-            raise Busy("another film is being rendered; try again in a moment", _RETRY_S)
+            raise Busy("another video is being rendered; try again in a moment", _RETRY_S)
         try:
             # Made here, so that it is removed even if the process is killed.
             with tempfile.TemporaryDirectory() as folder:
-                film = _Film(walks, options, Path(folder) / f"video{options.ending}")
-                (failure,) = self._pool.map(_write, [film])
+                video = _VideoTask(walks, options, Path(folder) / f"video{options.ending}")
+                (failure,) = self._pool.map(_write, [video])
                 if failure is not None:
-                    raise HexapodError(f"a film failed: {failure}")
-                return film.file.read_bytes()
+                    raise HexapodError(f"a video failed: {failure}")
+                return video.file.read_bytes()
         finally:
             self._rendering.release()
 
     def close(self) -> None:
-        """Kill the process, and refuse further films."""
+        """Kill the process, and refuse further videos."""
         self._pool.close()
 
 
-def _write(film: _Film) -> str | None:
-    """Write a film in a worker; return what failed, if it is none of the errors for users."""
+def _write(video: _VideoTask) -> str | None:
+    """Write a video in a worker; return what failed, if it is none of the errors for users."""
     # Keeps the encoder in the process group of the worker, with which it is killed.
     os.environ["IMAGEIO_FFMPEG_NO_PREVENT_SIGINT"] = "1"
     try:
-        write_video(*film)
+        write_video(*video)
     except HexapodError:
         raise
     except Exception as error:

@@ -1,7 +1,7 @@
 """A replay as one page that needs no server: viser's client, a player and the frames of the run.
 
 The page is `viser_internals.client`'s with `static/js/offline/player.js` and the modules that this
-imports, all inline, and blocks of data: `film`, JSON about the run; `scene` and `segment-…`, the
+imports, all inline, and blocks of data: `replay`, JSON about the run; `scene` and `segment-…`, the
 encodings of `replay_frames` in base64. By its Content-Security-Policy it can load nothing.
 """
 
@@ -58,12 +58,12 @@ def replay_page(
     before, after = _around_frames(title)
     room = max_bytes - len(before) - len(after) - len(scene) - len(json.dumps(plan)) - 2000
     level, numbers = _segments_that_fit(frames, run_id, clock, plan, room)
-    film = {**plan, "title": title, "level": level, "notes": _notes(plan, level)}
+    replay = {**plan, "title": title, "level": level, "notes": _notes(plan, level)}
 
     def chunks() -> Iterator[bytes]:
         yield before
         # "<" could end the block.
-        yield _block("film", json.dumps(film).replace("<", "\\u003c").encode())
+        yield _block("replay", json.dumps(replay).replace("<", "\\u003c").encode())
         yield _block("scene", scene)
         for number in numbers:
             segment = frames.segment(run_id, clock, level, number)

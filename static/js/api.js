@@ -298,8 +298,8 @@ export async function getReplayFrames(id, address, query) {
   return (await request("GET", path)).arrayBuffer();
 }
 
-/** Render a film of a run, which takes up to minutes. @type {(id: string, playback_speed: number) => Promise<Blob>} */
-export const getFilm = async (id, playback_speed) =>
+/** Render a video of a run, which takes up to minutes. @type {(id: string, playback_speed: number) => Promise<Blob>} */
+export const getVideo = async (id, playback_speed) =>
   (await request("POST", `runs/${encodeURIComponent(id)}/video?playback_speed=${playback_speed}`)).blob();
 
 /**

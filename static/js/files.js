@@ -1,5 +1,5 @@
 // Files that the browser downloads: the addresses of a run's, and those that the page makes.
-import { addressOf, getFilm, getReplay, idQuery, pathOf } from "./api.js";
+import { addressOf, getVideo, getReplay, idQuery, pathOf } from "./api.js";
 import { limitsOf } from "./settings.js";
 
 /** @import { RunKey } from "./api.js" */
@@ -65,8 +65,8 @@ export const fileAddress = (run, name) =>
 // ---- files of the page
 
 const KEPT_MS = 60_000;
-/** Kept below the longest film that the server renders, since each recorded part is rounded up to a picture [s]. */
-const FILM_MARGIN_S = 1;
+/** Kept below the longest video that the server renders, since each recorded part is rounded up to a picture [s]. */
+const VIDEO_MARGIN_S = 1;
 
 /** @type {(content: Blob, name: string) => void} */
 export function saveFile(content, name) {
@@ -77,15 +77,15 @@ export function saveFile(content, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), KEPT_MS);
 }
 
-/** The playback speed at which all that is recorded fits into a film. @param {[number, number][]} recorded_s [s] */
-export function filmSpeed(recorded_s) {
+/** The playback speed at which all that is recorded fits into a video. @param {[number, number][]} recorded_s [s] */
+export function videoSpeed(recorded_s) {
   const length_s = recorded_s.reduce((sum, [begin, end]) => sum + end - begin, 0);
-  const longest_s = (limitsOf("video_s").maximum ?? Infinity) - FILM_MARGIN_S;
+  const longest_s = (limitsOf("video_s").maximum ?? Infinity) - VIDEO_MARGIN_S;
   return Math.max(1, Math.ceil((10 * length_s) / longest_s) / 10);
 }
 
-/** Have a film of a run rendered, and save it. @param {Run} run */
-export async function saveFilm(run) {
+/** Have a video of a run rendered, and save it. @param {Run} run */
+export async function saveVideo(run) {
   const { recorded_s } = await getReplay(run.id, "paper", null);
-  saveFile(await getFilm(run.id, filmSpeed(recorded_s)), `${run.kind}-${run.id}.mp4`);
+  saveFile(await getVideo(run.id, videoSpeed(recorded_s)), `${run.kind}-${run.id}.mp4`);
 }

@@ -55,15 +55,17 @@ def test_log_of_a_race(api: Api, raced: dict[str, Any]) -> None:
 
 
 def test_video_of_a_race(api: Api, raced: dict[str, Any]) -> None:
-    def film(**query: Any) -> Any:
+    def video(**query: Any) -> Any:
         return api.call("POST", f"/runs/{raced['id']}/video", params=query)
 
-    answer = film(format="gif", width=160, height=120, fps=2, clock="free")
+    answer = video(format="gif", width=160, height=120, fps=2, clock="free")
     assert (answer.status_code, answer.headers["content-type"]) == (200, "image/gif")
     assert answer.content[:6] == b"GIF89a"
-    refused(film(width=161), 422, "width must be an even number of pixels")
-    refused(film(playback_speed=0), 422, "playback_speed must be a number from 0.05 to 64")
-    refused(film(fps=60, playback_speed=0.05), 422, "more than 900 pictures; choose a higher speed")
+    refused(video(width=161), 422, "width must be an even number of pixels")
+    refused(video(playback_speed=0), 422, "playback_speed must be a number from 0.05 to 64")
+    refused(
+        video(fps=60, playback_speed=0.05), 422, "more than 900 pictures; choose a higher speed"
+    )
 
 
 def test_a_stopped_race_has_the_files_of_what_it_walked(api: Api) -> None:

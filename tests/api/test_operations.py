@@ -28,8 +28,8 @@ def test_starts_per_minute_are_limited_by_address(serve: Serve) -> None:
         answer = api.call("POST", path, json={})
         refused(answer, 429, "3 times a minute", "HEXAPODS_STARTS_PER_MINUTE")
         assert 1 <= int(answer.headers["retry-after"]) <= 20
-    film = "/races/x/recording?format=viser"
-    refused(api.call("GET", film), 429)
+    stream = "/races/x/recording?format=viser"
+    refused(api.call("GET", stream), 429)
     for method, path in (("GET", "/trainings"), ("POST", "/trainings/x/stop"), ("PUT", "/stage")):
         assert api.call(method, path, json={}).status_code != 429
 
@@ -52,9 +52,9 @@ def test_every_route_that_starts_something_is_limited(serve: Serve) -> None:
 
 def test_spectators_have_a_token_bucket_of_their_own(serve: Serve) -> None:
     api = serve(starts_per_minute=1, token=TOKEN)
-    film = "/races/x/recording?format=viser"
-    refused(api.call("GET", film), 404)
-    refused(api.call("GET", film), 429)
+    stream = "/races/x/recording?format=viser"
+    refused(api.call("GET", stream), 404)
+    refused(api.call("GET", stream), 429)
     bearer = {"Authorization": f"Bearer {TOKEN}"}
     refused(api.call("POST", "/trainings", json={}, headers=bearer), 422)
 

@@ -263,10 +263,10 @@ def test_all_options_can_be_started(api: Api) -> None:
 def test_recorded_stream_plays_in_the_viewer(api: Api) -> None:
     race = api.finished(api.race(lanes=[{"agent": "greedy"}], steps=3))
     path = f"/races/{race['id']}/recording?format=viser"
-    film = api.call("GET", path)
-    assert film.status_code == 200
-    assert len(film.content) > 1000
-    assert api.call("GET", path).content == film.content
+    stream = api.call("GET", path)
+    assert stream.status_code == 200
+    assert len(stream.content) > 1000
+    assert api.call("GET", path).content == stream.content
     assert api.client.get("/viewer/", params={"playbackPath": f"/api/v1{path}"}).status_code == 200
 
 

@@ -127,13 +127,13 @@ def test_head_of_a_stream_leaves_the_connection_usable(server: Serving) -> None:
 
 def test_recorded_stream_is_rate_limited_however_its_query_is_encoded(tmp_path: Path) -> None:
     with serving(tmp_path, token=TOKEN, starts_per_minute=1) as one:
-        film = "GET /api/v1/races/x/recording?{} HTTP/1.1"
-        assert status_of(ask(one, film.format("format=viser"))) == 404
+        stream = "GET /api/v1/races/x/recording?{} HTTP/1.1"
+        assert status_of(ask(one, stream.format("format=viser"))) == 404
         for query in (
             "format=viser",
             "format=%76iser",
             "%66ormat=v%69ser",
             "format=json&format=viser",
         ):
-            assert status_of(ask(one, film.format(query))) == 429, query
-        assert status_of(ask(one, film.format("format=json&x=viser"))) == 404
+            assert status_of(ask(one, stream.format(query))) == 429, query
+        assert status_of(ask(one, stream.format("format=json&x=viser"))) == 404

@@ -58,7 +58,7 @@ def test_runs_older_than_a_page_are_found_and_shown(
     expect(rows).to_have_count(1)
     page.get_by_label("More for this race").click()
     with page.expect_download() as download:
-        dashboard.button("Film (MP4)").click()
+        dashboard.button("Video (MP4)").click()
     assert Path(download.value.path()).read_bytes()[4:8] == b"ftyp"
     page.get_by_role("button", name="All", exact=True).click()
     page.get_by_label("Search names, ids, tags and notes").fill("OLD")

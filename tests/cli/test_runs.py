@@ -130,8 +130,8 @@ def test_walk_is_written_as_a_file(data: Path, tmp_path: Path) -> None:
     assert {row.split(",")[0] for row in rows} == {"0", "1"}
     log = output("runs", "mcap", RACED, "--out", "r.mcap", *here, folder=tmp_path, run=in_process)
     assert log["bytes"] == (tmp_path / "r.mcap").stat().st_size
-    film = ("--out", "r.gif", "--width", "64", "--height", "64", "--fps", "1")
-    output("runs", "video", RACED, *film, *here, folder=tmp_path, run=in_process)
+    video = ("--out", "r.gif", "--width", "64", "--height", "64", "--fps", "1")
+    output("runs", "video", RACED, *video, *here, folder=tmp_path, run=in_process)
     assert (tmp_path / "r.gif").read_bytes()[:6] == b"GIF89a"
     assert "must end with .csv or .parquet: w.txt" in write(RACED, "--out", "w.txt")
     assert "lane must be from 0 to 1, not 2" in write(RACED, "--lane", "2", "--out", "w.csv")
@@ -141,9 +141,9 @@ def test_walk_is_written_as_a_file(data: Path, tmp_path: Path) -> None:
     assert re.fullmatch(rf"Race {RACED} is in r.html \(\d+ kB\).\n", done.stdout)
 
 
-def test_film_without_opengl_names_its_packages(data: Path, tmp_path: Path) -> None:
-    film = ("runs", "video", RACED, "--out", "r.mp4", "--data", str(data))
-    sentence = refusal(*film, folder=tmp_path, MUJOCO_GL="milk")
+def test_video_without_opengl_names_its_packages(data: Path, tmp_path: Path) -> None:
+    video = ("runs", "video", RACED, "--out", "r.mp4", "--data", str(data))
+    sentence = refusal(*video, folder=tmp_path, MUJOCO_GL="milk")
     assert "does not work here by milk" in sentence
     assert "apt-get install libegl1 libgl1-mesa-dri" in sentence
 

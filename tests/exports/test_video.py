@@ -1,4 +1,4 @@
-"""Films of a recorded walk: another reader opens them, and they show the recorded poses."""
+"""Videos of a recorded walk: another reader opens them, and they show the recorded poses."""
 
 import io
 import pickle
@@ -33,9 +33,9 @@ PICTURES = 11  # 6 steps of 0.32 s at 5 a second, and the end
 
 def test_an_mp4_opens_in_another_reader_and_moves(raced: RecordedWalks) -> None:
     renderer = VideoRenderer()
-    with av.open(io.BytesIO(renderer.render(raced, SMALL)), "r") as film:
-        stream = film.streams.video[0]
-        pictures = [frame.to_ndarray(format="rgb24").astype(int) for frame in film.decode(stream)]
+    with av.open(io.BytesIO(renderer.render(raced, SMALL)), "r") as video:
+        stream = video.streams.video[0]
+        pictures = [frame.to_ndarray(format="rgb24").astype(int) for frame in video.decode(stream)]
     renderer.close()
 
     assert (stream.codec_context.name, stream.width, stream.height) == ("h264", 160, 120)
@@ -48,10 +48,10 @@ def test_an_mp4_opens_in_another_reader_and_moves(raced: RecordedWalks) -> None:
 
 def test_a_gif_opens_in_another_reader(raced: RecordedWalks) -> None:
     options = VideoOptions(".gif", 160, 120, 5, clock="free")
-    with Image.open(io.BytesIO(render_video(raced, options))) as film:
-        assert (film.format, film.size) == ("GIF", (160, 120))
-        assert len([*ImageSequence.Iterator(film)]) == PICTURES
-        assert film.info["duration"] == 200
+    with Image.open(io.BytesIO(render_video(raced, options))) as video:
+        assert (video.format, video.size) == ("GIF", (160, 120))
+        assert len([*ImageSequence.Iterator(video)]) == PICTURES
+        assert video.info["duration"] == 200
 
 
 def test_pictures_show_the_recorded_poses(raced: RecordedWalks) -> None:
@@ -73,7 +73,7 @@ def test_a_gap_in_a_practice_is_left_out(parts: StageParts) -> None:
     assert len(times_s) == pytest.approx(520 * 0.32, abs=2)
 
 
-def test_a_film_that_is_rendered_ends_with_the_renderer(
+def test_a_video_that_is_rendered_ends_with_the_renderer(
     raced: RecordedWalks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -85,7 +85,7 @@ def test_a_film_that_is_rendered_ends_with_the_renderer(
         (worker,) = map(psutil.Process, renderer._pool.pids)
         worker_and_encoder = [worker, *worker.children()]
         assert len(worker_and_encoder) == 2
-        with pytest.raises(Busy, match="another film is being rendered"):
+        with pytest.raises(Busy, match="another video is being rendered"):
             renderer.render(raced, SMALL)
         renderer.close()
         with pytest.raises(Busy, match="one of them ended"):
@@ -96,7 +96,7 @@ def test_a_film_that_is_rendered_ends_with_the_renderer(
         renderer.render(raced, SMALL)
 
 
-def test_a_film_that_takes_too_long_or_cannot_be_encoded_fails_alone(
+def test_a_video_that_takes_too_long_or_cannot_be_encoded_fails_alone(
     raced: RecordedWalks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     encoder = tmp_path / "encoder"
@@ -114,7 +114,7 @@ def test_a_film_that_takes_too_long_or_cannot_be_encoded_fails_alone(
     stuck.close()
     encoder.write_text("#!/bin/sh\nexit 1")
     renderer = VideoRenderer()
-    with pytest.raises(HexapodError, match="a film failed: OSError") as failure:
+    with pytest.raises(HexapodError, match="a video failed: OSError") as failure:
         renderer.render(raced, SMALL)
     assert not isinstance(failure.value, InvalidInput)
     renderer.close()

@@ -1,7 +1,7 @@
 // Files that the browser downloads.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { downloads, fileAddress, filmSpeed } from "../../static/js/files.js";
+import { downloads, fileAddress, videoSpeed } from "../../static/js/files.js";
 import { options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -23,9 +23,9 @@ test("each run offers the files that it has", () => {
   assert.deepEqual(labels({ state: "interrupted" }), ["Curve (CSV)", ...walk]);
 });
 
-test("a film shows all that is recorded, faster where that would be too long for one", () => {
+test("a video shows all that is recorded, faster where that would be too long for one", () => {
   options.value = OPTIONS;
-  assert.equal(filmSpeed([[0, 12]]), 1);
-  assert.equal(filmSpeed([[0, 10], [500, 577]]), 3);
-  assert.equal(filmSpeed([[0, 90.88]]), 3.2);
+  assert.equal(videoSpeed([[0, 12]]), 1);
+  assert.equal(videoSpeed([[0, 10], [500, 577]]), 3);
+  assert.equal(videoSpeed([[0, 90.88]]), 3.2);
 });

@@ -2,9 +2,9 @@
 cost the server less than 100 MB, and so do 25 of every other heavy answer.
 
 The largest table is one of 8 divisions, 52,728,000 values, as JSON, CSV and `.npz`. Beside it a
-race's recording, its arrays, its film and its timeline, an experiment's trials, report and files,
-curves, and exports. The gate's form has a table of 400,000 values that were visited, and five
-of these answers; `make soak` has 2,500,000, and all of them.
+race's recording, its arrays, its recorded stream and its timeline, an experiment's trials, report
+and files, curves, and exports. The gate's form has a table of 400,000 values that were visited, and
+five of these answers; `make soak` has 2,500,000, and all of them.
 """
 
 import io

@@ -53,7 +53,7 @@ def test_file_has_the_whole_race_and_visers_version(parts: StageParts) -> None:
     assert any(text.endswith("done") for text in texts)
 
 
-def test_film_of_a_fork_has_the_original_as_ghosts(parts: StageParts) -> None:
+def test_recorded_stream_of_a_branch_has_the_original_as_ghosts(parts: StageParts) -> None:
     original = parts.finished_race(("greedy",), steps=3)
     run = parts.finished_race(("q-learning",), steps=3, branch_from=Branch(original.id, 1))
     config, lanes = run.config, parts.recordings.race(run.id) or []

@@ -33,14 +33,14 @@ def test_frames_of_the_page_are_the_joint_positions_that_were_simulated(parts: S
     replay = Replays(parts.store, parts.recordings).get(run.id, "paper")
     page = page_of(frames_of(parts), run.id)
     blocks = blocks_of(page)
-    film = json.loads(blocks["film"])
+    about = json.loads(blocks["replay"])
     mesh = RobotMesh(replay.show.spec.robot)
 
-    assert film["level"] == 0
-    assert film["notes"] == []
-    end_s = film["recorded_s"][-1][1]
+    assert about["level"] == 0
+    assert about["notes"] == []
+    end_s = about["recorded_s"][-1][1]
     numbers = range(int(end_s * FRAMES_PER_S / SEGMENT_FRAMES) + 1)
-    assert list(blocks) == ["film", "scene", *(f"segment-{number}" for number in numbers)]
+    assert list(blocks) == ["replay", "scene", *(f"segment-{number}" for number in numbers)]
     for number in numbers:
         segment, arrays = decoded(base64.b64decode(blocks[f"segment-{number}"]))
         time_s = segment["frames"][-1]["time_s"]
@@ -70,11 +70,11 @@ def test_a_page_that_would_be_too_large_has_fewer_frames(parts: StageParts) -> N
     run, frames = parts.finished_race(LANES), frames_of(parts)
     whole = len(page_of(frames, run.id).encode())
     small = page_of(frames, run.id, max_bytes=whole - 20_000)
-    film = json.loads(blocks_of(small)["film"])
+    about = json.loads(blocks_of(small)["replay"])
 
     assert len(small.encode()) < whole - 20_000
-    assert film["level"] >= 1
-    assert "pictures a second of the run's time" in film["notes"][0]
+    assert about["level"] >= 1
+    assert "pictures a second of the run's time" in about["notes"][0]
     with pytest.raises(Conflict, match="too long for a page of"):
         page_of(frames, run.id, max_bytes=100_000)
 

@@ -7,7 +7,7 @@ import { decode, Follower, inRecording, SceneState } from "../replay-frames.js";
 
 /**
  * The run, and which frames of it are in this file: those of some segments at one level.
- * @typedef {ReplayPlan & { title: string, level: number, notes: string[] }} Film
+ * @typedef {ReplayPlan & { title: string, level: number, notes: string[] }} RecordedReplay
  */
 
 const FIRST_SPEED = 1;
@@ -21,11 +21,11 @@ const VIEW = "leader";
 /** @param {string} id */
 const textOf = (id) => document.getElementById(id)?.textContent ?? null;
 
-/** @type {Film} */
-const film = JSON.parse(/** @type {string} */ (textOf("film")));
-const interval_s = film.frame_s * 2 ** film.level;
-const end_s = film.recorded_s.at(-1)?.[1] ?? 0;
-const stepEnds = film.step_ends_s.flat().sort((a, b) => a - b);
+/** @type {RecordedReplay} */
+const replay = JSON.parse(/** @type {string} */ (textOf("replay")));
+const interval_s = replay.frame_s * 2 ** replay.level;
+const end_s = replay.recorded_s.at(-1)?.[1] ?? 0;
+const stepEnds = replay.step_ends_s.flat().sort((a, b) => a - b);
 
 /** Frames out of a block of this page; null if it has none of this name. @param {string} id */
 async function read(id) {
@@ -74,7 +74,7 @@ class Player extends EventTarget {
   /** Go to a moment [s], or to the nearest that is recorded. @param {number} time_s */
   seek(time_s) {
     if (!Number.isFinite(time_s)) return;
-    this.#time_s = inRecording(film.recorded_s, Math.min(Math.max(time_s, 0), end_s));
+    this.#time_s = inRecording(replay.recorded_s, Math.min(Math.max(time_s, 0), end_s));
     this.#tell();
   }
 
@@ -111,7 +111,7 @@ class Player extends EventTarget {
     const elapsed_s = Math.min((now - this.#lastTick) / 1000, LONGEST_TICK_S);
     this.#lastTick = now;
     if (this.#isPlaying && this.#show(elapsed_s)) {
-      this.#time_s = inRecording(film.recorded_s, this.#time_s + elapsed_s * this.#speed);
+      this.#time_s = inRecording(replay.recorded_s, this.#time_s + elapsed_s * this.#speed);
       if (this.#time_s >= end_s - SAME_S) this.#isPlaying = false;
       if (!this.#isPlaying || now - this.#toldAt >= UPDATE_MS) this.#tell(now);
     }
@@ -121,12 +121,12 @@ class Player extends EventTarget {
   /** Show the frame at the position; whether it is there. @param {number} elapsed_s */
   #show(elapsed_s) {
     const frame = Math.floor(this.#time_s / interval_s + SAME_S);
-    const number = Math.floor(frame / film.segment_frames);
+    const number = Math.floor(frame / replay.segment_frames);
     const loaded = this.#segment(number);
     if (!loaded || !this.#scene) return false;
     const isLast = this.#time_s >= end_s - SAME_S;
-    const index = isLast ? loaded.frames.length - 1 : Math.min(frame % film.segment_frames, loaded.frames.length - 1);
-    if (index >= film.segment_frames / 2) this.#segment(number + 1);
+    const index = isLast ? loaded.frames.length - 1 : Math.min(frame % replay.segment_frames, loaded.frames.length - 1);
+    if (index >= replay.segment_frames / 2) this.#segment(number + 1);
     const { number: before, index: shown } = this.#shown;
     if (before === number && shown === index) return true;
     const messages = this.#scene.showFrame(loaded.frames, index, before === number ? shown : -1);
@@ -200,8 +200,8 @@ const speeds = make("select", { ariaLabel: "Speed", onchange: () => player.setSp
   ...SPEEDS.map((times) => make("option", { value: String(times), selected: times === FIRST_SPEED }, `× ${times}`)));
 const bar = make("div", { className: "player" }, play,
   stepButton(-1, "One robot step back", "◂"), stepButton(1, "One robot step on", "▸"), slider, clock, speeds);
-const heading = make("p", { className: "film-title" }, make("b", {}, film.title), " ",
-  ...film.notes.map((note) => make("span", {}, note)));
+const heading = make("p", { className: "replay-title" }, make("b", {}, replay.title), " ",
+  ...replay.notes.map((note) => make("span", {}, note)));
 
 function showState() {
   const label = player.paused ? "Play" : "Pause";

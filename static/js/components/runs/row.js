@@ -6,7 +6,7 @@ import {
 import { changesInWords, rateChanges } from "../../changes.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
-import { archiveAddress, downloads, saveFilm } from "../../files.js";
+import { archiveAddress, downloads, saveVideo } from "../../files.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
@@ -143,7 +143,7 @@ function Menu({ run }) {
       <div class="menu-body">
         <${Downloads} run=${run} />
         ${isOperator.value && run.kind !== "experiment" && !isActive(run) && run.progress.done > 0 && html`
-          <${FilmButton} run=${run} />
+          <${VideoButton} run=${run} />
         `}
         ${isOperator.value && run.kind !== "experiment" && html`
           <a href="#" onClick=${() => copySettings(run)}>Use its settings</a>
@@ -165,17 +165,17 @@ function Menu({ run }) {
   `;
 }
 
-/** Have a film rendered; the menu says so until it is there, or why there is none stands in the row. */
-function FilmButton({ run }) {
+/** Have a video rendered; the menu says so until it is there, or why there is none stands in the row. */
+function VideoButton({ run }) {
   const [isRendering, setRendering] = useState(false);
   const onClick = async () => {
     setRendering(true);
-    await attempt(run.id, () => saveFilm(run));
+    await attempt(run.id, () => saveVideo(run));
     setRendering(false);
   };
   return html`
     <button disabled=${pending.value[run.id]} onClick=${onClick} aria-live="polite">
-      ${isRendering ? "Rendering a film…" : "Film (MP4)"}
+      ${isRendering ? "Rendering a video…" : "Video (MP4)"}
     </button>
   `;
 }
