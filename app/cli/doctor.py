@@ -54,7 +54,7 @@ class CheckFailed(Exception):
     """A failed check; the message states the problem and its remedy."""
 
 
-class Finding(NamedTuple):
+class CheckResult(NamedTuple):
     """Result of one check; its fields are the members of the JSON output."""
 
     name: str
@@ -62,7 +62,7 @@ class Finding(NamedTuple):
     said: str
 
 
-def examine(data: str | None) -> Iterator[Finding]:
+def examine(data: str | None) -> Iterator[CheckResult]:
     """Run the checks one after the other, and yield each result.
 
     Args:
@@ -84,13 +84,13 @@ def examine(data: str | None) -> Iterator[Finding]:
         yield _run_check(name, lambda check_data=check_data: check_data(settings[0]))  # type: ignore[misc]
 
 
-def _run_check(name: str, check: Callable[[], str]) -> Finding:
+def _run_check(name: str, check: Callable[[], str]) -> CheckResult:
     try:
-        return Finding(name, True, check())
+        return CheckResult(name, True, check())
     except (CheckFailed, HexapodError) as error:
-        return Finding(name, False, str(error))
+        return CheckResult(name, False, str(error))
     except Exception as error:  # one broken check must not stop the others
-        return Finding(name, False, f"{type(error).__name__}: {error}; {_INSTALL}")
+        return CheckResult(name, False, f"{type(error).__name__}: {error}; {_INSTALL}")
 
 
 def _python() -> str:

@@ -58,7 +58,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "tune", help="search for the best settings of a learner", description=__doc__
     )
     parser.add_argument("agent", help="a learner, such as q-learning; my.module:Agent too")
-    _add_place_options(parser)
+    _add_condition_options(parser)
     usual = TuningConfig
     parser.add_argument(
         "--candidates",
@@ -107,7 +107,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     parser.set_defaults(run=run)
 
 
-def _add_place_options(parser: argparse.ArgumentParser) -> None:
+def _add_condition_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--gait", required=True, help=f"{', '.join(NAMED_GAITS)}, or JSON as for train"
     )

@@ -4,7 +4,7 @@ import { askForNewest, getExplanation, getTable, needsLonger } from "./api.js";
 import { count, THIN_SPACE } from "./format.js";
 import { isPlaying, shownRun } from "./selectors.js";
 import { connection, runs, scene } from "./store.js";
-import { placeName } from "./training.js";
+import { cellName } from "./training.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
@@ -163,7 +163,7 @@ const legsInWords = (legs) => `legs ${legs.join("+")}`;
  * @param {FootCells} grid
  */
 export const stateInWords = (cells, grid) =>
-  cells.map((cell, pair) => `${legsInWords(grid.pairs[pair])} ${placeName(grid, cell, " mm")}`).join(", ");
+  cells.map((cell, pair) => `${legsInWords(grid.pairs[pair])} ${cellName(grid, cell, " mm")}`).join(", ");
 
 /**
  * A move: "legs 1+4 to front left".
@@ -171,7 +171,7 @@ export const stateInWords = (cells, grid) =>
  * @param {FootCells} grid
  */
 export const moveInWords = ([pair, cell], grid) =>
-  `${legsInWords(grid.pairs[pair])} to ${placeName(grid, cell, " mm")}`;
+  `${legsInWords(grid.pairs[pair])} to ${cellName(grid, cell, " mm")}`;
 
 /** The column of a move in a table. @type {(move: Move, grid: FootCells) => number} */
 export const columnOf = ([pair, cell], { cell_names }) => pair * cell_names.length + cell;

@@ -171,7 +171,7 @@ export function bestMove({ values_m }) {
  * @param {number} cell
  * @param {string} unit after each number
  */
-export function placeName({ cell_names, cells_m }, cell, unit = "") {
+export function cellName({ cell_names, cells_m }, cell, unit = "") {
   if (cell === 0 || cell_names.length <= MAX_NAMED_CELLS) return cell_names[cell];
   const [x, y] = cells_m[cell].map((metres) => Math.round(1000 * metres));
   const parts = [

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { applyEvent, options } from "../../static/js/store.js";
-import { bestMove, curve, placeName, practisedSteps } from "../../static/js/training.js";
+import { bestMove, curve, cellName, practisedSteps } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
@@ -50,11 +50,11 @@ test("the best move is the one of the highest value", () => {
 
 test("places are named on a small grid and measured on a fine one", () => {
   const named = { cell_names: ["home", "front left"], cells_m: /** @type {[number, number][]} */ ([[0, 0], [-1, 1]]) };
-  assert.equal(placeName(named, 1), "front left");
+  assert.equal(cellName(named, 1), "front left");
   const fine = {
     cell_names: ["home", "a", "b", "c", "d", "e"],
     cells_m: /** @type {[number, number][]} */ ([[0, 0], [-0.02, 0.01], [0.02, 0], [0, -0.01], [0, 0], [0, 0]]),
   };
-  assert.deepEqual([0, 1, 2, 3].map((cell) => placeName(fine, cell, " mm")),
+  assert.deepEqual([0, 1, 2, 3].map((cell) => cellName(fine, cell, " mm")),
     ["home", "20 mm left, 10 mm front", "20 mm right", "10 mm back"]);
 });

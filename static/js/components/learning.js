@@ -7,7 +7,7 @@ import { largest, valueColours } from "../scale.js";
 import { shownRun } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { options, scene, served } from "../store.js";
-import { bestMove, curve, placeName } from "../training.js";
+import { bestMove, cellName, curve } from "../training.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { HexapodGlyph, html } from "./elements.js";
 
@@ -125,7 +125,7 @@ function Values({ known }) {
     <div class="scroller" tabindex="0" role="region" aria-label="Value of each move">
       <table class="values">
         <thead>
-          <tr><td></td>${cell_names.map((_, cell) => html`<th scope="col">${placeName(known, cell)}</th>`)}</tr>
+          <tr><td></td>${cell_names.map((_, cell) => html`<th scope="col">${cellName(known, cell)}</th>`)}</tr>
         </thead>
         <tbody>
           ${pairs.map((legs, pair) => html`
@@ -181,7 +181,7 @@ function NextMove({ known }) {
   const tried = visits?.[pair]?.[cell] ?? 0;
   const { name = agentOf(agent).title, done = false } = scene.value?.lanes?.[lane] ?? {};
   const legs = pairs[pair].join(" and ");
-  const move = `${name} ${done ? "would" : "will"} move legs ${legs} to ${placeName(known, cell, " mm")}`;
+  const move = `${name} ${done ? "would" : "will"} move legs ${legs} to ${cellName(known, cell, " mm")}`;
   const times = tried === 1 ? "once" : count(tried, "time");
   return html`
     <b>${move}${value < best.value ? " to explore" : ""}.</b> ${tried
