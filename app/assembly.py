@@ -243,7 +243,7 @@ def _planner(
 
 
 def _noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
-    """Return what makes the generator of a walk's errors of measurement after so many steps."""
+    """Return a factory of the sensor-noise generator for a step count."""
     return lambda steps: generator(seed, SENSING, *key, steps)
 
 

@@ -1,4 +1,4 @@
-"""Where the dashboard and the robots' MJCF lie.
+"""Folders of the dashboard and of the robots' MJCF.
 
 Inside the package when it was installed from a wheel, beside it in a checkout.
 """

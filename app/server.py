@@ -207,7 +207,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 
 
 async def _end_long_requests(services: Services) -> None:
-    """Answer what computes in threads, or waits for processes, which are killed."""
+    """Abort long requests: make `Stopping.check` raise, and kill the pools' processes."""
     services.stopping.set()
     for user in (services.what_if, services.estimates, services.videos):
         await asyncio.to_thread(user.close)

@@ -16,7 +16,7 @@ Bonus = Annotated[
     Ge(0),
     Le(0.01),
     Setting(
-        title="Curiosity",
+        title="Exploration bonus",
         symbol="κ",
         unit="m",
         help="Imagined reward for what it has not tried for long: κ times the root of the steps.",

@@ -50,7 +50,7 @@ class ValueUpdate(NamedTuple):
 
 
 class Belief(NamedTuple):
-    """Something that a learner with a model believes, before and after a step."""
+    """Quantity of a learned model, such as an expected reward, before and after a step."""
 
     name: str
     before: float

@@ -19,8 +19,8 @@ Direction = Annotated[
     Literal["direct", "retrograde"],
     Setting(
         title="Direction",
-        help="Of the wave. Direct: from back to front, as insects walk; retrograde: from front to "
-        "back.",
+        help="Direction of the wave. Direct: from back to front, as insects walk; retrograde: from "
+        "front to back.",
         choice_titles=("direct", "retrograde"),
         phrase="{}",
     ),

@@ -484,7 +484,7 @@ class LinearModel:
             or deciding not in range(3)
             or last_pair not in range(len(visits))
         ):
-            raise ValueError("its counters count nothing")
+            raise ValueError("its counters are out of range")
 
 
 def _without_illegal(values: FloatArray, observation: Cells) -> FloatArray:

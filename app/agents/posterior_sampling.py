@@ -31,7 +31,7 @@ PriorDeviation = Annotated[
     Setting(
         title="Expected spread of rewards",
         unit="m",
-        help="How much the rewards of untried steps may differ from 0: more is more curious.",
+        help="How much the rewards of untried steps may differ from 0: higher explores more.",
         examples=(0.002, 0.005, 0.02),
     ),
 ]

@@ -22,7 +22,7 @@ MaxReward = Annotated[
         title="Highest reward",
         symbol="R",
         unit="m",
-        help="What it hopes for wherever it has not been: more than any one step can earn.",
+        help="Assumed reward of an untried step; at least the highest possible.",
         examples=(0.01, 0.02),
     ),
 ]
@@ -33,7 +33,7 @@ KnownAfter = Annotated[
     Setting(
         title="Tries until known",
         symbol="m",
-        help="How often it tries a step until it takes what followed as a fact.",
+        help="Visits after which a state-action pair counts as known.",
         examples=(1, 2, 4),
     ),
 ]

@@ -360,7 +360,7 @@ class TabularLearner(TabularAgent):
             declare("epsilon", Epsilon).check(epsilon)
         (learned,) = state["learned"].tolist()
         if not isinstance(learned, int) or learned < 0:
-            raise ValueError("it has learned for less than no step")
+            raise ValueError("its step count is negative or not whole")
 
 
 def summary_of(update: ValueUpdate) -> str:

@@ -134,23 +134,23 @@ class TabularModel:
         count = len(pairs)
         kinds = steps.dtype.kind + pairs.dtype.kind + outcomes.dtype.kind
         if kinds != "iii" or steps.shape != (1,) or steps[0] < 0:
-            raise ValueError("its model is no list of whole numbers")
+            raise ValueError("its model is not of whole numbers")
         if rewards.shape != (count, 2) or not np.isfinite(rewards).all():
-            raise ValueError("its model has rewards that are no numbers")
+            raise ValueError("its model has rewards that are not finite numbers")
         check_entries(pairs[:, :2], count, state["shape"])
         if len(np.unique(pairs[:, :2], axis=0)) < count or len(
             np.unique(outcomes[:, :2], axis=0)
         ) < len(outcomes):
-            raise ValueError("its model says something twice")
+            raise ValueError("its model has duplicate entries")
         leg_pairs, cells = state["shape"].tolist()
         tries, nexts, last_steps = pairs[:, 2:].T
         if (tries < 0).any() or (last_steps < 0).any() or (last_steps > steps[0]).any():
-            raise ValueError("its model counts less than nothing")
+            raise ValueError("its model has negative counts, or steps beyond its total")
         numbers, afters, counts = outcomes.T
         _check_below(numbers, count)
         _check_below(np.concatenate([nexts, afters]), cells**leg_pairs)
         if (counts < 1).any() or (np.bincount(numbers, counts, count) != tries).any():
-            raise ValueError("its model has other tries than outcomes")
+            raise ValueError("its model has tries that differ from its outcomes")
 
 
 def check_problem(problem: Problem, **settings: Any) -> None:  # noqa: ARG001  # whatever they are

@@ -408,7 +408,7 @@ class WhatIfView(Answer):
 
 
 class SpectatorsView(Answer):
-    """Where others can watch: an address and its QR code, or the reason why there is none."""
+    """Spectators' address with its QR code, or the reason why there is none."""
 
     address: str | None
     qr_code: str | None = Field(description="SVG image as a data URI")

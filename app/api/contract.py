@@ -113,7 +113,7 @@ def takes_file(*media_types: str) -> Schema:
 
 
 _generated: dict[tuple[tuple[str, ...], int], Schema] = {}
-"""What FastAPI says of routes, by the agents and the number of routes: all apps have the same."""
+"""Cache of FastAPI's OpenAPI description by agents and number of routes; equal for all apps."""
 _lock = threading.Lock()
 
 

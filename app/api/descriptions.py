@@ -107,7 +107,7 @@ VALID: Mapping[str, str] = {
     ),
     "width": f"an even number of pixels from {MIN_SIDE} to {MAX_WIDTH}",
     "height": f"an even number of pixels from {MIN_SIDE} to {MAX_HEIGHT}",
-    "fps": f"a whole number of pictures a second from 1 to {MAX_FPS}",
+    "fps": f"a whole number of frames per second from 1 to {MAX_FPS}",
     "playback_speed": f"a number from {MIN_SPEED} to {MAX_SPEED}, times the run's own time",
     "part": "practice, or evaluation for the newest one; of a training",
     "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",

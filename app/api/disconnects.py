@@ -32,7 +32,7 @@ class Disconnects(HttpMiddleware):
         except Exception as error:
             if not is_disconnected or not _is_stream_error(error):
                 raise
-            _logger.debug("a client left in the middle of a stream")
+            _logger.debug("a client disconnected during a stream")
 
 
 def _is_stream_error(error: Exception) -> bool:

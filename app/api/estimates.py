@@ -21,7 +21,7 @@ def estimate_routes(bodies: AgentBodies) -> APIRouter:
     @router.post(
         "/trainings/estimate",
         tags=["trainings"],
-        summary="How long a training would take here",
+        summary="Estimate how long a training would take on this server",
         response_model=EstimateView,
     )
     def estimate_training(
@@ -33,7 +33,7 @@ def estimate_routes(bodies: AgentBodies) -> APIRouter:
     @router.post(
         "/races/estimate",
         tags=["races"],
-        summary="How long a race and its practice would take here",
+        summary="Estimate how long a race and its practice would take on this server",
         response_model=EstimateView,
     )
     def estimate_race(
@@ -48,7 +48,7 @@ def estimate_routes(bodies: AgentBodies) -> APIRouter:
     @router.post(
         "/experiments/estimate",
         tags=["experiments"],
-        summary="How long an experiment would take here",
+        summary="Estimate how long an experiment would take on this server",
         response_model=EstimateView,
     )
     def estimate_experiment(

@@ -19,8 +19,9 @@ NEWEST_RUNS = 50
 RETRY_MS = 1000
 RETRY_AFTER_S = 10
 _REFUSALS: dict[Refusal, str] = {
-    "full": "As many follow the events as can; there is room when someone leaves.",
-    "address full": "As many follow the events from this address as may from one.",
+    "full": "The event stream has its maximum number of clients; try again later.",
+    "address full": "The event stream has its maximum number of clients from this address; "
+    "try again later.",
 }
 
 router = APIRouter(prefix="/events", tags=["events"])

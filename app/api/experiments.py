@@ -44,7 +44,7 @@ _FILE_SCHEMAS: dict[str, dict[str, Any]] = {
 router = run_routes("experiment")
 
 
-@router.get("/{run_id}/summary", summary="What its trials show so far", response_model=SummaryView)
+@router.get("/{run_id}/summary", summary="Get an experiment's summary", response_model=SummaryView)
 def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     """Return the newest summary, which is recomputed every few seconds while trials run."""
     run = find(services, "experiment", run_id)
@@ -56,7 +56,7 @@ def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
 
 @router.get(
     "/{run_id}/report",
-    summary="Its report, as one HTML file",
+    summary="Get an experiment's report (one HTML file)",
     response_class=Response,
     responses=answers(200, {"text/html": TEXT}, headers=ATTACHMENT),
 )
@@ -68,12 +68,12 @@ def get_report(services: ServicesDep, run_id: RunPath) -> Response:
 
 @router.get(
     "/{run_id}/files/{name:path}",
-    summary="A file of its report",
+    summary="Get a file of an experiment's report",
     response_class=Response,
     responses=answers(200, _FILE_SCHEMAS, headers=ATTACHMENT),
 )
 def get_file(
-    services: ServicesDep, run_id: RunPath, name: Annotated[str, Path(description="of the file")]
+    services: ServicesDep, run_id: RunPath, name: Annotated[str, Path(description="file name")]
 ) -> Response:
     """Return one of the report's files, which the run's `result` lists in `files`."""
     run = find(services, "experiment", run_id)
@@ -82,7 +82,7 @@ def get_file(
 
 @router.get(
     "/{run_id}/trials",
-    summary="Its trials so far; also as CSV",
+    summary="List an experiment's trials (JSON, CSV)",
     response_model=TrialsView,
     responses=answers(200, {"text/csv": TEXT}),
 )
@@ -104,7 +104,7 @@ def get_trials(
 @router.post(
     "/{run_id}/trials/run",
     status_code=202,
-    summary="Run one of its trials here",
+    summary="Run one trial of an experiment again",
     response_model=TrainingView | RaceView,
     responses=answers(202, headers=LOCATION),
 )

@@ -50,7 +50,7 @@ VideoDep = Annotated[VideoOptions, Depends(_video_options)]
 
 @router.get(
     "/trajectory",
-    summary="Joint angles, feet and torques over time, as CSV or Parquet",
+    summary="Export joint angles, feet and torques over time (CSV, Parquet)",
     response_class=Response,
     responses=answers(200, {"text/csv": TEXT, PARQUET_TYPE: BINARY}, headers=ATTACHMENT),
 )
@@ -81,7 +81,7 @@ def get_trajectory(
 
 @router.get(
     "/page",
-    summary="A page that replays the run without a server",
+    summary="Export an HTML page that replays the run without a server",
     response_class=Response,
     responses=answers(200, {"text/html": TEXT}, headers=ATTACHMENT),
 )
@@ -99,7 +99,7 @@ def get_page(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper"
 
 @router.get(
     "/mcap",
-    summary="Joint states and frames as an MCAP log",
+    summary="Export joint states and frames (MCAP log)",
     response_class=Response,
     responses=answers(200, {MCAP_TYPE: BINARY}, headers=ATTACHMENT),
 )
@@ -115,13 +115,13 @@ def get_mcap(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper"
 
 @router.post(
     "/video",
-    summary="A video of the run",
+    summary="Render a video of the run (MP4, GIF)",
     response_class=Response,
     responses=answers(200, {"video/mp4": BINARY, "image/gif": BINARY}, headers=ATTACHMENT),
     description=(
         f"Render an MP4 or GIF of at most {MAX_SERVED_FRAMES} pictures, which takes up to minutes; "
         "one at a time.\n\nIt needs `racing-hexapods[video]` and OpenGL on the server; "
-        "`docs/exports.md` tells how."
+        "see `docs/exports.md`."
     ),
 )
 def render(services: ServicesDep, run_id: RunPath, options: VideoDep) -> Response:

@@ -30,7 +30,7 @@ router = APIRouter(prefix="/runs", tags=["runs"])
 
 @router.get(
     "/{run_id}/gait",
-    summary="Footfalls, speed, posture, torque and energy of a walk",
+    summary="Analyse the gait: footfalls, speed, posture, torque, energy",
     response_model=GaitView,
 )
 def get_gait(

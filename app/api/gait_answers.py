@@ -80,7 +80,7 @@ class GaitFiguresView(Answer):
     duty_factor: Annotated[float, Field(ge=0, le=1, description="mean of all legs")]
     mass_kg: float
     legs: list[LegGaitView]
-    cycle: Annotated[CycleView | None, Field(description="null if the walk ends in none")]
+    cycle: Annotated[CycleView | None, Field(description="null if the walk has no limit cycle")]
     posture: PostureView
     effort: Annotated[ServoEffortView | None, Field(description="null if it was not recorded")]
 

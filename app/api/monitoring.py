@@ -30,15 +30,15 @@ from app.storage.run import STATES
 router = APIRouter(tags=["health"])
 
 
-@router.get("/healthz", response_model=HealthView, summary="Whether the server lives")
+@router.get("/healthz", response_model=HealthView, summary="Liveness probe")
 async def get_health() -> Response:
-    """Liveness probe: return 200 as long as the server responds at all."""
+    """Return 200 as long as the server responds at all."""
     return JSONResponse({"status": "ok", "version": __version__})
 
 
-@router.get("/readyz", response_model=HealthView, summary="Whether the server is ready to work")
+@router.get("/readyz", response_model=HealthView, summary="Readiness probe")
 def get_readiness(services: ServicesDep) -> Response:
-    """Readiness probe: return 503 with the reason while something that runs need is unavailable."""
+    """Return 503 with the reason while something that runs need is unavailable."""
     trouble = services.ready()
     if trouble is not None:
         return problem(503, trouble, headers={"Retry-After": "1"})
@@ -47,7 +47,7 @@ def get_readiness(services: ServicesDep) -> Response:
 
 @router.get(
     "/metrics",
-    summary="Figures for Prometheus",
+    summary="Get metrics for Prometheus",
     response_class=Response,
     responses=answers(
         200, {"text/plain; version=0.0.4": TEXT, "application/openmetrics-text": TEXT}

@@ -60,7 +60,7 @@ router = APIRouter(prefix="/options", tags=["options"])
 @router.get(
     "",
     response_model=OptionsView,
-    summary="Gaits, robots, agents, clocks; defaults, limits and help",
+    summary="List gaits, robots, agents and clocks; defaults, limits and help",
 )
 def get_options(services: ServicesDep, request: Request) -> Response:
     """Return the options, defaults, limits and help texts of all forms."""

@@ -26,7 +26,7 @@ router = run_routes("race")
 
 @router.get(
     "/{run_id}/recording",
-    summary="What a replay needs; also as .npz and for viser",
+    summary="Get a race's recording (JSON, .npz, viser)",
     response_model=RecordingView,
     responses=answers(200, {"application/x-npz": BINARY, "application/octet-stream": BINARY}),
 )
@@ -55,7 +55,7 @@ def get_recording(
 
 @router.get(
     "/{run_id}/timeline",
-    summary="Distance over time under one clock",
+    summary="Get each lane's distance over time under one clock",
     response_model=TimelineView,
 )
 def get_timeline(

@@ -26,7 +26,9 @@ ClockQuery = Annotated[Clock, Query(description="times a race; a training has on
 GhostQuery = Annotated[RunId | None, Query(description=VALID["ghost"])]
 
 
-@router.get("", summary="What a run's replay shows, and when", response_model=ReplayView)
+@router.get(
+    "", summary="Get a replay's plan: intervals, steps and marks", response_model=ReplayView
+)
 def get_replay(
     services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper", ghost: GhostQuery = None
 ) -> Response:
@@ -40,7 +42,7 @@ def get_replay(
 
 @router.get(
     "/scene",
-    summary="The scene at the start of a replay",
+    summary="Get the scene at the start of a replay",
     response_class=Response,
     responses=_FRAMES,
 )
@@ -51,7 +53,9 @@ def get_replay_scene(
     return _response(request, services.replays.scene(run_id, ghost))
 
 
-@router.get("/moment", summary="One frame of a replay", response_class=Response, responses=_FRAMES)
+@router.get(
+    "/moment", summary="Get one frame of a replay", response_class=Response, responses=_FRAMES
+)
 def get_replay_moment(
     *,
     services: ServicesDep,
@@ -67,7 +71,7 @@ def get_replay_moment(
 
 @router.get(
     "/posture",
-    summary="A ghost of a robot in a state",
+    summary="Get messages that draw a ghost in a given state",
     response_class=Response,
     responses=_FRAMES,
 )
@@ -106,7 +110,7 @@ def _segment_key(
 
 @router.get(
     "/segments/{level}/{number}",
-    summary="Frames of a replay",
+    summary="Get a segment of a replay's frames",
     response_class=Response,
     responses=_FRAMES,
 )

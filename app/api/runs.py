@@ -36,7 +36,7 @@ from app.storage.database.listing import Listing
 from app.storage.errors import Conflict, Damaged, NotFound
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
 
-RunPath = Annotated[str, Path(description="of the run")]
+RunPath = Annotated[str, Path(description="id of the run")]
 RunIdsQuery = Annotated[
     list[RunId],
     Query(alias="id", min_length=1, max_length=MAX_RUNS, description=VALID["id"]),
@@ -95,7 +95,7 @@ def accepted(request: Request, view: dict[str, Any]) -> Response:
 router = APIRouter(prefix="/runs", tags=["runs"])
 
 
-@router.get("", summary="The runs of every kind", response_model=RunPage)
+@router.get("", summary="List runs of every kind", response_model=RunPage)
 def list_runs(
     services: ServicesDep,
     listing: ListingDep,
@@ -142,7 +142,7 @@ def annotate_run(services: ServicesDep, run_id: RunPath, body: AnnotationBody) -
 @router.post(
     "/{run_id}/again",
     status_code=202,
-    summary="Start a run with the settings of another",
+    summary="Start a run again with the same settings",
     response_model=TrainingView | RaceView | ExperimentView,
     responses=answers(202, headers=LOCATION),
 )
@@ -158,7 +158,9 @@ def run_again(
     return accepted(request, jobs.view(run))
 
 
-@router.get("/{run_id}/code", summary="A run as commands and as Python", response_model=CodeView)
+@router.get(
+    "/{run_id}/code", summary="Get commands and Python that repeat a run", response_model=CodeView
+)
 def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Response:
     """Return what makes exactly this run, on the command line and in Python.
 
@@ -170,7 +172,7 @@ def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Respon
 
 @router.get(
     "/{run_id}/explain",
-    summary="Why a step was taken, and what was learned from it",
+    summary="Explain why a step was taken and what was learned from it",
     response_model=ExplanationView,
 )
 def explain_step(
@@ -199,11 +201,13 @@ def run_routes(kind: Kind) -> APIRouter:
     router = APIRouter(prefix=f"/{kind}s", tags=[f"{kind}s"])
     view, page = _VIEWS[kind]
 
-    @router.get("", summary=f"The {kind}s", name=f"list_{kind}s", response_model=page)
+    @router.get("", summary=f"List {kind}s", name=f"list_{kind}s", response_model=page)
     def list_runs(services: ServicesDep, listing: ListingDep) -> Response:
         return _page(services, listing._replace(kind=kind))
 
-    @router.get("/{run_id}", summary=phrase("{}", kind), name=f"get_{kind}", response_model=view)
+    @router.get(
+        "/{run_id}", summary=phrase("Get {}", kind), name=f"get_{kind}", response_model=view
+    )
     def get_run(services: ServicesDep, run_id: RunPath) -> Response:
         return JSONResponse(services.jobs.view(find_any(services, kind, run_id)))
 

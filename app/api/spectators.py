@@ -23,7 +23,9 @@ _LOOPBACK_ONLY = (
 router = APIRouter(prefix="/spectators", tags=["stage"])
 
 
-@router.get("", response_model=SpectatorsView, summary="Where others can watch, and how many do")
+@router.get(
+    "", response_model=SpectatorsView, summary="Get the spectators' address and their number"
+)
 def get_spectators(request: Request, services: ServicesDep) -> Response:
     """Return the address at which others watch, or why there is none, and its QR code."""
     address = _address_for_others(request, services)

@@ -10,13 +10,13 @@ from app.api.schemas import StageBody
 router = APIRouter(prefix="/stage", tags=["stage"])
 
 
-@router.get("", response_model=StageView, summary="What is on stage")
+@router.get("", response_model=StageView, summary="Get the stage's state")
 def get_stage(services: ServicesDep) -> Response:
     """Return the state of the stage: run, time, speed and clock."""
     return JSONResponse(services.stage.state())
 
 
-@router.put("", response_model=StageView, summary="Show a run, or command the show")
+@router.put("", response_model=StageView, summary="Show a run, or change the stage's playback")
 def put_stage(services: ServicesDep, body: StageBody) -> Response:
     """Change the given fields; the others are unchanged."""
     services.stage.set(**body.model_dump())

@@ -48,7 +48,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
     @router.patch(
         "/trainings/{run_id}",
         tags=["trainings"],
-        summary="Change pace or live settings while it runs",
+        summary="Change pace or live settings of a training",
         response_model=TrainingView,
     )
     def change_training(
@@ -62,7 +62,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         "/races",
         tags=["races"],
         status_code=202,
-        summary="Start a race, and the practice that it needs",
+        summary="Start a race and the practice that it needs",
         response_model=RaceView,
         responses=answers(202, headers=LOCATION),
     )
@@ -104,7 +104,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         "/what-if",
         tags=["what-if"],
         response_model=WhatIfView,
-        summary=f"How far {SEEDS} seeds would come after a practice, and by default",
+        summary=f"Compare {SEEDS} seeds of a practice with {SEEDS} of the defaults",
         description=(
             f"Take a training's body, of at most {MAX_STEPS:,} steps; always use the kinematic "
             "simulator."

@@ -34,7 +34,7 @@ router = run_routes("training")
 @router.post(
     "/import",
     status_code=201,
-    summary="Add a training out of a Q-table's file",
+    summary="Import a training from a Q-table's file",
     response_model=TrainingView,
     responses=answers(201, headers=LOCATION),
     openapi_extra=takes_file("application/octet-stream"),
@@ -59,12 +59,12 @@ def import_training(
 @router.post(
     "/{run_id}/disturbances",
     status_code=202,
-    summary="Let something happen while it runs",
+    summary="Disturb a running training",
     response_model=DisturbanceView,
     responses=answers(202),
 )
 def disturb_training(services: ServicesDep, run_id: RunPath, body: AnyDisturbance) -> Response:
-    """Let it happen from the next step on, and return it with that step.
+    """Apply a disturbance from the next step on; return it with that step.
 
     Leave out `at_step`. A later disturbance of the same thing replaces an earlier one, and
     `repair` ends what happened to legs.
@@ -78,7 +78,7 @@ def disturb_training(services: ServicesDep, run_id: RunPath, body: AnyDisturbanc
 
 @router.get(
     "/{run_id}/curve",
-    summary="The learning curve; also as CSV",
+    summary="Get the learning curve (JSON, CSV)",
     response_model=CurveView,
     responses=answers(200, {"text/csv": TEXT}),
 )
@@ -111,7 +111,7 @@ def _best_known_m(run: Run) -> float | None:
 
 @router.get(
     "/{run_id}/table",
-    summary="The table of any moment of the practice",
+    summary="Get the Q-table after a step",
     response_model=TableView,
     description=(
         "Return values, visits and best actions as they were after a step, built again from its "
@@ -135,7 +135,7 @@ def get_table_at(
 
 @router.get(
     "/{run_id}/q-table",
-    summary="What was learned; also as .npz and CSV",
+    summary="Get the Q-table (JSON, .npz, CSV)",
     response_model=QTableView,
     responses=answers(200, {"text/csv": TEXT, tables.MEDIA_TYPE: BINARY}),
 )

@@ -34,7 +34,7 @@ for _kind in KINDS:
         f"/{_kind}s/{{run_id}}/export",
         _export(_kind),
         tags=[f"{_kind}s"],
-        summary=phrase("{} with all it has", _kind),
+        summary=phrase("Export {}", _kind),
         name=f"export_{_kind}",
         response_class=Response,
         responses=answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
@@ -44,7 +44,7 @@ for _kind in KINDS:
 @router.get(
     "/runs/export",
     tags=["runs"],
-    summary="Several runs with all they have",
+    summary="Export several runs as one archive",
     response_class=Response,
     responses={
         **answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
@@ -63,7 +63,7 @@ def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     "/runs/import",
     status_code=201,
     tags=["runs"],
-    summary="Take in what was exported, one run or several",
+    summary="Import an archive of runs",
     response_model=ImportedView,
     openapi_extra=takes_file("application/octet-stream"),
 )
@@ -84,7 +84,7 @@ def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep
     "/import",
     status_code=201,
     tags=["trainings", "races", "experiments"],
-    summary="Take in a run that was exported",
+    summary="Import an archive of one run",
     response_model=TrainingView | RaceView | ExperimentView,
     responses=answers(201, headers=LOCATION),
     openapi_extra=takes_file("application/octet-stream"),

@@ -1,4 +1,4 @@
-"""`hexapods bench`: what this machine makes of it, each figure a ratio within one run."""
+"""`hexapods bench`: run the benchmarks; figures are ratios of times measured in the same run."""
 
 import argparse
 import json
@@ -21,7 +21,7 @@ LIMITS = {
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("bench", help="measure this machine", description=__doc__)
+    parser = commands.add_parser("bench", help="run the benchmarks", description=__doc__)
     parser.add_argument("--json", action="store_true", help="print the figures as one object")
     parser.set_defaults(run=run)
 

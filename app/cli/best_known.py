@@ -1,4 +1,4 @@
-"""`hexapods best-known`: the farthest that a wide beam search walks, in each world and gait."""
+"""`hexapods best-known`: find the farthest walks by a wide beam search, per world and gait."""
 
 import argparse
 import json
@@ -30,14 +30,16 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     parser = commands.add_parser(
         "best-known", help="search for the farthest walks", description=__doc__
     )
-    parser.add_argument("--robot", default="stiff", help="presets, with commas (default stiff)")
+    parser.add_argument("--robot", default="stiff", help="presets, by commas (default stiff)")
     parser.add_argument(
         "--world",
         default=",".join(_PHYSICAL),
-        help=f"of {', '.join(WORLDS)} (default all in which the physics differs)",
+        help=f"one or more of {', '.join(WORLDS)} (default all in which the physics differs)",
     )
     parser.add_argument(
-        "--gait", default=",".join(NAMED_GAITS), help=f"of {', '.join(NAMED_GAITS)} (default all)"
+        "--gait",
+        default=",".join(NAMED_GAITS),
+        help=f"one or more of {', '.join(NAMED_GAITS)} (default all)",
     )
     parser.add_argument(
         "--width",
@@ -46,14 +48,17 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         help=f"walks that are kept after each step (default {best_known.WIDTH})",
     )
     parser.add_argument(
-        "--threads", type=integer, default=0, help="of the simulator (default one a core)"
+        "--threads",
+        type=integer,
+        default=0,
+        help="threads of the simulator (default: one per core)",
     )
     parser.add_argument(
         "--out",
         type=Path,
         metavar="FILE",
-        help="add the distances to this table where they are farther than its own; what it has "
-        "of this width and version is not computed again",
+        help="JSON file to update with every distance that is farther than its own; searches that "
+        "it has for this width and version are not repeated",
     )
     parser.set_defaults(run=run)
 

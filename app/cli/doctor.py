@@ -1,4 +1,4 @@
-"""`hexapods doctor`: looks at this machine and says what to do; changes nothing."""
+"""`hexapods doctor`: check this machine and say what to do; changes nothing."""
 
 import argparse
 import json
@@ -25,7 +25,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
     parser = commands.add_parser("doctor", help="check this machine", description=__doc__)
     add_data(parser)
-    parser.add_argument("--json", action="store_true", help="for programs")
+    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
 
 
@@ -154,7 +154,7 @@ def walk_in_mujoco() -> None:
         state = simulator.step(state, legal[number % len(legal)]).state
     elapsed_s = time.perf_counter() - began
     if not all(map(math.isfinite, state.row)):
-        raise ValueError("the physics left the finite numbers")
+        raise ValueError("the physics returned non-finite values")
     print(f"MuJoCo walks {steps / elapsed_s:,.0f} steps a second on one core")
 
 
@@ -177,7 +177,7 @@ def _cores() -> str:
 
 
 def _settings(settings: Settings) -> str:
-    access = "whoever is on this machine may change everything"
+    access = "every user of this machine is an operator"
     if settings.token is not None:
         access = "changes need the token"
         access += ", and so does watching" if settings.spectators == "token" else ""
@@ -185,7 +185,7 @@ def _settings(settings: Settings) -> str:
     if settings.public_url is not None and settings.token is None:
         raise CheckFailed(
             f"{PREFIX}PUBLIC_URL offers the server at {settings.public_url}, and without a token "
-            f"everyone there may change everything; set {PREFIX}TOKEN"
+            f"anyone who reaches it is an operator; set {PREFIX}TOKEN"
         )
     if not is_loopback(settings.host) and settings.public_url is None:
         summary += f"; a proxy before it needs {PREFIX}PUBLIC_URL"

@@ -32,25 +32,27 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     parser.add_argument(
         "--agent",
         action="append",
-        help="who learns, in a league also who searches; once for each, or with commas",
+        help="agents to compare (learners; in a league also searches); repeat, or separate by "
+        "commas",
     )
     parser.add_argument(
         "--world",
         action="append",
         metavar="WORLD",
-        help=f"of {', '.join(WORLDS)}; or what happens, such as limp:legs=1,4",
+        help=f"one or more of {', '.join(WORLDS)}, or a disturbance such as limp:legs=1,4",
     )
     settings = declared_fields(TrainingConfig)
     parser.add_argument(
         "--tolerance",
         type=parser_of(settings["tolerance"]),
-        help="of the robots of a league or recovery, a share (default 0.03)",
+        help="build tolerance of the robots (league, recovery), as a fraction (default 0.03)",
     )
     parser.add_argument(
         "--steps",
         type=lambda text: tuple(parser_of(settings["steps"])(part) for part in split(text)),
         metavar="LIST",
-        help="of practice in a league (default 250); in a recovery until something happens (100)",
+        help="steps of practice: in a league in all (default 250), in a recovery before the "
+        "disturbance (default 100)",
     )
     add_machine_options(parser)
     parser.set_defaults(run=run)

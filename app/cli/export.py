@@ -1,4 +1,4 @@
-"""`hexapods export`: runs with all they have, in one file that another machine takes in."""
+"""`hexapods export`: write runs with all their files to one archive, for another machine."""
 
 import argparse
 import json
@@ -11,13 +11,13 @@ from app.settings import read_settings
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("export", help="put runs into a file", description=__doc__)
+    parser = commands.add_parser("export", help="write runs to an archive", description=__doc__)
     parser.add_argument(
-        "run_ids", nargs="+", metavar="RUN", help="an id, as `hexapods runs list` tells it"
+        "run_ids", nargs="+", metavar="RUN", help="id of a run, as listed by `hexapods runs list`"
     )
-    parser.add_argument("--out", required=True, metavar="RUN.ZIP", help="where to put it")
+    parser.add_argument("--out", required=True, metavar="RUN.ZIP", help="archive to write")
     add_data(parser)
-    parser.add_argument("--json", action="store_true", help="for programs")
+    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
 
 

@@ -1,4 +1,4 @@
-"""`hexapods import`: takes in the runs that `hexapods export` put into a file.
+"""`hexapods import`: import the runs of an archive that `hexapods export` wrote.
 
 Nothing of the file is believed before it is checked; see docs/operations.md.
 """
@@ -19,10 +19,10 @@ from app.settings import Settings, read_settings
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("import", help="take runs out of a file", description=__doc__)
-    parser.add_argument("file", metavar="RUN.ZIP", help="what `hexapods export` made")
+    parser = commands.add_parser("import", help="import runs from an archive", description=__doc__)
+    parser.add_argument("file", metavar="RUN.ZIP", help="archive written by `hexapods export`")
     add_data(parser)
-    parser.add_argument("--json", action="store_true", help="for programs")
+    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=run)
 
 

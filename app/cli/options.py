@@ -27,23 +27,25 @@ def add_walk_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--gait",
         required=True,
-        help=f"{', '.join(NAMED_GAITS)}, or JSON such as "
+        help=f"gait: {', '.join(NAMED_GAITS)}, or JSON such as "
         '\'{"right_leg": 1, "left_leg": 2, "symmetry": "origin"}\' (or "pairs": [[1, 4], …])',
     )
     parser.add_argument(
         "--robot",
         default="stiff",
-        help=f"{', '.join(PRESETS)}, a TOML file, or JSON of what differs from a preset",
+        help=f"robot: {', '.join(PRESETS)}, a TOML file, or JSON with changes of a preset",
     )
-    parser.add_argument("--simulator", default="mujoco", help=" or ".join(SIMULATORS))
+    parser.add_argument(
+        "--simulator", default="mujoco", help=f"simulator: {' or '.join(SIMULATORS)}"
+    )
     add_settings(parser, declared_fields(WalkingProblem))
-    parser.add_argument("--world", help=f"{', '.join(WORLDS)}")
+    parser.add_argument("--world", help=f"named world: {', '.join(WORLDS)}")
     parser.add_argument(
         "--disturb",
         action="append",
         default=[],
         metavar="KIND:FIELD=VALUE:at=STEP:until=STEP",
-        help=f"what happens, such as limp:legs=1,4:at=25; once for each: {', '.join(KINDS)}",
+        help=f"disturbance, such as limp:legs=1,4:at=25; repeat for several: {', '.join(KINDS)}",
     )
 
 

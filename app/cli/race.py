@@ -1,4 +1,4 @@
-"""`hexapods race`: agents side by side, timed under three clocks."""
+"""`hexapods race`: race agents side by side, timed under three clocks."""
 
 import argparse
 import json
@@ -51,13 +51,13 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         action="append",
         required=True,
         metavar="AGENT[=Q.NPZ][,SETTING=VALUE]",
-        help="once for each lane: greedy, look-ahead,depth=3, q-learning=q.npz, "
+        help="agent of a lane, repeat for each lane: greedy, look-ahead,depth=3, q-learning=q.npz, "
         "q-learning=q.npz,keep_learning=true, greedy,plans_with=nominal, "
         "sarsa,keep_learning=true,observation=planned, my.module:Agent[=q.npz]; "
         f"plans_with: {declared_fields(LaneConfig)['plans_with'].about.help}",
     )
     add_settings(parser, declared_fields(RaceConfig), ("steps", "seed"))
-    parser.add_argument("--clock", default="paper", help=f"to show: {', '.join(CLOCKS)}")
+    parser.add_argument("--clock", default="paper", help=f"clock to show: {', '.join(CLOCKS)}")
     parser.add_argument("--json", action="store_true", help="print config and result as JSON")
     parser.set_defaults(run=run)
 

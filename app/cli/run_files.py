@@ -1,4 +1,4 @@
-"""Verbs of `hexapods runs` that write a run's walk into a file for other programs."""
+"""Verbs of `hexapods runs` that write a run's walk to a file for other programs."""
 
 import argparse
 import json
@@ -37,14 +37,21 @@ Export = Callable[[Source, argparse.Namespace], Iterable[bytes]]
 def add_to(verbs: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the parsers of the verbs."""
     table = _add(verbs, "trajectory", "joint angles and feet over time", _trajectory, _TABLES)
-    table.add_argument("--lane", type=integer, help="of a race, from 0 on; all by default")
+    table.add_argument(
+        "--lane", type=integer, help="number of a race's lane, from 0 on (default: all lanes)"
+    )
     page = _add(verbs, "page", "a replay that plays in any browser, offline", _page, (".html",))
     video = _add(verbs, "video", "a video, rendered off screen", _video, (".mp4", ".gif"))
-    video.add_argument("--width", type=integer, default=640, help="pixels, default 640")
-    video.add_argument("--height", type=integer, default=360, help="pixels, default 360")
-    video.add_argument("--fps", type=integer, default=30, help="pictures a second, default 30")
-    video.add_argument("--speed", type=float, default=1.0, help="times the run's own, default 1")
-    log = _add(verbs, "mcap", "joint states and frames, for tools of robots", _mcap, (".mcap",))
+    video.add_argument("--width", type=integer, default=640, help="width in pixels (default 640)")
+    video.add_argument("--height", type=integer, default=360, help="height in pixels (default 360)")
+    video.add_argument("--fps", type=integer, default=30, help="frames per second (default 30)")
+    video.add_argument(
+        "--speed",
+        type=float,
+        default=1.0,
+        help="playback speed, as a multiple of the run's own (default 1)",
+    )
+    log = _add(verbs, "mcap", "joint states and frames, for robotics tools", _mcap, (".mcap",))
     for verb in (page, video, log):
         _add_clock(verb)
 
@@ -57,19 +64,22 @@ def _add(
     endings: tuple[str, ...],
 ) -> CommandParser:
     """Add the parser of a verb that writes files with one of these endings."""
-    parser = verbs.add_parser(name, help=f"a file of {words}")
+    parser = verbs.add_parser(name, help=f"export {words}")
     add_run(parser)
     parser.add_argument(
-        "--out", required=True, metavar=f"FILE{endings[0]}", help=f"ends with {_one_of(endings)}"
+        "--out",
+        required=True,
+        metavar=f"FILE{endings[0]}",
+        help=f"file to write, ending with {_one_of(endings)}",
     )
     add_data(parser)
-    parser.add_argument("--json", action="store_true", help="for programs")
+    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.set_defaults(run=lambda options: _write(options, export, endings))
     return parser
 
 
 def _add_clock(parser: CommandParser) -> None:
-    parser.add_argument("--clock", choices=CLOCKS, default="paper", help="times a race")
+    parser.add_argument("--clock", choices=CLOCKS, default="paper", help="clock that times a race")
 
 
 def _write(options: argparse.Namespace, export: Export, endings: tuple[str, ...]) -> int:

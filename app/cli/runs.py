@@ -1,7 +1,7 @@
-"""`hexapods runs`: the runs in the data folder, whether a server has it now or not.
+"""`hexapods runs`: the runs in the data folder, with or without a running server.
 
-Looking needs no server and disturbs none. What changes something is done by the server that has
-the data folder, or, if none has, here.
+Reading never disturbs the server. Changes go through the running server; without one, this
+command makes them itself.
 """
 
 import argparse
@@ -37,22 +37,28 @@ _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
     parser = commands.add_parser(
-        "runs", help="list, show, delete runs, and take them home as files", description=__doc__
+        "runs", help="list, show and delete runs, and export them as files", description=__doc__
     )
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
-    listing = verbs.add_parser("list", help="the runs")
-    listing.add_argument("--kind", choices=KINDS, help="only these")
-    listing.add_argument("--state", choices=STATES, help="only those that are this now")
-    listing.add_argument("--tag", help="only those with this tag")
-    listing.add_argument("--search", help="only those with this in name, id, tags or notes")
-    listing.add_argument("--sort", choices=SORTS, default=SORTS[0], help=f"default {SORTS[0]}")
-    listing.add_argument("--limit", type=integer, default=_LIMIT, help=f"default {_LIMIT}")
-    showing = verbs.add_parser("show", help="all about a run")
-    deleting = verbs.add_parser("delete", help="forget a run that has ended, with all it has")
+    listing = verbs.add_parser("list", help="list runs")
+    listing.add_argument("--kind", choices=KINDS, help="only runs of this kind")
+    listing.add_argument("--state", choices=STATES, help="only runs in this state")
+    listing.add_argument("--tag", help="only runs with this tag")
+    listing.add_argument(
+        "--search", help="only runs with this text in their name, id, tags or notes"
+    )
+    listing.add_argument(
+        "--sort", choices=SORTS, default=SORTS[0], help=f"order (default {SORTS[0]})"
+    )
+    listing.add_argument(
+        "--limit", type=integer, default=_LIMIT, help=f"at most so many (default {_LIMIT})"
+    )
+    showing = verbs.add_parser("show", help="show one run in full")
+    deleting = verbs.add_parser("delete", help="delete an ended run and all its files")
     for verb, run in ((listing, _list), (showing, _show), (deleting, _delete)):
         verb.set_defaults(run=run)
         add_data(verb)
-        verb.add_argument("--json", action="store_true", help="for programs")
+        verb.add_argument("--json", action="store_true", help="print JSON")
     for verb in (showing, deleting):
         add_run(verb)
     run_files.add_to(verbs)

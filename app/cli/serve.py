@@ -1,4 +1,4 @@
-"""`hexapods serve`: the dashboard, the API and the stage, on one address."""
+"""`hexapods serve`: serve the dashboard, the API and the stage at one address."""
 
 import argparse
 import os
@@ -14,9 +14,11 @@ from app.settings import Settings, read_settings
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("serve", help="open the dashboard", description=__doc__)
+    parser = commands.add_parser("serve", help="serve the dashboard", description=__doc__)
     parser.add_argument("--host", help="address to bind (default 127.0.0.1, or HEXAPODS_HOST)")
-    parser.add_argument("--port", type=integer, help="default 8000, or HEXAPODS_PORT")
+    parser.add_argument(
+        "--port", type=integer, help="port to bind (default 8000, or HEXAPODS_PORT)"
+    )
     parser.add_argument("--data", help="data folder (default: the user's, or HEXAPODS_DATA)")
     parser.add_argument(
         "--share",

@@ -20,7 +20,9 @@ def add_data(parser: argparse.ArgumentParser) -> None:
 
 def add_run(parser: argparse.ArgumentParser) -> None:
     """Add the argument that names a run."""
-    parser.add_argument("run_id", metavar="RUN", help="its id, as `hexapods runs list` tells it")
+    parser.add_argument(
+        "run_id", metavar="RUN", help="id of the run, as listed by `hexapods runs list`"
+    )
 
 
 def find_run(store: "RunStore", run_id: str) -> AnyRun:

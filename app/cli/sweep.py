@@ -1,4 +1,4 @@
-"""`hexapods sweep`: any grid of practice parameters over many seeds, with a report."""
+"""`hexapods sweep`: try a grid of practice parameters over many seeds, and write a report."""
 
 import argparse
 
@@ -24,7 +24,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     parser.add_argument(
         "--agent",
         action="append",
-        help="once for each, or with commas; my.module:Agent too (default q-learning)",
+        help="agents, or my.module:Agent; repeat, or separate by commas (default q-learning)",
     )
     settings = declared_fields(TrainingConfig)
     for name in GRID:

@@ -1,4 +1,4 @@
-"""`hexapods train`: learn to walk, and keep the table."""
+"""`hexapods train`: train an agent to walk, and save its table."""
 
 import argparse
 import json
@@ -34,16 +34,18 @@ _SETTINGS = tuple(
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("train", help="learn to walk", description=__doc__)
+    parser = commands.add_parser("train", help="train an agent", description=__doc__)
     parser.offers_settings = True
     add_walk_options(parser)
     add_observation(parser, "how the agent reads the state")
     add_settings(parser, declared_fields(TrainingConfig), _SETTINGS)
     # None if not given: with --from, the table's generator state is used instead.
     parser.set_defaults(seed=None)
-    parser.add_argument("--agent", default=TrainingConfig.agent, help="a name, or my.module:Agent")
-    parser.add_argument("--from", dest="table", metavar="Q.NPZ", help="go on with this table")
-    parser.add_argument("--out", metavar="Q.NPZ", help="keep the table here")
+    parser.add_argument(
+        "--agent", default=TrainingConfig.agent, help="registered name, or my.module:Agent"
+    )
+    parser.add_argument("--from", dest="table", metavar="Q.NPZ", help="continue from this table")
+    parser.add_argument("--out", metavar="Q.NPZ", help="file to save the table to")
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.set_defaults(run=run)
 

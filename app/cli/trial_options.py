@@ -23,35 +23,52 @@ def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots
         observations: default observations, for the help text.
         robots: default robots, for the help text.
     """
-    parser.add_argument("--seeds", type=integer, help="of each learner (default 30)")
-    parser.add_argument("--seed", type=integer, help="of which all are spawned (default 0)")
+    parser.add_argument("--seeds", type=integer, help="number of seeds per learner (default 30)")
     parser.add_argument(
-        "--gait", action="append", help=f"all (default), or of {', '.join(NAMED_GAITS)}; or JSON"
+        "--seed",
+        type=integer,
+        help="root seed from which all others are spawned (default 0)",
+    )
+    parser.add_argument(
+        "--gait",
+        action="append",
+        help=f"all (default), one or more of {', '.join(NAMED_GAITS)}, or JSON",
     )
     parser.add_argument(
         "--observation",
         action="append",
-        help=f"both of the paper's, all, or of {', '.join(OBSERVATIONS)} (default {observations})",
+        help=f"both (the paper's two), all, or one or more of {', '.join(OBSERVATIONS)} "
+        f"(default {observations})",
     )
     parser.add_argument(
         "--robot",
         action="append",
-        help=f"of {', '.join(PRESETS)}; a TOML file, or JSON (default {robots})",
+        help=f"one or more of {', '.join(PRESETS)}, a TOML file, or JSON (default {robots})",
     )
-    parser.add_argument("--simulator", help=f"{' or '.join(SIMULATORS)} (default mujoco)")
+    parser.add_argument(
+        "--simulator", help=f"simulator: {' or '.join(SIMULATORS)} (default mujoco)"
+    )
 
 
 def add_machine_options(parser: argparse.ArgumentParser) -> None:
     """Add the options for workers or cluster, results folder and output."""
-    parser.add_argument("--workers", type=integer, help="processes here (default one a core)")
     parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="of a Dask cluster, tcp://HOST:PORT or tls://…"
+        "--workers", type=integer, help="worker processes on this machine (default: one per core)"
     )
-    for name, what in (("ca", "the CA"), ("cert", "the certificate"), ("key", "its key")):
-        parser.add_argument(f"--tls-{name}", metavar="PEM", help=f"{what} for a tls:// scheduler")
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="scheduler of a Dask cluster, tcp://HOST:PORT or tls://…",
+    )
+    for name, what in (
+        ("ca", "CA"),
+        ("cert", "client certificate"),
+        ("key", "key of the client certificate"),
+    ):
+        parser.add_argument(f"--tls-{name}", metavar="PEM", help=f"{what}, for a tls:// scheduler")
     parser.add_argument("--out", metavar="DIR", type=Path, help="folder for results and report")
     parser.add_argument(
-        "--retry", action="store_true", help="also what was set aside when it was run before"
+        "--retry", action="store_true", help="also retry trials that an earlier run set aside"
     )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
 

@@ -1,6 +1,6 @@
 """`hexapods tune`: search for the settings of a learner that walk farthest.
 
-What is found is compared with the defaults on seeds that the search never saw.
+Compares the settings that it finds with the defaults on seeds that the search never saw.
 """
 
 import argparse
@@ -57,7 +57,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     parser = commands.add_parser(
         "tune", help="search for the best settings of a learner", description=__doc__
     )
-    parser.add_argument("agent", help="a learner, such as q-learning; my.module:Agent too")
+    parser.add_argument("agent", help="learner to tune, such as q-learning, or my.module:Agent")
     _add_condition_options(parser)
     usual = TuningConfig
     parser.add_argument(
@@ -70,38 +70,43 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "--seeds",
         type=integer,
         default=usual.search_seeds,
-        help=f"for each of them (default {usual.search_seeds})",
+        help=f"seeds per candidate (default {usual.search_seeds})",
     )
     parser.add_argument(
         "--held-out",
         type=integer,
         default=usual.seeds,
-        help=f"other seeds, for the comparison in the end (default {usual.seeds})",
+        help=f"number of held-out seeds for the final comparison (default {usual.seeds})",
     )
     parser.add_argument(
-        "--seed", type=integer, default=usual.seed, help="of which all are spawned (default 0)"
+        "--seed",
+        type=integer,
+        default=usual.seed,
+        help="root seed from which all others are spawned (default 0)",
     )
     parser.add_argument(
         "--objective",
         choices=get_args(Objective),
         default=usual.objective,
-        help="the mean distance after the practice (default), or area: on average over it",
+        help="what to maximise: mean distance after the practice (default), or area: its average "
+        "over the practice",
     )
     parser.add_argument(
         "--settings",
         metavar="LIST",
-        help="of the agent, with commas (default all that declare limits or choices)",
+        help="the agent's settings to tune, separated by commas (default: all that declare limits "
+        "or choices)",
     )
     parser.add_argument(
         "--range",
         action="append",
         default=[],
         metavar="NAME=LOW:HIGH",
-        help="where to search a setting, or NAME=VALUE,VALUE; once for each. Positive numbers "
-        "that span two orders are searched on a logarithmic scale",
+        help="search range of a setting, or NAME=VALUE,VALUE; repeat for several settings. "
+        "Positive numbers that span two orders are searched on a logarithmic scale",
     )
     parser.add_argument(
-        "--beside", metavar="LIST", help="agents to run on the held-out seeds, with commas"
+        "--beside", metavar="LIST", help="agents to run on the held-out seeds too, by commas"
     )
     add_machine_options(parser)
     parser.set_defaults(run=run)
@@ -109,16 +114,18 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 def _add_condition_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--gait", required=True, help=f"{', '.join(NAMED_GAITS)}, or JSON as for train"
+        "--gait", required=True, help=f"gait: {', '.join(NAMED_GAITS)}, or JSON as for train"
     )
     parser.add_argument(
-        "--robot", default="stiff", help=f"{', '.join(PRESETS)}; a TOML file, or JSON"
+        "--robot", default="stiff", help=f"robot: {', '.join(PRESETS)}, a TOML file, or JSON"
     )
-    parser.add_argument("--simulator", default="mujoco", help=" or ".join(SIMULATORS))
+    parser.add_argument(
+        "--simulator", default="mujoco", help=f"simulator: {' or '.join(SIMULATORS)}"
+    )
     parser.add_argument(
         "--world",
         default="flat",
-        help=f"{', '.join(WORLDS)}; or what happens, such as limp:legs=1,4",
+        help=f"one of {', '.join(WORLDS)}, or a disturbance such as limp:legs=1,4",
     )
     add_observation(parser, "how the learner reads its state (default measured)")
     add_settings(parser, declared_fields(WalkingProblem))

@@ -333,9 +333,11 @@ class Push(Disturbance):
 
     kind = "push"
     title = "Push"
-    help = "A blow at the beginning of the step; it lasts no longer."
+    help = "A push at the beginning of the step."
     size = "impulse_ns"
-    impulse_ns: Annotated[float, Ge(0), Le(20), Setting(title="Impulse", unit="N·s", help="Of it.")]
+    impulse_ns: Annotated[
+        float, Ge(0), Le(20), Setting(title="Impulse", unit="N·s", help="Of the push.")
+    ]
     direction_deg: Direction = 0.0
 
     def __post_init__(self) -> None:
@@ -366,7 +368,7 @@ class Delay(Disturbance):
 
     kind = "delay"
     title = "Servo delay"
-    help = "Servos do what they are told this much later."
+    help = "Servos execute commands this much later."
     size = "seconds"
     seconds: Annotated[float, Ge(0), Le(0.1), Setting(title="Delay", unit="s", help="0 is none.")]
 

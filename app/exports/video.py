@@ -142,13 +142,13 @@ def _times_s(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> li
         times_s.append(time_s)
         if len(times_s) >= max_frames:
             raise InvalidInput(
-                f"the video would have more than {max_frames:,} pictures; choose a higher speed, "
-                "or fewer pictures a second"
+                f"the video would have more than {max_frames:,} frames; choose a higher speed, or "
+                "fewer frames per second"
             )
 
 
 class _Track:
-    """Where a lane's robot is at each moment."""
+    """Poses of a lane's robot, interpolated over playback time."""
 
     def __init__(self, lane: RecordedLane, step_s: float, clock: Clock) -> None:
         self.lane = lane

@@ -62,15 +62,15 @@ def start_fork_server() -> None:
 
 @cache
 def _start_watch() -> None:
-    """Continue a fork server that a signal has stopped, within `_CONTINUED_EVERY_S`.
+    """Send SIGCONT to a fork server that a signal has stopped, within `_CONTINUED_EVERY_S`.
 
-    Whoever starts a process waits for it, and so does whoever waits for the end of one.
+    While it is stopped, starting or joining a process blocks.
     """
 
     def watch() -> None:
         while True:
             time.sleep(_CONTINUED_EVERY_S)
-            # It is told nowhere else.
+            # No public attribute has it.
             pid = vars(forkserver._forkserver)["_forkserver_pid"]  # noqa: SLF001
             if pid is not None:
                 with suppress(ProcessLookupError):

@@ -6,7 +6,7 @@ from app.storage.errors import Busy
 
 
 class Stopping:
-    """Whether the server stops. Thread-safe."""
+    """Flag of a server that is stopping. Thread-safe."""
 
     def __init__(self) -> None:
         """Create it for a server that runs."""
@@ -17,7 +17,7 @@ class Stopping:
         self._is_set.set()
 
     def check(self) -> None:
-        """Return at once; to be called between parts of what takes seconds.
+        """Raise if the server is stopping; call it between the parts of long work.
 
         Raises:
             Busy: if the server stops.

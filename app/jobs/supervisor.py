@@ -121,7 +121,9 @@ class Supervisor:
             try:
                 self._queue.interrupt("The server was stopped before its turn came.")
             except HexapodError:
-                _logger.exception("the queue cannot be noted; the next start does it")
+                _logger.exception(
+                    "the queue could not be marked as interrupted; the next start does it"
+                )
             self.changed.notify_all()
             jobs = list(self._jobs.values())
         for job in jobs:
@@ -155,7 +157,7 @@ class Supervisor:
                         self.changed.wait(_CHECK_EVERY_S)
                     self._check_jobs()
                 except Exception:
-                    _logger.exception("the supervisor goes on after an error of its own")
+                    _logger.exception("error in the supervisor; continuing")
                     self.changed.wait(_CHECK_EVERY_S)
 
     def _start_next(self) -> bool:
@@ -174,13 +176,13 @@ class Supervisor:
             self._queue.push_front(run)
             return False
         except (Conflict, NotFound) as error:
-            _logger.warning("a run waits no more: %s", error, extra=_log_fields(run.id))
+            _logger.warning("a run has left the queue: %s", error, extra=_log_fields(run.id))
             self._settle(run)
         self._last_progress_s = time.monotonic()
         try:
             self._queue.publish_positions()
         except HexapodError:
-            _logger.warning("places in the queue cannot be told now", exc_info=True)
+            _logger.warning("publishing the places in the queue failed", exc_info=True)
         return True
 
     def _start(self, run: Run) -> None:
@@ -241,7 +243,7 @@ class Supervisor:
                 # The store is unavailable; if that lasts, the next start marks it `interrupted`.
                 self._shutdown.wait(_CHECK_EVERY_S)
         except Exception:
-            _logger.exception("how a run ended cannot be noted", extra=_log_fields(job.run_id))
+            _logger.exception("storing the end of a run failed", extra=_log_fields(job.run_id))
         finally:
             with self.changed:
                 if self._jobs.get(job.run_id) is job:
@@ -260,10 +262,12 @@ class Supervisor:
         except OwnershipLost:
             return True
         except _STORE_UNAVAILABLE:
-            _logger.warning("a run's end cannot be noted yet", extra=_log_fields(job.run_id))
+            _logger.warning("the end of a run cannot be stored yet", extra=_log_fields(job.run_id))
             return False
         except (NotFound, Conflict) as error:
-            _logger.warning("a run is gone at its end: %s", error, extra=_log_fields(job.run_id))
+            _logger.warning(
+                "the end of a run is not stored: %s", error, extra=_log_fields(job.run_id)
+            )
         with self.changed:
             if not self._shutdown.is_set():
                 return self._settle(job.last)

@@ -104,7 +104,7 @@ class WorkerProcess:
         return 0.0 if self._is_handling else time.monotonic() - self._last_message_s
 
     def excuse_silence(self) -> None:
-        """Measure silence and stop anew: nobody listened, as the server was stopped itself."""
+        """Restart the silence and stop timers, after the server process itself was suspended."""
         self._last_message_s = time.monotonic()
         self._stopped_since_s = None
 
@@ -133,7 +133,7 @@ class WorkerProcess:
             pass
         except Exception as error:
             # Its results cannot be stored, so it must not continue.
-            _logger.exception("%s: a message could not be taken in", self._process.name)
+            _logger.exception("%s: a message could not be handled", self._process.name)
             self._error = error
             self._process.kill()
         self._process.join(_EXIT_S)

@@ -38,7 +38,7 @@ COVERAGE = (
     "It was computed in MuJoCo for preset robots in named gaits and worlds on the usual grid; "
     "elsewhere a dash stands."
 )
-"""Where there is a best known distance, to follow the definition."""
+"""Sentence that follows the definition where a best known distance exists."""
 PATH = Path(__file__).with_name("best_known.json")
 Key = tuple[str, str, str]
 """Names of robot, world and gait."""

@@ -104,9 +104,9 @@ EvaluateEvery = Annotated[
     Ge(0),
     Le(MAX_STEPS),
     Setting(
-        title="Test every",
+        title="Evaluate every",
         unit="steps",
-        help="After every so many steps it shows what it can; 0 is never.",
+        help="Evaluates the policy after every so many steps; 0: never.",
     ),
 ]
 PaceFactor = Annotated[float, Ge(0.01), Le(1000)]

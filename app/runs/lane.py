@@ -11,8 +11,8 @@ from app.domain.settings import Setting, SettingValues, Value, complete, declare
 from app.runs.config import WalkingProblem, agent_settings
 
 PlanningModel = Literal["world", "start", "nominal"]
-"""What a search knows: `world` is the world as it is in each step, `start` as it was at the start,
-`nominal` the robot as it was designed, on flat ground."""
+"""Model that a search plans with: `world` is the world as it is in each step, `start` as it was at
+the start, `nominal` the robot as it was designed, on flat ground."""
 PLANNING_MODEL_TITLES: Mapping[PlanningModel, str] = {
     "world": "true model",
     "start": "model of the start",
@@ -53,8 +53,8 @@ class LaneConfig:
         agent: a registered name or `my.module:Agent`.
         observation: observation mode; for a trained agent that of its table.
         keep_learning: whether the agent learns from each step of the race.
-        plans_with: of a searcher, what it knows; None is `start`, since nobody tells a robot what
-            happens later. `plans_with` says what that comes to.
+        plans_with: model that a search plans with; None means `start`, since later disturbances are
+            not announced. `plans_with()` resolves it.
         settings: the agent's settings by name; none for a trained agent, which has those of its
             training.
     """

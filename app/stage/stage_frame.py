@@ -106,7 +106,7 @@ class LaneView:
     pushes: tuple[Push, ...] = ()
     """Pushes in the step that is shown."""
     origin: Origin = AT_ORIGIN
-    """Where the lane's frame lies on the ground; in a race at the ground's own origin."""
+    """Pose of the lane's frame on the ground; in a race the ground's own origin."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ def json_text(data: Any) -> str:
     try:
         return json.dumps(data, allow_nan=False)
     except ValueError:
-        _logger.warning("a number that is none is sent as null")
+        _logger.warning("NaN or infinity is sent as null")
         return json.dumps(finite(data), allow_nan=False)
 
 

@@ -149,10 +149,10 @@ class Hub:
                 await self._relay()
             except ConnectionError as error:
                 if self._live:
-                    _logger.warning("lost viser, trying again: %s", error)
+                    _logger.warning("lost the connection to viser, trying again: %s", error)
             except Exception:
                 # An error of the hub itself in one frame must not end relaying for good.
-                _logger.exception("relaying failed, beginning anew")
+                _logger.exception("relaying failed, restarting it")
             self._live = False
             await asyncio.sleep(_RETRY_S)
 

@@ -75,7 +75,7 @@ class StageLoop:
         except Exception:
             # An error in one frame must not end the thread; it is logged once, not at each frame.
             if not self._has_failed:
-                _logger.exception("drawing the stage failed, going on")
+                _logger.exception("drawing the stage failed, continuing")
             self._has_failed = True
             return False
         if self._has_failed:

@@ -19,7 +19,7 @@ SQUARE_M, TICK_M = 0.5, 0.05
 LAMP = (-0.7, -0.5, 3.2)
 """Position of the lamp for robots on the start line [m]."""
 BEFORE_M, BEYOND_M = -0.5, 2.0
-"""Where the lanes begin and end along the track."""
+"""Start and end of the lanes along the track."""
 TICKS_M = 0.03
 """Width of the ticks at the borders of a lane."""
 _LINES_M = 0.002

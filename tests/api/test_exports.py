@@ -63,9 +63,7 @@ def test_video_of_a_race(api: Api, raced: dict[str, Any]) -> None:
     assert answer.content[:6] == b"GIF89a"
     refused(video(width=161), 422, "width must be an even number of pixels")
     refused(video(playback_speed=0), 422, "playback_speed must be a number from 0.05 to 64")
-    refused(
-        video(fps=60, playback_speed=0.05), 422, "more than 900 pictures; choose a higher speed"
-    )
+    refused(video(fps=60, playback_speed=0.05), 422, "more than 900 frames; choose a higher speed")
 
 
 def test_a_stopped_race_has_the_files_of_what_it_walked(api: Api) -> None:

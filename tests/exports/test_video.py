@@ -131,7 +131,7 @@ def test_what_cannot_be_rendered_is_refused(
     ):
         with pytest.raises(InvalidInput, match=words):
             VideoOptions(**wrong)
-    with pytest.raises(InvalidInput, match="more than 5 pictures; choose a higher speed"):
+    with pytest.raises(InvalidInput, match="more than 5 frames; choose a higher speed"):
         check_length(raced, SMALL, 5)
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setitem(sys.modules, "mujoco.egl", None)

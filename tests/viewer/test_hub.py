@@ -243,7 +243,7 @@ def test_viewers_reconnect_after_a_restart_of_viser(caplog: pytest.LogCaptureFix
                 assert has_message("LabelMessage", name="/world/again")(after.frame())
         restarted.stop()
     assert is_complete(frames[0])
-    assert "lost viser" in caplog.text
+    assert "lost the connection to viser" in caplog.text
 
 
 def test_viewers_wait_until_viser_is_connected() -> None:

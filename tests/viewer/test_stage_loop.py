@@ -59,7 +59,7 @@ def test_error_in_a_frame_is_logged_once_and_drawing_continues(
             wait_until(lambda: scene.follow_position("leader"))
 
     messages = [record.message for record in caplog.records if "stage" in record.name]
-    assert messages == ["drawing the stage failed, going on", "drawing the stage works again"]
+    assert messages == ["drawing the stage failed, continuing", "drawing the stage works again"]
 
 
 def test_moving_race_publishes_scenes(parts: StageParts) -> None:

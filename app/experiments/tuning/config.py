@@ -88,7 +88,7 @@ class TuningConfig(ExperimentConfig):
 
     @property
     def search_ranges(self) -> tuple[SearchRange, ...]:
-        """Where to search."""
+        """Search range of each tuned setting."""
         settings = agent_settings(self.agent)
         return tuple(parse_range(text, settings) for text in self.ranges)
 

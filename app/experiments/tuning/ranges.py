@@ -1,4 +1,4 @@
-"""Where a tuning searches: a range or a list of values for each setting, from its declaration."""
+"""Search range of a tuned setting: limits or a list of values, from its declaration."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

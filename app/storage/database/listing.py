@@ -31,7 +31,7 @@ _KEY = "sort_key"
 
 
 class Listing(NamedTuple):
-    """Which runs a list has, in which order, and which page of it.
+    """Query of a list of runs: filters, sort order and page.
 
     Attributes:
         kind: only runs of this kind; None for all. Runs whose kind cannot be read are of every one.

@@ -102,7 +102,7 @@ def _decode_fields(row: Mapping[str, Any]) -> dict[str, Any]:
     if not isinstance(config, CONFIGS[row["kind"]]):
         raise ValueError("its config is that of another kind")
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
-        raise ValueError("its lanes do not fit together")
+        raise ValueError("its numbers of lanes and of training ids differ")
     return values
 
 
@@ -114,19 +114,19 @@ def _config(kind: str, text: str) -> Config:
 
 def _check_scalars(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:
     if public_id(row["id"]) != row["id"]:
-        raise ValueError("its id is none")
+        raise ValueError("its id is malformed")
     for name, choices in (("kind", KINDS), ("state", STATES)):
         if row[name] not in choices:
             raise ValueError(f"its {name} is none of {', '.join(choices)}")
     if values["created_at"] is None:
-        raise ValueError("its created_at is none")
+        raise ValueError("its created_at is missing")
     for name in ("done", "total", "workers"):
         _check_count(name, row[name], is_needed=name != "workers")
     for name in ("eta_s", "greedy_distance_m"):
         if row[name] is not None and not isinstance(row[name], int | float):
-            raise ValueError(f"its {name} is no number")
+            raise ValueError(f"its {name} is not a number")
     if not isinstance(values["result"], dict | None):
-        raise ValueError("its result is none")
+        raise ValueError("its result is not an object")
 
 
 def _json(name: str, text: Any) -> Any:
@@ -144,7 +144,7 @@ def _time(name: str, text: Any) -> datetime | None:
     # SQLite drops the time zone.
     moment = moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment.astimezone(UTC)
     if not 1970 <= moment.year < 9999:
-        raise ValueError(f"its {name} is no date of ours")
+        raise ValueError(f"its {name} is not between the years 1970 and 9998")
     return moment
 
 
@@ -159,7 +159,7 @@ def _text(name: str, value: Any, *, is_needed: bool) -> str | None:
     if value is None and not is_needed:
         return None
     if not isinstance(value, str):
-        raise ValueError(f"its {name} is no text")
+        raise ValueError(f"its {name} is not a text")
     if name == "error":
         # Not checked by `visible`: an agent's exception may have several lines.
         return value[:MAX_ERROR_CHARS].encode("utf-8", "replace").decode()
@@ -168,7 +168,7 @@ def _text(name: str, value: Any, *, is_needed: bool) -> str | None:
 
 def _limited(name: str, value: Any) -> str:
     if not isinstance(value, str):
-        raise ValueError(f"its {name} is no text")
+        raise ValueError(f"its {name} is not a text")
     if len(value) > _MAX_TEXT:
         raise ValueError(f"its {name} is too long")
     return value
@@ -178,12 +178,12 @@ def _check_count(name: str, value: Any, *, is_needed: bool) -> None:
     if value is None and not is_needed:
         return
     if not isinstance(value, int) or not 0 <= value <= MAX_COUNT:
-        raise ValueError(f"its {name} is no count")
+        raise ValueError(f"its {name} is not a count")
 
 
 def _list(name: str, value: Any, kinds: Any) -> list[Any]:
     if not isinstance(value, list) or not all(isinstance(one, kinds) for one in value):
-        raise ValueError(f"its {name} is no list, or of something else")
+        raise ValueError(f"its {name} is not a list of valid items")
     return value
 
 

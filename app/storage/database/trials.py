@@ -41,7 +41,7 @@ class Trials:
             connection.execute(insert(TRIALS), [{"run_id": run_id, **row} for row in rows])
 
     def get(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """See `RunStore.trials`. A trial that cannot be decode_json is returned as set aside."""
+        """See `RunStore.trials`. A trial that cannot be decoded is returned as set aside."""
         query = select(*_UNDECODED).where(TRIALS.c.run_id == run_id).order_by(TRIALS.c.key)
 
         def work(connection: Connection) -> Sequence[Row]:
