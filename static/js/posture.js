@@ -31,7 +31,7 @@ export const ghost = signal({ answer: null, error: null, again: false });
 
 /** Why no ghost can be shown now; null where one can. @type {Signal<string | null>} */
 export const whyNoGhost = computed(() => {
-  if (!drawHere.value) return "The 3D view is not there yet";
+  if (!drawHere.value) return "The 3D view has not loaded yet";
   // It stands on the foot grid, which the first step brings.
   return scene.value?.action_values ? null : "There is no ghost before the first step";
 });

@@ -362,7 +362,7 @@ function verdictOf(rows, first, steps) {
   const winners = rows.filter(({ rank }) => rank === 1);
   const distance = metres(distanceOf(winners[0]));
   if (!first.length) {
-    return `${titlesOf(winners)} got furthest, ${distance}: no robot used its ${count(steps, "step")}`;
+    return `${titlesOf(winners)} got farthest, ${distance}: no robot used its ${count(steps, "step")}`;
   }
   const when = momentOf(rows, winners, first, steps);
   if (winners.length > 1) return `${titlesOf(winners)} tie: ${distance} ${when}`;
@@ -397,4 +397,4 @@ function marginOf(rows, winner) {
  * @param {string} clockTitle
  */
 export const ruleOf = (steps, clockTitle) =>
-  `The furthest at time-out wins: when the first robot has used its ${count(steps, "step")} (${clockTitle}).`;
+  `The farthest at time-out wins: when the first robot has used its ${count(steps, "step")} (${clockTitle}).`;

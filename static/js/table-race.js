@@ -50,14 +50,15 @@ export function obstacle(runs) {
     return `${titleOf(first)} is ${first.state}: a training races once it is finished or stopped.`;
   }
   const most = limitsOf("lanes").maximum ?? Infinity;
-  if (runs.length < 2) return "Two trainings or more race each other.";
+  if (runs.length < 2) return "Select at least two trainings.";
   if (runs.length > most) return `A race has up to ${most} lanes: choose fewer than ${count(runs.length, "training")}.`;
   const differences = differing(SHARED, trainings).map(([name, , words]) => {
     const values = [...new Set(trainings.map(words))];
     return `${name} (${listed(values.length > 1 ? values : ["custom ones"])})`;
   });
   if (differences.length === 0) return null;
-  return `They cannot race each other, as they differ in ${listed(differences)}: a table knows only its own.`;
+  return `They cannot race each other, as they differ in ${listed(differences)}: `
+    + "a Q-table fits only one gait, leg count and foot grid.";
 }
 
 /**

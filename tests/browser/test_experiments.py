@@ -141,7 +141,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
         dashboard.button("Resume").click()
         expect(head(dashboard).locator(".state")).to_have_text("running")
         dashboard.button("Stop").click()
-        expect(head(dashboard)).to_contain_text("The report is of the trials that were done.")
+        expect(head(dashboard)).to_contain_text("The report covers the completed trials.")
         expect(head(dashboard).get_by_role("link", name="Open the report")).to_be_visible()
 
 
@@ -264,7 +264,7 @@ def tells_who_recovers(dashboard: Dashboard) -> None:
     row = table.get_by_role("row", name=re.compile("^Linear model"))
     expect(row).to_contain_text(re.compile(r"\d\.\d\d\sm"))
     expect(table.get_by_role("row", name=re.compile("^Greedy, nominal model"))).to_have_count(1)
-    for title in ("At once", "Of greedy", "Steps to 90 % of greedy"):
+    for title in ("Right after", "Of greedy", "Steps to 90 % of greedy"):
         expect(table.get_by_role("columnheader", name=title, exact=True)).to_have_count(1)
     dashboard.button("relative to greedy").click()
     expect(table.get_by_role("row", name=re.compile("^Greedy")).first).to_contain_text("100")

@@ -35,7 +35,7 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     verdict = re.compile(r"(wins|tie).*: −?0\.\d\d\sm when .* had used its 3 steps$")
     expect(headline).to_have_text(verdict)
     expect(page.get_by_role("status").filter(has_text=verdict)).to_be_attached()
-    expect(page.locator(".scoreboard")).to_contain_text("The furthest at time-out wins")
+    expect(page.locator(".scoreboard")).to_contain_text("The farthest at time-out wins")
     expect(
         page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
     ).to_be_visible()

@@ -216,7 +216,7 @@ test("trained runs race if gait and grid are the same, and else it says what dif
   assert.equal(obstacle([one, running]), "Young is running: a training races once it is finished or stopped.");
   const race = makeRun({ kind: "race", name: "Final" });
   assert.equal(obstacle([one, race]), "Only trainings race with their tables: leave out Final.");
-  assert.equal(obstacle([one]), "Two trainings or more race each other.");
+  assert.equal(obstacle([one]), "Select at least two trainings.");
   const many = Array.from({ length: 20 }, () => one);
   assert.match(obstacle(many) ?? "", /^A race has up to \d+ lanes: choose fewer than 20 trainings\.$/);
   const ideal = trained({ simulator: config.simulator === "mujoco" ? "kinematic" : "mujoco" });

@@ -126,7 +126,7 @@ test("there is no ghost without a foot grid or a 3D view", async () => {
   await settled();
   assert.equal(asked.length, 1);
   drawHere.value = null;
-  assert.match(String(whyNoGhost.value), /not there/);
+  assert.match(String(whyNoGhost.value), /not loaded/);
 });
 
 test("a cell clicked in the scene is that move in the present state, of the lane it is on", () => {

@@ -117,7 +117,7 @@ test("a lane that failed does not time the race out, and no time-out is claimed 
   showResult([failed, laneResult("greedy", 2, 0.3, 22)]);
   assert.equal(headline.value, "Learner wins, stopped at step 9: 0.40\u00a0m when Greedy had used its 50 steps");
   showResult([failed, { ...failed, clocks: laneResult("greedy", 2, 0.1).clocks }]);
-  assert.equal(headline.value, "Learner got furthest, 0.40\u00a0m: no robot used its 50 steps");
+  assert.equal(headline.value, "Learner got farthest, 0.40\u00a0m: no robot used its 50 steps");
   assert.ok(!isTimedOut.value);
   showResult([failed, failed], { state: "stopped", result: null });
   assert.equal(headline.value, null, "before its timeline is loaded");
@@ -126,7 +126,7 @@ test("a lane that failed does not time the race out, and no time-out is claimed 
 test("what flat parts are is said without contradiction under each clock", () => {
   assert.deepEqual(["paper", "wall", "free"].map((clock) => /^Flat parts are thinking/.test(flatParts(clock))),
     [true, true, false]);
-  assert.match(ruleOf(50, "paper clock"), /^The furthest at time-out wins: .* 50 steps \(paper clock\)\.$/);
+  assert.match(ruleOf(50, "paper clock"), /^The farthest at time-out wins: .* 50 steps \(paper clock\)\.$/);
 });
 
 test("during its show nothing later than the scene is told", () => {

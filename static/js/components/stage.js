@@ -101,7 +101,7 @@ const LATER = "The picture comes when there is room; numbers and charts are live
 const REFUSALS = {
   "full": `Many are watching already. ${LATER}`,
   "address full": `Many are watching from this network already. ${LATER}`,
-  "place taken": `Someone else was given this place. ${LATER}`,
+  "place taken": `Another viewer took this slot. ${LATER}`,
 };
 
 /** Whether a status of the frame says that it has no place. */
@@ -182,7 +182,7 @@ function SceneChips() {
     <div class="chips">
       <p class="chip strong">${now?.label || "On the start line"}</p>
       ${now?.phase === "photo-finish" && html`<p class="chip accent">Time-out: photo finish</p>`}
-      ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that still thinks</p>`}
+      ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that is still deciding</p>`}
       <${WorldChip} />
       ${ownRunId.value !== null
         ? html`<p class="chip accent">${isBuffering.value ? "Loading your replay…" : "Your own replay"}</p>`

@@ -16,8 +16,8 @@ const SHARES = "Share of greedy’s distance, a dot for each seed";
 const POOLED_COLUMNS = [
   { title: "Setting" },
   { title: SHARES, kind: "wide-cell" },
-  { title: "Typical", words: "Interquartile mean, with its 95 % interval" },
-  { title: "Walk", words: "Get at least half as far as greedy" },
+  { title: "Interquartile mean", words: "Interquartile mean, with its 95 % interval" },
+  { title: "Share that walks", words: "Get at least half as far as greedy" },
   { title: "Reach greedy", words: "Get at least 95 % as far" },
   { title: BEATS_GREEDY, words: "Under the paper clock" },
 ];
@@ -65,10 +65,10 @@ function PooledRow({ one, varied, points, high, isRaced }) {
         <${DotStrip} label=${label} points=${points} high=${high} typical=${one.relative} marks=${MARKS}
           color=${agentOf(one.agent).color} height=${44} axis=${percentage} />
       </td>
-      <td role="cell" data-label="Typical" class="num">
+      <td role="cell" data-label="Interquartile mean" class="num">
         <b>${percentage(iqm)}</b>${interval && html`<br /><span class="dim">${interval}</span>`}
       </td>
-      <td role="cell" data-label="Walk" class="num">${percentage(one.walkers.share)}</td>
+      <td role="cell" data-label="Share that walks" class="num">${percentage(one.walkers.share)}</td>
       <td role="cell" data-label="Reach greedy" class="num">${percentage(one.reaches_greedy.share)}</td>
       ${isRaced && html`
         <td role="cell" data-label=${BEATS_GREEDY} class="num"><${Beats} beats=${one.beats_greedy} /></td>

@@ -87,7 +87,7 @@ function ReportHead({ run }) {
 
 const NOTES = {
   paused: "Paused. Finished trials are kept, and no core is used.",
-  stopped: "Stopped. The report is of the trials that were done. Resume to run only the rest.",
+  stopped: "Stopped. The report covers the completed trials. Resume to run only the rest.",
   interrupted: "The server ended before the experiment did. Finished trials are kept; resume to run only the rest.",
 };
 

@@ -56,7 +56,7 @@ function Chosen({ settings, parameters }) {
 }
 
 function Table({ experiment, seeds, distance_m }) {
-  if (seeds.length === 0) return html`<p class="dim">It waits for its first seed.</p>`;
+  if (seeds.length === 0) return html`<p class="dim">No trial has finished yet.</p>`;
   return html`
     <div class="scroller seed-list" tabindex="0" role="region" aria-label=${count(seeds.length, "seed")}>
       <table class="facts-table">

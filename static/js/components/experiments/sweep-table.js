@@ -11,7 +11,7 @@ import { DotStrip } from "../dot-strip.js";
 import { html, Segments } from "../elements.js";
 import { BestKnownWords, StripKey, UnitSwitch } from "./report-tools.js";
 
-const ORDERS = [["grid", "In the grid’s order"], ["best", "Furthest first"]];
+const ORDERS = [["grid", "In the grid’s order"], ["best", "Farthest first"]];
 const MAX_ROWS = 60;
 const STRIP_TITLE = "Total distance in 50 steps, a dot for each seed";
 
@@ -87,8 +87,8 @@ const Head = ({ columns }) => html`
     <tr role="row">
       <th role="columnheader" scope="col">${columns.map(fieldTitle).join(", ")}</th>
       <th role="columnheader" scope="col" class="wide-cell">${STRIP_TITLE}</th>
-      <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Typical</th>
-      <th role="columnheader" scope="col" title="Get at least half as far as greedy">Walk</th>
+      <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Interquartile mean</th>
+      <th role="columnheader" scope="col" title="Get at least half as far as greedy">Share that walks</th>
       <th role="columnheader" scope="col" title=${served().help.best_known}>Best known</th>
     </tr>
   </thead>
@@ -110,8 +110,10 @@ function Row({ row, columns, high }) {
           ? html`<${Strip} row=${row} high=${high} />`
           : html`<span class="dim">waiting for its first seed</span>`}
       </td>
-      <td role="cell" data-label="Typical" class="num"><${Typical} typical=${typical} /></td>
-      <td role="cell" data-label="Walk" class="num">${setting.walkers ? percentage(setting.walkers.share) : "–"}</td>
+      <td role="cell" data-label="Interquartile mean" class="num"><${Typical} typical=${typical} /></td>
+      <td role="cell" data-label="Share that walks" class="num">
+        ${setting.walkers ? percentage(setting.walkers.share) : "–"}
+      </td>
       <td role="cell" data-label="Best known" class="num">${shown(best)}</td>
     </tr>
   `;

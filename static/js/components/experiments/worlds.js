@@ -146,7 +146,7 @@ function Overview({ entries, worlds, known }) {
   return html`
     <section class="panel worlds" aria-labelledby="all-worlds">
       <h2 id="all-worlds">${title}</h2>
-      <p class="dim overview-words">In the end, as a mean over the gaits; the furthest of each world is bold.</p>
+      <p class="dim overview-words">In the end, as a mean over the gaits; the farthest of each world is bold.</p>
       <div class="scroller" tabindex="0" role="region" aria-label="Table of all worlds">
         <table class="facts-table world-table">
           <caption class="sr-only">${title}</caption>
@@ -173,7 +173,7 @@ function Overview({ entries, worlds, known }) {
   `;
 }
 
-// ---- one table per gait, the furthest first
+// ---- one table per gait, the farthest first
 
 /** A value with its interval below it; a dash without one. */
 const valueOf = (one, words, bareWords) => one && one.iqm !== null && html`
@@ -223,7 +223,7 @@ function columnsOf({ experiment }, entries) {
   };
   if (experiment === "league") return [distance, ...SHARES, mean, ...until];
   return [
-    { title: "At once", words: "As soon as it has happened", cell: (one) => distanceOf(atPlace(one.curve, 0), one) },
+    { title: "Right after", words: "Once it has happened", cell: (one) => distanceOf(atPlace(one.curve, 0), one) },
     distance, ...SHARES, mean,
     {
       title: "Earned", words: "In the first 50 steps of practice after it happened",

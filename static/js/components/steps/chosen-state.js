@@ -42,5 +42,5 @@ function wordsOf(chosen, grid) {
   if (chosen.from === "scene") return `Clicked in the scene: ${moveInWords(chosen.move, grid)}.`;
   const { error, again } = ghost.value;
   if (whyNoGhost.value) return `${whyNoGhost.value}.`;
-  return error && !again ? messageOf(error) : "The ghost is on its way…";
+  return error && !again ? messageOf(error) : "Loading the ghost…";
 }
