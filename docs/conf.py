@@ -57,7 +57,7 @@ def _rest() -> Iterator[str]:
     yield "# REST"
     yield ""
     yield (
-        "All addresses are below that of the server, which describes itself at `/docs` and "
+        "All addresses are below that of the server, whose API documentation is at `/docs` and "
         "`/openapi.json`. Errors are problem documents (RFC 9457), and each says what is valid."
     )
     with TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""A run's walk as files of other programs: tables, videos, logs of robots.
+"""Export a run's walk as files for other programs: tables, videos, robot logs.
 
 - `recorded_lanes`: the recorded steps of each robot of an ended race or training.
 - `trajectory`: joint angles, feet and torques over time, as CSV and Parquet.

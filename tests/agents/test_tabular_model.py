@@ -59,10 +59,10 @@ def test_it_round_trips() -> None:
         ("model_pairs", 0, 1, -1, "states that do not exist"),
         ("model_pairs", 0, 2, 4, "tries that differ from its outcomes"),
         ("model_pairs", 0, 3, 125, "to states that do not exist"),
-        ("model_pairs", 0, 4, 9, "less than nothing"),
+        ("model_pairs", 0, 4, 9, "steps beyond its total"),
         ("model_outcomes", 0, 0, 3, "to states that do not exist"),
         ("model_outcomes", 0, 1, 125, "to states that do not exist"),
-        ("model_outcomes", 0, 1, 8, "twice"),
+        ("model_outcomes", 0, 1, 8, "duplicate entries"),
         ("model_rewards", 0, 0, np.inf, "rewards that are not finite numbers"),
     ],
 )
