@@ -32,7 +32,7 @@ Prior = Annotated[
     Setting(
         title="Prior",
         phrase="prior\u00a0{}",
-        help="What it believes before its first step: nothing, or the law of a step without slip.",
+        help="What it assumes before its first step: nothing, or the law of a step without slip.",
     ),
 ]
 Optimism = Annotated[
@@ -42,7 +42,7 @@ Optimism = Annotated[
     Setting(
         title="Optimism",
         symbol="β",
-        help="How many standard deviations it hopes for where it is uncertain.",
+        help="Posterior standard deviations added to an expected reward; higher explores more.",
         live=True,
         examples=(0.5, 1),
     ),

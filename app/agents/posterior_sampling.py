@@ -20,7 +20,7 @@ PlanEvery = Annotated[
     Le(10_000),
     Setting(
         title="Steps per plan",
-        help="How many steps it believes in one possible world before it draws the next.",
+        help="Steps for which it plans in one sampled model before it draws the next.",
         examples=(5, 10, 25),
     ),
 ]

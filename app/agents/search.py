@@ -33,7 +33,7 @@ Budget = Annotated[
     Setting(
         title="Budget",
         unit="transitions",
-        help="How many steps it may simulate for one decision.",
+        help="Most steps that it may simulate for one decision.",
         examples=(3, 40),
     ),
 ]

@@ -139,7 +139,7 @@ def _check_table(run: Run, name: str, data: bytes, label: str) -> None:
     except HexapodError:
         raise
     except Exception as error:  # NumPy documents no complete list of exceptions
-        raise DamagedFile(f"{label} does not hold together: {error}") from error
+        raise DamagedFile(f"{label} is inconsistent: {error}") from error
 
 
 def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:

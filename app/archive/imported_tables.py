@@ -75,7 +75,7 @@ def checked_table(
     except KeyError as error:
         raise DamagedFile(f"{label} does not say its {error}") from error
     except Exception as error:  # NumPy documents no complete list of exceptions
-        raise DamagedFile(f"{label} does not hold together: {error}") from error
+        raise DamagedFile(f"{label} is inconsistent: {error}") from error
     return checkpoint, meta, config
 
 

@@ -22,9 +22,9 @@ PlansWith = Annotated[
     PlanningModel,
     Setting(
         title="Plans with",
-        help="What a search knows: the true model is the world as it is in each step, the model of "
-        "the start the world as it was then, the nominal model the robot as it was designed, on "
-        "flat ground. By default the start.",
+        help="Model that a search plans with. The true model is the world as it is in each step; "
+        "the model of the start (default), the world as it was then; the nominal model, the robot "
+        "as it was designed, on flat ground.",
         choice_titles=tuple(PLANNING_MODEL_TITLES.values()),
     ),
 ]

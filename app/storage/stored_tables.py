@@ -75,9 +75,9 @@ def load_checkpoint(store: RunStore, run: Run, config: TrainingConfig) -> Checkp
         is_whole = is_whole and all(steps) and len(steps) <= len(run.changes)
         is_whole = is_whole and {"due_epsilon", "episode_reward_m", "rng"} <= set(meta)
     except (KeyError, TypeError) as error:
-        raise DamagedFile(f"{name} does not hold together ({error!r})") from error
+        raise DamagedFile(f"{name} is inconsistent ({error!r})") from error
     if not is_whole:
-        raise DamagedFile(f"{name} does not hold together")
+        raise DamagedFile(f"{name} is inconsistent")
     return checkpoint
 
 
