@@ -162,12 +162,13 @@ def test_a_spectators_page_offers_nothing_that_would_fail(
 
 
 def press_everything(page: Page) -> list[str]:
-    """Press all enabled buttons, and return their labels."""
+    """Press all enabled buttons and summaries, and return the labels of the buttons."""
     page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
     pressed = []
     for button in page.locator("button, [role=button], summary").all():
         if button.is_visible() and button.is_enabled():
-            pressed.append(button.inner_text() or str(button.get_attribute("aria-label")))
+            if button.evaluate("(one) => one.tagName") != "SUMMARY":
+                pressed.append(button.inner_text() or str(button.get_attribute("aria-label")))
             button.evaluate("(one) => one.click()")
             page.keyboard.press("Escape")
     return pressed
