@@ -9,6 +9,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from multiprocessing import forkserver, process, resource_tracker
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -75,8 +76,10 @@ class Forked:
 
     def send_signal(self, number: int) -> None:
         """Send it a signal, if it still runs."""
+        # The fork server waits for it, and tells of its end a moment later.
         if self.poll() is None:
-            os.kill(self.pid, number)
+            with suppress(ProcessLookupError):
+                os.kill(self.pid, number)
 
 
 def start_hexapods(
