@@ -61,8 +61,7 @@ export async function attempt(place, action) {
  * @param {(asked: Asked) => Promise<unknown>} send
  */
 function oneAtATime(place, send) {
-  let sent = /** @type {Asked | null} */ (null);
-  let waiting = /** @type {Asked | null} */ (null);
+  let [sent, waiting] = /** @type {(Asked | null)[]} */ ([null, null]);
   const request = async (/** @type {Asked} */ asked) => {
     if (pending.value[place]) {
       waiting = /** @type {Asked} */ ({ ...waiting, ...asked });
@@ -74,9 +73,8 @@ function oneAtATime(place, send) {
     sent = waiting = null;
     if (next) await request(next);
   };
-  /** @type {() => Partial<Asked>} what is asked for, and not answered yet */
-  const unanswered = () => ({ ...sent, ...waiting });
-  return { request, unanswered };
+  /** What is asked for, and not answered yet. */
+  return { request, unanswered: () => /** @type {Partial<Asked>} */ ({ ...sent, ...waiting }) };
 }
 
 /** @param {string} place */
@@ -169,19 +167,23 @@ export const continueTraining = (table) =>
 
 // ---- running work
 
-export const pause = () => commands.request({ verb: "pause" });
-export const resume = () => commands.request({ verb: "resume" });
-export const stop = () => commands.request({ verb: "stop" });
+export const pause = () => commandWork("pause");
+export const resume = () => commandWork("resume");
+export const stop = () => commandWork("stop");
 
-const commands = oneAtATime("work", async (/** @type {{ verb: Verb }} */ { verb }) => {
+/** Command the present work, and not what may come after it. @param {Verb} verb */
+function commandWork(verb) {
+  const id = work.value?.current.id;
+  if (id && commands.unanswered().verb !== verb) commands.request({ verb, id });
+}
+
+const commands = oneAtATime("work", async (/** @type {{ verb: Verb, id: string }} */ { verb, id }) => {
   const { current, requested } = work.value ?? {};
-  if (!current || !requested || current.state === STATES[verb]) return;
-  const isStop = verb === "stop";
+  if (!requested || current?.id !== id || current.state === STATES[verb]) return;
   // A race that waits for its training stops that too.
-  await requestRun(() => api.command(isStop ? requested : current, verb));
-  if (isStop ? commonStage.value?.playing === false : commonStage.value?.run_id === current.id) {
-    await api.putStage({ playing: verb !== "pause" });
-  }
+  await requestRun(() => api.command(verb === "stop" ? requested : current, verb));
+  const { run_id, playing } = commonStage.value ?? {};
+  if (verb === "stop" ? playing === false : run_id === id) await api.putStage({ playing: verb !== "pause" });
 });
 
 /** Verb → the state that it leads to. @type {Record<string, string>} */

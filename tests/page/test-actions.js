@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { setImmediate } from "node:timers/promises";
-import { pause, pending, seekIn, setStage, togglePause, togglePlaying } from "../../static/js/actions.js";
+import { pause, pending, seekIn, setStage, stop, togglePause, togglePlaying } from "../../static/js/actions.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -85,4 +85,17 @@ test("the same command twice is sent once", async () => {
   pause();
   await answerAll((request) => (request === "pause" ? { ...run, state: "paused" } : STAGE));
   assert.deepEqual(sent, ["pause", { stage: { playing: false } }]);
+});
+
+test("Stop pressed twice does not stop the run that comes next", async () => {
+  const [run, next] = ["a", "b"].map((id) => (
+    makeRun({ id, state: "running", result: null, progress: { done: 5, total: 500 } })
+  ));
+  applyEvent("snapshot", { role: "operator", runs: [run, next], stage: STAGE, scene: null });
+  stop();
+  stop();
+  pause();
+  stop();
+  await answerAll((request) => (request === "stop" ? { ...run, state: "stopped" } : STAGE));
+  assert.deepEqual(sent, ["stop"]);
 });
