@@ -110,7 +110,8 @@ class LaneView(Answer):
     agent: str
     keep_learning: bool
     plans_with: Annotated[
-        PlanningModel | None, Field(description="what its search knows; null if it does not search")
+        PlanningModel | None,
+        Field(description="model that it plans with; null if it does not search"),
     ]
     plans_with_by_default: Annotated[bool, Field(description="whether `plans_with` was left out")]
     observation: Observation
