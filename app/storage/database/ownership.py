@@ -141,7 +141,9 @@ class Ownership:
         if threading.current_thread() is self._thread:
             return
         if poll_began_s is not None and time.monotonic() - poll_began_s > _HANG_S:
-            raise _hanging_error(self._is_postgresql)
+            if self._is_postgresql:
+                raise unreachable_error()
+            raise StorageFailed("the data folder does not answer")
         if problem is not None:
             raise StorageFailed(str(problem))
 
@@ -175,10 +177,11 @@ class Ownership:
 
     def _check_file(self) -> None:
         if self._path is not None and file_identity(self._path) != self._file:
+            # Without its folder: the message is for everyone who may watch.
             raise FileReplaced(
-                f"the database file {self._path} was removed or replaced while the server runs, "
-                "and nothing more is written: put the same file back, or start the server again "
-                "with a backup"
+                f"the database file {self._path.name} was removed or replaced while the server "
+                "runs, and nothing more is written: put the same file back, or start the server "
+                "again with a backup"
             )
 
     def _read_owner(self) -> int:
@@ -205,9 +208,3 @@ class Ownership:
         except HexapodError:
             self._drop_connection()
             raise
-
-
-def _hanging_error(is_postgresql: bool) -> StorageFailed:
-    return (
-        unreachable_error() if is_postgresql else StorageFailed("the data folder does not answer")
-    )

@@ -11,7 +11,7 @@ from app.storage.database.opening import DATABASE_FILE
 from app.storage.errors import StorageFailed
 from tests.storage.stores import opened, training
 
-REPLACED = "was removed or replaced while the server runs"
+REPLACED = f"the database file {DATABASE_FILE} was removed or replaced while the server runs"
 
 
 def eventually_refused(read: Callable[[], object]) -> str:
@@ -43,7 +43,9 @@ def test_nothing_is_written_into_a_file_that_was_moved_away(tmp_path: Path) -> N
     with opened(tmp_path, None) as store:
         store.create(training("kept"))
         file.rename(elsewhere)
-        assert REPLACED in eventually_refused(store.list)
+        reason = eventually_refused(store.list)
+        assert reason.startswith(REPLACED)
+        assert str(tmp_path) not in reason
         with pytest.raises(StorageFailed, match=REPLACED):
             store.create(training("refused"))
 
