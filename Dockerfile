@@ -6,6 +6,7 @@ COPY requirements.lock .
 RUN /venv/bin/pip install --no-cache-dir --require-hashes --requirement requirements.lock
 COPY pyproject.toml README.md LICENSE ./
 COPY app app
+COPY hexapods hexapods
 COPY models models
 COPY static static
 RUN /venv/bin/pip install --no-cache-dir --no-deps --no-build-isolation .
@@ -13,7 +14,7 @@ RUN /venv/bin/pip install --no-cache-dir --no-deps --no-build-isolation .
 FROM python:3.13-slim
 # A fixed number, so that a data folder mounted from the host can be given to it.
 RUN useradd --uid 10001 --user-group --home-dir /data --no-create-home hexapods \
-    && install --directory --owner hexapods --group hexapods /data
+    && install --directory --mode 0700 --owner hexapods --group hexapods /data
 COPY --from=build /venv /venv
 ENV PATH=/venv/bin:$PATH \
     PYTHONUNBUFFERED=1 \

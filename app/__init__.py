@@ -1,3 +1,1 @@
-"""Racing Hexapods: hexapods that learn to walk, and race against look-ahead search."""
-
-__version__ = "0.1.0"
+"""The dashboard of Racing Hexapods: a server that runs robots of `hexapods`, and its page."""

@@ -16,7 +16,8 @@ class BytesCache:
         """
         self._max_bytes, self._bytes = max_bytes, 0
         self._values: OrderedDict[Hashable, bytes] = OrderedDict()
-        self._lock, self._computing = threading.Lock(), threading.Lock()
+        self._lock = threading.Lock()
+        self._computing: dict[Hashable, threading.Lock] = {}
 
     def get(self, key: Hashable) -> bytes | None:
         """Return a value; None if it is not kept."""
@@ -34,15 +35,18 @@ class BytesCache:
                 self._bytes -= len(self._values.popitem(last=False)[1])
 
     def computed(self, key: Hashable, compute: Callable[[], bytes]) -> bytes:
-        """Return a value, computed unless it is kept, one at a time.
-
-        So requests that come together compute it once.
-        """
-        value = self.get(key)
-        if value is None:
-            with self._computing:
+        """Return a value, computed unless it is kept: once for requests that come together."""
+        if (value := self.get(key)) is not None:
+            return value
+        with self._lock:
+            computing = self._computing.setdefault(key, threading.Lock())
+        try:
+            with computing:
                 value = self.get(key)
                 if value is None:
                     value = compute()
                     self.put(key, value)
+        finally:
+            with self._lock:
+                self._computing.pop(key, None)
         return value

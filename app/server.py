@@ -2,19 +2,21 @@
 
 import asyncio
 import contextlib
+import logging
+import os
 import socket
 import sys
 import threading
 from collections.abc import AsyncIterator, Callable
-from functools import cache, partial
+from functools import cache
 from types import FrameType
 
 import uvicorn
 from fastapi import APIRouter, FastAPI
 from starlette.routing import BaseRoute
 
-from app import __version__, assets
 from app.api import (
+    archives,
     contract,
     docs,
     events,
@@ -31,21 +33,19 @@ from app.api import (
     spectators,
     stage,
     trainings,
-    transfer,
 )
 from app.api.auth import TokenGuard
-from app.api.concurrency_limit import ConcurrencyLimit
+from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
 from app.api.deps import Services
 from app.api.disconnects import Disconnects
 from app.api.host_check import HostGuard
 from app.api.memory_limit import BodyLimit, HeldBodies
 from app.api.middleware import SecurityHeaders
 from app.api.problem_pages import ProblemPages
-from app.api.rate_limit import RateLimit
+from app.api.rate_limit import RateLimit, what_if_limiter
 from app.api.starts import start_routes
 from app.api.unfinished import Unfinished
 from app.api.wellformed import WellFormed
-from app.domain.errors import HexapodError
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
@@ -58,7 +58,6 @@ from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
-from app.runs.config import usable_agents
 from app.settings import Settings
 from app.stage.playback import Replays
 from app.stage.stage import Stage
@@ -70,12 +69,16 @@ from app.storage.recordings import Recordings
 from app.storage.server_lock import write_address_file
 from app.storage.sessions import Sessions
 from app.viewer.replay_frames import ReplayFrames
-from app.viewer.replay_page import replay_page
 from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
+from hexapods import __version__, assets
+from hexapods.domain.errors import HexapodError
+from hexapods.processes import return_freed_memory
+from hexapods.runs.config import usable_agents
 
+_logger = logging.getLogger(__name__)
 GRACE_S = 3
 SWITCH_S = 0.001
 """Python's switch interval [s]: shorter than its 5 ms, for the event loop's latency."""
@@ -131,14 +134,16 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         ready=lambda: _unready_reason(jobs, store),
         recorded_stream=viewer.recorded_stream,
         replays=replays,
-        replay_page=partial(replay_page, replays),
-        videos=VideoRenderer(),
+        replay_page=replays.page,
+        videos=VideoRenderer(check=stopping.check),
         what_if=WhatIf(ProcessPool()),
-        explanations=Explanations(store, recordings),
-        estimates=Estimates(ProcessPool(count=1), jobs.cores),
+        explanations=Explanations(store, recordings, stopping),
+        estimates=Estimates(ProcessPool(count=1), jobs.cores, stopping),
         stopping=stopping,
+        what_if_limiter=what_if_limiter(settings),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
+    app.state.work_slots = WorkSlots()
     app.state.metrics = monitoring.registry_of(app.state.services)
     _add_routes(app, viewer, app.state.services.agents)
     problems.install(app)
@@ -146,9 +151,10 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     # The middleware that is added last runs first.
     app.add_middleware(Disconnects)
     app.add_middleware(BodyLimit)
-    app.add_middleware(ConcurrencyLimit)
+    app.add_middleware(ConcurrencyLimit, slots=app.state.work_slots)
     app.add_middleware(HeldBodies)
-    app.add_middleware(RateLimit, settings=settings)
+    what_ifs = app.state.services.what_if_limiter
+    app.add_middleware(RateLimit, settings=settings, what_ifs=what_ifs)
     sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
     app.add_middleware(TokenGuard, settings=settings, sessions=sessions)
     app.add_middleware(HostGuard, settings=settings)
@@ -170,7 +176,7 @@ def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
     router, versioned = APIRouter(), APIRouter(prefix="/api/v1")
     # First, so that no other route matches `import` as a run's id.
     modules = (
-        *(transfer, trainings, races, experiments, runs, exports, replays, gait),
+        *(archives, trainings, races, experiments, runs, exports, replays, gait),
         *(stage, spectators, events, options),
     )
     for module in modules:
@@ -187,6 +193,7 @@ def _unready_reason(jobs: Jobs, store: RunStore) -> str | None:
         return reason
     try:
         store.check_disk_space()
+        store.check_writable()
         store.list(limit=1)
     except HexapodError as error:
         return f"No run can be started: {error}."
@@ -196,19 +203,22 @@ def _unready_reason(jobs: Jobs, store: RunStore) -> str | None:
 @contextlib.asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     services: Services = app.state.services
+    await asyncio.to_thread(services.stage.restore)
     async with app.state.viewer:
         services.jobs.open()
         try:
             yield
         finally:
             services.bus.close()
-            await _end_long_requests(services)
+            await _end_long_requests(app)
             await asyncio.to_thread(services.jobs.close)
 
 
-async def _end_long_requests(services: Services) -> None:
-    """Abort long requests: make `Stopping.check` raise, and kill the pools' processes."""
+async def _end_long_requests(app: FastAPI) -> None:
+    """Abort long requests: those that wait, by `Stopping.check`, and by killing the pools."""
+    services: Services = app.state.services
     services.stopping.set()
+    app.state.work_slots.close()
     for user in (services.what_if, services.estimates, services.videos):
         await asyncio.to_thread(user.close)
 
@@ -227,11 +237,18 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
         OwnershipLost: if another server took over the database.
     """
     settings.prepare_data()
+    # Of all files that this process and its children create: no other user may open them.
+    os.umask(0o077)
     start_fork_server()
+    return_freed_memory()
     sys.setswitchinterval(SWITCH_S)
     connections = connection_table(settings, raise_file_limit())
     listener = listen(settings, connections)
     logs.install(settings.log_level)
+    if settings.public_url is not None and not settings.trusted_proxies:
+        _logger.warning(
+            "HEXAPODS_TRUSTED_PROXIES names no proxy: all clients of one count as one address"
+        )
     lost = threading.Event()
     with listener, open_store(settings, on_lost=lost.set) as store:
         app = create_app(settings, store)
@@ -243,6 +260,8 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
             access_log=False,
             server_header=False,
             timeout_graceful_shutdown=GRACE_S,
+            # Not None, for which uvicorn would trust every client on this machine.
+            forwarded_allow_ips=settings.proxy_networks,
             timeout_keep_alive=KEEP_ALIVE_S,
             http=limited_http(connections),
             # uvloop may not call the sockets' `close`, which counts connections.
@@ -295,7 +314,7 @@ class _Server(uvicorn.Server):
         # an export not in time.
         self._app.state.services.bus.close()
         await self._app.state.viewer.hub.stop()
-        await _end_long_requests(self._app.state.services)
+        await _end_long_requests(self._app)
         await super().shutdown(sockets)
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:

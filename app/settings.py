@@ -4,9 +4,11 @@ Every name is `HEXAPODS_…`; an empty variable counts as none, since that is ho
 leave one out.
 """
 
+import ctypes
 import ipaddress
 import os
 import re
+import sys
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -16,7 +18,7 @@ from urllib.parse import urlsplit
 
 import platformdirs
 
-from app.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.errors import InvalidInput, UnknownName
 
 Spectators = Literal["public", "token"]
 LogLevel = Literal["debug", "info", "warning", "error"]
@@ -53,6 +55,8 @@ class Settings:
         spectators: `public` lets anyone watch, `token` only who has the token.
         public_url: where a proxy offers the server, such as `https://hexapods.example`.
         allowed_hosts: further host names by which the server may be called.
+        trusted_proxies: addresses and networks of the proxies whose `X-Forwarded-For` and
+            `X-Forwarded-Proto` are believed; of other clients these headers are ignored.
         database_url: of a PostgreSQL database, which may hold a password; None for SQLite in the
             data folder.
         max_connections: how many may be open at once; None for as many as the limit of open files
@@ -74,6 +78,7 @@ class Settings:
     spectators: Spectators = "public"
     public_url: str | None = None
     allowed_hosts: tuple[str, ...] = ()
+    trusted_proxies: tuple[str, ...] = ()
     database_url: str | None = field(default=None, repr=False)
     quota_mb: int | None = None
     max_connections: int | None = None
@@ -98,11 +103,9 @@ class Settings:
         if self.public_url is not None:
             _check_url(self.public_url)
         for name in self.allowed_hosts:
-            if not _HOST_NAME.fullmatch(name):
-                raise InvalidInput(
-                    f"{PREFIX}ALLOWED_HOSTS must be host names separated by commas, without "
-                    f"scheme, port or star; {name!r} is none"
-                )
+            _check_host(name)
+        for name in self.trusted_proxies:
+            _check_network(name)
         if self.database_url is not None:
             _check_database_url(self.database_url)
         self._check_numbers()
@@ -138,14 +141,26 @@ class Settings:
         parts = urlsplit(self.public_url)
         return f"{parts.scheme}://{parts.netloc.lower()}"
 
+    @property
+    def proxy_networks(self) -> list[str]:
+        """The networks of `trusted_proxies`, those of IPv4 as an IPv6 socket names them, too."""
+        networks = [ipaddress.ip_network(name) for name in self.trusted_proxies]
+        mapped = [
+            f"::ffff:{network.network_address}/{96 + network.prefixlen}"
+            for network in networks
+            if network.version == 4
+        ]
+        return [*map(str, networks), *mapped]
+
     def prepare_data(self) -> None:
-        """Make the data folder, and make sure that it can be written.
+        """Make the data folder, closed to other users, and make sure that it can be written.
 
         Raises:
             InvalidInput: if it cannot.
         """
         try:
-            self.data.mkdir(parents=True, exist_ok=True)
+            self.data.parent.mkdir(parents=True, exist_ok=True)
+            self.data.mkdir(mode=0o700, exist_ok=True)
             with tempfile.TemporaryFile(dir=self.data):
                 pass
         except OSError as error:
@@ -174,11 +189,29 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
     for name, (_, _, what) in _WHOLE_NUMBERS.items():
         if isinstance(given.get(name), str):
             given[name] = _whole_number(name, what, given[name])
-    if isinstance(given.get("allowed_hosts"), str):
-        hosts = given["allowed_hosts"].lower().split(",")
-        given["allowed_hosts"] = tuple(host.strip() for host in hosts if host.strip())
+    for name in ("allowed_hosts", "trusted_proxies"):
+        if isinstance(given.get(name), str):
+            hosts = given[name].lower().split(",")
+            given[name] = tuple(host.strip() for host in hosts if host.strip())
     data = given.pop("data", None) or platformdirs.user_data_path("racing-hexapods", False)
     return Settings(data=Path(data).expanduser().absolute(), **given)
+
+
+def remove_secrets() -> None:
+    """Remove the token and the database's URL from the environment, for this process's children.
+
+    Their memory is overwritten: a fork has a copy of it, which `/proc/PID/environ` shows.
+    """
+    for secret in (one.name for one in fields(Settings) if not one.repr):
+        name = PREFIX + secret.upper()
+        if name not in os.environ:
+            continue
+        if sys.platform != "win32":
+            library = ctypes.CDLL(None)
+            library.getenv.restype = ctypes.c_void_p
+            if address := library.getenv(name.encode()):
+                ctypes.memset(address, 0, len(os.environb[name.encode()]))
+        del os.environ[name]
 
 
 def is_loopback(host: str) -> bool:
@@ -205,6 +238,24 @@ def _whole_number(name: str, what: str, text: str) -> int:
     if not text.isascii() or not text.isdigit():
         raise InvalidInput(f"{PREFIX}{name.upper()} must be a whole number{what}, not {text!r}")
     return int(text[:18])
+
+
+def _check_host(name: str) -> None:
+    if not _HOST_NAME.fullmatch(name):
+        raise InvalidInput(
+            f"{PREFIX}ALLOWED_HOSTS must be host names separated by commas, without "
+            f"scheme, port or star; {name!r} is none"
+        )
+
+
+def _check_network(name: str) -> None:
+    try:
+        ipaddress.ip_network(name)
+    except ValueError as error:
+        raise InvalidInput(
+            f"{PREFIX}TRUSTED_PROXIES must be addresses or networks separated by commas, such as "
+            f"127.0.0.1 or 172.16.0.0/12; {name!r} is none"
+        ) from error
 
 
 def _check_database_url(url: str) -> None:

@@ -20,10 +20,10 @@ from typing import NamedTuple
 
 from distributed import Client
 
-from app.experiments.cluster import ClusterSpec, connect
-from app.experiments.config import experiment_config
-from app.experiments.engine import run_on
-from app.experiments.plan import Plan, Trial
+from hexapods.experiments.cluster import ClusterSpec, connect
+from hexapods.experiments.config import experiment_config
+from hexapods.experiments.engine import run_on
+from hexapods.experiments.plan import Plan, Trial
 
 
 class Pass(NamedTuple):

@@ -9,14 +9,14 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-import app
+import hexapods
 from app.cli import COMMANDS, main
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
 
 project = "Racing Hexapods"
-release = version = app.__version__
+release = version = hexapods.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 html_theme = "furo"
 html_title = f"Racing Hexapods {version}"

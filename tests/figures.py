@@ -6,16 +6,16 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.assembly import build_learner, build_walkers
-from app.domain.observation import Observation
-from app.domain.robot import robot
-from app.domain.types import FloatArray
 from app.jobs.fork_server import process_context
-from app.runs.config import TrainingConfig, training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
-from app.runs.training import evaluate, train, walk
+from hexapods.assembly import build_learner, build_walkers
+from hexapods.domain.observation import Observation
+from hexapods.domain.robot import robot
+from hexapods.domain.types import FloatArray
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
+from hexapods.runs.training import evaluate, train, walk
 from tests.promises.length import at_length
 
 T = TypeVar("T")

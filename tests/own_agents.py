@@ -7,12 +7,12 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from app.agents.linear_model import LinearModel
-from app.agents.lookahead import LookAhead
-from app.agents.protocol import AgentState, Expand, Observe, Problem, Transition
-from app.domain.observation import OBSERVATIONS
-from app.domain.settings import Setting
-from app.domain.types import Action, Cells
+from hexapods.agents.linear_model import LinearModel
+from hexapods.agents.lookahead import LookAhead
+from hexapods.agents.protocol import AgentState, Expand, Observe, Problem, Transition
+from hexapods.domain.observation import OBSERVATIONS
+from hexapods.domain.settings import Setting
+from hexapods.domain.types import Action, Cells
 
 Mood = Annotated[Literal["dull", "bright"], Setting(title="Mood", help="Whether it thinks.")]
 

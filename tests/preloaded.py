@@ -7,11 +7,11 @@ from app.cli import without_garbage_collection
 
 _IMPORTED_LATE = (
     "anyio._backends._asyncio",
-    "app.experiments.cluster_nodes",
-    "app.experiments.report.files",
-    "app.experiments.summary",
+    "hexapods.experiments.cluster_nodes",
+    "hexapods.experiments.report.files",
+    "hexapods.experiments.summary",
     "app.jobs.experiment_worker",
-    "app.physics.mujoco_simulator",
+    "hexapods.physics.mujoco_simulator",
     "matplotlib.backends.backend_svg",
     "numpy.ma",
     "rich.console",
@@ -21,12 +21,12 @@ _IMPORTED_LATE = (
 with without_garbage_collection(), tempfile.TemporaryDirectory() as folder:
     for late in _IMPORTED_LATE:
         importlib.import_module(late)
-    from app.domain.robot import Robot
-    from app.physics.mjcf import compile_model
     from app.server import create_app
     from app.settings import read_settings
     from app.storage.database.opening import open_store
-    from app.viewer.robot_mesh import RobotMesh
+    from hexapods.domain.robot import Robot
+    from hexapods.drawing.robot_mesh import RobotMesh
+    from hexapods.physics.mjcf import compile_model
 
     # What is built once in a process: models of the default robot, pages, routes and their
     # description.

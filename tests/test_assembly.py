@@ -5,22 +5,22 @@ from typing import Any
 
 import pytest
 
-from app.agents.lookahead import Greedy, TwoStep
-from app.agents.protocol import Transition
-from app.agents.q_learning import QLearning
-from app.assembly import build_learner, build_simulator, build_walkers
-from app.domain.errors import InvalidInput, TableMismatch, UnknownName, Unreachable
-from app.domain.gait import GaitSpec
-from app.domain.kinematic import KinematicSimulator
-from app.domain.observation import OBSERVATIONS, Observation, observe
-from app.domain.robot import Robot, robot
-from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.config import WalkingProblem, training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.tables import Checkpoint, snapshot
-from app.runs.training import train
-from app.runs.walker import FutureNode
+from hexapods.agents.lookahead import Greedy, TwoStep
+from hexapods.agents.protocol import Transition
+from hexapods.agents.q_learning import QLearning
+from hexapods.assembly import build_learner, build_simulator, build_walkers
+from hexapods.domain.errors import InvalidInput, TableMismatch, UnknownName, Unreachable
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.kinematic import KinematicSimulator
+from hexapods.domain.observation import OBSERVATIONS, Observation, observe
+from hexapods.domain.robot import Robot, robot
+from hexapods.physics.mujoco_simulator import MujocoSimulator
+from hexapods.runs.config import WalkingProblem, training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.tables import Checkpoint, snapshot
+from hexapods.runs.training import train
+from hexapods.runs.walker import FutureNode
 from tests import own_agents
 
 CONFIG = training_config(

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-import app.environment
-from app.assembly import build_learner
-from app.domain.errors import InvalidInput
-from app.domain.robot import robot
-from app.runs.config import training_config
-from app.runs.records import StepTaken
-from app.runs.training import train
+import hexapods.environment
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.robot import robot
+from hexapods.runs.config import training_config
+from hexapods.runs.records import StepTaken
+from hexapods.runs.training import train
 
-gymnasium.register_envs(app.environment)
+gymnasium.register_envs(hexapods.environment)
 
 
 def make(**settings: Any) -> gymnasium.Env[Any, Any]:
@@ -126,5 +126,5 @@ def test_an_action_out_of_range_names_the_action_space(action: Any) -> None:
 
 
 def test_gymnasium_can_import_and_register_it_by_module_name() -> None:
-    code = "import gymnasium; gymnasium.make('app.environment:RacingHexapods/Walk-v0')"
+    code = "import gymnasium; gymnasium.make('hexapods.environment:RacingHexapods/Walk-v0')"
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, timeout=60)

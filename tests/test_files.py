@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.files import lock_file, write_atomically
+from hexapods.files import lock_file, write_atomically
 
 
 def test_failed_write_keeps_the_old_file_and_leaves_nothing_else(
@@ -19,7 +19,7 @@ def test_failed_write_keeps_the_old_file_and_leaves_nothing_else(
         raise OSError("the disk is gone")
 
     with monkeypatch.context() as patch:
-        patch.setattr("app.files.os.fsync", fail)
+        patch.setattr("hexapods.files.os.fsync", fail)
         with pytest.raises(OSError, match="gone"):
             write_atomically(path, b"new")
     assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
@@ -31,7 +31,7 @@ def test_failed_write_keeps_the_old_file_and_leaves_nothing_else(
 def test_lock_excludes_other_processes_until_the_file_is_closed(tmp_path: Path) -> None:
     path = tmp_path / "lock"
     script = (
-        "import sys; from app.files import lock_file\n"
+        "import sys; from hexapods.files import lock_file\n"
         f"try: lock_file(open({str(path)!r}, 'ab'))\nexcept OSError: sys.exit(3)"
     )
 

@@ -11,15 +11,15 @@ from typing import Any
 
 import pytest
 
-from app.assembly import build_learner, build_walkers
-from app.experiments.config import experiment_config
-from app.experiments.plan import Plan
-from app.runs.config import TrainingConfig, training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import record_race
-from app.runs.tables import Checkpoint, snapshot
-from app.runs.training import train
+from hexapods.assembly import build_learner, build_walkers
+from hexapods.experiments.config import experiment_config
+from hexapods.experiments.plan import Plan
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import record_race
+from hexapods.runs.tables import Checkpoint, snapshot
+from hexapods.runs.training import train
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,13 @@
 """Settings: where they come from, and what is refused before anything starts."""
 
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from app.domain.errors import InvalidInput
-from app.settings import Settings, is_loopback, read_settings
+from app.settings import Settings, is_loopback, read_settings, remove_secrets
+from hexapods.domain.errors import InvalidInput
 
 TOKEN = "a-token-for-tests"
 
@@ -27,16 +28,22 @@ def test_an_option_goes_before_its_variable(tmp_path: Path) -> None:
         "HEXAPODS_SPECTATORS": "token",
         "HEXAPODS_PUBLIC_URL": "https://Hexapods.Example",
         "HEXAPODS_ALLOWED_HOSTS": "a.example, B.example,",
+        "HEXAPODS_TRUSTED_PROXIES": "127.0.0.1, 10.0.0.0/8, FD00::/8,",
     }
     settings = read_settings(environ, port=0, host=None)
     assert (settings.host, settings.port, settings.data) == ("0.0.0.0", 0, tmp_path)
     assert settings.allowed_hosts == ("a.example", "b.example")
+    assert settings.trusted_proxies == ("127.0.0.1", "10.0.0.0/8", "fd00::/8")
+    assert settings.proxy_networks == [
+        *("127.0.0.1/32", "10.0.0.0/8", "fd00::/8"),
+        *("::ffff:127.0.0.1/128", "::ffff:10.0.0.0/104"),
+    ]
     assert settings.public_host == "hexapods.example"
     assert settings.public_origin == "https://hexapods.example"
 
 
 def test_an_empty_variable_is_none() -> None:
-    names = ("HOST", "PORT", "DATA", "TOKEN", "SPECTATORS", "PUBLIC_URL", "ALLOWED_HOSTS")
+    names = [field.name.upper() for field in fields(Settings)]
     assert read_settings({f"HEXAPODS_{name}": "" for name in names}) == read_settings({})
 
 
@@ -61,6 +68,9 @@ def test_an_empty_variable_is_none() -> None:
         ({"PUBLIC_URL": "https://[x"}, ["https://hexapods.example"]),
         ({"ALLOWED_HOSTS": "https://a.example"}, ["host names"]),
         ({"ALLOWED_HOSTS": "*"}, ["host names"]),
+        ({"TRUSTED_PROXIES": "*"}, ["TRUSTED_PROXIES", "172.16.0.0/12"]),
+        ({"TRUSTED_PROXIES": "127.0.0.1, proxy.example"}, ["proxy.example"]),
+        ({"TRUSTED_PROXIES": "10.0.0.1/8"}, ["10.0.0.1/8"]),
         ({"DATABASE_URL": "mysql://me:sesame@host/db"}, ["postgresql://", "SQLite"]),
         ({"DATABASE_URL": "postgresql://me:sesame@host"}, ["postgresql://"]),
         ({"DATABASE_URL": "postgresql://me:sesame@[host/db"}, ["postgresql://"]),
@@ -98,6 +108,15 @@ def test_secrets_are_not_shown() -> None:
     assert (settings.token, settings.database_url) == (TOKEN, url)
     assert TOKEN not in repr(settings)
     assert "sesame" not in repr(settings)
+
+
+def test_secrets_can_be_removed_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in (("TOKEN", TOKEN), ("DATABASE_URL", "postgresql://me:sesame@host/db")):
+        monkeypatch.setenv(f"HEXAPODS_{name}", value)
+    monkeypatch.setenv("HEXAPODS_PORT", "9000")
+    remove_secrets()
+    settings = read_settings()
+    assert (settings.token, settings.database_url, settings.port) == (None, None, 9000)
 
 
 def test_a_quota_is_in_megabytes() -> None:

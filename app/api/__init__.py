@@ -1,7 +1,7 @@
 """The REST interface: routes parse a request, call a service, and shape the answer.
 
 Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments` (with `runs` in
-common), `gait`, `replays`, `exports`, `stage`, `spectators`, `events`, `options`, `transfer`
+common), `gait`, `replays`, `exports`, `stage`, `spectators`, `events`, `options`, `archives`
 (export and import), `monitoring`, `pages`, `docs`. Requests: `agent_bodies`, `schemas`,
 `experiment_body`, `fields`, `descriptions`, `formats`. Answers: `answers`, `recorded_answers`,
 `experiment_answers`, `gait_answers`, `explanation_answers`, `option_answers`, `curves`, `problems`

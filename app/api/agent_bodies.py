@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal, Union
 from pydantic import Field, GetCoreSchemaHandler, create_model
 from pydantic_core import core_schema
 
-from app.agents.registry import learns
 from app.api.descriptions import VALID
 from app.api.experiment_body import ExperimentBody, one_or_more
 from app.api.fields import Declared, TaggedUnion
@@ -20,11 +19,12 @@ from app.api.schemas import (
     TrainingBody,
     one_given,
 )
-from app.domain.settings import REQUIRED, DeclaredSetting
-from app.experiments.config import settings_by_name
-from app.runs.config import TrainingConfig, agent_settings, changeable_settings
-from app.runs.race_config import MAX_LANES
-from app.stage.scene_spec import PAPERS_LANES
+from hexapods.agents.registry import learns
+from hexapods.domain.settings import REQUIRED, DeclaredSetting
+from hexapods.experiments.config import settings_by_name
+from hexapods.runs.config import TrainingConfig, agent_settings, changeable_settings
+from hexapods.runs.race_config import MAX_LANES
+from hexapods.shows.scene_spec import PAPERS_LANES
 
 
 class AgentBodies:

@@ -12,14 +12,15 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.domain.observation import Observation
-from app.domain.robot import PRESETS
-from app.domain.settings import Value
-from app.experiments.config import ExperimentName
-from app.runs.clocks import Clock
-from app.runs.config import SimulatorName
-from app.runs.lane import PlanningModel
+from app.stage.state_machine import Origin, Phase
 from app.storage.run import State
+from hexapods.domain.observation import Observation
+from hexapods.domain.robot import PRESETS
+from hexapods.domain.settings import Value
+from hexapods.experiments.config import ExperimentName
+from hexapods.runs.clocks import Clock
+from hexapods.runs.config import SimulatorName
+from hexapods.runs.lane import PlanningModel
 
 Preset = Annotated[str, Field(json_schema_extra={"enum": list(PRESETS)})]
 Count = Annotated[int, Field(ge=0)]
@@ -217,12 +218,15 @@ class TrainingView(RunView):
 
 
 class FiguresUnderClock(Answer):
-    """Figures of a lane under one clock; lanes are ranked by the distance at time-out."""
+    """Figures of a lane under one clock; lanes are ranked by the distance at time-out.
 
-    finished_distance_m: float
+    Without a time-out, as of a race that was stopped before, there are no ranks.
+    """
+
+    finished_distance_m: float | None
     elapsed_s: float
     crossed_s: float | None
-    rank: Annotated[int, Field(ge=1)]
+    rank: Annotated[int, Field(ge=1)] | None
 
 
 class LaneFigures(Answer):
@@ -364,20 +368,38 @@ class ImportedView(Answer):
     items: list[TrainingView | RaceView | ExperimentView]
 
 
+class Announcement(Answer):
+    """A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run."""
+
+    run_id: str
+    in_s: Annotated[float, Field(ge=0)]
+
+
 class StageView(Answer):
     """State of the stage, which shows one run to all viewers."""
 
     run_id: str | None
     kind: Literal["idle", "training", "race"]
+    phase: Phase = Field(
+        description="`empty`; `live`: the run is computed; `decided`: it is computed, and its "
+        "picture is at time-out; `showing`: it has ended, its picture has not; `ended`: both have"
+    )
+    origin: Origin = Field(
+        description="why the run is on stage: it was `started`, a person has `chosen` it, the "
+        "server replays it (`automatic`), or it was shown last before the server's start "
+        "(`restored`)"
+    )
     time_s: float
     playing: bool
     speed: float | Literal["time-lapse"]
     clock: Clock
+    end_at_time_out: bool
     replay: bool
     live: bool
     ended: bool
     next_run_id: str | None
     holder: str | None
+    announced: Announcement | None
 
 
 class EstimateView(Answer):

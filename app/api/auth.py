@@ -5,6 +5,7 @@ runs.
 """
 
 import asyncio
+import hashlib
 import hmac
 from typing import Literal
 from urllib.parse import parse_qsl, urlencode
@@ -16,12 +17,12 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.cookies import SessionCookie
 from app.api.problems import problem
 from app.api.rate_limit import is_what_if, too_many
-from app.domain.errors import HexapodError
 from app.limits.addresses import client_of
 from app.limits.connections import Connection
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.storage.sessions import Sessions
+from hexapods.domain.errors import HexapodError
 
 Role = Literal["operator", "spectator"]
 
@@ -40,7 +41,10 @@ class TokenGuard:
 
     Without a token in the settings every client is operator; the server then binds to loopback
     only. An operator's browser has a session, whose id is in a cookie. Wrong tokens and wrong
-    session ids of an address draw on the same token bucket. Paths without a route are guarded too.
+    session ids of an address draw on the same token bucket. The right ones are let in even when it
+    is empty, or others at an operator's address could lock them out: they are too long to be
+    guessed (`MIN_TOKEN_LENGTH`), and the limit bounds the load. Paths without a route are guarded
+    too.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings, sessions: Sessions | None) -> None:
@@ -63,23 +67,17 @@ class TokenGuard:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        is_link = _has_token_parameter(scope)
-        wait_s = (
-            self._wrong_guesses.wait_s(client_of(scope)) if is_link or _bearer(headers) else 0.0
-        )
-        if wait_s > 0:
-            # Also for the right token: the limit must not reveal which guess was right.
-            await _too_many_guesses(scope, wait_s)(scope, receive, send)
-            return
-        if is_link:
+        if _has_token_parameter(scope):
             response = await self._open_session(scope, headers)
             await response(scope, receive, send)
             return
-        role = self._role(headers, scope)
-        if role == "spectator":
-            cookie = self._cookie(scope, headers)
+        role: Role = "operator"
+        cookie = self._cookie(scope, headers)
+        if not self._is_operator(headers, cookie):
+            role = "spectator"
+            wrong = [credential for credential in (_bearer(headers), cookie.value) if credential]
+            wait_s = max((self._wrong_guesses.take(client_of(scope)) for _ in wrong), default=0.0)
             if cookie.value:
-                wait_s = self._wrong_guesses.take(client_of(scope))
                 send = _expiring_cookie(cookie, send)
             if wait_s > 0:
                 await _too_many_guesses(scope, wait_s)(scope, receive, send)
@@ -94,16 +92,12 @@ class TokenGuard:
         else:
             await _unauthorized(f"This needs the operator: {_AUTH_HINT}.")(scope, receive, send)
 
-    def _role(self, headers: Headers, scope: Scope) -> Role:
+    def _is_operator(self, headers: Headers, cookie: SessionCookie) -> bool:
         if self._token is None or self._sessions is None:
-            return "operator"
-        token = _bearer(headers)
-        if token and _equal_in_constant_time(token, self._token):
-            return "operator"
-        if token:
-            self._wrong_guesses.take(client_of(scope))
-        session_id = self._cookie(scope, headers).value
-        return "operator" if session_id and self._sessions.is_open(session_id) else "spectator"
+            return True
+        if _equal_in_constant_time(_bearer(headers), self._token):
+            return True
+        return bool(cookie.value) and self._sessions.is_open(cookie.value)
 
     def _cookie(self, scope: Scope, headers: Headers) -> SessionCookie:
         return SessionCookie(headers, self._is_https or scope["scheme"] in ("https", "wss"))
@@ -128,7 +122,9 @@ class TokenGuard:
         if self._token is None or self._sessions is None:
             return response
         if not _equal_in_constant_time(given, self._token):
-            self._wrong_guesses.take(client_of(scope))
+            wait_s = self._wrong_guesses.take(client_of(scope))
+            if wait_s > 0:
+                return _too_many(wait_s)
             return _unauthorized("This is not the server's token; look at what its start printed.")
         try:
             session_id = await asyncio.to_thread(self._sessions.open)
@@ -172,8 +168,10 @@ def _bearer(headers: Headers) -> str:
 
 
 def _too_many_guesses(scope: Scope, wait_s: float) -> ASGIApp:
-    if scope["type"] == "websocket":
-        return _refuse_websocket
+    return _refuse_websocket if scope["type"] == "websocket" else _too_many(wait_s)
+
+
+def _too_many(wait_s: float) -> Response:
     return too_many("Too many wrong tokens came from this address; try again later.", wait_s)
 
 
@@ -187,5 +185,6 @@ def _unauthorized(detail: str) -> Response:
 
 
 def _equal_in_constant_time(one: str, other: str) -> bool:
-    """Compare in constant time, against timing attacks."""
-    return hmac.compare_digest(one.encode("utf-8", "surrogateescape"), other.encode())
+    """Compare in constant time, against timing attacks; by hash, which hides the lengths, too."""
+    hashes = [hashlib.sha256(text.encode("utf-8", "surrogateescape")) for text in (one, other)]
+    return hmac.compare_digest(*(text_hash.digest() for text_hash in hashes))

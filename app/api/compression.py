@@ -9,6 +9,7 @@ import hashlib
 from collections.abc import Mapping
 
 from starlette.datastructures import Headers
+from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import Scope
 
@@ -52,6 +53,21 @@ class CompressedContent:
             headers.pop("Content-Encoding", None)
             return Response(status_code=304, headers=headers)
         return Response(body, headers=headers, media_type=self._media_type)
+
+
+def gzipped(request: Request, content: bytes, media_type: str) -> Response:
+    """Return the response of a content that is kept compressed, to be revalidated at each use.
+
+    Args:
+        request: the request.
+        content: the content, compressed with gzip.
+        media_type: its type.
+    """
+    headers = {"Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
+    if accepts_gzip(request.headers.get("accept-encoding", "")):
+        headers["Content-Encoding"] = "gzip"
+        return Response(content, headers=headers, media_type=media_type)
+    return Response(gzip.decompress(content), headers=headers, media_type=media_type)
 
 
 def accepts_gzip(accept_encoding: str) -> bool:

@@ -1,125 +1,159 @@
-"""Concurrency limit per role: spectators' requests do not delay an operator's.
+"""Concurrency limit per role and kind of work: what takes long delays nothing else.
 
 A request holds a slot while the server computes, not while its client sends or reads: a slow client
-occupies none.
+occupies none. No work is begun for a client that has left.
 """
 
 import asyncio
-from collections import OrderedDict, deque
+import re
 from collections.abc import Awaitable, Callable
-from typing import TypeVar
+from typing import Literal, NamedTuple, TypeVar
 
 from starlette.datastructures import Headers
+from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.auth import PUBLIC_PATHS, Role
 from app.api.middleware import HttpMiddleware
-from app.api.rate_limit import is_encoding, is_spectators_what_if
+from app.api.problems import problem
+from app.api.rate_limit import is_encoding, is_spectators_what_if, too_many
 from app.limits.addresses import client_of
+from app.limits.connections import set_client
+from app.limits.fair_semaphore import FairSemaphore, NotAdmitted
+from app.storage.errors import Busy
 
-SLOTS: dict[Role, int] = {"operator": 16, "spectator": 2}
-"""Slots by role. Few, as Python threads share one interpreter lock and delay each other."""
-WHAT_IF_SLOTS = 1
-"""Slots of spectators' what-ifs, each of which takes a second of all cores: they do not delay what
-other spectators read, and an operator's what-if waits for one of them at most."""
-ENCODING_SLOTS: dict[Role, int] = {"operator": 2, "spectator": 1}
-"""Slots of files of long runs, which take up to minutes: they delay neither what a spectator reads
-nor what an operator commands."""
-PROBE_SLOTS = 2
-"""Slots of liveness and readiness probes, which take milliseconds: a server with long requests in
-progress is not taken for a dead one."""
+Work = Literal["probe", "what-if", "encoding", "download", "analysis", "other"]
+"""Kinds of work.
+
+- `probe`: liveness and readiness, in milliseconds: a busy server is not taken for a dead one.
+- `what-if`: of spectators, each of which takes all cores: an operator's waits for one of them.
+- `encoding`: files of long runs that take up to minutes before their first byte.
+- `download`: files that are computed chunk by chunk while a client reads them.
+- `analysis`: any other view of what a run recorded, which takes seconds if that is long.
+- `other`: listings, commands and files of the page, in milliseconds.
+"""
+
+
+class Slots(NamedTuple):
+    """Slots of one kind of work: all of them, and how many one address may hold."""
+
+    size: int
+    per_address: int
+
+
+SLOTS: dict[Role, dict[Work, Slots]] = {
+    "operator": {
+        "encoding": Slots(2, 2),
+        "download": Slots(2, 2),
+        "analysis": Slots(4, 4),
+        "other": Slots(16, 16),
+    },
+    "spectator": {
+        "what-if": Slots(1, 1),
+        "encoding": Slots(1, 1),
+        "download": Slots(2, 1),
+        "analysis": Slots(2, 1),
+        "other": Slots(2, 2),
+    },
+}
+"""Few, as Python threads share one interpreter lock and delay each other. One address cannot hold
+all that others need for reading."""
+PROBE_SLOTS = Slots(2, 2)
+MAX_WAITING = 200
+"""Requests of one address that may wait for a kind of work: thirty pages behind one address send
+six each at most."""
+_RETRY_S = 5
 _EVENT_STREAM = "text/event-stream"
+_READ_METHODS = ("GET", "HEAD")
+_OF_A_RUN = re.compile(r"/api/v1/(runs|trainings|races|experiments)/[^/]+/.+")
+_DOWNLOAD = re.compile(r"/api/v1/.*/(export|trajectory|recording|files/.*)")
 T = TypeVar("T")
 
 
-class RoundRobinSemaphore:
-    """A fair semaphore: round-robin over clients, first in, first out within a client.
+class WorkSlots:
+    """The semaphores of all kinds of work, by role."""
 
-    Not thread-safe; to be used on one event loop.
-    """
+    def __init__(self) -> None:
+        """Create them with all slots free."""
+        self._semaphores = {
+            (role, work): FairSemaphore(*slots, MAX_WAITING)
+            for role, kinds in SLOTS.items()
+            for work, slots in kinds.items()
+        }
+        self._probes = FairSemaphore(*PROBE_SLOTS, MAX_WAITING)
 
-    def __init__(self, size: int) -> None:
-        """Create a semaphore with all slots free.
+    def of(self, scope: Scope) -> FairSemaphore:
+        """Return the semaphore of a request; to be called inside `TokenGuard`."""
+        work = work_of(scope)
+        return self._probes if work == "probe" else self._semaphores[scope["state"]["role"], work]
 
-        Args:
-            size: number of concurrent holders.
-        """
-        self._free = size
-        self._waiters: OrderedDict[str, deque[asyncio.Future[None]]] = OrderedDict()
+    def close(self) -> None:
+        """Send away all requests that wait, and any new one: the server stops."""
+        for semaphore in (self._probes, *self._semaphores.values()):
+            semaphore.close()
 
-    async def acquire(self, client: str) -> None:
-        """Wait for a slot."""
-        if self._free > 0:
-            self._free -= 1
-            return
-        future = asyncio.get_running_loop().create_future()
-        self._waiters.setdefault(client, deque()).append(future)
-        try:
-            await future
-        except asyncio.CancelledError:
-            if future.done() and not future.cancelled():
-                self.release()
-            raise
 
-    def release(self) -> None:
-        """Pass the slot to the next waiter, or free it."""
-        while self._waiters:
-            client, futures = self._waiters.popitem(last=False)
-            future = futures.popleft()
-            while future.done() and futures:  # cancelled while waiting
-                future = futures.popleft()
-            if futures:
-                self._waiters[client] = futures
-            if not future.done():
-                future.set_result(None)
-                return
-        self._free += 1
+def work_of(scope: Scope) -> Work:
+    """Return the kind of work of a request; to be called inside `TokenGuard`."""
+    if scope["path"] in PUBLIC_PATHS:
+        return "probe"
+    if is_spectators_what_if(scope):
+        return "what-if"
+    if is_encoding(scope):
+        return "encoding"
+    if scope["method"] not in _READ_METHODS:
+        return "other"
+    if _DOWNLOAD.fullmatch(scope["path"]) is not None:
+        return "download"
+    return "other" if _OF_A_RUN.fullmatch(scope["path"]) is None else "analysis"
 
 
 class ConcurrencyLimit(HttpMiddleware):
-    """Middleware that limits concurrent requests by role; requests beyond the limit wait."""
+    """Middleware that limits concurrent requests; requests beyond the limit wait.
 
-    def __init__(self, app: ASGIApp) -> None:
-        """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
+    To be installed inside `TokenGuard`, which sets the role, and inside `HeldBodies`, which sends
+    the start of a response with its first chunk.
+    """
+
+    def __init__(self, app: ASGIApp, slots: WorkSlots) -> None:
+        """Wrap an app."""
         super().__init__(app)
-        self._semaphores = {role: RoundRobinSemaphore(size) for role, size in SLOTS.items()}
-        self._encodings = {role: RoundRobinSemaphore(n) for role, n in ENCODING_SLOTS.items()}
-        self._what_ifs = RoundRobinSemaphore(WHAT_IF_SLOTS)
-        self._probes = RoundRobinSemaphore(PROBE_SLOTS)
+        self._slots = slots
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Wait for a slot, and call the app."""
-        slot = _Slot(self._semaphore_of(scope), client_of(scope))
-        await slot.acquire()
+        """Wait for a slot and call the app, or respond 429 or 503."""
+        slot = _Slot(self._slots.of(scope), client_of(scope), set_client(scope))
+        try:
+            await slot.acquire(is_new=True)
+        except NotAdmitted as refused:
+            await _refusal(refused)(scope, receive, send)
+            return
         try:
             await self._app(scope, slot.wrap_receive(receive), slot.wrap_send(send))
         finally:
             slot.close()
 
-    def _semaphore_of(self, scope: Scope) -> RoundRobinSemaphore:
-        if scope["path"] in PUBLIC_PATHS:
-            return self._probes
-        if is_spectators_what_if(scope):
-            return self._what_ifs
-        semaphores = self._encodings if is_encoding(scope) else self._semaphores
-        return semaphores[scope["state"]["role"]]
-
 
 class _Slot:
     """The slot of one request, released while its client sends or reads."""
 
-    def __init__(self, semaphore: RoundRobinSemaphore, client: str) -> None:
-        self._semaphore, self._client = semaphore, client
+    def __init__(self, semaphore: FairSemaphore, client: str, has_left: Callable[[], bool]) -> None:
+        self._semaphore, self._client, self._has_left = semaphore, client, has_left
         self._is_held = False
         self._closed = asyncio.Event()
         # One task may send the response while another waits for the client's disconnect.
         self._acquire_lock = asyncio.Lock()
 
-    async def acquire(self) -> None:
+    async def acquire(self, is_new: bool = False) -> None:
+        """Wait for the slot.
+
+        Raises:
+            NotAdmitted: if there is none for the request.
+        """
         async with self._acquire_lock:
             if self._is_held or self._closed.is_set():
                 return
-            await self._semaphore.acquire(self._client)
+            await self._semaphore.acquire(self._client, self._has_left, is_new)
             self._is_held = True
             if self._closed.is_set():  # closed while waiting
                 self._release()
@@ -142,15 +176,19 @@ class _Slot:
         return call_without_slot
 
     def wrap_send(self, send: Send) -> Send:
-        """Wrap `send`: release the slot while sending, and for good after a stream's snapshot."""
+        """Wrap `send`: release the slot while a chunk is sent, for good with the last one.
+
+        Of a stream of events for good with the first one, the snapshot.
+        """
         is_stream = False
 
         async def call_without_slot(message: Message) -> None:
             nonlocal is_stream
             if message["type"] == "http.response.start":
                 is_stream = _is_stream(message)
-            elif is_stream:
-                # The first event, the snapshot, was computed under the slot.
+                await send(message)
+                return
+            if is_stream or not message.get("more_body", False):
                 self.close()
             await self._without_slot(lambda: send(message))
 
@@ -159,14 +197,33 @@ class _Slot:
     async def _without_slot(self, act: Callable[[], Awaitable[T]]) -> T:
         self._release()
         result = await act()
-        await self.acquire()
+        try:
+            await self.acquire()
+        except NotAdmitted as refused:
+            if refused.reason != "closed":
+                raise Busy("the client has closed its connection", 1) from refused
+            # The server stops: what is nearly complete is completed, and what takes long asks
+            # `Stopping` by itself.
+            self.close()
         return result
 
     def _release(self) -> None:
         if self._is_held:
             self._is_held = False
-            self._semaphore.release()
+            self._semaphore.release(self._client)
 
 
 def _is_stream(message: Message) -> bool:
     return Headers(raw=message.get("headers", [])).get("content-type", "").startswith(_EVENT_STREAM)
+
+
+def _refusal(refused: NotAdmitted) -> Response:
+    if refused.reason == "full":
+        detail = (
+            f"The server is busy, and {MAX_WAITING} requests of this address wait already; "
+            f"try again in {_RETRY_S} s."
+        )
+        return too_many(detail, _RETRY_S)
+    # Nobody reads it if the client has left.
+    detail = "The server is stopping; try again later."
+    return problem(503, detail, headers={"Retry-After": "1"})

@@ -35,7 +35,7 @@ class FieldProblem(BaseModel):
     detail: str
 
 
-class Problem(BaseModel):
+class ProblemDetails(BaseModel):
     """An error as a problem document of RFC 9457."""
 
     model_config = ConfigDict(extra="forbid")
@@ -142,7 +142,7 @@ def install(app: FastAPI, agents: tuple[str, ...], settings: Settings) -> None:
 def _completed(schema: Schema, agents: tuple[str, ...], settings: Settings) -> Schema:
     components = schema.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
-    problem_schema = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+    problem_schema = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
     schemas |= problem_schema.pop("$defs")
     schemas["Problem"] = problem_schema
     for name in _UNUSED_SCHEMAS:

@@ -7,8 +7,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from app.domain.grid import FootGrid
-from app.domain.types import Cells, FloatArray
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.types import Cells, FloatArray
 
 _VALUES_PER_CHUNK = 500
 """Action values per chunk, about 30 kB of text, which stay in memory while a client reads them."""

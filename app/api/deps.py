@@ -10,7 +10,6 @@ from starlette.requests import ClientDisconnect
 from app.api.auth import Role
 from app.api.descriptions import VALID
 from app.cache import BytesCache
-from app.domain.types import Cells
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.video_renderer import VideoRenderer
@@ -18,11 +17,8 @@ from app.jobs.jobs import Jobs
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
-from app.runs.clocks import Clock
-from app.runs.race_config import RaceConfig
-from app.runs.recording import LaneRecording
+from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
-from app.stage.race_show import Original
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
 from app.storage.idempotency import Idempotency, Import, Start
@@ -30,6 +26,11 @@ from app.storage.recordings import Recordings
 from app.storage.run import MAX_KEY_LENGTH, Run
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
+from hexapods.domain.types import Cells
+from hexapods.runs.clocks import Clock
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recording import LaneRecording
+from hexapods.shows.race_show import Original
 
 StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock, Original | None], bytes]
 """Encodes a race's lanes as a recorded stream for viser: with the race's name, under a clock, and
@@ -38,7 +39,7 @@ with the race from which it branched off, if any."""
 
 PageBuilder = Callable[[str, str, Clock], Iterator[bytes]]
 """Builds the page that replays a run without a server: with the run's id, its title, and a clock;
-see `app.viewer.replay_page`."""
+see `app.viewer.replay_frames`."""
 
 
 class HubCounters(Protocol):
@@ -49,7 +50,7 @@ class HubCounters(Protocol):
     frames_merged: int
 
 
-class ReplayFrames(Protocol):
+class FrameEncoder(Protocol):
     """Encodes the frames of runs: see `app.viewer.replay_frames`."""
 
     def plan(self, run_id: str, clock: Clock, ghost_id: str | None) -> dict[str, Any]:
@@ -88,9 +89,10 @@ class Services:
         replay_page: builds pages that need no server.
         videos: renders videos.
         stopping: ends what takes long in threads when the server stops.
+        what_if_limiter: limits what-ifs of spectators, by their number and time.
         listeners: slots of event streams.
         exports: memory budget of exports that clients are still reading.
-        gaits: gait analyses, which all pages that watch a run request at once.
+        analyses: gait analyses and timelines, which all pages that watch a run request at once.
     """
 
     settings: Settings
@@ -104,19 +106,20 @@ class Services:
     audience: Callable[[], HubCounters]
     ready: Callable[[], str | None]
     recorded_stream: StreamEncoder
-    replays: ReplayFrames
+    replays: FrameEncoder
     replay_page: PageBuilder
     videos: VideoRenderer
     what_if: WhatIf
     explanations: Explanations
     estimates: Estimates
     stopping: Stopping
-    listeners: ClientSlots["Listener"]
+    what_if_limiter: RateLimiter
+    listeners: ClientSlots["EventListener"]
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
-    gaits: BytesCache = field(default_factory=lambda: BytesCache(8 << 20))
+    analyses: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
 
 
-class Listener:
+class EventListener:
     """A client of the event stream; `close` ends its stream, if one is open."""
 
     def __init__(self) -> None:

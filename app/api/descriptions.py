@@ -4,23 +4,23 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.archive.transfer import MAX_RUNS
-from app.domain import disturbances
-from app.domain.gait import NAMED_GAITS
-from app.domain.observation import OBSERVATIONS
-from app.domain.robot import PRESETS
-from app.domain.settings import declared_fields
-from app.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
-from app.domain.world import MAX_DISTURBANCES, WORLDS
-from app.experiments.config import EXPERIMENTS, MAX_SEEDS
 from app.exports.video import MAX_FPS, MAX_HEIGHT, MAX_SPEED, MAX_WIDTH, MIN_SIDE, MIN_SPEED
-from app.runs.clocks import CLOCKS
-from app.runs.config import SIMULATORS, TrainingConfig
-from app.runs.gait_analysis import MAX_WINDOW_S
-from app.runs.lane import LaneConfig
-from app.runs.race_config import MAX_LANES
-from app.stage import show
-from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
 from app.storage.run import KINDS, MAX_KEY_LENGTH, SORTS, STATES
+from hexapods.domain import disturbances
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.observation import OBSERVATIONS
+from hexapods.domain.robot import PRESETS
+from hexapods.domain.settings import declared_fields
+from hexapods.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
+from hexapods.domain.world import MAX_DISTURBANCES, WORLDS
+from hexapods.experiments.config import EXPERIMENTS, MAX_SEEDS
+from hexapods.runs.clocks import CLOCKS
+from hexapods.runs.config import SIMULATORS, TrainingConfig
+from hexapods.runs.gait_analysis import MAX_WINDOW_S
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import MAX_LANES
+from hexapods.shows import show
+from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL
 
 MAX_PAGE = 100
 MAX_SEARCH = MAX_NAME

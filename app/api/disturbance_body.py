@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, create_model
 
 from app.api.fields import INTEGRAL, Body, Declared, TaggedUnion
-from app.domain.disturbances import KINDS, LEGS, Disturbance, disturbance
-from app.domain.robot import MAX_LEGS
-from app.domain.settings import declared_fields
-from app.domain.world import MAX_DISTURBANCES
+from hexapods.domain.disturbances import KINDS, LEGS, Disturbance, disturbance
+from hexapods.domain.robot import MAX_LEGS
+from hexapods.domain.settings import declared_fields
+from hexapods.domain.world import MAX_DISTURBANCES
 
 Leg = Annotated[
     # The upper limit depends on the robot, so the domain validates it.

@@ -10,8 +10,8 @@ from app.api.answers import EstimateView
 from app.api.deps import ServicesDep
 from app.api.experiment_body import ExperimentBody
 from app.api.schemas import BranchBody, RaceBody, TrainingBody
-from app.domain.errors import InvalidInput
 from app.jobs.submissions import BranchStart
+from hexapods.domain.errors import InvalidInput
 
 
 def estimate_routes(bodies: AgentBodies) -> APIRouter:

@@ -7,13 +7,13 @@ from fastapi import APIRouter, Depends, Header, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
-from app import __version__
-from app.api.deps import Listener, RoleDep, Services, ServicesDep
+from app.api.deps import EventListener, RoleDep, Services, ServicesDep
 from app.api.descriptions import VALID
 from app.limits.addresses import client_of
 from app.limits.client_slots import NoFreeSlot, Refusal
 from app.storage.errors import Busy
 from app.storage.json_text import json_text
+from hexapods import __version__
 
 NEWEST_RUNS = 50
 RETRY_MS = 1000
@@ -37,13 +37,13 @@ def _existing_run_id(
 
 async def _client_slot(
     request: Request, services: ServicesDep, role: RoleDep
-) -> AsyncIterator[Listener]:
+) -> AsyncIterator[EventListener]:
     """Occupy a client slot until the stream ends, evicting another client if the slots allow it.
 
     Raises:
         Busy: if no slot is free.
     """
-    listener = Listener()
+    listener = EventListener()
     try:
         evicted = services.listeners.take(listener, client_of(request.scope), role == "operator")
     except NoFreeSlot as error:
@@ -63,7 +63,7 @@ async def get_events(
     services: ServicesDep,
     role: RoleDep,
     run_id: Annotated[str | None, Depends(_existing_run_id)],
-    listener: Annotated[Listener, Depends(_client_slot)],
+    listener: Annotated[EventListener, Depends(_client_slot)],
     last_event_id: Annotated[str | None, Header()] = None,
 ) -> AsyncIterator[ServerSentEvent]:
     """Stream a `snapshot` event, then changes; with `run_id` only those of this run."""

@@ -5,10 +5,10 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.answers import Answer, Count, ExperimentConfigView
-from app.domain.observation import Observation
-from app.domain.settings import Value
-from app.experiments.config import ExperimentName
-from app.runs.lane import PlanningModel
+from hexapods.domain.observation import Observation
+from hexapods.domain.settings import Value
+from hexapods.experiments.config import ExperimentName
+from hexapods.runs.lane import PlanningModel
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Decided = Literal["yes", "no", "not established"]

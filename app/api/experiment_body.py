@@ -21,18 +21,18 @@ from app.api.fields import (
     Tolerance,
 )
 from app.api.schemas import Gait, GaitBody
-from app.domain.errors import UnknownName
-from app.domain.observation import Observation
-from app.domain.robot import robot
-from app.experiments.config import (
+from app.jobs.submissions import ExperimentStart
+from hexapods.domain.errors import UnknownName
+from hexapods.domain.observation import Observation
+from hexapods.domain.robot import robot
+from hexapods.experiments.config import (
     MAX_SEEDS,
     MAX_WORKERS,
     ExperimentConfig,
     ExperimentName,
     experiment_config,
 )
-from app.jobs.submissions import ExperimentStart
-from app.runs.config import SimulatorName
+from hexapods.runs.config import SimulatorName
 
 MAX_VALUES = 100
 

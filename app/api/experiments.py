@@ -12,12 +12,12 @@ from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.formats import attachment, file_response, negotiated
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import TrialBody
-from app.experiments.config import REPORT, SUMMARY, ExperimentConfig
 from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
 from app.storage.run import NOT_ENDED, Run, config_as_json
 from app.storage.stored_trials import trials_as_csv
+from hexapods.experiments.config import REPORT, SUMMARY, ExperimentConfig
 
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "

@@ -10,6 +10,7 @@ from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, negotiated
 from app.api.replays import ClockQuery
 from app.api.runs import RunPath
+from app.exports.mcap_log import MAX_SERVED_FRAMES as MAX_MCAP_FRAMES
 from app.exports.mcap_log import MCAP_TYPE, mcap_log
 from app.exports.recorded_lanes import RecordedWalks, checked_lane, recorded_walks
 from app.exports.trajectory import (
@@ -109,7 +110,7 @@ def get_mcap(services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper"
     It needs `racing-hexapods[mcap]` on the server.
     """
     run = services.store.get(run_id)
-    chunks = mcap_log(_walks(services, run), clock, services.stopping)
+    chunks = mcap_log(_walks(services, run), clock, services.stopping, MAX_MCAP_FRAMES)
     return attachment(chunks, MCAP_TYPE, f"{run.kind}-{run.id}.mcap")
 
 

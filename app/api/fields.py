@@ -19,10 +19,10 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import PydanticCustomError, core_schema
 
 from app.api.descriptions import VALID
-from app.domain.errors import InvalidInput, UnknownName
-from app.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
-from app.domain.settings import DeclaredSetting, declared_fields
-from app.domain.text import (
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
+from hexapods.domain.settings import DeclaredSetting, declared_fields
+from hexapods.domain.text import (
     MAX_NAME,
     MAX_NOTES,
     MAX_TAG,
@@ -34,9 +34,9 @@ from app.domain.text import (
     check_tags,
     invisible_ranges,
 )
-from app.runs.config import TrainingConfig
-from app.runs.lane import LaneConfig
-from app.runs.race_config import MAX_ID, RaceConfig
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import MAX_ID, RaceConfig
 
 
 def _checked_by(check: Callable[[Any], Any]) -> AfterValidator:

@@ -11,17 +11,17 @@ from app.api.deps import Services, ServicesDep
 from app.api.descriptions import VALID
 from app.api.gait_answers import GaitView
 from app.api.runs import RunPath
-from app.runs.config import TrainingConfig
-from app.runs.gait_analysis import gait_figures, window_of
-from app.runs.race_config import RaceConfig
-from app.runs.recorded_walk import (
+from app.storage.errors import Conflict, Damaged
+from app.storage.run import DamagedRun, Run, world_of
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.gait_analysis import gait_figures, window_of
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recorded_walk import (
     RecordedWalk,
     walk_of_evaluation,
     walk_of_lane,
     walk_of_practice,
 )
-from app.storage.errors import Conflict, Damaged
-from app.storage.run import DamagedRun, Run, world_of
 
 TrainingPart = Literal["practice", "evaluation"]
 
@@ -55,10 +55,14 @@ def get_gait(
     shown = _walks(services, run, part, from_s)
     window = window_of(shown.walks, from_s, to_s, newest=shown.part == "practice")
     recorded = tuple((walk.from_s, walk.to_s) for walk in shown.walks)
-    key = (run.id, shown.part, window, recorded, shown.step, len(run.changes))
-    return Response(
-        services.gaits.computed(key, lambda: _answer(shown, *window)), media_type="application/json"
-    )
+    key = ("gait", run.id, shown.part, window, recorded, shown.step, len(run.changes))
+
+    def answer() -> bytes:
+        # It may have waited for others.
+        services.stopping.check()
+        return _answer(shown, *window)
+
+    return Response(services.analyses.computed(key, answer), media_type="application/json")
 
 
 class _Walks(NamedTuple):

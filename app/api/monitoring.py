@@ -19,13 +19,13 @@ from prometheus_client.metrics_core import (
 from prometheus_client.registry import Collector
 from starlette.responses import JSONResponse, Response
 
-from app import __version__
 from app.api.answers import HealthView
 from app.api.contract import TEXT, answers
 from app.api.deps import Services, ServicesDep
 from app.api.problems import problem
 from app.events.damage import DamageCount
 from app.storage.run import STATES
+from hexapods import __version__
 
 router = APIRouter(tags=["health"])
 

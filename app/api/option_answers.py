@@ -5,7 +5,7 @@ from typing import Any
 from pydantic import Field
 
 from app.api.answers import Answer, DisturbanceView, RobotView
-from app.domain.settings import Value
+from hexapods.domain.settings import Value
 
 
 class Described(Answer):
@@ -142,3 +142,7 @@ class OptionsView(Answer):
         description="[lowest, highest]; `settings` says which of them are not valid themselves"
     )
     help: dict[str, str]
+    missing_extras: dict[str, str] = Field(
+        description="extras of the package that exports need and the server lacks, each with the "
+        "command that installs it"
+    )

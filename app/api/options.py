@@ -9,21 +9,27 @@ from annotated_types import Ge, Le
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
-from app import __version__
-from app.agents.appearance import colors_of, description_of, title_of
-from app.agents.registry import OURS, keeps_learning, learns, needs_practice, searches
 from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
 from app.archive.transfer import MAX_RUNS
-from app.domain import disturbances
-from app.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
-from app.domain.robot import MAX_LEGS, PRESETS, Robot, as_mapping
-from app.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
-from app.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
-from app.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
-from app.experiments.config import (
+from app.exports.extras import missing_extras
+from app.exports.video import VideoOptions
+from app.exports.video_renderer import MAX_SERVED_FRAMES
+from app.jobs.submissions import MAX_SETTINGS, TITLES
+from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
+from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
+from hexapods import __version__
+from hexapods.agents.appearance import colors_of, description_of, title_of
+from hexapods.agents.registry import OURS, keeps_learning, learns, needs_practice, searches
+from hexapods.domain import disturbances
+from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
+from hexapods.domain.robot import MAX_LEGS, PRESETS, Robot, as_mapping
+from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
+from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
+from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
+from hexapods.experiments.config import (
     EXPERIMENTS,
     GRID,
     MAX_SEEDS,
@@ -34,25 +40,20 @@ from app.experiments.config import (
     fields_of,
     settings_by_name,
 )
-from app.experiments.config import as_json as experiment_as_json
-from app.exports.video import VideoOptions
-from app.exports.video_renderer import MAX_SERVED_FRAMES
-from app.jobs.submissions import MAX_SETTINGS, TITLES
-from app.runs import best_known
-from app.runs.config import (
+from hexapods.experiments.config import as_json as experiment_as_json
+from hexapods.runs import best_known
+from hexapods.runs.config import (
     RACE_STEPS,
     TrainingConfig,
     agent_settings,
     changeable_settings,
     training_config,
 )
-from app.runs.config_json import as_json
-from app.runs.gait_analysis import MAX_WINDOW_S
-from app.runs.lane import LaneConfig
-from app.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
-from app.stage.scene_spec import PAPERS_LANES
-from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
-from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
+from hexapods.runs.config_json import as_json
+from hexapods.runs.gait_analysis import MAX_WINDOW_S
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
+from hexapods.shows.scene_spec import PAPERS_LANES
 
 router = APIRouter(prefix="/options", tags=["options"])
 
@@ -208,6 +209,7 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "settings": {name: _setting(setting) for name, setting in settings.items()},
         "limits": _limits(settings),
         "help": {name: setting.about.help for name, setting in settings.items()} | _HELP,
+        "missing_extras": missing_extras(),
     }
 
 

@@ -15,7 +15,6 @@ from starlette.responses import Response
 from starlette.routing import compile_path
 
 from app.api.descriptions import field_errors
-from app.domain.errors import HexapodError, InvalidInput
 from app.storage.errors import (
     Busy,
     Conflict,
@@ -25,6 +24,7 @@ from app.storage.errors import (
     StorageFailed,
     StorageFull,
 )
+from hexapods.domain.errors import HexapodError, InvalidInput
 
 MEDIA_TYPE = "application/problem+json"
 MAX_DETAIL = 1000

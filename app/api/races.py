@@ -1,25 +1,28 @@
 """Routes of races: recording and timeline."""
 
+import gzip
+from collections.abc import Iterator
 from typing import Annotated, Literal
 
+import msgspec
 from fastapi import Query, Request
-from starlette.responses import JSONResponse, Response, StreamingResponse
+from starlette.responses import Response, StreamingResponse
 
+from app.api.compression import gzipped
 from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, negotiated
 from app.api.recorded_answers import RecordingView, TimelineView
 from app.api.runs import RunPath, find, run_routes
-from app.runs.clocks import Clock
-from app.runs.race_config import RaceConfig
-from app.runs.recording import LaneRecording
-from app.stage import recording_export
-from app.stage.race_show import original_of
+from app.exports import recording_json
+from app.stage.playback import original_of
 from app.stage.timeline import timeline
 from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict
 from app.storage.run import NOT_ENDED, Run
-from app.storage.stored_recordings import RACE
+from hexapods.runs.clocks import Clock
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recording import LaneRecording
 
 router = run_routes("race")
 
@@ -44,10 +47,9 @@ def get_recording(
         stream = _recorded_stream(services, run, config, clock)
         return attachment(stream, "application/octet-stream", f"race-{run_id}.viser")
     if kind == "npz":
-        return attachment(
-            _stored_recording(services, run), "application/x-npz", f"race-{run_id}.npz"
-        )
-    chunks = recording_export.as_json(
+        arrays = _stored_recording(services, run)
+        return attachment(arrays, "application/x-npz", f"race-{run_id}.npz")
+    chunks = recording_json.as_json(
         lambda: _lanes(services, run), run.lane_training_ids, config.steps
     )
     return StreamingResponse(chunks, media_type="application/json")
@@ -59,21 +61,34 @@ def get_recording(
     response_model=TimelineView,
 )
 def get_timeline(
-    services: ServicesDep, run_id: RunPath, clock: Annotated[Clock, Query()] = "paper"
+    services: ServicesDep,
+    request: Request,
+    run_id: RunPath,
+    clock: Annotated[Clock, Query()] = "paper",
 ) -> Response:
     """Return each lane's distance over time; it is constant while the lane computes a decision."""
-    run, config, lanes = _find_recorded(services, run_id)
-    return JSONResponse(timeline(lanes, run.lane_training_ids, config.steps, clock))
+    run = find(services, "race", run_id)
+
+    def compute() -> bytes:
+        services.stopping.check()
+        _, config, lanes = _find_recorded(services, run_id)
+        found = timeline(lanes, run.lane_training_ids, config.steps, clock)
+        return gzip.compress(msgspec.json.encode(found), compresslevel=1, mtime=0)
+
+    # Of a race that has ended it is computed once, for all who look at it.
+    key = ("timeline", run.id, run.created_at, run.state, run.ended_at, clock)
+    content = compute() if run.state in NOT_ENDED else services.analyses.computed(key, compute)
+    return gzipped(request, content, "application/json")
 
 
-def _stored_recording(services: Services, run: Run) -> ArtifactFile:
-    """Return the stored recording of an ended race; a live one would be in memory twice."""
-    file = None if run.state in NOT_ENDED else services.store.open_artifact(run.id, RACE)
-    if file is None:
+def _stored_recording(services: Services, run: Run) -> Iterator[bytes]:
+    """Return the stored recording of an ended race; of a live one some steps are in no file."""
+    arrays = None if run.state in NOT_ENDED else services.recordings.race_file(run.id)
+    if arrays is None:
         raise Conflict(
             f"race {run.id} is {run.state}; its arrays are available once it has ended", run.state
         )
-    return file
+    return arrays
 
 
 def _recorded_stream(

@@ -29,13 +29,18 @@ class RateLimit(HttpMiddleware):
     own; those of operators have none.
     """
 
-    def __init__(self, app: ASGIApp, settings: Settings) -> None:
-        """Wrap an app; to be installed inside `TokenGuard`, which sets the role."""
+    def __init__(self, app: ASGIApp, settings: Settings, what_ifs: RateLimiter) -> None:
+        """Wrap an app; to be installed inside `TokenGuard`, which sets the role.
+
+        Args:
+            app: the wrapped app.
+            settings: settings of the server.
+            what_ifs: that of spectators' what-ifs: see `what_if_limiter`.
+        """
         super().__init__(app)
         self._per_minute = settings.starts_per_minute
         self._buckets = RateLimiter(self._per_minute, self._per_minute / 60)
-        self._what_ifs_per_minute = settings.what_ifs_per_minute
-        self._what_ifs = RateLimiter(self._what_ifs_per_minute, self._what_ifs_per_minute / 60)
+        self._what_ifs_per_minute, self._what_ifs = settings.what_ifs_per_minute, what_ifs
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, or respond 429."""
@@ -45,11 +50,7 @@ class RateLimit(HttpMiddleware):
     def _refusal(self, scope: Scope) -> Response | None:
         if is_spectators_what_if(scope):
             wait_s = self._what_ifs.take(client_of(scope))
-            detail = (
-                f"Spectators of one address may ask {self._what_ifs_per_minute} times a minute "
-                f"here; ask again in {_whole_seconds(wait_s)} s. "
-                f"{PREFIX}WHAT_IFS_PER_MINUTE sets how often."
-            )
+            detail = what_ifs_used_up(self._what_ifs_per_minute, wait_s)
         elif _starts_work(scope):
             wait_s = self._buckets.take(f"{scope['state']['role']} {client_of(scope)}")
             detail = (
@@ -59,6 +60,21 @@ class RateLimit(HttpMiddleware):
         else:
             return None
         return too_many(detail, wait_s) if wait_s > 0 else None
+
+
+def what_if_limiter(settings: Settings) -> RateLimiter:
+    """Return the limiter of spectators' what-ifs: a token for each, and for each further second."""
+    per_minute = settings.what_ifs_per_minute
+    return RateLimiter(per_minute, per_minute / 60)
+
+
+def what_ifs_used_up(per_minute: int, wait_s: float) -> str:
+    """Return the sentences that tell a spectator to wait before the next what-if."""
+    return (
+        f"Spectators of one address may ask {per_minute} times a minute here, and one that takes "
+        f"longer than a second counts as many times; ask again in {whole_seconds(wait_s)} s. "
+        f"{PREFIX}WHAT_IFS_PER_MINUTE sets how often."
+    )
 
 
 def is_what_if(scope: Scope) -> bool:
@@ -73,10 +89,11 @@ def is_spectators_what_if(scope: Scope) -> bool:
 
 def too_many(detail: str, wait_s: float) -> Response:
     """Return a 429 response whose Retry-After is the wait, rounded up to at least 1 s."""
-    return problem(429, detail, headers={"Retry-After": str(_whole_seconds(wait_s))})
+    return problem(429, detail, headers={"Retry-After": str(whole_seconds(wait_s))})
 
 
-def _whole_seconds(wait_s: float) -> int:
+def whole_seconds(wait_s: float) -> int:
+    """Return a wait for a Retry-After header: rounded up, and at least 1 s."""
     return max(1, math.ceil(wait_s))
 
 

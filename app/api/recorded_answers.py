@@ -5,8 +5,8 @@ from typing import Literal
 from pydantic import Field
 
 from app.api.answers import Answer, Count, Gait
-from app.runs.clocks import Clock
-from app.stage.show import MarkKind
+from hexapods.runs.clocks import Clock
+from hexapods.shows.show import MarkKind
 
 
 class Evaluation(Answer):
@@ -79,11 +79,17 @@ class RecordingView(Answer):
 
 
 class TimelineLane(Answer):
-    """A lane's distance over time: points are [s, m], decision intervals are [from s, to s]."""
+    """A lane's distance over time: points are [s, m], decision intervals are [from s, to s].
+
+    Of a lane of more than 2,000 steps, `stride` steps together are told as one: it decides on all
+    of them, then walks.
+    """
 
     agent: str
     training_id: str | None
     color: str
+    steps: Count = Field(description="that it has taken so far")
+    stride: int = Field(description="number of steps told as one; 1 in all but long races")
     points: list[tuple[float, float]]
     thinking: list[tuple[float, float]]
     futures: list[int]

@@ -1,20 +1,19 @@
 """Routes of replays: a run's timeline, and its frames, for a page with a position of its own."""
 
-import gzip
 from typing import Annotated, NamedTuple
 
 from fastapi import APIRouter, Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.compression import accepts_gzip
+from app.api.compression import gzipped
 from app.api.contract import BINARY, answers
 from app.api.deps import ServicesDep
 from app.api.descriptions import VALID
 from app.api.fields import RunId
 from app.api.recorded_answers import ReplayView
 from app.api.runs import RunPath
-from app.runs.clocks import Clock
-from app.stage.playback import HIGHEST_LEVEL, LOWEST_LEVEL
+from hexapods.runs.clocks import Clock
+from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL
 
 router = APIRouter(prefix="/runs/{run_id}/replay", tags=["replays"])
 
@@ -50,7 +49,7 @@ def get_replay_scene(
     services: ServicesDep, request: Request, run_id: RunPath, ghost: GhostQuery = None
 ) -> Response:
     """Return the scene on which all frames are based; for the format see `docs/replays.md`."""
-    return _response(request, services.replays.scene(run_id, ghost))
+    return gzipped(request, services.replays.scene(run_id, ghost), _MEDIA_TYPE)
 
 
 @router.get(
@@ -66,7 +65,7 @@ def get_replay_moment(
     ghost: GhostQuery = None,
 ) -> Response:
     """Return the frame at a time of the run, or at the nearest that is recorded."""
-    return _response(request, services.replays.moment(run_id, clock, time_s, ghost))
+    return gzipped(request, services.replays.moment(run_id, clock, time_s, ghost), _MEDIA_TYPE)
 
 
 @router.get(
@@ -91,7 +90,9 @@ def get_replay_posture(
     that are lost at the time are left out.
     """
     state = tuple(int(cell) for cell in cells.split(","))
-    return _response(request, services.replays.posture(run_id, clock, time_s, lane, state))
+    return gzipped(
+        request, services.replays.posture(run_id, clock, time_s, lane, state), _MEDIA_TYPE
+    )
 
 
 class SegmentKey(NamedTuple):
@@ -124,12 +125,4 @@ def get_replay_segment(
     ghost: GhostQuery = None,
 ) -> Response:
     """Return the frames of a segment; fewer than it can have where the run still computes."""
-    return _response(request, services.replays.segment(run_id, clock, *segment, ghost))
-
-
-def _response(request: Request, frames: bytes) -> Response:
-    headers = {"Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
-    if accepts_gzip(request.headers.get("accept-encoding", "")):
-        headers["Content-Encoding"] = "gzip"
-        return Response(frames, headers=headers, media_type=_MEDIA_TYPE)
-    return Response(gzip.decompress(frames), headers=headers, media_type=_MEDIA_TYPE)
+    return gzipped(request, services.replays.segment(run_id, clock, *segment, ghost), _MEDIA_TYPE)

@@ -30,11 +30,11 @@ from app.api.fields import RunId
 from app.api.run_code import run_code
 from app.api.schemas import AnnotationBody
 from app.archive.transfer import MAX_RUNS
-from app.domain.text import MAX_TAG
 from app.jobs.jobs import Jobs
 from app.storage.database.listing import Listing
 from app.storage.errors import Conflict, Damaged, NotFound
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
+from hexapods.domain.text import MAX_TAG
 
 RunPath = Annotated[str, Path(description="id of the run")]
 RunIdsQuery = Annotated[

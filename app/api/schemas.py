@@ -31,23 +31,23 @@ from app.api.fields import (
     Tolerance,
     number,
 )
-from app.domain.errors import InvalidInput
-from app.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
-from app.domain.observation import Observation
-from app.domain.robot import robot
-from app.domain.world import WORLDS, world_from
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
-from app.runs.clocks import Clock
-from app.runs.config import (
+from app.storage.run import ANNOTATIONS
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
+from hexapods.domain.observation import Observation
+from hexapods.domain.robot import robot
+from hexapods.domain.world import WORLDS, world_from
+from hexapods.runs.clocks import Clock
+from hexapods.runs.config import (
     RACE_STEPS,
     SimulatorName,
     TrainingConfig,
     WalkingProblem,
     training_config,
 )
-from app.runs.race_config import MAX_RACE_STEPS, Branch
-from app.stage.show import MAX_SPEED, MIN_SPEED
-from app.storage.run import ANNOTATIONS
+from hexapods.runs.race_config import MAX_RACE_STEPS, Branch
+from hexapods.shows.show import MAX_SPEED, MIN_SPEED
 
 WorldName = Annotated[
     str,
@@ -308,3 +308,15 @@ class StageBody(Body):
         None
     )
     clock: Clock | None = None
+    end_at_time_out: (
+        Annotated[
+            bool,
+            Field(
+                strict=True,
+                description="whether the show of a race ends with its photo finish, or goes on "
+                "until the last lane has ended; true again with the next run",
+            ),
+        ]
+        | None
+    ) = None
+    stay: Annotated[bool, Field(strict=True, description="keep the run that is on stage")] = False

@@ -8,13 +8,16 @@ from starlette.responses import JSONResponse, Response
 from app.api.agent_bodies import AgentBodies
 from app.api.answers import ExperimentView, RaceView, TrainingView, WhatIfView
 from app.api.contract import LOCATION, answers
-from app.api.deps import ServicesDep, StartRequestDep
+from app.api.deps import RoleDep, Services, ServicesDep, StartRequestDep
 from app.api.estimates import estimate_routes
 from app.api.experiment_body import ExperimentBody
+from app.api.rate_limit import what_ifs_used_up, whole_seconds
 from app.api.runs import RunPath, accepted, find
 from app.api.schemas import BranchBody, ChangeBody, RaceBody, TrainingBody
-from app.domain.errors import InvalidInput
-from app.what_if.what_if import MAX_STEPS, SEEDS
+from app.limits.addresses import client_of
+from app.storage.errors import Busy
+from app.what_if.what_if import MAX_STEPS, OPERATORS_LIMIT_S, SEEDS, SPECTATORS_LIMIT_S, Asker
+from hexapods.domain.errors import InvalidInput
 
 
 def start_routes(agents: tuple[str, ...]) -> APIRouter:
@@ -107,13 +110,39 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         summary=f"Compare {SEEDS} seeds of a practice with {SEEDS} of the defaults",
         description=(
             f"Take a training's body, of at most {MAX_STEPS:,} steps; always use the kinematic "
-            "simulator."
+            f"simulator.\n\nIt may compute {SPECTATORS_LIMIT_S:g} s, for operators "
+            f"{OPERATORS_LIMIT_S:g} s: settings that take longer are refused."
         ),
     )
-    def ask(services: ServicesDep, body: Annotated[TrainingBody, bodies.training]) -> Response:
+    def ask(
+        services: ServicesDep,
+        request: Request,
+        role: RoleDep,
+        body: Annotated[TrainingBody, bodies.training],
+    ) -> Response:
         """Return what a practice with these settings would give, on the kinematic simulator."""
         if body.continue_from is not None:
             raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
-        return JSONResponse(services.what_if.ask(body.start().config))
+        asker = Asker(check=services.stopping.check)
+        if role == "spectator":
+            asker = _spectator(services, client_of(request.scope))
+        return JSONResponse(services.what_if.ask(body.start().config, asker))
 
     return router
+
+
+def _spectator(services: Services, client: str) -> Asker:
+    """Return the asker of a spectator's what-if, charged for what it takes beyond a second.
+
+    Raises:
+        Busy: if those before have taken more than its allowance.
+    """
+    limiter = services.what_if_limiter
+    if (wait_s := limiter.debt_s(client)) > 0:
+        told = what_ifs_used_up(services.settings.what_ifs_per_minute, wait_s)
+        raise Busy(told, whole_seconds(wait_s))
+
+    def charge(seconds: float) -> None:
+        limiter.charge(client, max(0.0, seconds - 1.0))
+
+    return Asker(is_operator=False, check=services.stopping.check, charge=charge)

@@ -16,17 +16,17 @@ from app.api.formats import attachment, negotiated
 from app.api.recorded_answers import CurveView, QTableView
 from app.api.runs import RunPath, find, run_routes
 from app.archive import table_import
-from app.domain.disturbances import as_mapping
-from app.domain.errors import InvalidInput
 from app.explanations.service import MAX_VALUES_SHOWN
-from app.runs import tables
-from app.runs.best_known import best_known_m
-from app.runs.config import TrainingConfig
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
 from app.storage.json_text import finite
 from app.storage.run import Run, world_of
 from app.storage.stored_tables import open_table, read_rows
+from hexapods.domain.disturbances import as_mapping
+from hexapods.domain.errors import InvalidInput
+from hexapods.runs import tables
+from hexapods.runs.best_known import best_known_m
+from hexapods.runs.config import TrainingConfig
 
 router = run_routes("training")
 

@@ -8,7 +8,8 @@ from starlette.types import Message, Receive, Scope, Send
 
 from app.api.middleware import HttpMiddleware
 from app.api.problems import hexapod_error, problem
-from app.domain.errors import HexapodError
+from app.limits.connections import client_has_left
+from hexapods.domain.errors import HexapodError
 
 _logger = logging.getLogger(__name__)
 
@@ -43,7 +44,9 @@ class Unfinished(HttpMiddleware):
             cause = error.__cause__
             if not isinstance(cause, HexapodError):
                 raise
-            if is_started:
+            if client_has_left():
+                _logger.debug("a client left during a response")
+            elif is_started:
                 _logger.warning("%s %s was cut off: %s", scope["method"], scope["path"], cause)
             else:
                 answer = await hexapod_error(Request(scope), cause)

@@ -14,14 +14,14 @@ import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
-from app.domain.errors import DamagedFile, InvalidInput
-from app.files import DrainedBuffer
+from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.files import DrainedBuffer
 
 MANIFEST = "manifest.json"
 MEDIA_TYPE = "application/zip"
 MAX_BYTES = 1 << 30
 """Maximum size of an archive."""
-MAX_MEMBERS = 128
+MAX_MEMBERS = 256
 """Maximum of members, with the manifest."""
 _MAX_MANIFEST_BYTES = 64_000
 _MAX_DIRECTORY_BYTES = 64_000

@@ -1,6 +1,6 @@
 """Artifact files of a run in its archive: select them for export, validate them on import."""
 
-import math
+import io
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
@@ -21,27 +21,28 @@ from app.archive.untrusted_input import (
     Share,
     Step,
 )
-from app.domain.errors import DamagedFile, HexapodError
-from app.domain.simulator import Motion
-from app.domain.types import Action, Cells
-from app.experiments.config import ExperimentConfig
-from app.runs import tables
-from app.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
-from app.runs.race_config import RaceConfig
-from app.runs.recording import race_recording
-from app.runs.records import ActionValues
-from app.runs.stored_practice import practice_recording
-from app.runs.transition_log import MAX_LOGGED_STEPS, transitions
 from app.storage.artifact_file import chunks
 from app.storage.database.store import RunStore
 from app.storage.run import CHECKPOINT, RESUMABLE, TABLE, Run
+from app.storage.stored_races import MAX_RACE_FILES, race_file
 from app.storage.stored_recordings import (
     PRACTICE,
-    RACE,
     TRANSITIONS_PER_FILE,
     evaluations_file,
     transitions_file,
 )
+from hexapods.domain.errors import DamagedFile, HexapodError
+from hexapods.domain.simulator import Motion
+from hexapods.domain.types import Action, Cells
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.runs import tables
+from hexapods.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
+from hexapods.runs.npz_slices import NpzSlices
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.race_file import BLOCK_STEPS, RaceFile
+from hexapods.runs.records import ActionValues, LaneStep
+from hexapods.runs.stored_practice import practice_recording
+from hexapods.runs.transition_log import MAX_LOGGED_STEPS, transitions
 
 MAX_EVALUATION_FILES = 100
 MAX_TRANSITION_FILES = MAX_LOGGED_STEPS // TRANSITIONS_PER_FILE
@@ -49,6 +50,7 @@ _EVALUATIONS = re.compile(r"evaluations-\d{4}\.npz", re.ASCII)
 _TIME_TOLERANCE, _MIN_QUATERNION = 1.001, 0.5
 """For sums of rounded times, and for rounded unit quaternions."""
 _TRANSITIONS = re.compile(r"transitions-\d{4}\.npz", re.ASCII)
+_RACE_FILES = tuple(map(race_file, range(MAX_RACE_FILES)))
 
 
 def is_file_of(name: str, kind: str) -> bool:
@@ -56,7 +58,7 @@ def is_file_of(name: str, kind: str) -> bool:
     if kind == "experiment":
         return is_report_file(name)
     if kind == "race":
-        return name == RACE
+        return name in _RACE_FILES
     is_numbered = _EVALUATIONS.fullmatch(name) or _TRANSITIONS.fullmatch(name)
     return name in (TABLE, CHECKPOINT, PRACTICE) or is_numbered is not None
 
@@ -67,7 +69,7 @@ def members_of(store: RunStore, run: Run) -> dict[str, Member]:
     Raises:
         DamagedFile: if one is damaged or missing.
     """
-    names = [RACE]
+    names = list(_RACE_FILES)
     if run.kind == "experiment":
         names = report_files(run)
     if run.kind == "training":
@@ -143,25 +145,39 @@ def _check_table(run: Run, name: str, data: bytes, label: str) -> None:
 
 
 def _check_race(config: RaceConfig, files: Mapping[str, bytes]) -> None:
-    if RACE not in files:
-        return
-    lanes = race_recording(tables.read_arrays(files[RACE]))
-    msgspec.convert([lane.failure for lane in lanes], list[PortableText | None])
-    if [lane.agent for lane in lanes] != [lane.agent for lane in config.lanes]:
-        raise ValueError("it has other lanes")
-    for lane in lanes:
-        if len(lane.steps) > config.steps:
-            raise ValueError("it has more steps than the race")
-        _check_poses(lane.rest_qpos[None], config)
-        msgspec.convert(math.fsum(step.decision_s for step in lane.steps), Seconds)
-        for step in lane.steps:
-            msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
-            msgspec.convert((step.decision_s, step.transitions), tuple[Seconds, Large])
-            _check_motion(step.motion, config, 1)
-            _check_choice(step.observation, step.action, step.action_values, config)
-            for future in step.futures:
-                _check_choice(step.observation, future.action, None, config)
-                msgspec.convert((future.reward_m, future.return_m), tuple[Metres, Metres])
+    names = [name for name in _RACE_FILES if name in files]
+    if names != list(_RACE_FILES[: len(names)]):
+        raise ValueError("a part of it is missing")
+    taken, decided_s = [0] * len(config.lanes), [0.0] * len(config.lanes)
+    for name in names:
+        # A part at a time: its steps take several times as much memory as their file.
+        file = RaceFile(NpzSlices(io.BytesIO(files[name])))
+        msgspec.convert([head.failure for head in file.heads], list[PortableText | None])
+        if [head.agent for head in file.heads] != [lane.agent for lane in config.lanes]:
+            raise ValueError("it has other lanes")
+        for lane, head in enumerate(file.heads):
+            if head.first != taken[lane]:
+                raise ValueError("its parts do not follow each other")
+            taken[lane] += head.steps
+            if taken[lane] > config.steps:
+                raise ValueError("it has more steps than the race")
+            _check_poses(head.rest_qpos[None], config)
+            for first in range(0, head.steps, BLOCK_STEPS):
+                part = file.part(lane, first, min(first + BLOCK_STEPS, head.steps))
+                for step in part.all():
+                    decided_s[lane] += step.decision_s
+                    _check_lane_step(step, config)
+    msgspec.convert(decided_s, list[Seconds])
+
+
+def _check_lane_step(step: LaneStep, config: RaceConfig) -> None:
+    msgspec.convert((step.reward_m, step.distance_m), tuple[Metres, Metres])
+    msgspec.convert((step.decision_s, step.transitions), tuple[Seconds, Large])
+    _check_motion(step.motion, config, 1)
+    _check_choice(step.observation, step.action, step.action_values, config)
+    for future in step.futures:
+        _check_choice(step.observation, future.action, None, config)
+        msgspec.convert((future.reward_m, future.return_m), tuple[Metres, Metres])
 
 
 def _check_practice(config: TrainingConfig, files: Mapping[str, bytes]) -> None:

@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Raw
 
-from app import __version__
-from app.archive.archived_trials import ExperimentResult
+from app.archive.archived_curve import CurveRows, read_curve
+from app.archive.archived_trials import ArchivedExperimentResult
 from app.archive.imported_tables import check_change, check_settings
 from app.archive.untrusted_input import (
     Count,
@@ -17,20 +17,12 @@ from app.archive.untrusted_input import (
     Name,
     PortableText,
     Seconds,
-    Share,
     Step,
     UntrustedInput,
+    check_json,
     check_moment,
 )
-from app.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
-from app.domain.robot import robot
-from app.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, check_tags
-from app.experiments.config import MAX_WORKERS, ExperimentConfig
 from app.jobs.submissions import check_training, check_walk, plan_of
-from app.runs.clocks import CLOCKS
-from app.runs.config import TrainingConfig
-from app.runs.lane import PlanningModel, check_lane
-from app.runs.race_config import MAX_LANES, RaceConfig
 from app.storage.errors import Conflict
 from app.storage.run import (
     CONFIGS,
@@ -42,10 +34,20 @@ from app.storage.run import (
     run_config_from_json,
     world_of,
 )
+from hexapods import __version__
+from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
+from hexapods.domain.robot import robot
+from hexapods.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, check_tags
+from hexapods.experiments.config import MAX_WORKERS, ExperimentConfig
+from hexapods.runs.clocks import CLOCKS
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.lane import PlanningModel, check_lane
+from hexapods.runs.race_config import MAX_LANES, RaceConfig
 
 FORMAT = 1
 MAX_JSON_BYTES = 64_000_000
 _MAX_PART_BYTES = 256_000  # of a config or a result
+_MAX_RUN_BYTES = 8_000_000  # of all but the curve
 _MAX_CHANGES = 10_000
 """More than a run here may get (`app.jobs.jobs.MAX_CHANGES`): earlier versions had no limit, and
 changes that wait for acknowledgement at the same time may pass it by some."""
@@ -54,17 +56,11 @@ _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
 _OptionalMetres = Metres | None  # null if it was not measured; JSON has no NaN
 
 
-class _Evaluation(UntrustedInput, frozen=True):
-    step: Step
-    distance_m: Metres
-    epsilon: Share
-
-
 _Change = float | int | str | bool | dict[Name, float | int | str | list[int]]
 """A new value of a setting, or a disturbance."""
 
 
-class _TrainingResult(UntrustedInput, frozen=True):
+class _ArchivedTrainingResult(UntrustedInput, frozen=True):
     distance_m: _OptionalMetres
     greedy_distance_m: _OptionalMetres
     q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
@@ -72,14 +68,14 @@ class _TrainingResult(UntrustedInput, frozen=True):
     best_known_m: _OptionalMetres = None
 
 
-class _Figures(UntrustedInput, frozen=True):
-    finished_distance_m: Metres
+class _ArchivedFigures(UntrustedInput, frozen=True):
+    finished_distance_m: _OptionalMetres
     elapsed_s: Seconds
     crossed_s: Seconds | None
-    rank: Annotated[int, Meta(ge=1, le=MAX_LANES)]
+    rank: Annotated[int, Meta(ge=1, le=MAX_LANES)] | None
 
 
-class _LaneResult(UntrustedInput, frozen=True):
+class _ArchivedLaneResult(UntrustedInput, frozen=True):
     agent: Name
     training_id: _Id | None
     trained_robot: dict[str, Any] | None
@@ -88,14 +84,14 @@ class _LaneResult(UntrustedInput, frozen=True):
     failure: PortableText | None
     decision_s: Seconds
     simulated_transitions: Large
-    clocks: dict[str, _Figures]
+    clocks: dict[str, _ArchivedFigures]
     plans_with: PlanningModel | None = None
     fell_at_step: Step | None = None
     heading_deg: Annotated[float, Meta(ge=-180, le=180)] | None = None
 
 
-class _RaceResult(UntrustedInput, frozen=True):
-    lanes: list[_LaneResult]
+class _ArchivedRaceResult(UntrustedInput, frozen=True):
+    lanes: list[_ArchivedLaneResult]
     shared_machine: bool
 
 
@@ -127,12 +123,16 @@ class _File(UntrustedInput, frozen=True):
     format: int
     version: Name
     run: _EndedRun
-    curve: list[_Evaluation]
+    curve: Raw
 
 
 class _Head(msgspec.Struct):
     format: int
     version: str = ""
+
+
+class _OnlyCurve(msgspec.Struct):
+    curve: Raw
 
 
 def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
@@ -156,9 +156,7 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
     return data
 
 
-def read_run_json(
-    data: bytes, label: str, agents: Collection[str]
-) -> tuple[Run, list[dict[str, Any]]]:
+def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run, CurveRows]:
     """Parse and validate `run.json`; return the run and its learning curve.
 
     Args:
@@ -179,9 +177,14 @@ def read_run_json(
                 f"{label} has format {head.format}, of version {head.version[:40]!r}; this version "
                 f"({__version__}) reads {FORMAT}"
             )
-        file = msgspec.json.decode(data, type=_File)
-        run = _run(file.run, agents)
-        curve: list[dict[str, Any]] = msgspec.to_builtins(file.curve)
+        # Of all that is in it only the curve may be long.
+        curve_json = bytes(msgspec.json.decode(data, type=_OnlyCurve).curve)
+        if len(data) - len(curve_json) > _MAX_RUN_BYTES:
+            raise ValueError("it is too long")
+        rest = data.replace(curve_json, b"[]", 1)
+        check_json(rest)
+        run = _run(msgspec.json.decode(rest, type=_File).run, agents)
+        curve = read_curve(curve_json)
         _check(run, curve)
     except DamagedFile:
         raise
@@ -193,9 +196,9 @@ def read_run_json(
 
 
 _RESULTS: Mapping[Kind, Any] = {
-    "training": _TrainingResult,
-    "race": _RaceResult,
-    "experiment": ExperimentResult,
+    "training": _ArchivedTrainingResult,
+    "race": _ArchivedRaceResult,
+    "experiment": ArchivedExperimentResult,
 }
 
 
@@ -233,7 +236,7 @@ def _decode(raw: Raw, kind: Any) -> Any:
     return msgspec.json.decode(raw, type=kind)
 
 
-def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
+def _check(run: Run, curve: CurveRows) -> None:
     """Check constraints on a run's fields beyond their types."""
     check_name(run.name)
     if check_tags(run.tags) != run.tags or check_notes(run.notes) != run.notes:
@@ -246,14 +249,9 @@ def _check(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
         check_change(change, run.config.agent)
     if isinstance(run.config, TrainingConfig):
         world_of(run).check(run.config.robot, run.config.simulator, run.config.steps)
-    _check_curve(run, curve)
-    _check_lanes(run)
-
-
-def _check_curve(run: Run, curve: Sequence[Mapping[str, Any]]) -> None:
-    steps = [row["step"] for row in curve]
-    if steps != sorted(set(steps)) or (steps and run.kind != "training"):
+    if not curve.is_ordered or (curve and run.kind != "training"):
         raise ValueError("its curve is none")
+    _check_lanes(run)
 
 
 def _check_lanes(run: Run) -> None:

@@ -10,12 +10,20 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import UNSET, Meta, UnsetType
 
-from app.archive.untrusted_input import Large, Metres, Name, PortableText, Seconds, UntrustedInput
-from app.domain.errors import DamagedFile
-from app.domain.text import is_formula
-from app.experiments.config import SUMMARY, ExperimentConfig
+from app.archive.untrusted_input import (
+    Large,
+    Metres,
+    Name,
+    PortableText,
+    Seconds,
+    UntrustedInput,
+    check_json,
+)
 from app.jobs.submissions import plan_of
 from app.storage.run import Run
+from hexapods.domain.errors import DamagedFile
+from hexapods.domain.text import is_formula
+from hexapods.experiments.config import SUMMARY, ExperimentConfig
 
 TRIALS = "trials.json"
 _REPORT_FILE = re.compile(
@@ -31,16 +39,16 @@ class _Counts(UntrustedInput, frozen=True):
     set_aside: Large
 
 
-class _Claim(UntrustedInput, frozen=True):
+class _ArchivedClaim(UntrustedInput, frozen=True):
     id: Name
     verdict: Name
 
 
-class ExperimentResult(UntrustedInput, frozen=True):
+class ArchivedExperimentResult(UntrustedInput, frozen=True):
     """Result of an experiment's run."""
 
     trials: _Counts
-    claims: Annotated[list[_Claim], Meta(max_length=1_000)]
+    claims: Annotated[list[_ArchivedClaim], Meta(max_length=1_000)]
     files: Annotated[list[Name], Meta(max_length=128)]
     shared_machine: bool
 
@@ -106,6 +114,7 @@ def read_trials_json(data: bytes, config: ExperimentConfig, label: str) -> list[
         DamagedFile: if it is malformed, or has trials that are not in the experiment's plan.
     """
     try:
+        check_json(data)
         rows = msgspec.json.decode(data, type=list[_Row])
     except (ValueError, RecursionError) as error:
         raise DamagedFile(f"{label} does not hold trials as it should: {error}") from error

@@ -6,16 +6,17 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from app.agents import registry
 from app.archive.untrusted_input import Metres, Name, Share, Step
-from app.domain.disturbances import disturbance
-from app.domain.errors import DamagedFile, HexapodError, UnknownName
-from app.domain.settings import complete
-from app.domain.world import world
-from app.runs import seeding, tables
-from app.runs.config import TrainingConfig, agent_settings, changeable_settings
-from app.runs.config_json import config_from_json
-from app.runs.tables import Checkpoint
+from hexapods.agents import registry
+from hexapods.agents.tabular import TabularAgent
+from hexapods.domain.disturbances import disturbance
+from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
+from hexapods.domain.settings import complete
+from hexapods.domain.world import world
+from hexapods.runs import seeding, tables
+from hexapods.runs.config import TrainingConfig, agent_settings, changeable_settings
+from hexapods.runs.config_json import config_from_json
+from hexapods.runs.tables import Checkpoint
 
 
 class TableMeta(msgspec.Struct):
@@ -69,7 +70,7 @@ def checked_table(
         for happened in (meta.disturbances, meta.measured_in):
             world(happened).check(config.robot, config.simulator, config.steps)
         seeding.load(np.random.default_rng(0), meta.rng)
-        _check_state(checkpoint, config.agent)
+        _check_state(checkpoint, config.agent, label)
     except HexapodError:
         raise
     except KeyError as error:
@@ -126,10 +127,12 @@ def _training(config_data: Any, label: str) -> TrainingConfig:
     return config
 
 
-def _check_state(checkpoint: Checkpoint, agent: str) -> None:
-    state = tables.agent_state(checkpoint)
+def _check_state(checkpoint: Checkpoint, agent: str, label: str) -> None:
+    state, agent_class = tables.agent_state(checkpoint), registry.find(agent)
     if "where" in state:
         tables.table_of(checkpoint)
-    check_state = getattr(registry.find(agent), "check_state", None)
+    elif isinstance(agent_class, type) and issubclass(agent_class, TabularAgent):
+        raise DamagedFile(f"{label} lacks the Q-table that {agent} keeps")
+    check_state = getattr(agent_class, "check_state", None)
     if check_state is not None:
         check_state(state)

@@ -4,11 +4,11 @@ from collections.abc import Collection
 from datetime import UTC, datetime
 
 from app.archive.imported_tables import checked_table
-from app.domain.text import check_name
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import check_training
-from app.runs import tables
 from app.storage.run import IdempotencyKey, Run
+from hexapods.domain.text import check_name
+from hexapods.runs import tables
 
 
 def import_table(

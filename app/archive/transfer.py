@@ -13,15 +13,15 @@ from app.archive import archive
 from app.archive.archived_files import check_files, is_file_of, members_of
 from app.archive.archived_run import read_run_json, run_json
 from app.archive.archived_trials import TRIALS, read_trials_json, trials_json
-from app.domain.errors import DamagedFile, InvalidInput
 from app.events.damage import as_shown
-from app.experiments.config import ExperimentConfig
 from app.limits.memory_budget import MemoryBudget
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Damaged
 from app.storage.json_text import is_finite
 from app.storage.run import KINDS, Content, DamagedRun, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
+from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.experiments.config import ExperimentConfig
 
 RUN = "run.json"
 MAX_RUNS = 100
@@ -100,7 +100,7 @@ def _contents(
     curve, trials = store.evaluations(run_id), store.trials(run_id)
     if not is_finite([curve, trials]):
         # They would be null in JSON, which every import rejects.
-        raise Damaged(run_id, "its curve or its trials have a number that is none")
+        raise Damaged(run_id, "its curve or its trials have NaN or an infinity")
     texts = {RUN: run_json(run, curve)}
     if run.kind == "experiment":
         texts[TRIALS] = trials_json(trials)

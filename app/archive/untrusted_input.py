@@ -1,13 +1,14 @@
 """Base class and field types for untrusted input: fixed fields, ranges for every number."""
 
+import json
 from datetime import UTC, datetime, timedelta
 from typing import Annotated
 
 import msgspec
 from msgspec import Meta
 
-from app.runs.config import MAX_STEPS
-from app.runs.race_config import MAX_LANES
+from hexapods.runs.config import MAX_STEPS
+from hexapods.runs.race_config import MAX_LANES
 
 MAX_M = 1e6
 _MAX_S = 1e9
@@ -31,6 +32,28 @@ Moment = Annotated[datetime, Meta(tz=True)]
 
 class UntrustedInput(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """Base class for untrusted input; rejects unknown fields."""
+
+
+def check_json(data: bytes) -> None:
+    """Check that a JSON document has no key twice, and no more blanks than indentation needs.
+
+    Readers differ in which of the values they take, and blanks only fill memory.
+
+    Raises:
+        ValueError: if it has, or is no JSON document.
+        RecursionError: if it is nested too deeply.
+    """
+    compact = msgspec.json.format(data, indent=-1)
+    if len(data) > len(msgspec.json.format(compact, indent=1)) + 1:
+        raise ValueError("it has more blanks than indentation needs")
+    json.loads(data, object_pairs_hook=_check_keys)
+
+
+def _check_keys(pairs: list[tuple[str, object]]) -> None:
+    names = [name for name, _ in pairs]
+    if len(set(names)) < len(names):
+        name = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"it has {name[:80]!r} twice")
 
 
 def check_moment(name: str, moment: datetime | None) -> None:

@@ -2,8 +2,8 @@
 
 Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `best-known`, `runs` (list,
 show, delete; `run_files` has its verbs that write files), `export`, `imports`, `doctor` (with
-checks of the data in `data_diagnostics`), `bench` (with the measurements in `benchmarks`). Their
-module docstrings are the descriptions in `--help`.
+checks in `machine_checks` and `data_checks`), `bench` (with the measurements in `benchmarks`).
+Their module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `stored_runs` (runs of a data folder),
 `server_client` (requests to a running server), `terminal` (progress bars and tables).
@@ -21,9 +21,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
-from app import __version__
 from app.cli.options import CommandParser
-from app.domain.errors import HexapodError
+from hexapods import __version__
+from hexapods.domain.errors import HexapodError
 
 COMMANDS = {
     "serve": "serve",

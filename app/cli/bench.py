@@ -8,6 +8,20 @@ from app.cli import benchmarks
 from app.cli.options import CommandParser
 from app.cli.terminal import progress, show_table
 
+TITLES = {
+    "training_over_physics": "time of a training, in times of its physics",
+    "physics_substeps_per_second": "substeps of physics a second",
+    "physics_over_all_that_is_drawn": "time of physics, in times of that of all that is drawn",
+    "training_steps_per_second": "steps of practice a second",
+    "lookahead_speedup": "speed of look-ahead on all threads, in times of that on one",
+    "planning_overhead": "share of a two-step decision that is no physics",
+    "two_step_decision_s": "time of a two-step decision, s",
+    "threads": "threads",
+    "two_step_decision_over_motion": "time of a two-step decision, in times of its motion",
+    "stage_update_ms": "time of an update of the stage, ms",
+    "stage_update_bytes": "size of an update of the stage, bytes",
+}
+"""Titles of the figures, by their names in JSON."""
 LIMITS = {
     "training_over_physics": "at most 1.10",
     "physics_over_all_that_is_drawn": "at most 1.0",
@@ -43,9 +57,17 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(figures))
     else:
-        rows = [(name, f"{value:.4g}", LIMITS.get(name, "")) for name, value in figures.items()]
-        show_table("On this machine, now", ("figure", "measured", "meant to be"), rows)
+        rows = [
+            (TITLES[name], _significant(value), LIMITS.get(name, ""))
+            for name, value in figures.items()
+        ]
+        show_table("On this machine, now", ("figure", "measured", "meant to be"), rows, text=(0, 2))
     return 0
+
+
+def _significant(value: float) -> str:
+    """Format a number with four significant digits, never as a power of ten."""
+    return f"{value:,.0f}" if value >= 1000 else f"{value:.4g}"
 
 
 def _stage() -> dict[str, float]:

@@ -12,20 +12,19 @@ import mujoco
 import numpy as np
 from mujoco.batch import Batch
 
-from app.agents.lookahead import TwoStep
-from app.assembly import build_learner, build_walkers
-from app.domain.observation import legal_actions, observe
-from app.domain.types import Action, FloatArray
-from app.physics.mjcf import compile_visual_model
-from app.physics.mujoco_simulator import MujocoSimulator, MujocoState
-from app.runs.clocks import motion_s
-from app.runs.config import TrainingConfig, WalkingProblem
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import race
-from app.runs.records import LaneStep, StepTaken
-from app.runs.training import train
-from app.runs.walker import SimulatorExpand, Walker
+from hexapods.agents.lookahead import TwoStep
+from hexapods.assembly import build_learner, build_walkers
+from hexapods.domain.observation import legal_actions, observe
+from hexapods.domain.types import Action, FloatArray
+from hexapods.physics.mjcf import compile_visual_model
+from hexapods.physics.mujoco_simulator import MujocoSimulator, MujocoState
+from hexapods.runs.config import TrainingConfig, WalkingProblem
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import race
+from hexapods.runs.records import LaneStep, StepTaken
+from hexapods.runs.training import train
+from hexapods.runs.walker import SimulatorExpand, Walker
 
 WALK = WalkingProblem(gait="left-right-origin")
 ROUNDS = 5
@@ -89,7 +88,8 @@ def racing() -> dict[str, float]:
     records = race(walkers, config.steps, time.perf_counter)
     steps = [record for record in records if isinstance(record, LaneStep)]
     decided = sum(step.decision_s for step in steps)
-    return {"two_step_decision_over_motion": decided / sum(map(motion_s, steps))}
+    walked = sum(float(step.motion.time_s[-1]) for step in steps)
+    return {"two_step_decision_over_motion": decided / walked}
 
 
 class _Replay:

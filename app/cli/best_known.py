@@ -6,19 +6,19 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from app import __version__
-from app.assembly import build_simulator
 from app.cli.files import check_writable, write_whole
 from app.cli.options import CommandParser, integer, split
 from app.cli.terminal import progress
-from app.domain.checks import check_whole
-from app.domain.disturbances import SensorNoise
-from app.domain.errors import UnknownName
-from app.domain.gait import NAMED_GAITS
-from app.domain.robot import robot
-from app.domain.world import WORLDS, named_world
-from app.runs import best_known
-from app.runs.config import WalkingProblem
+from hexapods import __version__
+from hexapods.assembly import build_simulator
+from hexapods.domain.checks import check_whole
+from hexapods.domain.disturbances import SensorNoise
+from hexapods.domain.errors import UnknownName
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.robot import robot
+from hexapods.domain.world import WORLDS, named_world
+from hexapods.runs import best_known
+from hexapods.runs.config import WalkingProblem
 
 MAX_WIDTH = 4096
 _PHYSICAL = [name for name, one in WORLDS.items() if one.world.one_of(SensorNoise) is None]

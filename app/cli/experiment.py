@@ -10,12 +10,12 @@ from app.cli.trial_options import (
     trial_grid_from,
 )
 from app.cli.trials import run_experiment
-from app.domain.errors import InvalidInput
-from app.domain.settings import declared_fields
-from app.domain.world import WORLDS
-from app.experiments.config import DISTURBED, ExperimentConfig, experiment_config
-from app.experiments.formatting import listed
-from app.runs.config import TrainingConfig
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.settings import declared_fields
+from hexapods.domain.world import WORLDS
+from hexapods.experiments.config import DISTURBED, ExperimentConfig, experiment_config
+from hexapods.experiments.formatting import listed
+from hexapods.runs.config import TrainingConfig
 
 _NAMES = ("table1", "figure4", *DISTURBED)
 
@@ -95,8 +95,9 @@ def _worlds_from(texts: list[str] | None) -> tuple[str, ...] | None:
         return None
     worlds: list[str] = []
     for part in (part for text in texts for part in split(text)):
-        if worlds and ":" in worlds[-1] and ":" not in part and part not in WORLDS:
-            worlds[-1] += f",{part}"  # of a list of legs
+        # Names of worlds and kinds begin with a letter, so a number belongs to a list of legs.
+        if worlds and ":" in worlds[-1] and part[:1].isdecimal():
+            worlds[-1] += f",{part}"
         else:
             worlds.append(part)
     return tuple(worlds)

@@ -1,25 +1,10 @@
-"""Read and atomically write files that users name, with clear errors."""
+"""Atomically write files that users name, with clear errors."""
 
 import tempfile
 from pathlib import Path
 
-from app.domain.errors import InvalidInput
-from app.files import write_atomically
-from app.runs.tables import Checkpoint, from_bytes
-
-
-def read_table(path: str) -> Checkpoint:
-    """Read a Q-table with its metadata from a file.
-
-    Raises:
-        InvalidInput: if the file cannot be read.
-        DamagedFile: if it is not a complete Q-table.
-    """
-    try:
-        data = Path(path).read_bytes()
-    except OSError as error:
-        raise InvalidInput(f"cannot read the table {path}: {error.strerror}") from error
-    return from_bytes(data, path)
+from hexapods.domain.errors import InvalidInput
+from hexapods.files import write_atomically
 
 
 def check_writable(path: str) -> None:

@@ -12,9 +12,9 @@ from app.archive.archive import MAX_BYTES
 from app.cli.options import CommandParser
 from app.cli.server_client import call_server
 from app.cli.stored_runs import add_data
-from app.domain.errors import InvalidInput
-from app.runs.config import usable_agents
 from app.settings import Settings, read_settings
+from hexapods.domain.errors import InvalidInput
+from hexapods.runs.config import usable_agents
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:

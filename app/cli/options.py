@@ -8,18 +8,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from app.domain.disturbances import KINDS, parse_disturbance
-from app.domain.errors import HexapodError, InvalidInput
-from app.domain.gait import NAMED_GAITS, GaitSpec
-from app.domain.observation import OBSERVATIONS
-from app.domain.robot import PRESETS, Robot, robot
-from app.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields
-from app.domain.world import WORLDS, world_from
-from app.experiments.config import settings_by_name
-from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem, usable_agents
-from app.runs.config_json import gait_from_json
-
-_GAIT_FIELDS = ("right_leg", "left_leg", "symmetry", "pairs")
+from hexapods.arguments import read_gait as gait_of_legs
+from hexapods.domain.disturbances import KINDS, parse_disturbance
+from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.observation import OBSERVATIONS
+from hexapods.domain.robot import PRESETS, Robot, robot
+from hexapods.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields
+from hexapods.domain.world import WORLDS, world_from
+from hexapods.experiments.config import settings_by_name
+from hexapods.runs.config import SIMULATORS, TrainingConfig, WalkingProblem, usable_agents
 
 
 def add_walk_options(parser: argparse.ArgumentParser) -> None:
@@ -189,17 +187,7 @@ def read_gait(text: str) -> str | GaitSpec:
     """
     if not text.lstrip().startswith("{"):
         return text
-    given = _json("--gait", text)
-    unknown = set(given) - set(_GAIT_FIELDS)
-    if unknown or not {"right_leg", "left_leg"} <= set(given):
-        raise InvalidInput(
-            "--gait needs right_leg and left_leg, and either symmetry or pairs; "
-            f"not {', '.join(sorted(given)) or 'nothing'}"
-        )
-    try:
-        return gait_from_json(given)
-    except (TypeError, ValueError) as error:
-        raise InvalidInput("--gait: pairs must look like [[1, 4], [2, 5], [3, 6]]") from error
+    return gait_of_legs(_json("--gait", text))
 
 
 def read_robot(text: str) -> Robot:

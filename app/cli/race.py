@@ -3,13 +3,8 @@
 import argparse
 import json
 import re
-import time
-from collections.abc import Sequence
 from typing import Any
 
-from app.agents.registry import needs_practice
-from app.assembly import build_walkers
-from app.cli.files import read_table
 from app.cli.options import (
     CommandParser,
     add_observation,
@@ -18,22 +13,18 @@ from app.cli.options import (
     walk_from,
 )
 from app.cli.terminal import progress, show_lanes
-from app.domain.errors import InvalidInput, UnknownName
-from app.domain.settings import declared_fields
-from app.domain.world import check_ends
-from app.runs.best_known import best_known_in_race_m
-from app.runs.clocks import CLOCKS, check_clock
-from app.runs.config import agent_settings
-from app.runs.config_json import as_json
-from app.runs.gait_analysis import gait_figures, gait_summary, window_of
-from app.runs.lane import LaneConfig, lane_config, observation_of
-from app.runs.race_config import RaceConfig
-from app.runs.racing import record_race
-from app.runs.recorded_walk import walk_of_lane
-from app.runs.recording import LaneRecording
-from app.runs.results import lane_details, race_result
-from app.runs.tables import Checkpoint
-from app.runs.walker import Walker
+from hexapods.agents.registry import keeps_learning, needs_practice
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.settings import declared_fields
+from hexapods.races import Lane, Race, lane, race
+from hexapods.runs.clocks import CLOCKS, check_clock
+from hexapods.runs.config import agent_settings
+from hexapods.runs.config_json import as_json
+from hexapods.runs.gait_analysis import gait_figures, gait_summary, window_of
+from hexapods.runs.lane import LaneConfig, observation_of
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recorded_walk import walk_of_lane
+from hexapods.trainings import read_table
 
 _SETTING = re.compile(r",\s*([^\W\d]\w*)=")
 """A setting in a lane, `,name=`; its value ends before the next."""
@@ -70,28 +61,24 @@ def run(options: argparse.Namespace) -> int:
     """
     check_clock(options.clock)
     lanes = [_lane(text, options.observation) for text in options.lane]
-    config = RaceConfig(
-        **walk_from(options),
-        lanes=tuple(lane for lane, _ in lanes),
-        steps=options.steps,
-        seed=options.seed,
-    )
-    check_ends(config.world.disturbances, config.steps)
-    walkers = build_walkers(config, [table for _, table in lanes])
-    lanes_recorded = _race(walkers, config)
-    result = race_result(lanes_recorded, config.steps)
-    for lane, details in zip(result["lanes"], lane_details(lanes_recorded, config), strict=True):
-        lane.update(details)
+    with progress() as bar:
+        task = bar.add_task("racing", total=len(lanes) * options.steps)
+        done = race(
+            lanes,
+            steps=options.steps,
+            seed=options.seed,
+            on_step=lambda: bar.advance(task),
+            **walk_from(options),
+        )
     if options.json:
-        best_m = best_known_in_race_m(config)
-        shown = {"config": as_json(config), "result": result, "best_known_m": best_m}
-        print(json.dumps({**shown, "gait": _gaits(lanes_recorded, config)}))
+        shown = {"config": as_json(done.config), "result": done.result, "gait": _gaits(done)}
+        print(json.dumps({**shown, "best_known_m": done.best_known_m}))
     else:
-        show_lanes(config, result, options.clock)
+        show_lanes(done, options.clock)
     return 0
 
 
-def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
+def _lane(text: str, observation: Any) -> Lane:
     """Parse `AGENT[=Q.NPZ][,NAME=VALUE]…`; any other comma belongs to the path."""
     head, *given = _SETTING.split(text)
     agent, _, path = head.partition("=")
@@ -102,31 +89,21 @@ def _lane(text: str, observation: Any) -> tuple[LaneConfig, Checkpoint | None]:
             raise UnknownName(f"setting of a {agent} lane", name, declared)
     settings: dict[str, Any] = {name: declared[name].parse(value) for name, value in values.items()}
     table = read_table(path) if path else None
-    if table is not None and table.meta["agent"] != agent:
-        raise InvalidInput(f"{path} was learned by {table.meta['agent']}, not by {agent}")
-    practised = None if table is None else table.meta["observation"]
+    if table is not None and table.config.agent != agent:
+        raise InvalidInput(f"{path} was learned by {table.config.agent}, not by {agent}")
+    practised = None if table is None else table.config.observation
     settings["observation"] = observation_of(settings.get("observation"), practised, observation)
-    lane = lane_config(agent, has_training=table is not None, **settings)
-    if needs_practice(agent) and table is None and not lane.keep_learning:
+    learns = settings.get("keep_learning", keeps_learning(agent))
+    if needs_practice(agent) and table is None and not learns:
         raise InvalidInput(
             f"a {agent} lane needs its table: --lane {agent}=q.npz (hexapods train --out q.npz "
             f"makes one), or learns in the race: --lane {agent},keep_learning=true"
         )
-    return lane, table
+    return lane(agent, table=table, **settings)
 
 
-def _gaits(lanes: Sequence[LaneRecording], config: RaceConfig) -> list[dict[str, Any] | None]:
-    """Return the gait of each lane in single numbers; see `app.runs.gait_analysis`."""
-    walks = [walk_of_lane(lane, config, config.world) for lane in lanes]
+def _gaits(done: Race) -> list[dict[str, Any] | None]:
+    """Return the gait of each lane in single numbers; see `hexapods.runs.gait_analysis`."""
+    walks = [walk_of_lane(one, done.config, done.config.world) for one in done.recording]
     window = window_of(walks, None, None)
     return [gait_summary(gait_figures(walk, *window)) for walk in walks]
-
-
-def _race(walkers: Sequence[Walker], config: RaceConfig) -> list[LaneRecording]:
-    recording: list[LaneRecording] = []
-    with progress() as bar:
-        task = bar.add_task("racing", total=len(walkers) * config.steps)
-        for grown in record_race(walkers, config, time.perf_counter):
-            recording = grown
-            bar.advance(task)
-    return recording

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from app.cli.files import check_writable, write_whole
 from app.cli.options import CommandParser, integer
 from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
-from app.domain.errors import InvalidInput
-from app.runs.clocks import CLOCKS
 from app.settings import read_settings
+from hexapods.domain.errors import InvalidInput
+from hexapods.runs.clocks import CLOCKS
 
 if TYPE_CHECKING:
     from app.exports.recorded_lanes import RecordedWalks
@@ -123,11 +123,10 @@ def _trajectory(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
 def _page(source: Source, options: argparse.Namespace) -> Iterable[bytes]:
     from app.stage.playback import Replays  # noqa: PLC0415
     from app.viewer.replay_frames import ReplayFrames  # noqa: PLC0415
-    from app.viewer.replay_page import replay_page  # noqa: PLC0415
 
     run = source.run
     frames = ReplayFrames(Replays(source.store, source.recordings))
-    return replay_page(frames, run.id, run.name or f"{run.kind} {run.id}", options.clock)
+    return frames.page(run.id, run.name or f"{run.kind} {run.id}", options.clock)
 
 
 def _video(source: Source, options: argparse.Namespace) -> Iterable[bytes]:

@@ -16,13 +16,15 @@ from app.cli.options import CommandParser, integer
 from app.cli.server_client import call_server
 from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
 from app.cli.terminal import show_lanes, show_table
-from app.domain.errors import InvalidInput
 from app.events.damage import as_shown
 from app.events.run_view import run_view
-from app.runs.race_config import RaceConfig
 from app.settings import read_settings
 from app.storage.json_text import json_text
 from app.storage.run import KINDS, SORTS, STATES, AnyRun, DamagedRun, Run, Sort
+from hexapods.agents.appearance import title_of
+from hexapods.domain.errors import InvalidInput
+from hexapods.races import Race
+from hexapods.runs.race_config import RaceConfig
 
 _LIMIT = 50
 _TITLES: Mapping[Sort, str] = {
@@ -86,7 +88,7 @@ def _list(options: argparse.Namespace) -> int:
         return 0
     rows = [_row(run) for run in page.items]
     if sys.stdout.isatty():
-        show_table(_TITLES[options.sort], _HEAD, rows)
+        show_table(_TITLES[options.sort], _HEAD, rows, text=(1, 2, 4, 6))
     else:
         print("\n".join("\t".join(row) for row in rows))
     if page.next_cursor is not None:
@@ -121,7 +123,7 @@ def _outcome(run: Run) -> str:
         verdicts = [claim["verdict"] for claim in run.result["claims"]]
         return f"{verdicts.count('holds')} of {len(verdicts)} claims hold" if verdicts else ""
     lanes = run.result["lanes"]
-    first = [str(lane["agent"]) for lane in lanes if lane["clocks"]["paper"]["rank"] == 1]
+    first = [title_of(lane["agent"]) for lane in lanes if lane["clocks"]["paper"]["rank"] == 1]
     return ", ".join(first)
 
 
@@ -147,7 +149,7 @@ def _show(options: argparse.Namespace) -> int:
         if value:
             print(f"{name:>18}  {value if isinstance(value, str) else json.dumps(value)}")
     if result and isinstance(run, Run) and isinstance(run.config, RaceConfig):
-        show_lanes(run.config, result, "paper")
+        show_lanes(Race(run.config, (), result), "paper")
     elif result:
         print(f"{'result':>18}  {json.dumps(result)}")
     return 0

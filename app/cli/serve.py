@@ -4,12 +4,17 @@ import argparse
 import os
 import secrets
 import sys
+import threading
+import time
 from functools import partial
 from typing import Any
 
 from app.cli import without_garbage_collection
 from app.cli.options import CommandParser, integer
-from app.settings import Settings, read_settings
+from app.settings import Settings, read_settings, remove_secrets
+
+THREADS_END_S = 2.0
+"""Time for threads to end that still compute for requests once everything else has ended."""
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
@@ -40,11 +45,28 @@ def run(options: argparse.Namespace) -> int:
         given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
         given["token"] = read_token() or secrets.token_urlsafe(24)
     settings = read_settings(**given)
+    remove_secrets()  # no process that is started from here on needs them
     with without_garbage_collection():
         from app.server import serve  # noqa: PLC0415 - its imports take most of a second
     # A link that is opened before the server answers looks broken.
     serve(settings, on_ready=partial(show_links, settings) if options.share else None)
+    _end_with_threads()
     return 0
+
+
+def _end_with_threads() -> None:
+    """End the process if threads compute on for requests that nobody can answer any more.
+
+    Python would wait for them, and an agent of a user's own may compute for any time.
+    """
+    deadline_s = time.monotonic() + THREADS_END_S
+    for thread in threading.enumerate():
+        if not thread.daemon and thread is not threading.current_thread():
+            thread.join(max(0.0, deadline_s - time.monotonic()))
+            if thread.is_alive():
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(0)
 
 
 def read_token() -> str | None:

@@ -5,9 +5,9 @@ import urllib.error
 import urllib.request
 from typing import Any
 
-from app.domain.errors import InvalidInput
 from app.settings import PREFIX, Settings
 from app.storage.server_lock import read_address_file
+from hexapods.domain.errors import InvalidInput
 
 _TIMEOUT_S = 60.0
 

@@ -4,10 +4,10 @@ import argparse
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
-from app.domain.errors import InvalidInput
 from app.settings import Settings
 from app.storage.errors import NotFound
 from app.storage.run import AnyRun
+from hexapods.domain.errors import InvalidInput
 
 if TYPE_CHECKING:
     from app.storage.database.store import RunStore

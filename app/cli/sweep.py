@@ -11,9 +11,9 @@ from app.cli.trial_options import (
     trial_grid_from,
 )
 from app.cli.trials import run_experiment
-from app.domain.settings import declared_fields
-from app.experiments.config import GRID, experiment_config
-from app.runs.config import TrainingConfig
+from hexapods.domain.settings import declared_fields
+from hexapods.experiments.config import GRID, experiment_config
+from hexapods.runs.config import TrainingConfig
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:

@@ -1,9 +1,14 @@
 """Progress bars and tables for terminals."""
 
+import os
+import re
 import sys
-from collections.abc import Sequence
-from typing import Any
+import textwrap
+from collections.abc import Collection, Iterable, Sequence
+from typing import Any, Literal
 
+from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -17,10 +22,17 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-from app.agents.appearance import name_of
-from app.runs.best_known import best_known_in_race_m
-from app.runs.lane import PLANNING_MODEL_TITLES, plans_with
-from app.runs.race_config import RaceConfig
+from hexapods.agents.appearance import name_of
+from hexapods.races import Race
+from hexapods.runs.clocks import CLOCK_TITLES, Clock
+from hexapods.runs.lane import PLANNING_MODEL_TITLES, plans_with
+
+_BETWEEN = 2
+"""Width of what is between two columns."""
+_INDENT = 2
+"""Of each further line of a cell of text, in a column with room for it."""
+_MIN_TEXT = 8
+"""A column of text is not narrower, as long as its text is wider."""
 
 
 class _Rate(ProgressColumn):
@@ -57,47 +69,101 @@ def progress(what: str | None = None, window_s: float = 30.0) -> Progress:
 
 
 def show_table(
-    title: str, head: Sequence[str], rows: Sequence[Sequence[Any]], *, long_names: bool = False
+    title: str, head: Sequence[str], rows: Sequence[Sequence[Any]], *, text: Collection[int] = (0,)
 ) -> None:
-    """Print a table; all columns but the first are right-aligned, for numbers.
+    """Print a table of which nothing is cut, however narrow the terminal is.
+
+    Cells wrap between words, not at no-break spaces. In a pipe each row is one line, unless
+    `COLUMNS` says how wide a line is.
 
     Args:
         title: title above the table.
         head: names of the columns.
         rows: cells of each row, as many as columns.
-        long_names: whether to wrap the first column rather than the others.
+        text: numbers of the columns of text, which are left-aligned; where there is too little
+            room they break within words. The others are right-aligned, for numbers.
     """
-    table = Table(title=title, title_justify="left")
-    for place, name in enumerate(head):
-        whole = (place == 0) != long_names
-        table.add_column(name, justify="left" if place == 0 else "right", no_wrap=whole)
+    console = Console(file=sys.stdout)
+    columns = list(zip(*(head, *([str(cell) for cell in row] for row in rows)), strict=True))
+    widths = [_longest(cells, "\n") for cells in columns]
+    if console.is_terminal or "COLUMNS" in os.environ:
+        room = console.width - _BETWEEN * (len(head) - 1)
+        words = [_longest(cells, " ", "\n") for cells in columns]
+        widths = _narrowed(widths, words, room)
+        least = [min(_MIN_TEXT, word) if n in text else word for n, word in enumerate(words)]
+        widths = _narrowed(widths, least, room)
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, collapse_padding=True)
+    for n, (name, width) in enumerate(zip(head, widths, strict=True)):
+        side: Literal["left", "right"] = "left" if n in text else "right"
+        table.add_column(name, justify=side, width=width, overflow="fold", vertical="top")
     for row in rows:
         # As `Text`, as Rich would parse [brackets] in a name as markup.
-        table.add_row(*(Text(str(cell)) for cell in row))
-    Console(file=sys.stdout).print(table)
+        table.add_row(
+            *(
+                Text(_wrapped(str(cell), width) if n in text else str(cell))
+                for n, (cell, width) in enumerate(zip(row, widths, strict=True))
+            )
+        )
+    print(title)
+    # Narrower than its widths it would cut them.
+    Console(file=sys.stdout, width=sum(widths) + _BETWEEN * len(head)).print(table)
 
 
-def show_lanes(config: RaceConfig, result: dict[str, Any], clock: str) -> None:
-    """Print the result of a race as a table, ranked under a clock, and the best known distance."""
+def _wrapped(cell: str, width: int) -> str:
+    """Wrap a cell at spaces, each further line indented; Rich would also at no-break spaces."""
+    hanging = _INDENT if width > _MIN_TEXT * 2 else 0
+    wrapped = []
+    for line in cell.split("\n"):
+        indent = " " * (hanging + len(line) - len(line.lstrip(" ")))
+        wrapped += textwrap.wrap(line, width, subsequent_indent=indent, break_on_hyphens=False)
+    return "\n".join(wrapped)
+
+
+def _longest(cells: Iterable[str], *separators: str) -> int:
+    """Return the width of the widest part of some cells, in columns of the terminal."""
+    parts = re.compile("|".join(separators))
+    return max(cell_len(part) for cell in cells for part in parts.split(cell))
+
+
+def _narrowed(widths: Sequence[int], least: Sequence[int], room: int) -> list[int]:
+    """Return widths that add up to the room, the widest narrowed first, but none below its least.
+
+    They add up to more if the least do.
+    """
+    narrowed = list(widths)
+    while sum(narrowed) > room:
+        narrowable = [n for n, width in enumerate(narrowed) if width > least[n]]
+        if not narrowable:
+            break
+        narrowed[max(narrowable, key=lambda n: (narrowed[n], n))] -= 1
+    return narrowed
+
+
+def show_lanes(race: Race, clock: Clock) -> None:
+    """Print the result of a race as a table, ranked under a clock, and the best known distance.
+
+    A race that ended before its time-out has no ranking.
+    """
     rows = []
-    lanes = zip(config.lanes, result["lanes"], strict=True)
-    for own, lane in sorted(lanes, key=lambda both: both[1]["clocks"][clock]["rank"]):
-        name = name_of(own.agent, own.settings, own.keep_learning, title=own.agent)
-        known = plans_with(own, config)
+    for one in race.standings_under(clock):
+        own, lane = race.config.lanes[one.lane], race.result["lanes"][one.lane]
+        name = name_of(own.agent, own.settings, own.keep_learning)
+        known = plans_with(own, race.config)
         name += f"\n   plans with the {PLANNING_MODEL_TITLES[known]}" if known else ""
-        timed, total = lane["clocks"][clock], lane["total_distance_m"]
+        finished_m, total_m = one.finished_distance_m, one.total_distance_m
         rows.append(
             (
-                f"{timed['rank']}. {name}",
-                f"{timed['finished_distance_m']:.2f} m",
-                lane["failure"] if total is None else f"{total:.2f} m",
-                f"{timed['elapsed_s']:.1f} s",
+                name if one.rank is None else f"{one.rank}. {name}",
+                "–" if finished_m is None else f"{finished_m:.2f} m",
+                (lane["failure"] or "–") if total_m is None else f"{total_m:.2f} m",
+                f"{one.elapsed_s:.1f} s",
                 f"{1000 * lane['decision_s'] / max(1, lane['steps']):.1f} ms",
                 f"{lane['simulated_transitions']:,}",
             )
         )
-    head = ("lane", "at time-out", "in all", "time", "a decision", "simulated transitions")
-    show_table(f"Ranked at time-out, {clock} clock", head, rows)
-    best_m = best_known_in_race_m(config)
-    if best_m is not None:
-        print(f"Best known, in all: {best_m:.2f} m")
+    is_ranked = any(one.rank is not None for one in race.standings_under(clock))
+    title = "Ranked at time-out" if is_ranked else "No ranking: no lane used all its steps"
+    head = ("lane", "at time-out", "total", "time", "a decision", "simulated transitions")
+    show_table(f"{title}, {CLOCK_TITLES[clock]}", head, rows)
+    if race.best_known_m is not None:
+        print(f"Best known, total: {race.best_known_m:.2f} m")

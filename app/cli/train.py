@@ -2,10 +2,8 @@
 
 import argparse
 import json
-from typing import Any
 
-from app.assembly import build_learner, finish_training
-from app.cli.files import check_writable, read_table, write_whole
+from app.cli.files import check_writable, write_whole
 from app.cli.options import (
     CommandParser,
     add_observation,
@@ -15,14 +13,12 @@ from app.cli.options import (
     walk_from,
 )
 from app.cli.terminal import progress
-from app.domain.errors import InvalidInput
-from app.domain.settings import declared_fields
-from app.domain.world import check_ends
-from app.runs.config import TrainingConfig, WalkingProblem, training_config
-from app.runs.config_json import as_json
-from app.runs.records import Evaluated, StepTaken
-from app.runs.tables import Checkpoint, snapshot, to_bytes
-from app.runs.training import Learner, train
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.settings import declared_fields
+from hexapods.runs.config import TrainingConfig, WalkingProblem
+from hexapods.runs.config_json import as_json
+from hexapods.runs.records import Evaluated, StepTaken, TrainingRecord
+from hexapods.trainings import Training, read_table, train
 
 _SETTINGS = tuple(
     name
@@ -56,64 +52,44 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HexapodError: if the options are not valid, or a file cannot be read or written.
     """
+    if options.table and options.seed is not None:
+        raise InvalidInput("--from goes on with the table's own generator; leave --seed out")
     table = read_table(options.table) if options.table else None
-    config = _config(options, table)
     if options.out:
         check_writable(options.out)
-    learner = build_learner(config, table)
-    curve = _practise(learner, config)
-    result = finish_training(learner, config)
-    if options.out:
-        write_whole(options.out, to_bytes(snapshot(learner, config)))
-    if options.json:
-        print(json.dumps({"config": as_json(config), "result": result, "curve": curve}))
-    else:
-        _print_result(options, config, result)
-    return 0
-
-
-def _config(options: argparse.Namespace, table: Checkpoint | None) -> TrainingConfig:
-    seed = options.seed
-    if table is not None:
-        if seed is not None:
-            raise InvalidInput("--from goes on with the table's own generator; leave --seed out")
-        seed = table.meta["config"]["seed"]
-    given = {name: getattr(options, name) for name in _SETTINGS} | settings_from(options)
-    given["seed"] = TrainingConfig.seed if seed is None else seed
-    config = training_config(
-        options.agent, **walk_from(options), observation=options.observation, **given
-    )
-    check_ends(config.world.disturbances, config.steps)
-    return config
-
-
-def _practise(learner: Learner, config: TrainingConfig) -> list[dict[str, float]]:
-    """Run the training loop with a progress bar, and return the evaluations."""
-    curve = []
+    given = {name: getattr(options, name) for name in _SETTINGS if name != "seed"}
+    if options.seed is not None:
+        given["seed"] = options.seed
+    given |= {**walk_from(options), "observation": options.observation, **settings_from(options)}
     with progress() as bar:
-        task = bar.add_task("practising", total=config.steps)
-        for record in train(learner, config):
+        task = bar.add_task("practising", total=options.steps)
+
+        def show(record: TrainingRecord) -> None:
             if isinstance(record, StepTaken):
                 bar.update(task, completed=record.step)
             elif isinstance(record, Evaluated):
                 bar.update(task, description=f"walks {record.distance_m:.2f} m")
-                curve.append(
-                    {
-                        "step": record.step,
-                        "distance_m": record.distance_m,
-                        "epsilon": record.epsilon,
-                    }
-                )
-    return curve
+
+        training = train(options.agent, table=table, on_record=show, **given)
+    if options.out:
+        write_whole(options.out, training.to_bytes())
+    if options.json:
+        curve = [point._asdict() for point in training.curve]
+        print(
+            json.dumps(
+                {"config": as_json(training.config), "result": training.result, "curve": curve}
+            )
+        )
+    else:
+        _print_result(options, training)
+    return 0
 
 
-def _print_result(
-    options: argparse.Namespace, config: TrainingConfig, result: dict[str, Any]
-) -> None:
-    best_m = result["best_known_m"]
+def _print_result(options: argparse.Namespace, training: Training) -> None:
+    best_m = training.result["best_known_m"]
     print(
-        f"After {config.steps:,} steps of practice it walks {result['distance_m']:.2f} m in 50 "
-        f"steps; one-step look-ahead walks {result['greedy_distance_m']:.2f} m"
+        f"After {training.config.steps:,} steps of practice it walks {training.distance_m:.2f} m "
+        f"in 50 steps; one-step look-ahead walks {training.greedy_distance_m:.2f} m"
         f"{'' if best_m is None else f', the best known walk is {best_m:.2f} m'}."
     )
     if options.out:

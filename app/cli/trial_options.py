@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from app.cli.options import integer, read_gait, read_robot, split
-from app.domain.gait import NAMED_GAITS, GaitSpec
-from app.domain.observation import OBSERVATIONS, PAPER_OBSERVATIONS
-from app.domain.robot import PRESETS, Robot
-from app.experiments.cluster import ClusterSpec
-from app.runs.config import SIMULATORS
+from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.observation import OBSERVATIONS, PAPER_OBSERVATIONS
+from hexapods.domain.robot import PRESETS, Robot
+from hexapods.experiments.cluster import ClusterSpec
+from hexapods.runs.config import SIMULATORS
 
 T = TypeVar("T")
 

@@ -11,16 +11,16 @@ from types import FrameType
 from typing import Any
 
 from app.cli.terminal import progress, show_table
-from app.domain.errors import InvalidInput
-from app.experiments.cluster import ClusterSpec
-from app.experiments.config import DISTURBED, REPORT, ExperimentConfig
-from app.experiments.folder import ResultsFolder, open_results
-from app.experiments.own_cluster import cores
-from app.experiments.plan import Trial
+from hexapods.domain.errors import InvalidInput
+from hexapods.experiments.cluster import ClusterSpec
+from hexapods.experiments.config import DISTURBED, REPORT, ExperimentConfig
+from hexapods.experiments.folder import ResultsFolder, open_results
+from hexapods.experiments.own_cluster import cores
+from hexapods.experiments.plan import Trial
 
 INTERRUPTED = 130
 RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
-_HEAD = ("setting", "seeds", "total m", "95 %")
+_HEAD = ("setting", "seeds", "total m", "95\u00a0%")
 
 
 def run_experiment(
@@ -83,8 +83,8 @@ def _run(
 
 def _report(cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
     # Imported here, as SciPy and Matplotlib take a second to import.
-    from app.experiments.report.files import write_report  # noqa: PLC0415
-    from app.experiments.summary import summarise  # noqa: PLC0415
+    from hexapods.experiments.report.files import write_report  # noqa: PLC0415
+    from hexapods.experiments.summary import summarise  # noqa: PLC0415
 
     results, set_aside = folder.planned()
     workers = None if cluster.scheduler is not None else cluster.workers or cores()
@@ -111,10 +111,10 @@ def report_errors(path: Path) -> Iterator[None]:
 
 
 def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
-    show_table("Interquartile means over the seeds", *_table(summary), long_names=True)
+    show_table("Interquartile means over the seeds", *_table(summary))
     trials, cost = summary["trials"], summary["cost"]
     for one in trials["set_aside"]:
-        print(f"Set aside: {one['key']}: {one['reason']}")
+        print(f"Set aside: {one['label']}: {one['reason']}")
     for claim in summary["claims"]:
         print(f"{claim['verdict']:>15}: {claim['claim']}")
     print(
@@ -125,20 +125,26 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
 
 def _table(summary: Mapping[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return head and rows; a league or recovery has no race, but more to be measured against."""
+    from hexapods.experiments.names import setting_names  # noqa: PLC0415
+
     settings = summary["settings"]
+    known = {one["key"]: one for one in summary["worlds"]}
+    models = {key: one["plans_with"] for key, one in known.items()}
+    names = setting_names(settings, summary["parameters"], models)
+    rows = [(names[one["key"]], *_distances(one)) for one in settings]
     if summary["experiment"] not in DISTURBED:
         head = (*_HEAD, "at time-out m", "of greedy")
-        return head, [(*_distances(one), *_in_race(one)) for one in settings]
-    known = {one["key"]: one for one in summary["worlds"]}
+        return head, [(*row, *_in_race(one)) for row, one in zip(rows, settings, strict=True)]
     head = (*_HEAD, "of greedy", "of best known")
-    return head, [(*_distances(one), *_shares(known.get(one["key"]))) for one in settings]
+    return head, [
+        (*row, *_shares(known.get(one["key"]))) for row, one in zip(rows, settings, strict=True)
+    ]
 
 
 def _distances(setting: Mapping[str, Any]) -> tuple[str, ...]:
     total = setting["total"]
     between = total is not None and total["low_m"] is not None
     return (
-        setting["key"].replace("/", " "),
         str(setting["n"]),
         "" if total is None else f"{total['iqm_m']:.3f}",
         f"{total['low_m']:.3f}–{total['high_m']:.3f}" if between else "",
@@ -159,8 +165,8 @@ def _shares(one: Mapping[str, Any] | None) -> tuple[str, str]:
 
 
 def share_text(share: Mapping[str, Any] | None) -> str:
-    """Return the interquartile mean of a share as text: `96 %`."""
-    return "" if share is None else f"{100 * share['iqm']:.0f} %"
+    """Return the interquartile mean of a share as text, with a no-break space: `96 %`."""
+    return "" if share is None else f"{100 * share['iqm']:.0f}\u00a0%"
 
 
 @contextmanager

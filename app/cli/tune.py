@@ -31,23 +31,23 @@ from app.cli.trials import (
     stop_signals,
     workers_text,
 )
-from app.domain.checks import check_whole
-from app.domain.gait import NAMED_GAITS
-from app.domain.robot import PRESETS
-from app.domain.settings import declared_fields
-from app.domain.world import WORLDS
-from app.experiments.cluster import ClusterSpec, connect
-from app.experiments.config import MAX_SEEDS, REPORT
-from app.experiments.engine import Outcome
-from app.experiments.folder import ResultsFolder, open_results
-from app.experiments.formatting import counted
-from app.experiments.own_cluster import cores
-from app.experiments.plan import Trial
-from app.experiments.tuning.config import Objective, TuningConfig, tuning_config
-from app.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
+from hexapods.domain.checks import check_whole
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.robot import PRESETS
+from hexapods.domain.settings import declared_fields
+from hexapods.domain.world import WORLDS
+from hexapods.experiments.cluster import ClusterSpec, connect
+from hexapods.experiments.config import MAX_SEEDS, REPORT
+from hexapods.experiments.engine import Outcome
+from hexapods.experiments.folder import ResultsFolder, open_results
+from hexapods.experiments.formatting import counted
+from hexapods.experiments.own_cluster import cores
+from hexapods.experiments.plan import Trial
+from hexapods.experiments.tuning.config import Objective, TuningConfig, tuning_config
+from hexapods.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
 
 if TYPE_CHECKING:
-    from app.experiments.tuning.tuning import Tuning
+    from hexapods.experiments.tuning.tuning import Tuning
 
 _HEAD = ("on held-out seeds", "distance m", "mean over practice m", "of greedy", "seeds")
 
@@ -141,7 +141,7 @@ def run(options: argparse.Namespace) -> int:
     """
     cluster, config = cluster_from(options), config_from(options)
     # Imported here, as Optuna and SciPy take a second to import.
-    from app.experiments.tuning.tuning import Tuning  # noqa: PLC0415
+    from hexapods.experiments.tuning.tuning import Tuning  # noqa: PLC0415
 
     tuning = Tuning(config)
     path: Path = options.out or Path("tuning-results")
@@ -222,8 +222,8 @@ def _run(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder, retry: b
 
 def _report(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
     # Imported here, as SciPy and Matplotlib take a second to import.
-    from app.experiments.tuning.report import write_tuning  # noqa: PLC0415
-    from app.experiments.tuning.summary import summarise_tuning  # noqa: PLC0415
+    from hexapods.experiments.tuning.report import write_tuning  # noqa: PLC0415
+    from hexapods.experiments.tuning.summary import summarise_tuning  # noqa: PLC0415
 
     workers = None if cluster.scheduler is not None else cluster.workers or cores()
     summary = summarise_tuning(tuning, folder, workers)
@@ -233,8 +233,8 @@ def _report(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder) -> di
 
 
 def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
-    from app.experiments.tuning.report import held_out_name  # noqa: PLC0415
-    from app.experiments.tuning.summary import options_text  # noqa: PLC0415
+    from hexapods.experiments.tuning.report import held_out_name  # noqa: PLC0415
+    from hexapods.experiments.tuning.summary import options_text  # noqa: PLC0415
 
     entries = sorted(summary["held_out"], key=lambda one: -float(one["distance"]["iqm"]))
     rows = [(held_out_name(one), *_row(one)) for one in entries]
@@ -243,7 +243,7 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
     if best_known_m is not None:
         print(f"Best known: {best_known_m:.3f} m")
     for one in summary["trials"]["set_aside"]:
-        print(f"Set aside: {one['key']}: {one['reason']}")
+        print(f"Set aside: {one['label']}: {one['reason']}")
     for sentence in summary["said"]:
         print(sentence)
     search = summary["search"]

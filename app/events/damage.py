@@ -7,10 +7,10 @@ from typing import Any
 
 import msgspec
 
-from app.runs.clocks import CLOCKS
 from app.storage.database.store import RunStore
 from app.storage.json_text import is_finite
 from app.storage.run import AnyRun, DamagedRun, Kind, Run
+from hexapods.runs.clocks import CLOCKS
 
 _PAGE_SIZE = 200
 _CACHE_S = 300.0
@@ -24,10 +24,10 @@ class _TrainingResult(msgspec.Struct):
 
 
 class _Figures(msgspec.Struct):
-    finished_distance_m: float
+    finished_distance_m: float | None
     elapsed_s: float
     crossed_s: float | None
-    rank: int
+    rank: int | None
 
 
 class _LaneResult(msgspec.Struct):
@@ -84,7 +84,7 @@ def _damage(run: Run) -> str | None:
 def _non_finite_field(run: Run) -> str | None:
     for name in ("eta_s", "greedy_distance_m", "changes", "result"):
         if not is_finite(getattr(run, name)):
-            return f"its {name} has a number that is none"
+            return f"its {name} has NaN or an infinity"
     return None
 
 

@@ -4,11 +4,11 @@ from datetime import UTC, datetime
 from typing import Any
 
 from app.events.damage import as_shown
-from app.runs.best_known import best_known_in_race_m
-from app.runs.config import TrainingConfig
-from app.runs.lane import plans_with
-from app.runs.race_config import RaceConfig
 from app.storage.run import PAUSED, RESUMABLE, AnyRun, DamagedRun, Run, config_as_json
+from hexapods.runs.best_known import best_known_in_race_m
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.lane import plans_with
+from hexapods.runs.race_config import RaceConfig
 
 
 def run_view(run: AnyRun, queue_position: int | None = None) -> dict[str, Any]:

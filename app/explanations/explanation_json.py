@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.agents.explanation import (
+from hexapods.agents.explanation import (
     ChoiceExplanation,
     Future,
     Term,
@@ -14,11 +14,11 @@ from app.agents.explanation import (
     ValueUpdate,
     in_millimetres,
 )
-from app.agents.protocol import Valuing
-from app.domain.types import Action, Cells, FloatArray
-from app.runs.config import WalkingProblem
-from app.runs.rebuilding import ExplainedStep
-from app.runs.transition_log import Logged
+from hexapods.agents.protocol import Valuing
+from hexapods.domain.types import Action, Cells, FloatArray
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.rebuilding import ExplainedStep
+from hexapods.runs.transition_log import Logged
 
 MAX_OTHERS = 24
 """Further updates of values that are told one by one, those with the largest changes."""
@@ -51,7 +51,7 @@ def explanation_as_json(
     explained: ExplainedStep,
     *,
     lane: int | None = None,
-    search: "Search | None" = None,
+    search: "SearchFindings | None" = None,
     unexplained: str | None = None,
 ) -> dict[str, Any]:
     """Return an explained step.
@@ -84,7 +84,7 @@ def explanation_as_json(
     }
 
 
-class Search(NamedTuple):
+class SearchFindings(NamedTuple):
     """Findings of a search before a step.
 
     Attributes:
@@ -98,7 +98,7 @@ class Search(NamedTuple):
     futures: Sequence[Future]
 
 
-def _search(search: Search, logged: Logged, names: ActionNames) -> dict[str, Any]:
+def _search(search: SearchFindings, logged: Logged, names: ActionNames) -> dict[str, Any]:
     best_first = sorted(
         search.futures, key=lambda one: (one.action != logged.action, -one.return_m)
     )
@@ -111,7 +111,7 @@ def _search(search: Search, logged: Logged, names: ActionNames) -> dict[str, Any
 
 
 def _search_sentences(
-    search: Search, best_first: Sequence[Future], logged: Logged, names: ActionNames
+    search: SearchFindings, best_first: Sequence[Future], logged: Logged, names: ActionNames
 ) -> list[str]:
     """Return the findings of a search in sentences; the first future is that of its action."""
     chosen, *others = best_first

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Protocol
 
-from app.domain.errors import HexapodError
-from app.runs.rebuilding import ExplainedStep, NotRebuilt, RebuiltLearner, Snapshot
-from app.runs.transition_log import Logged
 from app.storage.errors import Busy
+from hexapods.domain.errors import HexapodError
+from hexapods.runs.rebuilding import ExplainedStep, LearnerSnapshot, NotRebuilt, RebuiltLearner
+from hexapods.runs.transition_log import Logged
 
 SNAPSHOT_EVERY_S = 0.04
 """Work after which a snapshot is taken: that long it takes at most to step back."""
@@ -20,7 +20,7 @@ WORK_S = 1.5
 Changes = Sequence[Mapping[str, Any]]
 
 
-class Steps(Protocol):
+class LoggedSteps(Protocol):
     """Steps of a walk, from its start."""
 
     def __len__(self) -> int:
@@ -44,10 +44,10 @@ class RebuiltPractice:
         """
         self._new, self._learner = new, new()
         self._changes: Changes = ()
-        self._snapshots: list[Snapshot] = []
+        self._snapshots: list[LearnerSnapshot] = []
         self._spacing_s, self._worked_s = SNAPSHOT_EVERY_S, 0.0
 
-    def fits(self, steps: Steps, changes: Changes) -> bool:
+    def fits(self, steps: LoggedSteps, changes: Changes) -> bool:
         """Whether it has taken only steps of its walk as this is now.
 
         A training that resumes may have forgotten steps, and changes of settings may follow.
@@ -57,7 +57,7 @@ class RebuiltPractice:
         known = self._changes[:tuned]
         return len(steps) >= reached and list(changes[: len(known)]) == list(known)
 
-    def learner_at(self, step: int, steps: Steps, changes: Changes) -> RebuiltLearner:
+    def learner_at(self, step: int, steps: LoggedSteps, changes: Changes) -> RebuiltLearner:
         """Return the learner after so many steps; valid until the next call.
 
         Args:
@@ -73,7 +73,7 @@ class RebuiltPractice:
         self._go_to(step, steps)
         return self._learner
 
-    def explain(self, step: int, steps: Steps, changes: Changes) -> ExplainedStep:
+    def explain(self, step: int, steps: LoggedSteps, changes: Changes) -> ExplainedStep:
         """Explain a step, counted from 1.
 
         Raises:
@@ -95,7 +95,7 @@ class RebuiltPractice:
             self._learner, self._worked_s = self._new(), 0.0
         return explained
 
-    def _go_to(self, step: int, steps: Steps) -> None:
+    def _go_to(self, step: int, steps: LoggedSteps) -> None:
         place = bisect_right(self._snapshots, step, key=lambda one: one.step) - 1
         nearest = self._snapshots[place] if place >= 0 else None
         if self._learner.step > step or (nearest and nearest.step > self._learner.step):
@@ -117,7 +117,7 @@ class RebuiltPractice:
                     1,
                 )
 
-    def _take(self, steps: Steps, explain_next: bool = False) -> None:
+    def _take(self, steps: LoggedSteps, explain_next: bool = False) -> None:
         self._tune()
         number = self._learner.step
         with self._starting_anew_if_broken(number + 1):

@@ -7,24 +7,26 @@ from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from app.agents import registry
-from app.agents.protocol import Tabular, Valuing
-from app.assembly import rebuild_lane, rebuild_learner
 from app.cache import BytesCache
-from app.domain.errors import InvalidInput
-from app.explanations.explanation_json import Search, explanation_as_json, table_as_json
-from app.explanations.rebuilt_practice import Changes, RebuiltPractice, Steps
-from app.runs.config import TrainingConfig
-from app.runs.race_config import RaceConfig
-from app.runs.rebuilding import ExplainedStep, NotRebuilt, RebuiltLearner
-from app.runs.recording import LaneRecording
-from app.runs.records import LaneStep
-from app.runs.transition_log import Logged, TransitionLog
+from app.explanations.explanation_json import SearchFindings, explanation_as_json, table_as_json
+from app.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPractice
+from app.jobs.stopping import Stopping
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import Run
 from app.storage.stored_tables import load_table
+from hexapods.agents import registry
+from hexapods.agents.protocol import Tabular, Valuing
+from hexapods.assembly import rebuild_lane, rebuild_learner
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import Action
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.rebuilding import ExplainedStep, NotRebuilt, RebuiltLearner
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.records import LaneStep
+from hexapods.runs.transition_log import Logged, TransitionLog
 
 MAX_PRACTICES = 4
 """Walks that are kept; the one asked for least recently is dropped."""
@@ -42,8 +44,11 @@ T = TypeVar("T")
 class Explanations:
     """Builds learners again to explain their steps; one request at a time. Thread-safe."""
 
-    def __init__(self, store: RunStore, recordings: Recordings) -> None:
+    def __init__(
+        self, store: RunStore, recordings: Recordings, stopping: Stopping | None = None
+    ) -> None:
         self._store, self._recordings = store, recordings
+        self._stopping = stopping or Stopping()
         self._practices: OrderedDict[Hashable, RebuiltPractice] = OrderedDict()
         self._answers = BytesCache(MAX_ANSWER_BYTES)
         self._lock, self._count_lock, self._waiting = threading.Lock(), threading.Lock(), 0
@@ -150,7 +155,7 @@ class Explanations:
             raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
         recording, own = lanes[lane], config.lanes[lane]
         number = _checked_step(step, len(recording.steps))
-        steps = LaneSteps(recording, own.observation == "measured")
+        steps = LoggedLane(recording, own.observation == "measured")
 
         def answer() -> dict[str, Any]:
             why = None
@@ -180,7 +185,7 @@ class Explanations:
             )
         return log
 
-    def _practice(self, run: Run, config: TrainingConfig, steps: Steps) -> RebuiltPractice:
+    def _practice(self, run: Run, config: TrainingConfig, steps: LoggedSteps) -> RebuiltPractice:
         """Return the learner of a training."""
 
         def new() -> RebuiltLearner:
@@ -203,7 +208,7 @@ class Explanations:
         return self._kept((run.id, run.created_at), steps, run.changes, make)
 
     def _lane_practice(
-        self, run: Run, config: RaceConfig, lane: int, steps: Steps
+        self, run: Run, config: RaceConfig, lane: int, steps: LoggedSteps
     ) -> RebuiltPractice:
         training_id = run.lane_training_ids[lane]
 
@@ -217,7 +222,7 @@ class Explanations:
     def _kept(
         self,
         key: Hashable,
-        steps: Steps,
+        steps: LoggedSteps,
         changes: Changes,
         make: Callable[[], RebuiltPractice],
     ) -> RebuiltPractice:
@@ -237,7 +242,7 @@ class Explanations:
                 raise Busy(f"{MAX_WAITING} explanations are waiting; ask again later", 2)
             self._waiting += 1
         try:
-            with self._lock:
+            with self._stopping.holding(self._lock):
                 yield
         finally:
             with self._count_lock:
@@ -263,7 +268,7 @@ class _TrainingSteps:
         return self._block.step(place)
 
 
-class LaneSteps:
+class LoggedLane:
     """The steps of a lane's recording."""
 
     def __init__(self, lane: LaneRecording, is_measured: bool) -> None:
@@ -280,13 +285,14 @@ class LaneSteps:
 
     def step(self, number: int) -> Logged:
         """Return the step of an index, from 0 on; the last one has no next observation."""
-        one, rest = self._lane.steps[number], self._lane.steps[number + 1 : number + 2]
-        after = rest[0].observation if rest else ()
-        measured = (one.observation, after) if self._is_measured else ((), ())
-        return Logged(one.observation, measured[0], one.action, one.reward_m, after, measured[1])
+        rows = self._lane.steps.figures[number : number + 2]
+        before, after = ([tuple(row) for row in rows["observation"].tolist()] + [()])[:2]
+        measured = (before, after) if self._is_measured else ((), ())
+        action, reward_m = Action(*rows["action"][0].tolist()), float(rows["reward_m"][0])
+        return Logged(before, measured[0], action, reward_m, after, measured[1])
 
 
-def _version(run: Run, step: int, steps: Steps) -> Hashable:
+def _version(run: Run, step: int, steps: LoggedSteps) -> Hashable:
     """Return all that the learner after a step depends on, but for its number and the lane.
 
     A run repeats its steps where it resumes, unless its agent has another source of randomness;
@@ -298,11 +304,11 @@ def _version(run: Run, step: int, steps: Steps) -> Hashable:
     return (run.id, run.created_at, json.dumps(changes, default=str), taken)
 
 
-def _search_of(agent: str, step: LaneStep) -> Search | None:
+def _search_of(agent: str, step: LaneStep) -> SearchFindings | None:
     """Return what the search of a lane found; None if it does not search, or was not recorded."""
     if not any(one.action == step.action for one in step.futures):
         return None
-    return Search(registry.compares(agent), step.transitions, step.futures)
+    return SearchFindings(registry.compares(agent), step.transitions, step.futures)
 
 
 def _checked_step(step: int | None, count: int) -> int:

@@ -4,5 +4,6 @@
 - `trajectory`: joint angles, feet and torques over time, as CSV and Parquet.
 - `video`, `video_renderer`: MP4 and GIF, rendered off screen by MuJoCo.
 - `mcap_log`: joint states and frames for tools of robots.
+- `recording_json`: a race's recording as streamed JSON.
 - `extras`: the optional packages that some files need.
 """

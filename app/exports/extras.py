@@ -1,10 +1,19 @@
 """Optional packages: imported when they are first needed, with an error that names the extra."""
 
 import importlib
+import importlib.util
 import os
+from collections.abc import Mapping
 from typing import Any
 
-from app.domain.errors import InvalidInput
+from hexapods.domain.errors import InvalidInput
+
+_MODULES: Mapping[str, tuple[str, ...]] = {
+    "video": ("imageio_ffmpeg", "OpenGL"),
+    "parquet": ("pyarrow",),
+    "mcap": ("foxglove",),
+}
+"""Modules that exports need, by the extra that has them."""
 
 
 class MissingExtra(InvalidInput):
@@ -38,5 +47,22 @@ def import_extra(module: str, extra: str, purpose: str) -> Any:
     except ImportError as error:
         raise MissingExtra(
             f"{purpose} needs a package that is not installed here ({error}); "
-            f"`pip install 'racing-hexapods[{extra}]'` installs it"
+            f"`{install_command(extra)}` installs it"
         ) from error
+
+
+def install_command(extra: str) -> str:
+    """Return the shell command that installs an extra."""
+    return f"pip install 'racing-hexapods[{extra}]'"
+
+
+def missing_extras() -> dict[str, str]:
+    """Return the extras of exports that are not installed, each with the command that installs it.
+
+    Nothing is imported; whether OpenGL works only drawing can tell.
+    """
+    return {
+        extra: install_command(extra)
+        for extra, modules in _MODULES.items()
+        if any(importlib.util.find_spec(module) is None for module in modules)
+    }

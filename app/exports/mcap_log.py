@@ -13,17 +13,20 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from app.agents.appearance import title_of
-from app.domain.types import FloatArray
 from app.exports.extras import import_extra
-from app.exports.recorded_lanes import RecordedLane, RecordedWalks
+from app.exports.recorded_lanes import ExportedLane, RecordedWalks
 from app.exports.trajectory import joint_names
 from app.jobs.stopping import Stopping
-from app.physics.mjcf import compile_visual_model
-from app.runs.clocks import Clock
+from hexapods.agents.appearance import title_of
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import FloatArray
+from hexapods.physics.mjcf import compile_visual_model
+from hexapods.runs.clocks import Clock
 
 MCAP_EXTRA = "mcap"
 MCAP_TYPE = "application/octet-stream"
+MAX_SERVED_FRAMES = 200_000
+"""Of a log over REST; the longest race has 4,800,000, which takes an hour and a gigabyte."""
 LANE_WIDTH_M = 1.0
 """Between the origins of the lanes."""
 _CHUNK_BYTES = 1 << 16
@@ -41,7 +44,10 @@ class _Frame(NamedTuple):
 
 
 def mcap_log(
-    walks: RecordedWalks, clock: Clock, stopping: Stopping | None = None
+    walks: RecordedWalks,
+    clock: Clock,
+    stopping: Stopping | None = None,
+    max_frames: int | None = None,
 ) -> Iterator[bytes]:
     """Yield an MCAP file in chunks; time 0 of the run is the epoch.
 
@@ -49,14 +55,22 @@ def mcap_log(
         walks: the recorded walks.
         clock: times a race.
         stopping: whether the server stops, which writes no more then.
+        max_frames: frames that it may have at most; None for any number.
 
     Raises:
+        InvalidInput: at the call, if it would have more frames.
         MissingExtra: at the call, if the Foxglove SDK is not installed.
         Busy: at the call, if the server stops.
     """
     foxglove = import_extra("foxglove", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.messages", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.channels", MCAP_EXTRA, "an MCAP file")
+    frames = sum(lane.frames for lane in walks.lanes)
+    if max_frames is not None and frames > max_frames:
+        raise InvalidInput(
+            f"the log would have {frames:,} frames, and may have {max_frames:,}; export the "
+            "trajectory, or use `hexapods runs mcap` on the server's machine"
+        )
     file = tempfile.TemporaryFile()  # noqa: SIM115 - closed when all was read
     try:
         _write(foxglove, walks, clock, file, stopping or Stopping())
@@ -112,11 +126,11 @@ def _write(
             tf.log(messages.FrameTransforms(transforms=transforms), log_time=nanoseconds)
 
 
-def _frames(lane: RecordedLane, number: int, step_s: float, clock: Clock) -> Iterator[_Frame]:
+def _frames(lane: ExportedLane, number: int, step_s: float, clock: Clock) -> Iterator[_Frame]:
     """Yield the pose at rest, and each recorded frame of a lane."""
     yield _Frame(0.0, number, 0, lane.start_qpos.astype(float), None)
     count = 0
-    for index, start_s in enumerate(lane.starts_s(step_s, clock)):
+    for index, start_s in enumerate(lane.starts_s(step_s, clock).tolist()):
         motion = lane.motion(index)
         for place, time_s in enumerate(motion.time_s.tolist()):
             count += 1

@@ -2,21 +2,24 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import cast
 
-from app.domain.errors import InvalidInput
-from app.runs.clocks import Clock, Timetable
-from app.runs.config import TrainingConfig, WalkingProblem
-from app.runs.race_config import RaceConfig
-from app.runs.recorded_walk import RecordedSteps
-from app.runs.records import LaneStep, StepTaken
+import numpy as np
+
 from app.storage.errors import Conflict, Damaged
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, AnyRun, DamagedRun
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import FloatArray
+from hexapods.runs.clocks import Clock, Timetable, motions_s
+from hexapods.runs.config import TrainingConfig, WalkingProblem
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recorded_walk import RecordedSteps
+from hexapods.runs.recording import LaneSteps
+from hexapods.runs.records import LaneStep, StepTaken
 
 
 @dataclass(frozen=True)
-class RecordedLane(RecordedSteps):
+class ExportedLane(RecordedSteps):
     """Recording of one robot; after the first steps of a practice there may be a gap.
 
     Attributes:
@@ -26,14 +29,33 @@ class RecordedLane(RecordedSteps):
     agent: str
     steps: Sequence[LaneStep] | Sequence[StepTaken]
 
-    def starts_s(self, step_s: float, clock: Clock) -> list[float]:
+    @property
+    def frames(self) -> int:
+        """Number of recorded frames."""
+        if isinstance(self.steps, LaneSteps):
+            return int(self.steps.figures["frames"].sum())
+        return sum(len(self.motion(index).time_s) for index in range(len(self.steps)))
+
+    def starts_s(self, step_s: float, clock: Clock) -> FloatArray:
         """Return when the motion of each step begins [s], in a race as a clock times it.
 
         With the clock `free`, and of a training, that is robot time.
         """
-        if clock == "free" or not self.steps or isinstance(self.steps[0], StepTaken):
-            return [(one.step - 1) * step_s for one in self.steps]
-        return list(Timetable.of(cast(Sequence[LaneStep], self.steps), clock).thought)
+        if not isinstance(self.steps, LaneSteps):
+            return np.array([(one.step - 1) * step_s for one in self.steps])
+        if clock == "free":
+            return np.arange(len(self.steps), dtype=float) * step_s
+        return Timetable.of(self.steps, clock).thought
+
+    def ends_s(self, step_s: float, clock: Clock) -> FloatArray:
+        """Return when the motion of each step ends [s]; see `starts_s`."""
+        if isinstance(self.steps, LaneSteps):
+            durations = motions_s(self.steps.figures)
+        else:
+            last_s = [float(self.motion(index).time_s[-1]) for index in range(len(self.steps))]
+            durations = np.array(last_s, float)
+        ends: FloatArray = self.starts_s(step_s, clock) + durations
+        return ends
 
 
 @dataclass(frozen=True)
@@ -41,7 +63,7 @@ class RecordedWalks:
     """The robots of a run, and the walking problem that they have in common."""
 
     problem: WalkingProblem
-    lanes: Sequence[RecordedLane]
+    lanes: Sequence[ExportedLane]
 
 
 def recorded_walks(run: AnyRun, recordings: Recordings) -> RecordedWalks:
@@ -67,13 +89,13 @@ def recorded_walks(run: AnyRun, recordings: Recordings) -> RecordedWalks:
         )
     if isinstance(config, RaceConfig):
         race = recordings.race(run.id)
-        lanes = [RecordedLane(one.rest_qpos, list(one.steps), one.agent) for one in race or ()]
+        lanes = [ExportedLane(one.rest_qpos, one.steps, one.agent) for one in race or ()]
     else:
         practice = recordings.training(run.id)
         lanes = []
         if practice is not None:
             steps = [step for step in practice.steps if step.motion is not None]
-            lanes = [RecordedLane(practice.rest_qpos, steps, config.agent)]
+            lanes = [ExportedLane(practice.rest_qpos, steps, config.agent)]
     if not any(lane.steps for lane in lanes):
         raise Conflict(f"{run.kind} {run.id} is {run.state} and has no recording", run.state)
     return RecordedWalks(config, lanes)

@@ -11,17 +11,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.domain.kinematics import JOINT_LIMITS_RAD, foot_positions
-from app.domain.robot import Robot
 from app.exports.extras import import_extra
-from app.exports.recorded_lanes import RecordedLane, RecordedWalks
-from app.files import DrainedBuffer
+from app.exports.recorded_lanes import ExportedLane, RecordedWalks
+from hexapods.domain.kinematics import JOINT_LIMITS_RAD, foot_positions
+from hexapods.domain.robot import Robot
+from hexapods.files import DrainedBuffer
 
 CSV_TYPE, PARQUET_TYPE = "text/csv; charset=utf-8", "application/vnd.apache.parquet"
 PARQUET_EXTRA = "parquet"
 _STEPS_PER_BLOCK = 8
 """About 130 frames, 90 kB of text, which stay in memory while a client reads them."""
-_ROWS_PER_GROUP = 4096
+_ROWS_PER_GROUP = 16_384
 _INDEX = ("lane", "step", "time_s")
 _BODY = ("body_x_m", "body_y_m", "body_z_m", "body_qw", "body_qx", "body_qy", "body_qz")
 
@@ -82,7 +82,7 @@ def _cell(number: np.float32) -> str:
 
 
 def trajectory_parquet(look: Look, lanes: Sequence[int]) -> Iterator[bytes]:
-    """Yield a Parquet file in chunks; a row group has at most about 4,000 frames of a lane.
+    """Yield a Parquet file in chunks; a row group has about 16,000 frames.
 
     Args:
         look: returns the recording.
@@ -137,12 +137,9 @@ def _groups(blocks: Iterator[_Block]) -> Iterator[list[_Block]]:
 
 
 def _has_torque(walks: RecordedWalks, lanes: Sequence[int]) -> bool:
+    """Whether torques were recorded: of a lane in its first step, or in none."""
     recorded = (walks.lanes[number] for number in lanes)
-    return any(
-        lane.motion(index).torque_nm is not None
-        for lane in recorded
-        for index in range(len(lane.steps))
-    )
+    return any(lane.steps and lane.motion(0).torque_nm is not None for lane in recorded)
 
 
 def _blocks(look: Look, lanes: Sequence[int], has_torque: bool) -> Iterator[_Block]:
@@ -169,7 +166,7 @@ class _Encoder(NamedTuple):
         """Return the pose before the first step."""
         return self._block(np.zeros(1), np.zeros(1), qpos[None], self._torques(None, 1))
 
-    def steps(self, lane: RecordedLane, first: int, end: int) -> _Block:
+    def steps(self, lane: ExportedLane, first: int, end: int) -> _Block:
         """Return the frames of the steps with these indices."""
         motions = [lane.motion(index) for index in range(first, end)]
         steps = [lane.steps[index].step for index in range(first, end)]

@@ -19,14 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from app.agents.appearance import colors_of, title_of
-from app.domain.errors import InvalidInput
-from app.domain.types import FloatArray
 from app.exports.extras import import_extra, no_opengl
-from app.exports.recorded_lanes import RecordedLane, RecordedWalks
-from app.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
-from app.runs.clocks import FINISH_LINE_M, Clock
-from app.runs.recording import pose_at
+from app.exports.recorded_lanes import ExportedLane, RecordedWalks
+from hexapods.agents.appearance import colors_of, title_of
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import FloatArray
+from hexapods.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
+from hexapods.runs.clocks import FINISH_LINE_M, Clock
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.recording import pose_at
 
 VIDEO_EXTRA = "video"
 MIN_SIDE, MAX_WIDTH, MAX_HEIGHT, MAX_FPS = 64, 1920, 1080, 60
@@ -34,7 +35,7 @@ MIN_SPEED, MAX_SPEED = 0.05, 64
 MAX_FRAMES = 9000
 """Pictures of one video; each takes about 0.1 s in software."""
 _GAP_M = 0.25
-_SMOOTHING_S = 0.25  # as in the live view (app/viewer/scene.py)
+_SMOOTHING_S = 0.25  # as in the live view (hexapods/drawing/scene.py)
 _BACKGROUND, _GROUND, _GROUND_LINES = (0.05, 0.07, 0.1), (0.16, 0.2, 0.26), (0.3, 0.36, 0.44)
 _CAPTION, _CAPTION_BOX = (236, 240, 245, 255), (13, 17, 23, 190)
 
@@ -72,40 +73,61 @@ class VideoOptions:
             raise InvalidInput("width and height must be even")
 
 
+@dataclass(frozen=True)
+class ShownPoses:
+    """What each picture of a video shows; small, so that a process can be sent it.
+
+    Attributes:
+        problem: the walking problem, with the robot.
+        agents: of the lanes.
+        times_s: moment of the run [s].
+        poses: (pictures, lanes, 7 + joints): position [m], quaternion, angles [rad].
+    """
+
+    problem: WalkingProblem
+    agents: tuple[str, ...]
+    times_s: tuple[float, ...]
+    poses: FloatArray
+
+
+def shown_poses(
+    walks: RecordedWalks, options: VideoOptions, max_frames: int = MAX_FRAMES
+) -> ShownPoses:
+    """Return what the pictures of a run's video show.
+
+    Raises:
+        InvalidInput: if there would be more of them than `max_frames`.
+    """
+    tracks = [_Track(lane, walks.problem.robot.step_s, options.clock) for lane in walks.lanes]
+    times_s = _times_s(tracks, options, max_frames)
+    poses = np.array([[track.pose(time_s) for track in tracks] for time_s in times_s])
+    agents = tuple(lane.agent for lane in walks.lanes)
+    return ShownPoses(walks.problem, agents, tuple(times_s), poses)
+
+
 def render_video(walks: RecordedWalks, options: VideoOptions) -> bytes:
-    """Return the video of a run; raises as `write_video`."""
+    """Return the video of a run; raises as `shown_poses` and `write_video`."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"video{options.ending}"
-        write_video(walks, options, file)
+        write_video(shown_poses(walks, options), options, file)
         return file.read_bytes()
 
 
-def write_video(walks: RecordedWalks, options: VideoOptions, file: Path) -> None:
+def write_video(shown: ShownPoses, options: VideoOptions, file: Path) -> None:
     """Render the video of a run to a file.
 
     Raises:
         MissingExtra: if a package of the extra, or OpenGL, is not installed.
-        InvalidInput: if it would be too long.
         OSError: if it cannot be encoded or written.
     """
     ffmpeg = import_extra("imageio_ffmpeg", VIDEO_EXTRA, "a video")
-    times_s = _times_s(walks, options, MAX_FRAMES)
     writer = ffmpeg.write_frames(str(file), (options.width, options.height), **_coding(options))
     writer.send(None)
     try:
-        for picture in _pictures(walks, options, times_s):
+        for picture in _pictures(shown, options):
             writer.send(np.ascontiguousarray(picture))
     finally:
         writer.close()
-
-
-def check_length(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> None:
-    """Check that a video would not be too long.
-
-    Raises:
-        InvalidInput: if it would have more pictures.
-    """
-    _times_s(walks, options, max_frames)
 
 
 def _coding(options: VideoOptions) -> dict[str, Any]:
@@ -126,9 +148,8 @@ def _coding(options: VideoOptions) -> dict[str, Any]:
     }
 
 
-def _times_s(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> list[float]:
+def _times_s(tracks: Sequence["_Track"], options: VideoOptions, max_frames: int) -> list[float]:
     """Return the moment of the run that each picture shows; gaps in a practice are left out."""
-    tracks = [_Track(lane, walks.problem.robot.step_s, options.clock) for lane in walks.lanes]
     end_s = max(track.end_s for track in tracks)
     first = tracks[0]
     shift_s, times_s = 0.0, list[float]()
@@ -150,40 +171,35 @@ def _times_s(walks: RecordedWalks, options: VideoOptions, max_frames: int) -> li
 class _Track:
     """Poses of a lane's robot, interpolated over playback time."""
 
-    def __init__(self, lane: RecordedLane, step_s: float, clock: Clock) -> None:
+    def __init__(self, lane: ExportedLane, step_s: float, clock: Clock) -> None:
         self.lane = lane
         self._starts_s = lane.starts_s(step_s, clock)
-        ends = zip(self._starts_s, range(len(lane.steps)), strict=True)
-        self._ends_s = [start + float(lane.motion(index).time_s[-1]) for start, index in ends]
-        self.end_s = self._ends_s[-1] if self._ends_s else 0.0
+        self._ends_s = lane.ends_s(step_s, clock)
+        self.end_s = float(self._ends_s[-1]) if len(self._ends_s) else 0.0
 
     def gap_s(self, time_s: float) -> float:
         """Return how long nothing is recorded from a moment on, where steps are missing."""
         index = bisect_right(self._starts_s, time_s) - 1
         if index < 0 or index + 1 >= len(self._starts_s) or time_s <= self._ends_s[index] + 1e-6:
             return 0.0
-        return self._starts_s[index + 1] - time_s
+        return float(self._starts_s[index + 1]) - time_s
 
     def pose(self, time_s: float) -> FloatArray:
         index = bisect_right(self._starts_s, time_s) - 1
         if index < 0:
             return self.lane.start_qpos.astype(float)
         start = self.lane.pose_before(index)
-        return pose_at(start, self.lane.motion(index), time_s - self._starts_s[index])
+        return pose_at(start, self.lane.motion(index), time_s - float(self._starts_s[index]))
 
 
-def _pictures(
-    walks: RecordedWalks, options: VideoOptions, times_s: Sequence[float]
-) -> Iterator[NDArray[np.uint8]]:
+def _pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.uint8]]:
     """Yield the pictures, (height, width, 3)."""
-    scene = _Scene(walks, options)
-    tracks = [_Track(lane, walks.problem.robot.step_s, options.clock) for lane in walks.lanes]
+    scene = _Scene(shown, options)
     followed, elapsed_s = 0.0, options.speed / options.fps
-    caption = _Caption([lane.agent for lane in walks.lanes], options.height)
+    caption = _Caption(shown.agents, options.height)
     with _gl_context(options.width, options.height):
         painter = scene.painter()
-        for number, time_s in enumerate(times_s):
-            poses = [track.pose(time_s) for track in tracks]
+        for number, (time_s, poses) in enumerate(zip(shown.times_s, shown.poses, strict=True)):
             leader = max(pose[1] for pose in poses)
             if len(poses) == 1:
                 scene.center_x(poses[0][0])
@@ -223,13 +239,13 @@ class _Closing:
 class _Scene:
     """All robots of a run on the track, as one model without physics."""
 
-    def __init__(self, walks: RecordedWalks, options: VideoOptions) -> None:
-        robot = walks.problem.built_robot
-        count = len(walks.lanes)
+    def __init__(self, shown: ShownPoses, options: VideoOptions) -> None:
+        robot = shown.problem.built_robot
+        count = len(shown.agents)
         width = 2 * robot.home_radius_m + _GAP_M
         self._offsets_m = [(number - (count - 1) / 2) * width for number in range(count)]
         self._options, self._width_m = options, count * width
-        self.model = _model(walks, self._width_m, options)
+        self.model = _model(shown, self._width_m, options)
         self._data = mujoco.MjData(self.model)
         self._camera = mujoco.MjvCamera()
         aspect = options.width / options.height
@@ -251,11 +267,10 @@ class _Scene:
         area = mujoco.MjrRect(0, 0, options.width, options.height)
         pixels = np.empty((options.height, options.width, 3), np.uint8)
 
-        def paint(poses: Sequence[FloatArray], y_m: float) -> NDArray[np.uint8]:
-            placed = [pose.copy() for pose in poses]
-            for pose, offset in zip(placed, self._offsets_m, strict=True):
-                pose[0] += offset
-            data.qpos[:] = np.concatenate(placed)
+        def paint(poses: FloatArray, y_m: float) -> NDArray[np.uint8]:
+            placed = poses.copy()
+            placed[:, 0] += self._offsets_m
+            data.qpos[:] = placed.ravel()
             mujoco.mj_kinematics(model, data)
             mujoco.mj_camlight(model, data)
             self._camera.lookat[1:] = y_m, 0.08
@@ -269,7 +284,7 @@ class _Scene:
         return paint
 
 
-def _model(walks: RecordedWalks, width_m: float, options: VideoOptions) -> mujoco.MjModel:
+def _model(shown: ShownPoses, width_m: float, options: VideoOptions) -> mujoco.MjModel:
     spec = mujoco.MjSpec()
     spec.compiler.degree = False
     spec.visual.global_.offwidth, spec.visual.global_.offheight = options.width, options.height
@@ -314,9 +329,9 @@ def _model(walks: RecordedWalks, width_m: float, options: VideoOptions) -> mujoc
             size=[width_m / 2, 0.006, 0.001],
             rgba=rgba,
         )
-    colors = colors_of([lane.agent for lane in walks.lanes])
+    colors = colors_of(shown.agents)
     for number, color in enumerate(colors):
-        robot = robot_spec(walks.problem.built_robot)
+        robot = robot_spec(shown.problem.built_robot)
         robot.delete(robot.geom("ground"))
         rgba = [*(int(color[at : at + 2], 16) / 255 for at in (1, 3, 5)), 1]
         dark = [0.3 * one + 0.22 for one in rgba[:3]] + [1]

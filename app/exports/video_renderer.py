@@ -3,14 +3,15 @@
 import os
 import tempfile
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from app.domain.errors import HexapodError
 from app.exports.recorded_lanes import RecordedWalks
-from app.exports.video import VideoOptions, check_length, write_video
+from app.exports.video import ShownPoses, VideoOptions, shown_poses, write_video
 from app.jobs.process_pool import ProcessPool
 from app.storage.errors import Busy
+from hexapods.domain.errors import HexapodError
 
 MAX_SERVED_FRAMES = 900
 """Frames of a video over REST, half a minute at 30 a second."""
@@ -21,7 +22,7 @@ _RETRY_S = 20
 
 
 class _VideoTask(NamedTuple):
-    walks: RecordedWalks
+    shown: ShownPoses
     options: VideoOptions
     file: Path
 
@@ -29,12 +30,16 @@ class _VideoTask(NamedTuple):
 class VideoRenderer:
     """Renders in a process of its own, since OpenGL in software takes all cores. Thread-safe."""
 
-    def __init__(self, timeout_s: float = TIMEOUT_S) -> None:
+    def __init__(
+        self, timeout_s: float = TIMEOUT_S, check: Callable[[], None] = lambda: None
+    ) -> None:
         """Create a renderer that is free; the first video starts its process.
 
         Args:
             timeout_s: time after which a video is given up [s].
+            check: raises once nobody needs the video any more; called ten times a second.
         """
+        self._check = check
         self._rendering = threading.Lock()
         self._pool = ProcessPool(count=1, idle_s=_IDLE_S, timeout_s=timeout_s)
 
@@ -44,17 +49,17 @@ class VideoRenderer:
         Raises:
             Busy: if another one is being rendered, its process ends, it takes too long, or the
                 renderer is closed.
-            InvalidInput, MissingExtra: as `write_video`.
+            InvalidInput, MissingExtra: as `shown_poses` and `write_video`.
             HexapodError: if it cannot be encoded or written.
         """
-        check_length(walks, options, MAX_SERVED_FRAMES)
+        shown = shown_poses(walks, options, MAX_SERVED_FRAMES)
         if not self._rendering.acquire(blocking=False):
             raise Busy("another video is being rendered; try again in a moment", _RETRY_S)
         try:
             # Made here, so that it is removed even if the process is killed.
             with tempfile.TemporaryDirectory() as folder:
-                video = _VideoTask(walks, options, Path(folder) / f"video{options.ending}")
-                (failure,) = self._pool.map(_write, [video])
+                video = _VideoTask(shown, options, Path(folder) / f"video{options.ending}")
+                (failure,) = self._pool.map(_write, [video], self._check)
                 if failure is not None:
                     raise HexapodError(f"a video failed: {failure}")
                 return video.file.read_bytes()

@@ -11,13 +11,13 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-from app.experiments.cluster import ClusterSpec
-from app.experiments.config import SUMMARY
-from app.experiments.engine import Outcome
-from app.experiments.progress import Progress
-from app.experiments.trial import TrialResult
 from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Reported, TrialsDone
 from app.storage.stored_trials import outcomes_of
+from hexapods.experiments.cluster import ClusterSpec
+from hexapods.experiments.config import SUMMARY
+from hexapods.experiments.engine import Outcome
+from hexapods.experiments.progress import Progress
+from hexapods.experiments.trial import TrialResult
 
 BATCHES_PER_S = 5
 SUMMARY_EVERY_S = 2.0
@@ -163,7 +163,7 @@ class _SentProgress(Progress):
     def _compute_summary(
         self, results: Mapping[str, TrialResult], set_aside: Mapping[str, str], cost: Any
     ) -> None:
-        from app.experiments.summary import summarise  # noqa: PLC0415 - it brings SciPy
+        from hexapods.experiments.summary import summarise  # noqa: PLC0415 - it brings SciPy
 
         started_s = time.monotonic()
         self._summary = summarise(self.plan.config, results, set_aside, cost)
@@ -173,7 +173,7 @@ class _SentProgress(Progress):
 
     def report(self) -> None:
         """Send the files of the report."""
-        from app.experiments.report.files import report_files  # noqa: PLC0415 - it brings Matplotlib
+        from hexapods.experiments.report.files import report_files  # noqa: PLC0415 - it brings Matplotlib
 
         self.flush()
         self._is_stale = True

@@ -18,9 +18,9 @@ from multiprocessing.context import ForkServerContext, SpawnContext
 from pathlib import Path
 from typing import Any
 
-from app.processes import die_with_parent, set_process_name
+from hexapods.processes import die_with_parent, set_process_name
 
-_PRELOADED = ["app.jobs.worker", "app.physics.mujoco_simulator"]
+_PRELOADED = ["app.jobs.worker", "hexapods.physics.mujoco_simulator"]
 """Modules that most processes need, those included that are otherwise imported late."""
 _CONTINUED_EVERY_S = 1.0
 _start_interpreter = util.spawnv_passfds

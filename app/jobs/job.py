@@ -11,11 +11,9 @@ from datetime import UTC, datetime, timedelta
 from operator import itemgetter
 from typing import Any
 
-from app.domain.errors import HexapodError
-from app.domain.robot import as_mapping
 from app.events.bus import EventBus
 from app.events.run_view import run_view
-from app.experiments.config import SUMMARY
+from app.jobs.job_control import CHECKPOINT_EVERY_S
 from app.jobs.messages import (
     Batch,
     Began,
@@ -32,16 +30,19 @@ from app.jobs.messages import (
     TrialsDone,
 )
 from app.jobs.worker_process import Exit, WorkerProcess
-from app.processes import STALLED_S
-from app.runs.race_config import RaceConfig
-from app.runs.recording import LaneRecording
-from app.runs.records import Evaluated, Reference
-from app.runs.results import lane_details, race_result
 from app.storage.database.engine import retry_during_outage
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost, StorageFailed
 from app.storage.recordings import Recordings
 from app.storage.run import ANNOTATIONS, CHECKPOINT, LIVE, RUNNING, TABLE, Run, State
+from hexapods.domain.errors import HexapodError
+from hexapods.domain.robot import as_mapping
+from hexapods.experiments.config import SUMMARY
+from hexapods.processes import STALLED_S
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.records import Evaluated, Reference
+from hexapods.runs.results import lane_details, race_result
 
 MAX_OUTAGE_S = 600.0
 """Longest database outage that a job waits out; after that its run becomes `interrupted`."""
@@ -122,8 +123,10 @@ class Job:
         self._store, self._recordings, self._bus = store, recordings, bus
         self._acknowledgements: dict[int, Acknowledgement] = {}
         self._tokens = itertools.count()
-        self._has_begun = False
+        self._has_begun = self._has_reported = False
         self._published_s = 0.0
+        self._saved_s = self._started_s
+        """When the recording of a race was stored last; monotonic clock."""
         self._progress: deque[tuple[float, int]] = deque()
 
     def pause(self) -> None:
@@ -191,6 +194,11 @@ class Job:
             self._published_s = time.monotonic()
             self._bus.publish("run", run_view(self.last), self.run_id)
             return self.last
+
+    @property
+    def can_start_again(self) -> bool:
+        """Whether the run is as it was before the start of the process: nothing came of it."""
+        return not (self._has_reported or self.paused or self.stopping or self.ended.is_set())
 
     @property
     def is_answering(self) -> bool:
@@ -286,6 +294,7 @@ class Job:
 
         Meanwhile the pipe fills and blocks the process (back-pressure), so that nothing is lost.
         """
+        self._has_reported |= not isinstance(message, Began)
         with retry_during_outage(MAX_OUTAGE_S, self._shutdown):
             self._handle(message)
 
@@ -342,6 +351,18 @@ class Job:
         for row in rows:
             self._publish_event("evaluation", **row)
         self._handle_progress(batch.done)
+        if self.is_race:
+            self._save_regularly()
+
+    def _save_regularly(self) -> None:
+        """Store what a race has recorded, so that its last picture outlives the server.
+
+        A training does so with its checkpoints.
+        """
+        now = time.monotonic()
+        if now - self._saved_s >= CHECKPOINT_EVERY_S:
+            self._recordings.save(self.run_id)
+            self._saved_s = now
 
     def _handle_progress(self, done: int) -> None:
         eta_s = self._eta_s(done)

@@ -5,13 +5,13 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal
 
-from app.agents.protocol import Agent, AgentState, Transition, Tunable
-from app.domain.errors import InvalidInput
-from app.domain.types import Action, Cells
 from app.jobs.messages import Batch, Changed, Checkpointed, Command, Message
-from app.runs.recording import NEWEST_STEPS
-from app.runs.records import RaceRecord, StepTaken, TrainingRecord
-from app.runs.transition_log import Transitions
+from hexapods.agents.protocol import Agent, AgentState, Transition, Tunable
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import Action, Cells
+from hexapods.runs.recording import NEWEST_STEPS
+from hexapods.runs.records import RaceRecord, StepTaken, TrainingRecord
+from hexapods.runs.transition_log import Transitions
 
 BATCHES_PER_S = 30
 CHECKPOINT_EVERY_S = 3.0

@@ -6,12 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from app.domain.disturbances import Disturbance, as_mapping, disturbance
-from app.domain.errors import HexapodError, InvalidInput, UnknownName
-from app.domain.world import check_ends
 from app.events.bus import EventBus
 from app.events.run_view import run_view
-from app.experiments.config import ExperimentConfig
 from app.jobs.job import Job
 from app.jobs.messages import Changed
 from app.jobs.queue import RunQueue
@@ -29,7 +25,6 @@ from app.jobs.submissions import (
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.jobs.tasks import resumed_runs
 from app.jobs.trial_runs import trial_start
-from app.runs.config import TrainingConfig, changeable_settings
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, NotAnswering, NotFound, StorageFailed
 from app.storage.recordings import Recordings
@@ -49,6 +44,11 @@ from app.storage.run import (
     world_of,
 )
 from app.storage.run_ids import RunIds
+from hexapods.domain.disturbances import Disturbance, as_mapping, disturbance
+from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
+from hexapods.domain.world import check_ends
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.runs.config import TrainingConfig, changeable_settings
 
 MAX_PAUSED = 16
 MAX_PENDING_CHANGES = 8

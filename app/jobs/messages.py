@@ -8,12 +8,12 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.experiments.config import ExperimentConfig
-from app.runs.config import TrainingConfig
-from app.runs.race_config import RaceConfig
-from app.runs.records import RaceRecord, TrainingRecord
-from app.runs.tables import Checkpoint
-from app.runs.transition_log import Transitions
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.records import RaceRecord, TrainingRecord
+from hexapods.runs.tables import Checkpoint
+from hexapods.runs.transition_log import Transitions
 
 # To the process: a task first, then commands.
 

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 
-from app.domain.errors import HexapodError
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, StorageFailed, StorageFull
 from app.storage.run import QUEUED, RESUMABLE, RUNNING, IdempotencyKey, Run, State
+from hexapods.domain.errors import HexapodError
 
 MAX_QUEUED = 32
 RETRY_AFTER_S = 10

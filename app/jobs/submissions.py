@@ -6,23 +6,23 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from app.agents.q_table import MAX_VALUES, table_size
-from app.agents.registry import check_problem, learns, needs_practice
-from app.domain.disturbances import Disturbance
-from app.domain.errors import InvalidInput, TableMismatch
-from app.domain.kinematics import check_reach
-from app.domain.observation import Observation
-from app.domain.text import MAX_NAME, whole
-from app.domain.world import check_ends
-from app.experiments.config import GRID, ExperimentConfig
-from app.experiments.plan import Plan
-from app.runs.config import TrainingConfig, WalkingProblem, problem_of
-from app.runs.lane import LaneConfig, check_lane, lane_config, observation_of
-from app.runs.race_config import Branch, RaceConfig
-from app.runs.tables import Checkpoint, check_fits
 from app.storage.database.store import RunStore
 from app.storage.run import Run
 from app.storage.stored_tables import load_table
+from hexapods.agents.q_table import MAX_VALUES, table_size
+from hexapods.agents.registry import check_problem, learns, needs_practice
+from hexapods.domain.disturbances import Disturbance
+from hexapods.domain.errors import InvalidInput, TableMismatch
+from hexapods.domain.kinematics import check_reach
+from hexapods.domain.observation import Observation
+from hexapods.domain.text import MAX_NAME, whole
+from hexapods.domain.world import check_ends
+from hexapods.experiments.config import GRID, ExperimentConfig
+from hexapods.experiments.plan import Plan
+from hexapods.runs.config import TrainingConfig, WalkingProblem, problem_of
+from hexapods.runs.lane import LaneConfig, check_lane, lane_config, observation_of
+from hexapods.runs.race_config import Branch, RaceConfig
+from hexapods.runs.tables import Checkpoint, check_fits
 
 
 @dataclass(frozen=True)

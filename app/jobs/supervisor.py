@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 
-from app.domain.errors import HexapodError
 from app.events.bus import EventBus
 from app.jobs.job import ExperimentJob, Job
 from app.jobs.queue import RunQueue
@@ -22,6 +21,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound, OwnershipLost, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, Run, State
+from hexapods.domain.errors import HexapodError
 
 STUCK_S = 5.0
 """A run that is ready for longer while a core is free is reported by the health check."""
@@ -74,6 +74,8 @@ class Supervisor:
         self._jobs: dict[str, Job] = {}
         self._to_reconcile: set[str] = set()
         """Ids of jobs whose stored state may differ from theirs, since a write failed halfway."""
+        self._started_again: set[str] = set()
+        """Ids of running jobs whose first process was lost."""
         self._shutdown = threading.Event()
         self._last_progress_s = time.monotonic()
         """When a run was started last, or no run could be started; monotonic clock."""
@@ -239,6 +241,8 @@ class Supervisor:
     def _process_ended(self, job: Job, end: Exit) -> None:
         """Write the final state of a run and free its core even if that fails."""
         try:
+            if end.is_lost and self._start_again(job):
+                return
             while not self._note_end(job, end) and not self._shutdown.is_set():
                 # The store is unavailable; if that lasts, the next start marks it `interrupted`.
                 self._shutdown.wait(_CHECK_EVERY_S)
@@ -248,9 +252,25 @@ class Supervisor:
             with self.changed:
                 if self._jobs.get(job.run_id) is job:
                     del self._jobs[job.run_id]
+                    self._started_again.discard(job.run_id)
                 self._to_reconcile.discard(job.run_id)
                 self.changed.notify_all()
             job.gone.set()
+
+    def _start_again(self, job: Job) -> bool:
+        """Start a run once more whose process was lost before it did anything; else False."""
+        with self.changed:
+            if self._shutdown.is_set() or job.run_id in self._started_again:
+                return False
+            if not job.can_start_again:
+                return False
+            self._started_again.add(job.run_id)
+            _logger.warning("a lost process is started again", extra=_log_fields(job.run_id))
+            try:
+                self._start(job.last)
+            except HexapodError:
+                return False
+            return True
 
     def _note_end(self, job: Job, end: Exit) -> bool:
         """Write a run's final state; False if the store is unavailable and a retry is needed."""

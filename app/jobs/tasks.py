@@ -8,15 +8,15 @@ runs the trials that are not done yet.
 
 from dataclasses import replace
 
-from app.experiments.config import SUMMARY, ExperimentConfig
 from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
-from app.runs.config import TrainingConfig
-from app.runs.race_config import RaceConfig
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.run import NOT_ENDED, RESUMABLE, Run
 from app.storage.stored_tables import load_checkpoint, load_table
 from app.storage.stored_trials import wall_s_of
+from hexapods.experiments.config import SUMMARY, ExperimentConfig
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.race_config import RaceConfig
 
 
 def task_for(run: Run, store: RunStore) -> Task:

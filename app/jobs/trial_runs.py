@@ -3,12 +3,13 @@
 from dataclasses import replace
 from typing import NamedTuple
 
-from app.domain.errors import InvalidInput
-from app.domain.text import MAX_NAME
-from app.experiments.config import ExperimentConfig
-from app.experiments.plan import Trial
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, plan_of
-from app.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.text import MAX_NAME
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.experiments.names import trial_names
+from hexapods.experiments.plan import Trial
+from hexapods.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
 
 
 class TrialStart(NamedTuple):
@@ -31,7 +32,8 @@ def trial_start(config: ExperimentConfig, experiment_id: str, key: str) -> Trial
     Raises:
         InvalidInput: if the experiment has no such trial, or no single run is the same.
     """
-    trial = plan_of(config).find(key)
+    plan = plan_of(config)
+    trial = plan.find(key)
     if trial is None:
         raise InvalidInput(
             f"the experiment has no trial {key[:200]!r}; GET …/trials lists those that it has done"
@@ -42,7 +44,7 @@ def trial_start(config: ExperimentConfig, experiment_id: str, key: str) -> Trial
         )
     if trial.config.rivals:
         raise InvalidInput(f"the trial {key} measures wall times, which no other run repeats")
-    name = _name(trial)
+    name = _name(trial_names(plan, [key])[key])
     notes = f"Trial {key} of experiment {experiment_id}."
     return TrialStart(_start(trial, name), notes)
 
@@ -67,6 +69,8 @@ def _start(trial: Trial, name: str) -> TrainingStart | RaceStart:
     return RaceStart(walk, [lane], RACE_STEPS, config.seed, name)
 
 
-def _name(trial: Trial) -> str:
-    """Return the end of the trial's key, which tells most, as a name."""
-    return trial.key if len(trial.key) <= MAX_NAME else f"…{trial.key[1 - MAX_NAME :]}"
+def _name(trial: str) -> str:
+    """Return a trial's name as that of a run: of one that is too long the ends, which tell most."""
+    words = trial.replace("\u00a0", " ")
+    half = (MAX_NAME - 1) // 2
+    return words if len(words) <= MAX_NAME else f"{words[:half]}…{words[-half:]}"

@@ -16,9 +16,6 @@ from multiprocessing.connection import Connection
 import numpy as np
 from numpy.typing import NDArray
 
-from app.assembly import build_learner, build_walkers, finish_training
-from app.domain.disturbances import as_mapping, disturbance
-from app.domain.errors import HexapodError
 from app.events import logs
 from app.jobs.job_control import InterruptibleAgent, JobControl, Stopped
 from app.jobs.messages import (
@@ -35,12 +32,15 @@ from app.jobs.messages import (
     Task,
     TrainingTask,
 )
-from app.processes import set_up_process
-from app.runs.racing import race
-from app.runs.records import LaneStep, StepTaken
-from app.runs.tables import restore, snapshot, to_bytes
-from app.runs.training import Learner, train
-from app.runs.walker import Interrupted, Walker
+from hexapods.assembly import build_learner, build_walkers, finish_training
+from hexapods.domain.disturbances import as_mapping, disturbance
+from hexapods.domain.errors import HexapodError
+from hexapods.processes import set_up_process
+from hexapods.runs.racing import race
+from hexapods.runs.records import LaneStep, StepTaken
+from hexapods.runs.tables import restore, snapshot, to_bytes
+from hexapods.runs.training import Learner, train
+from hexapods.runs.walker import Interrupted, Walker
 
 HEARTBEAT_EVERY_S = 1.0
 _logger = logging.getLogger(__name__)

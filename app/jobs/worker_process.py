@@ -13,9 +13,13 @@ from typing import NamedTuple
 from app.jobs import worker
 from app.jobs.fork_server import process_context
 from app.jobs.messages import Command, Heartbeat, Message, Task
-from app.processes import is_stopped, kill_group
+from hexapods.processes import is_stopped, kill_group
 
 _EXIT_S = 5.0
+_REAPED_S = 0.1
+"""After this time the end of the fork server can be seen by its id, not only by its socket's."""
+_LOST = 255
+"""Exit code that `multiprocessing` gives a process when the fork server has ended, not it."""
 _logger = logging.getLogger(__name__)
 
 
@@ -26,6 +30,8 @@ class Exit(NamedTuple):
     """A clause for an error message."""
     error: Exception | None = None
     """The exception raised while one of its messages was handled, for which it was killed."""
+    is_lost: bool = False
+    """Whether the fork server ended, and the process with it."""
 
 
 class WorkerProcess:
@@ -45,15 +51,11 @@ class WorkerProcess:
         Raises:
             OSError: if the system cannot create a process.
         """
-        context = process_context()
-        self._pipe, self._child_pipe = context.Pipe()
         # A pipe's buffer is small: a queue and a thread keep `send` from blocking its caller.
         self._to_send: queue.SimpleQueue[Task | Command | None] = queue.SimpleQueue()
         self._to_send.put(task)
-        # Not a daemon: multiprocessing ends daemons in atexit, which a killed server never runs.
-        self._process = context.Process(
-            target=worker.main, args=(self._child_pipe, niceness), name=name, daemon=False
-        )
+        self._name, self._niceness = name, niceness
+        self._create()
         self._on_message = on_message
         self._error: Exception | None = None
         self._kill_reason: str | None = None
@@ -72,14 +74,37 @@ class WorkerProcess:
         """
         try:
             self._process.start()
-        except EOFError as error:
-            raise OSError("the process that forks others has ended") from error
+        except (EOFError, ConnectionError):
+            self._start_again()
         self._last_message_s = time.monotonic()
         # Its exit is then the end of the pipe, unless a process that it started holds that too.
         self._child_pipe.close()
-        name = self._process.name
+        name = self._name
         threading.Thread(target=self._receive_loop, args=(on_end,), name=name, daemon=True).start()
         threading.Thread(target=self._send_loop, name=f"to {name}", daemon=True).start()
+
+    def _create(self) -> None:
+        context = process_context()
+        self._pipe, self._child_pipe = context.Pipe()
+        # Not a daemon: multiprocessing ends daemons in atexit, which a killed server never runs.
+        self._process = context.Process(
+            target=worker.main,
+            args=(self._child_pipe, self._niceness),
+            name=self._name,
+            daemon=False,
+        )
+
+    def _start_again(self) -> None:
+        """Start the process after the fork server has ended; `multiprocessing` starts a new one."""
+        # With a pipe of its own: the fork server may have forked before it ended.
+        self._pipe.close()
+        self._child_pipe.close()
+        time.sleep(_REAPED_S)
+        self._create()
+        try:
+            self._process.start()
+        except (EOFError, ConnectionError) as error:
+            raise OSError("the process that forks others has ended") from error
 
     @property
     def pid(self) -> int | None:
@@ -143,7 +168,8 @@ class WorkerProcess:
         if self._process.pid is not None:
             kill_group(self._process.pid)  # what it started and did not end
         self._to_send.put(None)
-        end = Exit(self._exit_description(), self._error)
+        is_lost = self._process.exitcode == _LOST and self._kill_reason is None
+        end = Exit(self._exit_description(), self._error, is_lost)
         self._process.close()
         on_end(end)
 

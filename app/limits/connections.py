@@ -6,10 +6,14 @@ longest, or else the oldest with a request. So new addresses are admitted, and a
 connections evicts only its own.
 """
 
+import select
 import time
 from collections import OrderedDict
 from collections.abc import Callable
+from contextvars import ContextVar
 from typing import Protocol
+
+from starlette.types import Scope
 
 from app.limits.addresses import client_group
 
@@ -24,6 +28,8 @@ OPERATOR_SLOTS = 16
 OPERATOR_S = 24 * 3600.0
 """Time for which an address counts as an operator's after an authentication."""
 _MAX_OPERATOR_ADDRESSES = 1000
+# Without these (Windows, macOS) a closed connection is noticed by the event loop alone.
+_CLOSED_BY_CLIENT = getattr(select, "POLLRDHUP", 0)
 
 
 class Peer(Protocol):
@@ -74,9 +80,43 @@ class Connection:
             self._table._reclassify(self)
         self._table._note_operator(self.address)
 
+    def has_left(self) -> bool:
+        """Whether its client has closed it. Callable from any thread.
+
+        The system is asked, since the event loop may not know yet: it reads no more while a
+        further request is in the buffer (pipelining).
+        """
+        if self not in self._table._open:
+            return True
+        if not _CLOSED_BY_CLIENT:
+            return False
+        poll = select.poll()
+        poll.register(self.file, _CLOSED_BY_CLIENT)
+        return bool(poll.poll(0))
+
     def release(self) -> None:
         """Remove the connection from the table, after its socket was closed."""
         self._table._remove(self)
+
+
+_of_request: ContextVar[Connection | None] = ContextVar("connection of the request", default=None)
+
+
+def set_client(scope: Scope) -> Callable[[], bool]:
+    """Make a request's client that of `client_has_left`, in this task and the threads it starts.
+
+    Returns:
+        whether the client has left; false if its connection is in no table.
+    """
+    connection: Connection | None = scope.get("state", {}).get("connection")
+    _of_request.set(connection)
+    return client_has_left if connection is None else connection.has_left
+
+
+def client_has_left() -> bool:
+    """Whether the client has left for which this thread or task works; false if there is none."""
+    connection = _of_request.get()
+    return connection is not None and connection.has_left()
 
 
 class _Address:

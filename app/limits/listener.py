@@ -6,9 +6,9 @@ import socket
 import sys
 from typing import Any
 
-from app.domain.errors import InvalidInput
 from app.limits.connections import Connection, ConnectionTable
 from app.settings import PREFIX, Settings
+from hexapods.domain.errors import InvalidInput
 
 ACCEPTS_AT_ONCE = 64
 """Accepts per iteration of the event loop; evicted sockets are closed in the next iteration, so

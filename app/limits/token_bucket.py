@@ -28,22 +28,30 @@ class RateLimiter:
         """By client: number of tokens, and when it was computed [s]."""
         self._lock = threading.Lock()
 
-    def wait_s(self, client: str) -> float:
-        """Return the time until the bucket has a token [s]; 0 if it has one. Takes none."""
-        with self._lock:
-            return max(0.0, (1 - self._tokens(client)) / self._per_s)
-
     def take(self, client: str) -> float:
         """Take a token and return 0; if there is none, return the time until there is one [s]."""
         with self._lock:
             tokens = self._tokens(client)
             if tokens < 1:
                 return (1 - tokens) / self._per_s
-            self._buckets[client] = (tokens - 1, self._now())
-            self._buckets.move_to_end(client)
-            if len(self._buckets) > MAX_CLIENTS:
-                self._buckets.popitem(last=False)
+            self._keep(client, tokens - 1)
             return 0.0
+
+    def charge(self, client: str, tokens: float) -> None:
+        """Take further tokens of a client for what it cost; the bucket may owe them then."""
+        with self._lock:
+            self._keep(client, self._tokens(client) - tokens)
+
+    def debt_s(self, client: str) -> float:
+        """Return the time until a bucket owes nothing [s]; 0 if it does not."""
+        with self._lock:
+            return max(0.0, -self._tokens(client) / self._per_s)
+
+    def _keep(self, client: str, tokens: float) -> None:
+        self._buckets[client] = (tokens, self._now())
+        self._buckets.move_to_end(client)
+        if len(self._buckets) > MAX_CLIENTS:
+            self._buckets.popitem(last=False)
 
     def _tokens(self, client: str) -> float:
         tokens, since_s = self._buckets.get(client, (float(self._size), 0.0))

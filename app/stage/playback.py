@@ -1,42 +1,31 @@
-"""Playback of a stored run: its show, and a replay that can be at any moment of it.
+"""Playback of stored runs: their shows, and replays that are kept.
 
-The stage has one playback position for everybody. A replay has none: it is asked for the frame at a
-time, so that every page can have a position of its own.
-
-As in adaptive streaming (HLS, DASH) a run's time is divided into segments of `SEGMENT_FRAMES`
-frames. At level 0 they follow each other 30 times a second of the run's time, at each level above
-half as often, at each level below twice as often: a page takes the level at which it draws about 30
-pictures a second at its own speed.
+The stage has one playback position for everybody. A replay (`hexapods.shows.replay`) has none: it
+is asked for the frame at a time, so that every page can have a position of its own.
 """
 
 import json
-import math
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
-from app.domain.errors import InvalidInput
-from app.domain.world import World
-from app.runs.clocks import Clock
-from app.runs.config import TrainingConfig
-from app.runs.race_config import RaceConfig
-from app.runs.recording import LaneRecording, PracticeRecording
-from app.stage.practice_show import PracticeShow
-from app.stage.race_show import RaceShow, original_of
-from app.stage.scene_spec import race_scene, training_scene
-from app.stage.show import RunLabel
-from app.stage.stage_frame import StageFrame
 from app.storage.database.store import RunStore
-from app.storage.errors import Conflict, NotFound
+from app.storage.errors import Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
+from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.world import World
+from hexapods.runs.clocks import Clock
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recording import LaneRecording, PracticeRecording
+from hexapods.shows.practice_show import PracticeShow
+from hexapods.shows.race_show import Original, RaceShow
+from hexapods.shows.replay import Replay
+from hexapods.shows.scene_spec import race_scene, training_scene
+from hexapods.shows.show import RunLabel
 
-FRAMES_PER_S = 30.0
-SEGMENT_FRAMES = 64
-LOWEST_LEVEL, HIGHEST_LEVEL = -3, 7
-"""From 240 frames a second of the run's time to one in 4.3 s."""
 _KEPT_REPLAYS, _KEPT_BYTES = 64, 50_000_000
 """Replays that are kept at most, and the size of their recordings; the newest is always kept."""
 _RUNNING_BYTES = _KEPT_BYTES // 8
@@ -88,14 +77,34 @@ def show_of(
     )
 
 
-class Replay:
-    """A run that can be looked at in any moment. Thread-safe.
+class RaceRecordings(Protocol):
+    """The recordings of races that can be read, such as `Recordings`."""
+
+    def race(self, run_id: str) -> Sequence[LaneRecording] | None:
+        """Return the recordings of a race's lanes; None if there are none."""
+
+
+def original_of(config: RaceConfig, store: RunStore, recordings: RaceRecordings) -> Original | None:
+    """Return the race from which another branched off; None if there is none, or no longer."""
+    branch = config.branch_from
+    if branch is None:
+        return None
+    try:
+        world = world_of(store.get(branch.race_id))
+        lanes = recordings.race(branch.race_id)
+    except HexapodError:
+        # Deleted, or its recording cannot be read: the fork can be shown all the same.
+        return None
+    return Original(branch.step, world, lanes) if lanes else None
+
+
+class StoredReplay(Replay):
+    """Replay of a stored run.
 
     Args:
         run: the run as it was when the replay was asked for.
         show: its show.
-        ghost: another run of the same kind, complete, whose lanes are shown as ghosts, each at the
-            same time of its own; in the end they stand still.
+        ghost: see `Replay`.
         held: its recordings; None while the run is computed.
     """
 
@@ -103,80 +112,23 @@ class Replay:
         self,
         run: Run,
         show: RaceShow | PracticeShow,
-        ghost: "Replay | None" = None,
+        ghost: "StoredReplay | None" = None,
         held: "_HeldRecordings | None" = None,
     ) -> None:
-        self.run, self.show, self.ghost, self._held = run, show, ghost, held
-        self.is_complete = run.state not in NOT_ENDED
-        """Whether the run will record no more."""
-        self._lock = threading.Lock()
-        self._label = RunLabel(run.id, run.name, playing=True, replay=True)
-        self._spec = replace(show.spec, ghosts=ghost.show.spec) if ghost else show.spec
+        label = RunLabel(run.id, run.name, playing=True, replay=True, outcome=run.state)
+        super().__init__(show, label, ghost, is_complete=run.state not in NOT_ENDED)
+        self.run, self.stored_ghost, self._held = run, ghost, held
 
     @property
     def version(self) -> str:
         """Identifies what the frames are made from, but for the steps that are still to come."""
-        return _version_of(self.run, self.ghost.run if self.ghost else None)
+        return _version_of(self.run, self.stored_ghost.run if self.stored_ghost else None)
 
     @property
     def size(self) -> int:
         """Approximate size of its recordings in memory [bytes], as far as they were read."""
         own = _RUNNING_BYTES if self._held is None else self._held.size
-        return own + (self.ghost.size if self.ghost else 0)
-
-    @property
-    def recorded(self) -> tuple[tuple[float, float], ...]:
-        """Intervals of the run's time that can be shown [s]; none before it has recorded any."""
-        with self._lock:
-            self.show.advance(0.0, 1.0, run_ended=self.is_complete)
-            return self.show.recorded
-
-    def plan(self) -> dict[str, Any]:
-        """Return the recorded intervals, the steps and the marks of the run, in plain types."""
-        with self._lock:
-            show = self.show
-            return {
-                "run_id": self.run.id,
-                "ghost_id": self.ghost.run.id if self.ghost else None,
-                "kind": self.run.kind,
-                "clock": show.clock if isinstance(show, RaceShow) else None,
-                "complete": self.is_complete,
-                "duration_s": show.duration_s,
-                "recorded_s": [list(interval) for interval in show.recorded],
-                "step_ends_s": [[round(t, 5) for t in ends] for ends in show.step_ends_s],
-                "marks": [mark._asdict() for mark in show.marks()],
-                "frame_s": 1 / FRAMES_PER_S,
-                "segment_frames": SEGMENT_FRAMES,
-                "lowest_level": LOWEST_LEVEL,
-                "highest_level": HIGHEST_LEVEL,
-            }
-
-    def segment_times_s(self, level: int, number: int) -> list[float]:
-        """Return the times of a segment's frames that are recorded; the end of the run is the last.
-
-        Raises:
-            NotFound: if the segment is past the end.
-        """
-        interval_s, end_s = 2.0**level / FRAMES_PER_S, self.recorded[-1][1]
-        first = number * SEGMENT_FRAMES
-        if first * interval_s > end_s:
-            last = math.floor(end_s / interval_s / SEGMENT_FRAMES)
-            raise NotFound(
-                f"the recording ends at {end_s:.2f} s: at level {level} its last segment is {last}"
-            )
-        times_s = [(first + n) * interval_s for n in range(SEGMENT_FRAMES)]
-        recorded = [time_s for time_s in times_s if time_s <= end_s]
-        if len(recorded) < SEGMENT_FRAMES and self.is_complete:
-            recorded.append(end_s)
-        return recorded
-
-    def frame_at(self, time_s: float) -> StageFrame:
-        """Return the frame at a time [s], or at the nearest that is recorded."""
-        with self._lock:
-            self.show.seek(time_s)
-            frame = self.show.frame(self._label)
-        ghosts = self.ghost.frame_at(frame.time_s).lanes if self.ghost else frame.ghost_lanes
-        return replace(frame, spec=self._spec, ghost_lanes=ghosts, shown_speed=1.0)
+        return own + (self.stored_ghost.size if self.stored_ghost else 0)
 
 
 class _HeldRecordings:
@@ -218,14 +170,14 @@ class Replays:
 
     def __init__(self, store: RunStore, recordings: Recordings) -> None:
         self._store, self._recordings = store, recordings
-        self._kept: OrderedDict[tuple[str, Clock, str | None], Replay] = OrderedDict()
+        self._kept: OrderedDict[tuple[str, Clock, str | None], StoredReplay] = OrderedDict()
         self._lock = threading.Lock()
 
     def version(self, run_id: str, ghost_id: str | None = None) -> str:
         """Return the version that a replay would have; raises as `get`, but for a recording."""
         return _version_of(*self._runs(run_id, ghost_id))
 
-    def get(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> Replay:
+    def get(self, run_id: str, clock: Clock, ghost_id: str | None = None) -> StoredReplay:
         """Return the replay of a run, of a race as timed by a clock.
 
         Args:
@@ -245,7 +197,7 @@ class Replays:
             if replay is None or replay.version != _version_of(run, ghost):
                 replay = self._replay(run, clock, self._replay(ghost, clock) if ghost else None)
             self._kept[key] = replay
-        missing = [one.run for one in (replay, replay.ghost) if one and not one.recorded]
+        missing = [one.run for one in (replay, replay.stored_ghost) if one and not one.recorded]
         with self._lock:
             # Their size is known once they were read.
             while len(self._kept) > 1 and self._is_over_capacity():
@@ -261,14 +213,14 @@ class Replays:
             _check_ghost(run, ghost)
         return run, ghost
 
-    def _replay(self, run: Run, clock: Clock, ghost: Replay | None = None) -> Replay:
+    def _replay(self, run: Run, clock: Clock, ghost: StoredReplay | None = None) -> StoredReplay:
         world = world_of(run)
         if run.state in NOT_ENDED:
             show = show_of(run, self._store, self._recordings, clock, world=lambda: world)
-            return Replay(run, show, ghost)
+            return StoredReplay(run, show, ghost)
         held = _HeldRecordings(self._recordings)
         show = show_of(run, self._store, held, clock, world=lambda: world)
-        return Replay(run, show, ghost, held)
+        return StoredReplay(run, show, ghost, held)
 
     def _is_over_capacity(self) -> bool:
         size = sum(replay.size for replay in self._kept.values())
@@ -292,6 +244,8 @@ def _check_ghost(run: Run, ghost: Run) -> None:
 
 def _version_of(run: Run, ghost: Run | None) -> str:
     runs = [
-        [one.id, one.created_at, one.state, one.name, one.changes] for one in (run, ghost) if one
+        [one.id, one.created_at, one.state, one.ended_at, one.name, one.changes]
+        for one in (run, ghost)
+        if one
     ]
     return json.dumps(runs, default=str)

@@ -1,33 +1,40 @@
-"""The stage: chooses the run that all viewers are shown, and executes playback commands."""
+"""The stage: draws what its state machine says, and executes playback commands."""
 
 import json
+import logging
 import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from datetime import datetime, timedelta
 from typing import Any, Literal
 
-from app.domain.errors import HexapodError
-from app.domain.world import UNDISTURBED, World
-from app.events.bus import Event, EventBus
-from app.runs.clocks import Clock
-from app.runs.config import TrainingConfig
+from app.events.bus import Event, EventBus, Subscription
 from app.stage.playback import show_of
-from app.stage.show import TIME_LAPSE, IdleShow, RunLabel, Show
-from app.stage.stage_frame import StageFrame
+from app.stage.state_machine import Origin, StagedRun, StageState
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
+from hexapods.domain.errors import HexapodError
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.runs.clocks import Clock
+from hexapods.runs.config import TrainingConfig
+from hexapods.shows.show import TIME_LAPSE, IdleShow, RunLabel, Show
+from hexapods.shows.stage_frame import StageFrame
 
-REPLAY_AFTER_S = 20.0
+ANNOUNCE_AFTER_S, NEXT_AFTER_S = 10.0, 10.0
+"""Time after the end of a show until a replay is announced, and from then until it begins [s]."""
 _MAX_FRAME_S = 0.25
 """Longest time by which one frame advances playback: after a stall nothing is skipped."""
 _RUN_EVENTS = frozenset({"run", "run-deleted"})
-_RECENT_RACES = 20
+_RECENT_RUNS = 20
+_logger = logging.getLogger(__name__)
+_SAME_END = timedelta(seconds=15)
+"""The runs that the end of a server interrupts end within less."""
 
 
 class Stage:
-    """Holds the current show and its playlist, and executes playback commands. Thread-safe.
+    """Holds the stage's state and the show of its run. Thread-safe.
 
     Runs are read from the store when they are put on the playlist; from then on the bus tells of
     their changes.
@@ -49,19 +56,58 @@ class Stage:
         self._store, self._recordings, self._bus, self._now = store, recordings, bus, now
         self._lock = threading.RLock()
         self._clock: Clock = "paper"
-        self._show: Show
-        self._world: World
+        self._state = StageState()
+        self._runs: dict[str, Run] = {}
+        """The runs of the playlist."""
+        self._show: Show = IdleShow()
+        self._world: World = UNDISTURBED
         """All that happens in the run on stage, as far as it is known."""
-        self._playlist: list[Run] = []
-        """The run on stage, followed by those to be shown after it."""
         self._changes = bus.subscribe(run_ids=())
         """Events about the runs of the playlist."""
-        self._replay, self._playing = False, True
+        self._playing = True
         self._speed: float | None = None
         """Speed chosen by a user; None for the show's automatic speed."""
-        self._idle_since_s: float | None = None
+        self._waiting_since_s: float | None = None
+        """When the show ended, or the next one was announced."""
         self._last_frame_s = self._now()
-        self._show_idle_scene()
+
+    def restore(self) -> None:
+        """Show the end of the run that was last at work, after a start of the server.
+
+        Of those that the end of the server has interrupted one that is recorded, if any is. Where
+        it cannot be shown the stage is empty: its recording is damaged, or of another version.
+        """
+        with self._lock:
+            try:
+                self._restore()
+            except Exception:  # whatever a file holds, the server starts
+                _logger.exception("the last run cannot be shown again")
+                self._state, self._runs = StageState(), {}
+                self._begin()
+
+    def _restore(self) -> None:
+        newest = self._store.list(limit=_RECENT_RUNS).runs
+        interrupted = self._store.list(state="interrupted", limit=_RECENT_RUNS).runs
+        known = {run.id: run for run in (*newest, *interrupted) if run.kind != "experiment"}
+        by_end = sorted(known.values(), key=_last_activity, reverse=True)
+        last = [
+            run
+            for run in by_end
+            if run.state == by_end[0].state == "interrupted"
+            and _last_activity(by_end[0]) - _last_activity(run) < _SAME_END
+        ]
+        recorded = next((run for run in last or by_end if self._is_recorded(run)), None)
+        run = recorded or next(iter(last), None)
+        if run is None:
+            return
+        try:
+            self._load([run.id], "restored")
+        except HexapodError:
+            return  # it cannot be read; the stage is empty
+        self._show.advance(0.0, None, run_ended=True)
+        self._show.seek_end()
+        self._follow_picture()
+        self._publish()
 
     def offer(self, run_id: str) -> bool:
         """Show a run that was just submitted, unless a live run is on stage.
@@ -77,27 +123,35 @@ class Stage:
         with self._lock:
             self._update_playlist()
             run = self._store.get(run_id)
-            if self._has_live_run():
-                return any(run_id == scheduled.id for scheduled in self._playlist)
-            self._load([*run.waiting_for, run_id])
+            wanted = [*run.waiting_for, run_id]
+            if self._state.is_held and self._run_id not in wanted:
+                return run_id in self._runs
+            self._load(wanted, "started")
             return True
 
     def set(
         self,
+        *,
         run_id: str | None = None,
         time_s: float | None = None,
         playing: bool | None = None,
         speed: float | Literal["time-lapse"] | None = None,
         clock: Clock | None = None,
+        end_at_time_out: bool | None = None,
+        stay: bool = False,
     ) -> None:
         """Execute playback commands, which the API has validated; None leaves a setting unchanged.
 
         Args:
-            run_id: show this run from its start, unless it is on stage.
+            run_id: show this run from its start, unless it is on stage; it stays until a person
+                chooses another, or a run is started.
             time_s: seek to this time [s].
             playing: play or pause. A show that has ended plays again from its start.
             speed: times real time, or `time-lapse` for the show's automatic speed.
-            clock: times a race; see `app.runs.clocks`.
+            clock: times a race; see `hexapods.runs.clocks`.
+            end_at_time_out: whether the show of a race ends with its photo finish, where the
+                ranking is settled, or goes on until its last lane has ended.
+            stay: keep the run on stage, as if a person had chosen it.
 
         Raises:
             NotFound: if there is no such run.
@@ -105,39 +159,47 @@ class Stage:
         """
         with self._lock:
             self._update_playlist()
-            if run_id is not None and run_id != self._run_id:
-                self._load([run_id])
+            if run_id is not None:
+                self._load([run_id], "chosen")
+            if stay:
+                self._state = self._state.stay()
             if clock is not None:
                 self._show.retime(clock)
                 self._clock = clock
             if speed is not None:
                 self._speed = None if isinstance(speed, str) else speed
+            if end_at_time_out is not None:
+                self._show.ends_at_time_out = end_at_time_out
             if playing and self._show.ended and time_s is None:
                 time_s = 0.0
             if playing is not None:
                 self._playing = playing
             if time_s is not None:
                 self._show.seek(time_s)
-                self._idle_since_s = None
+            self._follow_picture()
             self._publish()
 
     def state(self) -> dict[str, Any]:
         """Return the state of playback in plain types, as `GET /stage` responds."""
         with self._lock:
             self._update_playlist()
-            run = self._playlist[0] if self._playlist else None
+            state, ids = self._state, [run.id for run in self._state.playlist]
             return {
                 "run_id": self._run_id,
                 "kind": self._show.spec.kind,
+                "phase": state.phase,
+                "origin": state.origin,
                 "time_s": round(self._show.time_s, 3),
                 "playing": self._playing,
                 "speed": TIME_LAPSE if self._speed is None else self._speed,
                 "clock": self._clock,
-                "replay": self._replay,
-                "live": run is not None and run.state in NOT_ENDED,
+                "end_at_time_out": self._show.ends_at_time_out,
+                "replay": state.origin == "automatic",
+                "live": state.run is not None and state.run.is_computed,
                 "ended": self._show.ended,
-                "next_run_id": self._playlist[1].id if len(self._playlist) > 1 else None,
-                "holder": self._playlist[-1].id if self._has_live_run() else None,
+                "next_run_id": ids[1] if len(ids) > 1 else None,
+                "holder": ids[-1] if state.is_held else None,
+                "announced": self._announcement(),
             }
 
     def frame(self) -> StageFrame:
@@ -147,12 +209,12 @@ class Stage:
             elapsed_s = min(max(now - self._last_frame_s, 0.0), _MAX_FRAME_S)
             self._last_frame_s = now
             self._update_playlist()
-            ended = self._show.ended
-            run_ended = not self._playlist or self._playlist[0].state not in NOT_ENDED
+            run = self._state.run
+            run_ended = run is None or not run.is_computed
             self._show.advance(elapsed_s if self._playing else 0.0, self._speed, run_ended)
-            self._advance_playlist(now)
-            if self._show.ended != ended:
+            if self._follow_picture():
                 self._publish()
+            self._show_next(now)
             return self._show.frame(self._run_label())
 
     def scene(self) -> dict[str, Any]:
@@ -162,106 +224,182 @@ class Stage:
 
     @property
     def _run_id(self) -> str | None:
-        return self._playlist[0].id if self._playlist else None
+        return self._state.run.id if self._state.run else None
 
     def _run_label(self) -> RunLabel:
-        name = self._playlist[0].name if self._playlist else "On the start line"
-        return RunLabel(self._run_id, name, self._playing, self._replay)
+        run = self._state.run
+        if run is None:
+            return RunLabel(None, "On the start line", self._playing)
+        replay, name = self._state.origin == "automatic", self._runs[run.id].name
+        return RunLabel(run.id, name, self._playing, replay, run.state)
 
-    def _has_live_run(self) -> bool:
-        return any(run.state in NOT_ENDED for run in self._playlist)
+    def _announcement(self) -> dict[str, Any] | None:
+        if self._state.announced is None or self._waiting_since_s is None:
+            return None
+        left_s = self._waiting_since_s + NEXT_AFTER_S - self._now()
+        return {"run_id": self._state.announced, "in_s": round(max(0.0, left_s), 1)}
+
+    def _is_recorded(self, run: Run) -> bool:
+        try:
+            if run.kind == "race":
+                return any(lane.steps for lane in self._recordings.race(run.id) or ())
+            recording = self._recordings.training(run.id) if run.kind == "training" else None
+        except HexapodError:
+            return False  # its recording cannot be read
+        return recording is not None and len(recording.steps) > 0
+
+    def _follow_picture(self) -> bool:
+        """Report to the state machine whether the picture is at its end; return if it was not."""
+        before = self._state
+        self._state = before.apply("reached-end" if self._show.ended else "left-end")
+        if self._state is not before:
+            self._waiting_since_s = None
+        return self._state is not before
 
     def _update_playlist(self) -> None:
         """Apply what the bus told of the playlist's runs since the last call."""
-        on_stage = self._run_id
         changes = self._changes.drain()
-        for event in changes:
-            changed = [_changed(run, event) for run in self._playlist]
-            self._playlist = [run for run in changed if run is not None]
-        if self._run_id == on_stage:
-            if changes and self._playlist:
-                self._world = world_of(self._playlist[0])
+        if not changes:
             return
-        if self._playlist:
-            self._play(self._playlist)
-        else:
-            self._show_idle_scene()
+        before, on_stage = self._state, self._run_id
+        resumed = [self._apply(event) for event in changes]
+        if self._run_id != on_stage or any(resumed):
+            self._begin()
+        elif self._state != before:
             self._publish()
 
-    def _advance_playlist(self, now: float) -> None:
-        """After the end of a show start the next of the playlist, or later a replay."""
-        if not self._show.ended:
-            self._idle_since_s = None
-            return
-        if len(self._playlist) > 1:
-            self._play(self._playlist[1:])
-            return
-        if self._idle_since_s is None:
-            self._idle_since_s = now
-        elif now - self._idle_since_s >= REPLAY_AFTER_S:
-            self._idle_since_s = now
-            self._start_replay()
+    def _apply(self, event: Event) -> bool:
+        """Apply an event of the bus: a changed run, or one that was deleted or is unreadable.
 
-    def _start_replay(self) -> None:
-        finished = self._store.list(kind="race", state="finished", limit=_RECENT_RACES)
-        for run in finished.runs:
-            try:
-                if self._recordings.race(run.id):
-                    self._load([run.id], replay=True)
-                    return
-            except HexapodError:
-                # Deleted since it was listed, or its recording cannot be read.
-                continue
+        Returns:
+            whether the race on stage was resumed, which is recorded anew.
+        """
+        run_id, view = event.run_id or "", json.loads(event.data)
+        if event.event == "run-deleted" or "damaged" in view:
+            self._runs.pop(run_id, None)
+            self._state = self._state.remove(run_id)
+            return False
+        run = self._runs.get(run_id)
+        if run is None:
+            return False
+        changes = tuple(view.get("changes", ()))
+        changed = replace(run, state=view["state"], name=view["name"], changes=changes)
+        self._runs[run_id] = changed
+        self._state = self._state.change(StagedRun(run_id, changed.state))
+        if run_id != self._run_id:
+            return False
+        self._world = world_of(changed)
+        # Of several events the bus keeps the newest: it may have ended once more.
+        return run.kind == "race" and run.state not in NOT_ENDED and changed.state != run.state
 
-    def _load(self, run_ids: Sequence[str], replay: bool = False) -> None:
-        """Read runs from the store and play them."""
+    def _show_next(self, now: float) -> None:
+        """After the end of a show begin the next of the playlist, or announce a replay."""
+        state = self._state
+        if state.phase == "ended" and len(state.playlist) > 1:
+            self._state = state.advance()
+            self._begin()
+            return
+        if not state.may_announce:
+            self._waiting_since_s = None
+            return
+        if self._waiting_since_s is None:
+            self._waiting_since_s = now
+        waited_s = now - self._waiting_since_s
+        if state.announced is not None:
+            if waited_s >= NEXT_AFTER_S:
+                self._start_replay(state.announced)
+        elif waited_s >= ANNOUNCE_AFTER_S:
+            self._waiting_since_s = now
+            self._announce()
+
+    def _announce(self) -> None:
+        """Announce a replay of the newest finished race that is recorded, if there is one."""
+        finished = self._store.list(kind="race", state="finished", limit=_RECENT_RUNS).runs
+        run = next((run for run in finished if self._is_recorded(run)), None)
+        if run is None:
+            return
+        # Whose deletion ends the announcement.
+        changes = self._bus.subscribe([*self._runs, run.id], names=_RUN_EVENTS)
+        self._update_playlist()
+        self._follow_changes(changes)
+        self._state = self._state.announce(run.id)
+        self._publish()
+
+    def _start_replay(self, run_id: str) -> None:
+        try:
+            self._load([run_id], "automatic", is_anew=True)
+        except HexapodError:
+            # Deleted since it was announced.
+            self._state = self._state.remove(run_id)
+            self._waiting_since_s = None
+            self._publish()
+
+    def _load(self, run_ids: Sequence[str], origin: Origin, *, is_anew: bool = False) -> None:
+        """Read runs from the store and show them.
+
+        Args:
+            run_ids: ids of the playlist.
+            origin: why the first of them is shown.
+            is_anew: whether a run that is on stage begins anew; else it goes on.
+        """
         # Subscribed before the runs are read: each change is in what is read, or comes after it.
         changes = self._bus.subscribe(run_ids, names=_RUN_EVENTS)
+        before = self._state, self._runs
         try:
-            self._play([self._store.get(run_id) for run_id in run_ids], replay)
+            runs = [self._store.get(run_id) for run_id in run_ids]
+            self._runs = {run.id: run for run in runs}
+            playlist = tuple(StagedRun(run.id, run.state) for run in runs)
+            self._state = before[0].show(playlist, origin)
+            if is_anew or before[0].run is None or before[0].run.id != playlist[0].id:
+                self._begin()
+            else:
+                self._publish()
         except HexapodError:
+            self._state, self._runs = before
             self._bus.remove(changes)
             raise
+        self._follow_changes(changes)
+
+    def _follow_changes(self, changes: Subscription) -> None:
+        """Take the events of a new subscription, instead of those of the one before."""
         self._bus.remove(self._changes)
         self._changes = changes
 
-    def _play(self, playlist: list[Run], replay: bool = False) -> None:
-        run = playlist[0]
-        show = show_of(
-            run,
-            self._store,
-            self._recordings,
-            self._clock,
-            world=lambda: self._world,
-            pace=lambda: self._pace(run.id),
-        )
-        self._show, self._world = show, world_of(run)
-        self._playlist, self._replay = playlist, replay
-        self._playing, self._speed, self._idle_since_s = True, None, None
+    def _begin(self) -> None:
+        """Begin the show of the run that the state machine has put on stage."""
+        run_id = self._run_id
+        if run_id is None:
+            show: Show = IdleShow()
+            world = UNDISTURBED
+        else:
+            run = self._runs[run_id]
+            show = show_of(
+                run,
+                self._store,
+                self._recordings,
+                self._clock,
+                world=lambda: self._world,
+                pace=lambda: self._pace(run_id),
+            )
+            world = world_of(run)
+        show.ends_at_time_out = True
+        self._show, self._world = show, world
+        self._playing, self._speed = True, None
+        self._waiting_since_s = None
+        self._follow_picture()
         self._publish()
 
     def _pace(self, run_id: str) -> float | str:
         """Return the present pace of a training: its last change, or the configured one."""
-        run = next(run for run in self._playlist if run.id == run_id)
+        run = self._runs[run_id]
         paces = [change["pace"] for change in run.changes if change.get("pace") is not None]
         first = run.config.pace if isinstance(run.config, TrainingConfig) else "max"
         pace: float | str = paces[-1] if paces else first
         return pace
 
-    def _show_idle_scene(self) -> None:
-        self._show, self._world, self._playlist = IdleShow(), UNDISTURBED, []
-        self._replay, self._playing = False, True
-        self._speed, self._idle_since_s = None, None
-
     def _publish(self) -> None:
         self._bus.publish("stage", self.state())
 
 
-def _changed(run: Run, event: Event) -> Run | None:
-    """Return a run as it is after an event; None if it was deleted or became unreadable."""
-    if event.run_id != run.id:
-        return run
-    view = json.loads(event.data)
-    if event.event == "run-deleted" or "damaged" in view:
-        return None
-    return replace(run, state=view["state"], changes=tuple(view.get("changes", ())))
+def _last_activity(run: Run) -> datetime:
+    return run.ended_at or run.created_at

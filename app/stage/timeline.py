@@ -3,10 +3,16 @@
 from collections.abc import Sequence
 from typing import Any
 
-from app.agents.appearance import colors_of
-from app.runs.clocks import FINISH_LINE_M, Clock, Timetable, crossing_s
-from app.runs.recording import LaneRecording
-from app.runs.results import finish_s
+import numpy as np
+
+from hexapods.agents.appearance import colors_of
+from hexapods.domain.types import FloatArray
+from hexapods.runs.clocks import FINISH_LINE_M, Clock, Timetable, crossing_s
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.results import finish_s
+
+MAX_STRIDES = 2000
+"""So many steps of a lane are told one by one; of more, several together."""
 
 
 def timeline(
@@ -23,10 +29,8 @@ def timeline(
         steps: number of steps of each lane.
         clock: clock that times the race.
     """
-    # A copy, since the race may append to the recording meanwhile.
-    snapshot = [
-        LaneRecording(lane.agent, lane.rest_qpos, list(lane.steps), lane.failure) for lane in lanes
-    ]
+    # The race may append to the recording meanwhile.
+    snapshot = [lane.so_far() for lane in lanes]
     colors = colors_of([lane.agent for lane in snapshot])
     return {
         "clock": clock,
@@ -41,22 +45,40 @@ def timeline(
 
 
 def _lane(lane: LaneRecording, clock: Clock) -> dict[str, Any]:
-    timetable = Timetable.of(lane.steps, clock)
+    timetable, figures = Timetable.of(lane.steps, clock), lane.steps.figures
+    stride = max(1, -(-len(figures) // MAX_STRIDES))
+    thought, ends = timetable.thought, timetable.ends
+    distances, futures = figures["distance_m"], figures["transitions"]
+    if stride > 1:
+        thought = _together(thought, ends, stride)
+        firsts = np.arange(0, len(figures), stride)
+        lasts = np.append(firsts[1:], len(figures)) - 1
+        ends, distances = ends[lasts], distances[lasts]
+        futures = np.add.reduceat(futures, firsts)
     points, thinking = [(0.0, 0.0)], []
     step_start_s, distance = 0.0, 0.0
-    for step, decision_end_s, step_end_s in zip(
-        lane.steps, timetable.thought, timetable.ends, strict=True
-    ):
+    rows = zip(thought.tolist(), ends.tolist(), distances.tolist(), strict=True)
+    for decision_end_s, step_end_s, distance_then in rows:
         if decision_end_s > step_start_s:
             thinking.append((step_start_s, decision_end_s))
             points.append((decision_end_s, distance))
-        step_start_s, distance = step_end_s, step.distance_m
+        step_start_s, distance = step_end_s, distance_then
         points.append((step_end_s, distance))
     return {
+        "steps": len(figures),
+        "stride": stride,
         "points": points,
         "thinking": thinking,
-        "futures": [step.transitions for step in lane.steps],
+        "futures": futures.tolist(),
         "crossed_s": crossing_s(lane, timetable),
         "total_s": timetable.total_s,
         "failure": lane.failure,
     }
+
+
+def _together(thought: FloatArray, ends: FloatArray, stride: int) -> FloatArray:
+    """Return when decisions would end if those of several steps were made before the first."""
+    starts = np.append(0.0, ends[:-1])
+    firsts = np.arange(0, len(ends), stride)
+    together: FloatArray = starts[firsts] + np.add.reduceat(thought - starts, firsts)
+    return together

@@ -1,6 +1,6 @@
 """Artifact files of runs: written atomically, immutable, verified by SHA-256 on every read.
 
-A file is written to a `.part` file, synced and renamed to a random name (see `app.files`); the
+A file is written to a `.part` file, synced and renamed to a random name (see `hexapods.files`); the
 database maps runs and artifact names to these files. Replacing an artifact therefore writes the
 new file before the old one is deleted, and a crash leaves at most orphaned files.
 """
@@ -15,11 +15,11 @@ from contextlib import closing, suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from app.domain.errors import DamagedFile
-from app.files import is_disk_full, write_atomically
 from app.storage.artifact_file import ArtifactFile, SharedFile
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import StorageFailed, StorageFull
+from hexapods.domain.errors import DamagedFile
+from hexapods.files import is_disk_full, write_atomically
 
 _HASH_CHUNK_BYTES = 1 << 20
 _ARTIFACT_NAME = re.compile(r"\.?[0-9a-f]{32}(\.part)?")
@@ -53,7 +53,7 @@ class ArtifactFiles:
         self._open: dict[str, SharedFile] = {}
         self._open_lock = threading.RLock()
 
-    def write(self, data: bytes) -> StoredFile:
+    def write(self, data: bytes | memoryview) -> StoredFile:
         """Write data to a new file by atomic rename; it is durable (fsync) on return.
 
         Raises:
@@ -85,7 +85,7 @@ class ArtifactFiles:
 
     def read(self, stored: StoredFile, label: str) -> bytes:
         """Read a file and verify its size and SHA-256; arguments and errors as for `open`."""
-        with closing(self._reader(stored, label)) as reader:
+        with closing(self.open_verified(stored, label)) as reader:
             return b"".join(_verified_chunks(reader, stored, label))
 
     def open(self, stored: StoredFile, label: str) -> ArtifactFile:
@@ -100,7 +100,7 @@ class ArtifactFiles:
             DamagedFile: if its content is not what was written.
             StorageFailed: if it cannot be read.
         """
-        reader = self._reader(stored, label)
+        reader = self.open_verified(stored, label)
         try:
             for _ in _verified_chunks(reader, stored, label):
                 pass
@@ -109,8 +109,11 @@ class ArtifactFiles:
             raise
         return reader
 
-    def _reader(self, stored: StoredFile, label: str) -> ArtifactFile:
-        """Return a reader that shares one descriptor with all other readers of this file."""
+    def open_verified(self, stored: StoredFile, label: str) -> ArtifactFile:
+        """Open a file that was verified just before; arguments and errors as for `open`.
+
+        All readers of a file share one descriptor.
+        """
         name = stored.file
         if not _is_artifact_name(name):
             raise DamagedFile(f"{label} is damaged: the database names no file of ours")

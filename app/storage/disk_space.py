@@ -18,7 +18,7 @@ MIN_FREE_BYTES = 1 * MB
 """Free space that artifacts must leave on the disk for the database."""
 RESERVE_BYTES = 1 * MB
 """Size of the reserve file, which is deleted when the disk is full."""
-_RESERVE = "reserve"
+RESERVE_FILE = "reserve"
 
 
 class DiskSpace:
@@ -32,7 +32,7 @@ class DiskSpace:
             quota_mb: maximum total size of its files [MB]; None for no quota.
         """
         self._folder, self._quota_mb = folder, quota_mb
-        self._reserve, self._lock = folder / _RESERVE, threading.Lock()
+        self._reserve, self._lock = folder / RESERVE_FILE, threading.Lock()
         self._keeps_reserve = False
 
     def check(self, size: int) -> None:
@@ -76,6 +76,7 @@ class DiskSpace:
                 return
             try:
                 if shutil.disk_usage(self._folder).free > RESERVE_BYTES + MIN_FREE_BYTES:
+                    self._reserve.touch(mode=0o600)
                     # Written zeros: a sparse file would not allocate any disk blocks.
                     self._reserve.write_bytes(bytes(RESERVE_BYTES))
             except OSError:

@@ -1,6 +1,6 @@
 """Exceptions of the run store and of job control, other than invalid input."""
 
-from app.domain.errors import HexapodError
+from hexapods.domain.errors import HexapodError
 
 
 class NotFound(HexapodError):

@@ -11,10 +11,10 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from app.domain.errors import InvalidInput
 from app.storage.database.store import RunStore
 from app.storage.errors import Gone, NotFound
 from app.storage.run import IdempotencyKey, Run
+from hexapods.domain.errors import InvalidInput
 
 Start = Callable[[IdempotencyKey | None], Run]
 """Creates a run, and passes the key to the store in the same call."""

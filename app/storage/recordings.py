@@ -1,18 +1,20 @@
 """Recordings of this server's runs: growing in memory while a job runs, stored when it ends."""
 
 import threading
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.runs.recording import LaneRecording, PracticeRecording
-from app.runs.records import Evaluated, LaneFailed, LaneStep, StepTaken
-from app.runs.stored_practice import rewound
-from app.runs.transition_log import TransitionLog, Transitions
 from app.storage.database.store import RunStore
+from app.storage.stored_races import GrowingRace
 from app.storage.stored_recordings import StoredRecordings
+from hexapods.runs.recording import LaneRecording, PracticeRecording
+from hexapods.runs.records import Evaluated, LaneFailed, LaneStep, StepTaken
+from hexapods.runs.stored_practice import rewound
+from hexapods.runs.transition_log import TransitionLog, Transitions
 
 MAX_EVALUATION_MOTIONS = 1000
 """Evaluations of one training whose motion is kept, about 80 MB; later ones keep the distance."""
@@ -28,7 +30,7 @@ class Recordings:
     def __init__(self, store: RunStore) -> None:
         """Use the recordings of a store."""
         self._trainings: dict[str, PracticeRecording] = {}
-        self._races: dict[str, list[LaneRecording]] = {}
+        self._races: dict[str, GrowingRace] = {}
         self._evaluation_counts: dict[str, int] = {}
         self._logs: dict[str, TransitionLog | None] = {}
         """Of a training that resumed without a whole log there is none."""
@@ -43,7 +45,16 @@ class Recordings:
     def race(self, run_id: str) -> list[LaneRecording] | None:
         """Return the recordings of a race's lanes; None if it has not started or has none."""
         growing = self._races.get(run_id)
-        return self._stored.race(run_id) if growing is None else growing
+        return self._stored.race(run_id) if growing is None else growing.lanes
+
+    def race_file(self, run_id: str) -> Iterator[bytes] | None:
+        """Return the stored recording of a race as one `.npz` file, in chunks; None without one.
+
+        Raises:
+            NotFound: if there is no such run.
+            DamagedFile: if a file is damaged.
+        """
+        return self._stored.races.chunks(run_id)
 
     def transitions(self, run_id: str) -> TransitionLog | None:
         """Return the log of a training's transitions; None if there is none, or it is damaged."""
@@ -60,7 +71,7 @@ class Recordings:
             rest_qpos: initial pose, (7 + joints,).
             after_step: step of the checkpoint from which the training resumes; 0 for a new one.
         """
-        former = self.training(run_id) if after_step else None
+        former = self._stored.whole_training(run_id) if after_step else None
         log = self.transitions(run_id) if after_step else TransitionLog()
         recording = PracticeRecording(rest_qpos) if former is None else rewound(former, after_step)
         with self._lock:
@@ -69,16 +80,22 @@ class Recordings:
             self._logs[run_id] = None if log is None else log.truncated(after_step)
 
     def begin_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
-        """Start the recordings of a race's lanes, which are still empty."""
+        """Start the recordings of a race's lanes.
+
+        The files of an earlier attempt stay until the first one of this attempt is stored.
+        """
         with self._lock:
-            self._races[run_id] = lanes
+            self._races[run_id] = GrowingRace(self._stored.races, run_id, lanes)
+        self._stored.invalidate(run_id)
 
     def add(self, run_id: str, record: Any) -> None:
-        """Append a record to a run's recording; records without motion are ignored."""
-        if isinstance(record, LaneStep):
-            self._races[run_id][record.lane].steps.append(record)
-        elif isinstance(record, LaneFailed):
-            self._races[run_id][record.lane].failure = record.reason
+        """Append a record to a run's recording; records without motion are ignored.
+
+        Raises:
+            StorageFull, StorageFailed: if a part of a race that is complete cannot be stored.
+        """
+        if isinstance(record, LaneStep | LaneFailed):
+            self._races[run_id].add(record)
         elif isinstance(record, StepTaken):
             self._trainings[run_id].add(record)
         elif isinstance(record, Evaluated):
@@ -104,7 +121,7 @@ class Recordings:
             self._stored.write_transitions(run_id, self._logs[run_id])
             self._stored.write_training(run_id, training)
         if race is not None:
-            self._stored.write_race(run_id, race)
+            race.checkpoint()
 
     def finish(self, run_id: str) -> None:
         """Store a complete recording, and move it from memory to the evicting cache.
@@ -112,12 +129,13 @@ class Recordings:
         Raises:
             StorageFull, StorageFailed: if it cannot be stored; it stays in memory then.
         """
-        self.save(run_id)
         training, race = self._trainings.get(run_id), self._races.get(run_id)
         if training is not None:
+            self.save(run_id)
             self._stored.cache_training(run_id, training)
         if race is not None:
-            self._stored.cache_race(run_id, race)
+            race.finish()
+            self._stored.cache_race(run_id, race.lanes)
         self._drop(run_id)
 
     def discard(self, run_id: str) -> None:

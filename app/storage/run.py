@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, get_args
 
-from app.domain.disturbances import disturbance
-from app.domain.world import UNDISTURBED, World
-from app.experiments import config as experiments
-from app.experiments.config import ExperimentConfig
-from app.runs.config import TrainingConfig
-from app.runs.config_json import as_json, config_from_json
-from app.runs.race_config import RaceConfig
+from hexapods.domain.disturbances import disturbance
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.experiments import config as experiments
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.config_json import as_json, config_from_json
+from hexapods.runs.race_config import RaceConfig
 
 Kind = Literal["training", "race", "experiment"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
@@ -124,7 +124,7 @@ class DamagedRun:
 AnyRun = Run | DamagedRun
 
 
-class Page(NamedTuple):
+class ListedRuns(NamedTuple):
     """One page of a listing."""
 
     items: list[AnyRun]

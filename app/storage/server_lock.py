@@ -1,12 +1,13 @@
 """One server per data folder: the file lock that it holds, and the file with its address."""
 
 import json
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from app.domain.errors import InvalidInput
-from app.files import lock_file
+from hexapods.domain.errors import InvalidInput
+from hexapods.files import lock_file
 
 ADDRESS_FILE = "server.address"
 LOCK_FILE = "server.lock"
@@ -24,7 +25,9 @@ def lock_folder(folder: Path) -> Iterator[None]:
         FolderInUse: if another process holds the lock.
     """
     # The file is never deleted: another process may have opened it, and would lock a dead inode.
-    with (folder / LOCK_FILE).open("ab") as file:
+    # Only its owner may open it: whoever can, for reading too, can hold the lock.
+    opened = os.open(folder / LOCK_FILE, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+    with os.fdopen(opened, "ab") as file:
         try:
             lock_file(file)
         except OSError as error:

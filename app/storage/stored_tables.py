@@ -6,14 +6,14 @@ Both may have been imported from another machine, so they are checked as untrust
 import io
 from typing import TypeVar
 
-from app.domain.errors import DamagedFile, InvalidInput
-from app.runs.config import TrainingConfig
-from app.runs.table_file import TableFile
-from app.runs.tables import Checkpoint, check_fits, from_bytes
 from app.storage.artifact_file import ArtifactFile, ReadableArtifact
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.run import CHECKPOINT, TABLE, Run
+from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.table_file import TableFile
+from hexapods.runs.tables import Checkpoint, check_fits, from_bytes
 
 T = TypeVar("T")
 

@@ -4,11 +4,11 @@ import json
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from app.domain.errors import DamagedFile
-from app.experiments.config import SUMMARY, ExperimentConfig
-from app.experiments.engine import Outcome
-from app.experiments.progress import Progress
-from app.experiments.report.trials_csv import trials_csv
+from hexapods.domain.errors import DamagedFile
+from hexapods.experiments.config import SUMMARY, ExperimentConfig
+from hexapods.experiments.engine import Outcome
+from hexapods.experiments.progress import Progress
+from hexapods.experiments.report.trials_csv import trials_csv
 
 
 def outcomes_of(rows: Iterable[Mapping[str, Any]]) -> Iterator[Outcome]:

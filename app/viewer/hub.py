@@ -18,8 +18,8 @@ from app.limits.addresses import client_of
 from app.limits.client_slots import ClientSlots, NoFreeSlot
 from app.viewer.session import ELSEWHERE, FREE, Counters, Session, valid_view
 from app.viewer.snapshot import Snapshot
-from app.viewer.track import WORLD, Position
-from app.viewer.viser_internals import stream
+from hexapods.drawing.track import WORLD, Position
+from hexapods.drawing.viser_internals import stream
 
 _RETRY_S = 0.5
 _CLOSE_TIMEOUT_S = 1.0

@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 
 from app.jobs.stopping import Stopping
-from app.runs.clocks import Clock
-from app.runs.race_config import RaceConfig
-from app.runs.recording import LaneRecording
-from app.stage.playback import FRAMES_PER_S
-from app.stage.race_show import Original, RaceShow
-from app.stage.scene_spec import race_scene
-from app.stage.show import RunLabel
-from app.viewer.scene import StageScene
-from app.viewer.viser_internals.server import in_process_viser
+from hexapods.drawing.scene import StageScene
+from hexapods.drawing.viser_internals.server import in_process_viser
+from hexapods.runs.clocks import Clock
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recording import LaneRecording
+from hexapods.shows.race_show import Original, RaceShow
+from hexapods.shows.replay import FRAMES_PER_S
+from hexapods.shows.scene_spec import race_scene
+from hexapods.shows.show import RunLabel
 
 MAX_LENGTH_S = 90.0
 """Longest duration at normal speed [s]; longer races are played faster, so files stay small."""

@@ -1,56 +1,32 @@
-"""Frames of a replay as viser messages, which each page plays, seeks and repeats by itself.
+"""Replays of stored runs as frames and pages, encoded once for everybody who watches them."""
 
-A segment (`stage.playback`) is encoded once, and is the same for everybody who watches the run.
-
-The first frame of a segment says all that differs from the scene at the start of the run, the next
-ones what changed since the one before. So a page that has the scene (`scene`) needs one segment to
-be at any moment of it, and the server keeps nothing for it.
-"""
-
-import gzip
-import struct
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import Any
 
-import msgspec
-
 from app.cache import BytesCache
-from app.domain.errors import InvalidInput
-from app.domain.types import Cells
 from app.jobs.stopping import Stopping
-from app.runs.clocks import Clock
-from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replay, Replays
-from app.stage.stage_frame import StageFrame
-from app.viewer.posture import draw_posture
-from app.viewer.scene import StageScene, grid_root
-from app.viewer.stage_loop import SCENES_PER_S
-from app.viewer.track import WORLD
-from app.viewer.viser_internals.recorder import Recorded, recorder
-from app.viewer.viser_internals.server import in_process_viser
-from app.viewer.viser_internals.stream import LIFECYCLES, remap_buffers
+from app.stage.playback import Replays
+from app.storage.errors import Conflict, NotFound
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import Cells
+from hexapods.drawing.replay_encoding import encode_frames, encode_posture, encode_scene
+from hexapods.drawing.replay_page import MAX_BYTES, TooLong, replay_page
+from hexapods.runs.clocks import Clock
+from hexapods.shows.replay import SEGMENT_FRAMES, NoSuchSegment
 
-_CACHE_BYTES = 64 << 20
-_FRAMES_PER_SCENE = round(FRAMES_PER_S / SCENES_PER_S)
-_ALIGNMENT_BYTES = 8
-_HEADER = struct.Struct("<I")
-_COMPRESSION = 1
+_CACHE_BYTES = 32 << 20
 
 
 class ReplayFrames:
     """Encodes replays, one request at a time, and keeps the newest segments. Thread-safe.
 
-    An encoding, compressed with gzip, is `u32 size of the JSON, little-endian | JSON | arrays`,
-    each array aligned to 8 bytes. The JSON has `lengths` of the arrays [bytes] and `frames`, each
-    with its `time_s`, its viser `messages`, which name an array as viser does
-    (`{"__binary_index": 3, "dtype": "<f4"}`), `follow`, the position of each view [m], and now and
-    then `scene`, as the event of this name.
+    `hexapods.drawing.replay_encoding` has the form of an encoding.
 
     Args:
         replays: makes the replays.
-        stopping: whether the server stops, which encodes no more then.
+        stopping: whether the server stops, or the client has left, for whom no more is encoded.
     """
 
     def __init__(self, replays: Replays, stopping: Stopping | None = None) -> None:
@@ -79,7 +55,7 @@ class ReplayFrames:
         """
         replay = self._replays.get(run_id, "paper", ghost_id)
         with self._encoding():
-            return _encode(_frames(replay, ()), lifecycles=LIFECYCLES, world=WORLD)
+            return encode_scene(replay, self._stopping.check)
 
     def moment(
         self, run_id: str, clock: Clock, time_s: float, ghost_id: str | None = None
@@ -91,7 +67,7 @@ class ReplayFrames:
         """
         replay = self._replays.get(run_id, clock, ghost_id)
         with self._encoding():
-            return _encode(_after_scene(replay, [time_s]))
+            return encode_frames(replay, [time_s], self._stopping.check)
 
     def posture(self, run_id: str, clock: Clock, time_s: float, lane: int, cells: Cells) -> bytes:
         """Return a ghost of a lane's robot in a state, as messages without `scene` and `follow`.
@@ -113,15 +89,8 @@ class ReplayFrames:
         frame = self._replays.get(run_id, clock).frame_at(time_s)
         if not 0 <= lane < len(frame.lanes):
             raise InvalidInput(f"lane must be from 0 to {len(frame.lanes) - 1}, not {lane}")
-        spec = replace(frame.spec, lane_specs=frame.spec.lane_specs[lane : lane + 1], ghosts=None)
-        root = f"{grid_root(lane)}/posture"
-        with self._encoding(), in_process_viser() as server, recorder(server) as recording:
-            draw_posture(server, root, spec, cells, frame.lanes[lane].conditions)
-            messages, arrays = recording.take()
-            own = [
-                message for message in messages if f"{message.get('name')}/".startswith(f"{root}/")
-            ]
-            return _encode(iter([(Recorded(own, arrays), {"time_s": frame.time_s})]))
+        with self._encoding():
+            return encode_posture(frame, lane, cells)
 
     def segment(
         self, run_id: str, clock: Clock, level: int, number: int, ghost_id: str | None = None
@@ -144,69 +113,53 @@ class ReplayFrames:
             return kept
         replay = self._replays.get(run_id, clock, ghost_id)
         key = (replay.version, clock, level, number)
-        times_s = replay.segment_times_s(level, number)
+        try:
+            times_s = replay.segment_times_s(level, number)
+        except NoSuchSegment as error:
+            raise NotFound(str(error)) from error
         with self._encoding():
             # Another request for it may have been encoded while this one waited.
             if (kept := self._segments.get(key)) is not None:
                 return kept
-            encoded = _encode(_after_scene(replay, times_s))
+            encoded = encode_frames(replay, times_s, self._stopping.check)
             if replay.is_complete or len(times_s) == SEGMENT_FRAMES:
                 self._segments.put(key, encoded)
         return encoded
 
+    def page(
+        self, run_id: str, title: str, clock: Clock, max_bytes: int = MAX_BYTES
+    ) -> Iterator[bytes]:
+        """Yield the page that plays a run that has ended without a server, in chunks.
+
+        Args:
+            run_id: id of a training or race.
+            title: of the page.
+            clock: times a race.
+            max_bytes: maximum size of the page.
+
+        Raises:
+            NotFound, InvalidInput, Conflict: at the call, see `Replays.get`, and if the run has not
+                ended, or is too long for a page.
+        """
+        plan = self.plan(run_id, clock)
+        if not plan["complete"]:
+            raise Conflict(
+                f"{plan['kind']} {run_id} is not over; it can be had as a page once it ended, or "
+                "was stopped",
+                "running",
+            )
+        try:
+            return replay_page(
+                plan,
+                lambda: self.scene(run_id),
+                lambda level, number: self.segment(run_id, clock, level, number),
+                title,
+                max_bytes,
+            )
+        except TooLong as error:
+            raise Conflict(f"{plan['kind']} {run_id} is {error}", "finished") from error
+
     @contextmanager
     def _encoding(self) -> Iterator[None]:
-        with self._lock:
-            self._stopping.check()
+        with self._stopping.holding(self._lock):
             yield
-
-
-def _after_scene(replay: Replay, times_s: Sequence[float]) -> Iterator[tuple[Recorded, Any]]:
-    """Yield the frames of a replay at some times, based on its scene."""
-    frames = _frames(replay, times_s)
-    next(frames)
-    return frames
-
-
-def _frames(replay: Replay, times_s: Sequence[float]) -> Iterator[tuple[Recorded, Any]]:
-    """Yield the scene at the start, then what each frame changes; each with its other fields."""
-    with in_process_viser() as server, recorder(server) as recording:
-        stage_scene = StageScene(server)
-        for number, time_s in enumerate([0.0, *times_s], start=-1):
-            frame = replay.frame_at(time_s)
-            stage_scene.draw(frame)
-            yield (
-                recording.take(),
-                {
-                    "time_s": frame.time_s,
-                    "follow": _follow_points(frame, stage_scene),
-                    "scene": None if number % _FRAMES_PER_SCENE else frame.scene(),
-                },
-            )
-
-
-def _follow_points(frame: StageFrame, scene: StageScene) -> dict[str, tuple[float, float]]:
-    """Return the position of each view on the ground [m]."""
-    views = ["leader", *(str(number) for number in range(1, len(frame.lanes) + 1))]
-    points = ((view, scene.follow_position(view)) for view in views)
-    return {view: (round(at[0], 4), round(at[1], 4)) for view, at in points if at is not None}
-
-
-def _encode(frames: Iterator[tuple[Recorded, Any]], **more: Any) -> bytes:
-    arrays: list[memoryview] = []
-    encoded_frames = [
-        {
-            **fields,
-            "messages": [
-                remap_buffers(message, recorded.arrays, arrays) for message in recorded.messages
-            ],
-        }
-        for recorded, fields in frames
-    ]
-    lengths = [array.nbytes for array in arrays]
-    header = msgspec.json.encode({**more, "lengths": lengths, "frames": encoded_frames})
-    encoded = bytearray(_HEADER.pack(len(header)) + header)
-    for array in arrays:
-        encoded += bytes(-len(encoded) % _ALIGNMENT_BYTES)
-        encoded += array
-    return gzip.compress(bytes(encoded), compresslevel=_COMPRESSION, mtime=0)

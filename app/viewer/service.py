@@ -12,18 +12,18 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 
 from app.events.bus import EventBus
 from app.jobs.stopping import Stopping
-from app.runs.clocks import Clock
-from app.runs.race_config import RaceConfig
-from app.runs.recording import LaneRecording
-from app.stage.race_show import Original
 from app.stage.stage import Stage
 from app.viewer.hub import Hub
 from app.viewer.recorded_stream import recorded_stream
-from app.viewer.scene import StageScene
 from app.viewer.stage_loop import StageLoop
-from app.viewer.track import Position
-from app.viewer.viser_internals.client import sanitized_query, viewer_page
-from app.viewer.viser_internals.server import in_process_viser
+from app.viewer.viewer_page import sanitized_query, viewer_page
+from hexapods.drawing.scene import StageScene
+from hexapods.drawing.track import Position
+from hexapods.drawing.viser_internals.server import in_process_viser
+from hexapods.runs.clocks import Clock
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recording import LaneRecording
+from hexapods.shows.race_show import Original
 
 
 class ViewerService:

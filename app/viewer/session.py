@@ -16,8 +16,8 @@ import msgspec
 from starlette.websockets import WebSocket, WebSocketDisconnect
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-from app.runs.race_config import MAX_LANES
-from app.viewer.viser_internals import stream
+from hexapods.drawing.viser_internals import stream
+from hexapods.runs.race_config import MAX_LANES
 
 FREE, ELSEWHERE = "free", "elsewhere"
 VIEWS = frozenset({FREE, ELSEWHERE, "leader", *map(str, range(1, MAX_LANES + 1))})

@@ -10,8 +10,8 @@ import itertools
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from app.viewer.viser_internals import stream
-from app.viewer.viser_internals.stream import REPLAY_DONE, Entity, Key, slot_of
+from hexapods.drawing.viser_internals import stream
+from hexapods.drawing.viser_internals.stream import REPLAY_DONE, Entity, Key, slot_of
 
 
 class _StoredMessage(NamedTuple):

@@ -6,11 +6,11 @@ import time
 from collections.abc import Callable
 
 from app.events.bus import EventBus
-from app.stage.playback import FRAMES_PER_S
 from app.stage.stage import Stage
-from app.viewer.scene import StageScene
+from hexapods.drawing.scene import StageScene
+from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S
 
-IDLE_FRAMES_PER_S, SCENES_PER_S = 10.0, 5.0
+IDLE_FRAMES_PER_S = 10.0
 _STILL_FRAMES = 15
 """Number of frames without motion before the rate drops; longer than a pause between steps."""
 
@@ -66,7 +66,7 @@ class StageLoop:
             frame = self._stage.frame()
             moved = self._scene.draw(frame, now)
             # Not each phase: a fast show changes that in each frame.
-            run = frame.run_id, frame.phase == "finished"
+            run = frame.run_id, frame.ended
             if run != self._published_run or now - self._published_s >= 1 / SCENES_PER_S:
                 scene = frame.scene()
                 if scene != self._published:

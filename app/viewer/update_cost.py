@@ -6,15 +6,15 @@ import statistics
 import time
 from collections.abc import Callable
 
-from app.assembly import build_walkers
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import record_race
-from app.stage.race_show import RaceShow
-from app.stage.scene_spec import PAPERS_LANES, race_scene
-from app.stage.show import RunLabel
-from app.viewer.scene import StageScene
-from app.viewer.viser_internals.server import InProcessViser, in_process_viser
+from hexapods.assembly import build_walkers
+from hexapods.drawing.scene import StageScene
+from hexapods.drawing.viser_internals.server import InProcessViser, in_process_viser
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import record_race
+from hexapods.shows.race_show import RaceShow
+from hexapods.shows.scene_spec import PAPERS_LANES, race_scene
+from hexapods.shows.show import RunLabel
 
 _UPDATE_INTERVAL_S = 1 / 60
 _QUIET_S = 0.5

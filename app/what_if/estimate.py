@@ -3,17 +3,15 @@
 import threading
 import time
 from collections import OrderedDict, defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain, zip_longest
 from statistics import fmean
 from typing import NamedTuple
 
-from app.agents.registry import learns
-from app.experiments.config import ExperimentConfig
-from app.experiments.plan import Plan
-from app.jobs.process_pool import ProcessPool
+from app.jobs.process_pool import TIMEOUT_S, ProcessPool, TookTooLong
+from app.jobs.stopping import Stopping
 from app.jobs.submissions import (
     ExperimentStart,
     LaneStart,
@@ -23,9 +21,13 @@ from app.jobs.submissions import (
     check_walk,
     plan_of,
 )
-from app.runs.config import RACE_STEPS, TrainingConfig, training_config
 from app.storage.errors import Busy
-from app.what_if.step_time import Steps, step_s_of
+from app.what_if.step_time import TimedSteps, step_s_of
+from hexapods.agents.registry import learns
+from hexapods.domain.errors import InvalidInput
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.experiments.plan import Plan
+from hexapods.runs.config import RACE_STEPS, TrainingConfig, training_config
 
 MAX_MEASURED = 24
 """Kinds of steps of an experiment that are timed; others count as the mean of their cost class."""
@@ -46,7 +48,7 @@ class _CostClass(NamedTuple):
 class _Part(NamedTuple):
     """A number of steps of one kind."""
 
-    steps: Steps
+    steps: TimedSteps
     number: int
     paced_s: float = 0.0
     """Shortest time of each, by the pace [s]."""
@@ -55,15 +57,17 @@ class _Part(NamedTuple):
 class Estimates:
     """Estimates durations from timed steps, which are cached for a while. Thread-safe."""
 
-    def __init__(self, pool: ProcessPool, cores: int) -> None:
+    def __init__(self, pool: ProcessPool, cores: int, stopping: Stopping | None = None) -> None:
         """Create the service with an empty cache.
 
         Args:
             pool: times the steps.
             cores: how many jobs or trials run at once.
+            stopping: whether the server stops, or the client has left, for whom no more is timed.
         """
+        self._stopping = stopping or Stopping()
         self._pool, self._cores = pool, cores
-        self._cache: OrderedDict[Steps, tuple[float, float]] = OrderedDict()
+        self._cache: OrderedDict[TimedSteps, tuple[float, float]] = OrderedDict()
         self._lock, self._timing = threading.Lock(), threading.Lock()
         self._free = threading.BoundedSemaphore(MAX_AT_ONCE)
 
@@ -71,9 +75,8 @@ class Estimates:
         """Return how long a run would take once it has a core [s].
 
         Raises:
-            InvalidInput: if an agent fails at once.
-            Busy: if its first step takes too long to be timed, others wait for that, or the pool
-                is closed.
+            InvalidInput: if an agent fails at once, or its steps take too long to be timed.
+            Busy: if others wait for that, or the pool is closed.
         """
         if isinstance(start, ExperimentStart):
             return self._experiment_s(start.config, start.workers or self._cores)
@@ -110,7 +113,7 @@ class Estimates:
         )
         return total / max(1, min(workers, plan.total))
 
-    def _measured(self, wanted: Iterable[Steps]) -> Mapping[Steps, float]:
+    def _measured(self, wanted: Iterable[TimedSteps]) -> Mapping[TimedSteps, float]:
         """Return the time of a step of each kind [s], of the first `MAX_MEASURED` kinds."""
         kinds = list(dict.fromkeys(wanted))[:MAX_MEASURED]
         known = self._known(kinds)
@@ -119,9 +122,19 @@ class Estimates:
                 # A request that was answered meanwhile may have timed the same.
                 known = self._known(kinds)
                 missing = [kind for kind in kinds if kind not in known]
-                known |= zip(missing, self._pool.map(step_s_of, missing), strict=True)
+                known |= zip(missing, self._timed(missing), strict=True)
                 self._keep({kind: known[kind] for kind in missing})
         return known
+
+    def _timed(self, kinds: Sequence[TimedSteps]) -> Sequence[float]:
+        try:
+            return self._pool.map(step_s_of, kinds, self._stopping.check)
+        except TookTooLong as error:
+            agents = ", ".join(dict.fromkeys(one.training.agent for one in kinds))
+            raise InvalidInput(
+                f"a few steps ({agents}) were not done in {TIMEOUT_S:g} s, so the run would take "
+                "very long; choose settings with less work in each step"
+            ) from error
 
     @contextmanager
     def _turn(self) -> Iterator[None]:
@@ -129,18 +142,18 @@ class Estimates:
         if not self._free.acquire(blocking=False):
             raise Busy("other estimates are waiting; ask again in a moment", 1)
         try:
-            with self._timing:
+            with self._stopping.holding(self._timing):
                 yield
         finally:
             self._free.release()
 
-    def _known(self, kinds: Iterable[Steps]) -> dict[Steps, float]:
+    def _known(self, kinds: Iterable[TimedSteps]) -> dict[TimedSteps, float]:
         now = time.monotonic()
         with self._lock:
             cached = {kind: self._cache[kind] for kind in kinds if kind in self._cache}
         return {kind: step_s for kind, (step_s, at_s) in cached.items() if now - at_s < CACHED_S}
 
-    def _keep(self, timed: Mapping[Steps, float]) -> None:
+    def _keep(self, timed: Mapping[TimedSteps, float]) -> None:
         now = time.monotonic()
         with self._lock:
             self._cache |= {kind: (step_s, now) for kind, step_s in timed.items()}
@@ -148,27 +161,27 @@ class Estimates:
                 self._cache.popitem(last=False)
 
 
-def _seconds(parts: Iterable[_Part], measured: Mapping[Steps, float]) -> float:
+def _seconds(parts: Iterable[_Part], measured: Mapping[TimedSteps, float]) -> float:
     return sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
 
 
-def _cost_class(steps: Steps) -> _CostClass:
+def _cost_class(steps: TimedSteps) -> _CostClass:
     return _CostClass(steps.training.agent, steps.training.simulator)
 
 
-def _one_per_class_first(kinds: Iterable[Steps]) -> list[Steps]:
+def _one_per_class_first(kinds: Iterable[TimedSteps]) -> list[TimedSteps]:
     """Return the kinds without repetitions: first one of each cost class, then a second one."""
-    by_class: defaultdict[_CostClass, list[Steps]] = defaultdict(list)
+    by_class: defaultdict[_CostClass, list[TimedSteps]] = defaultdict(list)
     for kind in dict.fromkeys(kinds):
         by_class[_cost_class(kind)].append(kind)
     return [kind for kinds in zip_longest(*by_class.values()) for kind in kinds if kind]
 
 
-def _kind(config: TrainingConfig) -> Steps:
+def _kind(config: TrainingConfig) -> TimedSteps:
     """Return the kind of a config's steps, without what their time does not depend on."""
     common = replace(config, seed=0, evaluate_every=0, pace="max", tolerance=0.0)
     practises = learns(config.agent)
-    return Steps(replace(common, world=config.world.at_start, steps=200), practises)
+    return TimedSteps(replace(common, world=config.world.at_start, steps=200), practises)
 
 
 def _practice(config: TrainingConfig) -> Iterator[_Part]:

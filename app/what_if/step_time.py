@@ -10,20 +10,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.assembly import build_learner, build_walkers
-from app.runs.config import TrainingConfig, WalkingProblem
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import race
-from app.runs.records import StepTaken
-from app.runs.training import train
+from hexapods.assembly import build_learner, build_walkers
+from hexapods.runs.config import TrainingConfig, WalkingProblem
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import race
+from hexapods.runs.records import StepTaken
+from hexapods.runs.training import train
 
 MEASURE_S, MEASURED_STEPS = 0.1, 200
 """For how long the steps of an agent are timed at most [s], and how many of them."""
 
 
 @dataclass(frozen=True)
-class Steps:
+class TimedSteps:
     """Steps of one kind, whose time is measured once.
 
     Attributes:
@@ -35,7 +35,7 @@ class Steps:
     practises: bool
 
 
-def step_s_of(steps: Steps) -> float:
+def step_s_of(steps: TimedSteps) -> float:
     """Time the steps of a kind, and return a trimmed mean [s].
 
     The first one, which fills caches, counts only if there is no time for a second. The slowest

@@ -3,30 +3,55 @@
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from app.agents.q_table import table_size
-from app.agents.registry import learns
-from app.domain.errors import InvalidInput
-from app.domain.settings import SettingValues
-from app.domain.world import check_ends
-from app.experiments.plan import trial_seed
-from app.experiments.trial import TrialConfig, TrialResult, run_trial
-from app.jobs.process_pool import ProcessPool
+from app.jobs.process_pool import ProcessPool, TookTooLong
 from app.jobs.submissions import check_training
-from app.runs.config import TrainingConfig, training_config
-from app.storage.errors import Busy
+from app.what_if.step_time import TimedSteps, step_s_of
+from app.what_if.turns import Turns
+from hexapods.agents.q_table import table_size
+from hexapods.agents.registry import learns
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.settings import SettingValues
+from hexapods.domain.world import check_ends
+from hexapods.experiments.plan import trial_seed
+from hexapods.experiments.trial import TrialConfig, TrialResult, run_trial
+from hexapods.runs.config import TrainingConfig, training_config
 
 SEEDS = 30
 MAX_STEPS = 2_000
 MAX_VALUES = 1_200_000
 """Maximum number of values of a Q-table: each trial holds one, and writes it to a file."""
-MAX_WAITING = 4
 MAX_CACHED = 512
+OPERATORS_LIMIT_S, SPECTATORS_LIMIT_S = 60.0, 10.0
+"""Time for which one what-if may compute on all cores [s]."""
+
+
+@dataclass(frozen=True)
+class Asker:
+    """Who asks a what-if.
+
+    Attributes:
+        is_operator: whether it is an operator, whose what-ifs come first and may take longer.
+        check: raises once nobody needs the answer any more; called ten times a second.
+        charge: called with the time that was computed [s], also if there is no answer.
+    """
+
+    is_operator: bool = True
+    check: Callable[[], None] = lambda: None
+    charge: Callable[[float], None] = lambda _: None
+
+    @property
+    def limit_s(self) -> float:
+        """For how long its what-ifs may compute [s]."""
+        return OPERATORS_LIMIT_S if self.is_operator else SPECTATORS_LIMIT_S
+
+
+_OPERATOR = Asker()
 
 
 class WhatIf:
@@ -41,16 +66,16 @@ class WhatIf:
         self._pool = pool
         self._cache: OrderedDict[TrialConfig, tuple[float, ...]] = OrderedDict()
         """Cached distances of all seeds [m], by the trial with seed 0; oldest evicted first."""
-        self._pool_lock = threading.Lock()
-        self._state_lock = threading.Lock()
-        self._waiting = 0
+        self._turns = Turns()
+        self._cache_lock = threading.Lock()
 
-    def ask(self, training: TrainingConfig) -> dict[str, Any]:
+    def ask(self, training: TrainingConfig, asker: Asker = _OPERATOR) -> dict[str, Any]:
         """Compute distances after this training, and after the same one with default settings.
 
         Args:
             training: the training; its simulator, build tolerance, seed, evaluations and pace are
                 ignored.
+            asker: who asks.
 
         Returns:
             `seeds`, `greedy_m`, `chosen` and `default` with `distances_m`, `walkers` (the share
@@ -58,11 +83,11 @@ class WhatIf:
             agent's settings and `steps_per_episode`; `compute_s`.
 
         Raises:
-            InvalidInput, UnknownName, Unreachable: if the training is invalid or too large.
-            Busy: if too many requests are waiting, or the pool fails.
+            InvalidInput, UnknownName, Unreachable: if the training is invalid, or takes too long.
+            Busy: if too many requests are waiting, an operator's request goes first, or the pool
+                fails.
         """
         _check_limits(training)
-        began_s = time.perf_counter()
         chosen = replace(
             training, simulator="kinematic", tolerance=0.0, seed=0, evaluate_every=0, pace="max"
         )
@@ -78,55 +103,78 @@ class WhatIf:
         )
         greedy = TrialConfig(training=greedy_training, blocks=0)
         trials = [TrialConfig(training=variant) for variant in (chosen, default)]
-        distances = self._distances([greedy, *trials])
+        distances, compute_s = self._distances([greedy, *trials], asker)
         greedy_m = distances[greedy][0]
         return {
             "seeds": SEEDS,
             "greedy_m": greedy_m,
             "chosen": _summarize(chosen, distances[trials[0]], greedy_m),
             "default": _summarize(default, distances[trials[1]], greedy_m),
-            "compute_s": round(time.perf_counter() - began_s, 3),
+            "compute_s": round(compute_s, 3),
         }
 
     def close(self) -> None:
         """Shut down the pool."""
         self._pool.close()
 
-    def _distances(self, trials: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
+    def _distances(
+        self, trials: Sequence[TrialConfig], asker: Asker
+    ) -> tuple[dict[TrialConfig, tuple[float, ...]], float]:
+        """Return the distances of all seeds of each trial [m], and the time it took [s]."""
         distances = self._cached(trials)
         if len(distances) == len(set(trials)):
-            return distances
-        with self._state_lock:
-            if self._waiting >= MAX_WAITING:
-                raise Busy(f"{MAX_WAITING} questions are waiting; ask again later", 2)
-            self._waiting += 1
-        try:
-            with self._pool_lock:
-                # A request that was served meanwhile may have cached the same trials.
-                distances = self._cached(trials)
-                distances |= self._run_trials(
-                    [one for one in dict.fromkeys(trials) if one not in distances]
-                )
-        finally:
-            with self._state_lock:
-                self._waiting -= 1
+            return distances, 0.0
+        with self._turns.turn(asker.is_operator, asker.check) as check:
+            # A request that was served meanwhile may have cached the same trials.
+            distances = self._cached(trials)
+            missing = [one for one in dict.fromkeys(trials) if one not in distances]
+            began_s = time.monotonic()
+            try:
+                self._check_time(missing, asker.limit_s, check)
+                left_s = began_s + asker.limit_s - time.monotonic()
+                distances |= self._run_trials(missing, check, left_s)
+            except TookTooLong as error:
+                raise _takes_too_long(f"over {asker.limit_s:g} s", asker.limit_s) from error
+            finally:
+                compute_s = time.monotonic() - began_s
+                asker.charge(compute_s)
         self._store(distances)
-        return distances
+        return distances, compute_s
 
-    def _run_trials(self, missing: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
+    def _check_time(
+        self, trials: Sequence[TrialConfig], limit_s: float, check: Callable[[], None]
+    ) -> None:
+        """Time a few steps of each learner.
+
+        Raises:
+            InvalidInput: if all steps would take too long. Later ones may take longer than these.
+            TookTooLong: if even a few do.
+        """
+        trainings = [one.training for one in trials if one.blocks]
+        kinds = [TimedSteps(one, practises=True) for one in trainings]
+        times_s = self._pool.map(step_s_of, kinds, check, limit_s)
+        work_s = sum(
+            SEEDS * one.steps * step_s for one, step_s in zip(trainings, times_s, strict=True)
+        )
+        if (total_s := work_s / self._pool.count) > limit_s:
+            raise _takes_too_long(f"about {total_s:,.0f} s", limit_s)
+
+    def _run_trials(
+        self, missing: Sequence[TrialConfig], check: Callable[[], None], timeout_s: float
+    ) -> dict[TrialConfig, tuple[float, ...]]:
         trials = [(one, seeded) for one in missing for seeded in _with_seeds(one)]
-        results = self._pool.map(run_trial, [seeded for _, seeded in trials])
+        results = self._pool.map(run_trial, [seeded for _, seeded in trials], check, timeout_s)
         distances: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
         for (one, _), result in zip(trials, results, strict=True):
             distances[one] += (_distance_m(result),)
         return distances
 
     def _cached(self, trials: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
-        with self._state_lock:
+        with self._cache_lock:
             return {one: self._cache[one] for one in trials if one in self._cache}
 
     def _store(self, distances: dict[TrialConfig, tuple[float, ...]]) -> None:
-        with self._state_lock:
+        with self._cache_lock:
             for one, of_seeds in distances.items():
                 self._cache[one] = of_seeds
                 self._cache.move_to_end(one)
@@ -149,6 +197,13 @@ def _check_limits(training: TrainingConfig) -> None:
             f"a table of {values:,} values is too large for a what-if, which takes "
             f"{MAX_VALUES:,}; choose fewer divisions or fewer legs"
         )
+
+
+def _takes_too_long(how_long: str, limit_s: float) -> InvalidInput:
+    return InvalidInput(
+        f"this would take {how_long} here, and a what-if may take {limit_s:g} s; choose fewer "
+        "steps, or settings with less work in each step"
+    )
 
 
 def _with_seeds(config: TrialConfig) -> list[TrialConfig]:

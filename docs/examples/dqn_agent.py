@@ -24,9 +24,9 @@ from pathlib import Path
 
 import numpy as np
 
-from app.assembly import build_learner, finish_training
-from app.runs.config import training_config
-from app.runs.tables import snapshot, to_bytes
+from hexapods.assembly import build_learner, finish_training
+from hexapods.runs.config import training_config
+from hexapods.runs.tables import snapshot, to_bytes
 
 
 class Agent:
@@ -64,7 +64,7 @@ def practise(walk, steps, seed):
     from stable_baselines3 import DQN
 
     torch.set_num_threads(1)  # is quicker with a network so small
-    environment = gymnasium.make("app.environment:RacingHexapods/Walk-v0", **walk)
+    environment = gymnasium.make("hexapods:RacingHexapods/Walk-v0", **walk)
     # In centimetres, because a network learns badly from rewards of a hundredth.
     environment = gymnasium.wrappers.TransformReward(environment, lambda reward_m: 100 * reward_m)
     dqn = DQN(

@@ -2,29 +2,29 @@
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { configAtEnd } from "./changes.js";
-import { changesSomething, conditionsNow, textOf } from "./disturbances.js";
+import { textOf } from "./disturbances.js";
 import {
   chooseLearner, form, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
 } from "./form.js";
 import { count, listed, whole } from "./format.js";
 import { goIfStillHere } from "./page.js";
-import {
-  canPlay, isActive, isOperator, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, myWork, shownRun, work,
-} from "./selectors.js";
+import { canPlay, isPlaying, isRaceRun, laneTables, myWork, shownRun, work } from "./on-stage.js";
+import { isActive, isOperator, markAsMine } from "./selectors.js";
 import {
   closeReplay, ownRunId, playReplay, seekReplay, setReplayClock, setReplaySpeed,
 } from "./replay.js";
 import { formRobot } from "./robots.js";
 import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
-  commonStage, markDeleted, options, rates, requestRun, requestStage, runs, scene, served, setEntry, stage,
+  commonStage, markDeleted, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
 } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Annotations, Change, DamagedRun, Disturbance, LaneConfig, Rates, Run, RunConfig } from "./types.js" */
+/** @import { Annotations, DamagedRun, LaneConfig, Run, RunConfig } from "./types.js" */
 /** @import { Stage, Verb } from "./types.js" */
 
+/** Body of PUT /stage. @typedef {Partial<Stage> & { time_s?: number, stay?: boolean }} StageChanges */
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
 
 /** Place → its last error; places are "start", "work", "stage", "tune", "experiment" and run ids. */
@@ -206,63 +206,7 @@ export function togglePause() {
   togglePlaying();
 }
 
-// ---- live settings of a training that runs
-
-const TUNE_MS = 120;
-/** Changes that are not yet sent. @type {Rates | null} */
-let unsent = null;
-
-/**
- * Change settings of the live training from its next step on; requests are sent at most every 120 ms.
- * @param {Rates} changes
- */
-export function tune(changes) {
-  const run = liveTraining.value;
-  if (!run || !isOperator.value) return;
-  setEntry(rates, run.id, { ...rates.value[run.id], ...changes });
-  if (unsent) {
-    Object.assign(unsent, changes);
-    return;
-  }
-  unsent = { ...changes };
-  setTimeout(() => {
-    const sent = unsent ?? {};
-    unsent = null;
-    api.tuneTraining(run.id, sent).then(
-      () => setEntry(problems, "tune", null),
-      (error) => refuseTuning(run, sent, error),
-    );
-  }, TUNE_MS);
-}
-
-/** @type {(run: Run, sent: Rates, error: RequestError) => void} */
-function refuseTuning(run, sent, error) {
-  const kept = Object.entries(rates.value[run.id] ?? {}).filter(([name, value]) => sent[name] !== value);
-  setEntry(rates, run.id, Object.fromEntries(kept));
-  if (isActive(runs.value.get(run.id))) setEntry(problems, "tune", error);
-}
-
-// ---- disturbances
-
-/** Newest disturbance: an answer waits for the end of a step, in which the next leg may be clicked. */
-let lastChange = Promise.resolve(/** @type {{ id: string, changes: Change[] } | null} */ (null));
-
-/**
- * Disturb a training from its next step on, after earlier disturbances were sent; skip one that changes nothing.
- * @param {Run} run
- * @param {Disturbance} disturbance without its step
- */
-export function disturb(run, disturbance) {
-  lastChange = lastChange.then(async (last) => {
-    const known = runs.value.get(run.id) ?? run;
-    // The event that tells of the last one may come after its answer.
-    const changes = [...known.changes ?? [], ...(last?.id === run.id ? last.changes : [])];
-    if (!changesSomething(disturbance, conditionsNow({ ...known, changes }), known.config.robot)) return last;
-    const happened = await attempt("disturb", () => api.disturbTraining(run.id, disturbance));
-    return happened && { id: run.id, changes: [{ step: happened.at_step, disturbance: happened }] };
-  });
-  return lastChange;
-}
+// ---- races that branch off
 
 /**
  * Branch a race: repeat it up to a step, and race on with disturbances.
@@ -279,7 +223,7 @@ export const branchRace = (race, step, disturbances) =>
 
 // ---- the stage: the one that all pages share, or this page's own replay
 
-/** @param {Partial<Stage> & { time_s?: number }} changes */
+/** @param {StageChanges} changes */
 export function setStage(changes) {
   if (ownRunId.value === null) return stageChanges.request(changes);
   const { time_s, playing, speed, clock } = changes;
@@ -293,7 +237,7 @@ export function setStage(changes) {
 }
 
 const stageChanges = oneAtATime(
-  "stage", (/** @type {Partial<Stage>} */ changes) => requestStage(() => api.putStage(changes)),
+  "stage", (/** @type {StageChanges} */ changes) => requestStage(() => api.putStage(changes)),
 );
 
 /**
@@ -309,6 +253,13 @@ export const togglePlaying = () => {
   if (canPlay.value && stage.value?.run_id) setStage({ playing: !willPlay });
 };
 export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? undefined, playing: true });
+
+/** Let the show of the race end at its time-out, or go on to its last step. @param {boolean} isOn */
+export const endAtTimeOut = (isOn) => setStage({ end_at_time_out: isOn });
+/** Go on from the photo finish, where the show has ended. */
+export const keepWatching = () => setStage({ end_at_time_out: false, playing: true });
+/** Keep the run on stage, instead of the replay that is announced. */
+export const stay = () => setStage({ stay: true });
 
 /** @param {Run} run */
 export const showOnStage = (run) =>

@@ -22,7 +22,7 @@ import { signal } from "@preact/signals";
  */
 
 /**
- * A straight line across a chart; `share` of the width is where the caption of a horizontal one begins.
+ * A straight line across a chart.
  * @typedef {object} Mark
  * @property {number} [x]
  * @property {number} [y]
@@ -31,7 +31,6 @@ import { signal } from "@preact/signals";
  * @property {string} [color]
  * @property {string} [ink] the caption's colour
  * @property {string} [text] the caption
- * @property {number} [share]
  * @property {number[]} [dash]
  * @property {number} [width] [px]
  */

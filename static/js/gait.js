@@ -5,7 +5,7 @@ import { setStage } from "./actions.js";
 import { askForNewest, getGait, isLasting } from "./api.js";
 import { count } from "./format.js";
 import { shownTime, timeline, timeSpent } from "./race.js";
-import { canPlay, raceInView, shownRun } from "./selectors.js";
+import { canPlay, raceInView, shownRun } from "./on-stage.js";
 import { limitsOf } from "./settings.js";
 import { connection, options, scene, stage } from "./store.js";
 import { messageOf } from "./titles.js";

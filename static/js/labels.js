@@ -29,6 +29,43 @@ export function placeCaptions(wanted, bounds) {
 }
 
 /**
+ * Captions each at one of several places, which lie within the bounds; null for one that would overlap another before
+ * it at all of them. Of the places that are free it is the first that covers least.
+ * @param {Box[][]} places of each caption, the most important first; of each the best place first
+ * @param {Box} bounds
+ * @param {(box: Box) => number} covering how much a caption would cover
+ */
+export function chooseCaptions(places, bounds, covering) {
+  /** @type {Box[]} */
+  const placed = [];
+  return places.map((own) => {
+    const free = own.map((one) => shifted(one, bounds))
+      .filter((box) => box.top >= bounds.top && box.top + box.height <= bounds.top + bounds.height)
+      .filter((box) => !placed.some((other) => overlap(box, other)));
+    const counts = free.map(covering);
+    const box = free[counts.indexOf(Math.min(...counts))] ?? null;
+    if (box) placed.push(box);
+    return box;
+  });
+}
+
+/**
+ * Whether a line of points, ascending, passes through a box.
+ * @param {[number, number][]} points [px]
+ * @param {Box} box
+ */
+export function passes(points, { left, top, width, height }) {
+  const right = left + width;
+  return points.some(([x1, y1], n) => {
+    const [x0, y0] = points[Math.max(0, n - 1)];
+    if (x1 < left || x0 > right) return false;
+    const slope = x1 > x0 ? (y1 - y0) / (x1 - x0) : 0;
+    const ends = [y0 + slope * Math.max(0, left - x0), y1 - slope * Math.max(0, x1 - right)];
+    return Math.max(...ends) > top && Math.min(...ends) < top + height;
+  });
+}
+
+/**
  * Labels as near as possible to where they are wanted, moved up or down from each other and from obstacles,
  * but never past each other; null for one that the bounds have no room for.
  * @param {Box[]} wanted

@@ -6,8 +6,10 @@ import { App, listenForKeys, listenForMenus } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { announceExperiments, followAddress, followExperiments, followSummary } from "./experiments/runs.js";
 import { readAddress, writeAddress } from "./form.js";
-import { followPresenter, followTheme } from "./page.js";
-import { announceOutcomes, followTimeline } from "./race.js";
+import { windowTitle } from "./on-stage.js";
+import { followPresenter, followTheme, place } from "./page.js";
+import { announceOutcomes, headline } from "./headline.js";
+import { followTimeline } from "./race.js";
 import { followReplay, readReplayAddress } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
 import { applyEvent, connection, eventNames, isLockedOut, options, role, version } from "./store.js";
@@ -59,6 +61,11 @@ function reloadAfterUpgrade() {
   });
 }
 
+/** Keep the window's title: what is shown, in a list of tabs. */
+const followTitle = () => effect(() => {
+  document.title = windowTitle(place.value, headline.value);
+});
+
 followTheme();
 followPresenter();
 reloadAfterUpgrade();
@@ -70,6 +77,7 @@ readReplayAddress();
 followExperiments();
 followSummary();
 announceOutcomes();
+followTitle();
 announceExperiments();
 listenForKeys();
 listenForMenus();

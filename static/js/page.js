@@ -272,3 +272,24 @@ function store(value) {
 export const drawHere = signal(/** @type {((messages: Message[]) => void) | null} */ (null));
 /** The last click on a foot grid, until it is answered. @type {Signal<Click | null>} */
 export const clickedCell = signal(null);
+/** Whether the panel of single steps is open. */
+export const stepsAreOpen = signal(false);
+
+const SETTLED_MS = 3000;
+const BY_HAND = ["wheel", "touchmove", "keydown", "pointerdown"];
+
+/**
+ * Scroll an element to the top, and keep it there while what is above it loads and grows, until somebody scrolls.
+ * @param {HTMLElement} element
+ */
+export function scrollToTop(element) {
+  const scroll = () => element.scrollIntoView({ block: "start", behavior: "instant" });
+  const watcher = new ResizeObserver(scroll);
+  watcher.observe(document.body);
+  const stop = () => {
+    watcher.disconnect();
+    BY_HAND.forEach((type) => removeEventListener(type, stop));
+  };
+  BY_HAND.forEach((type) => addEventListener(type, stop, { passive: true }));
+  setTimeout(stop, SETTLED_MS);
+}

@@ -5,7 +5,7 @@ import { getReplayFrames } from "./api.js";
 import { clickedCell, drawHere } from "./page.js";
 import { ownRunId, plan } from "./replay.js";
 import { decode } from "./replay-frames.js";
-import { clock, conditionsShown } from "./selectors.js";
+import { clock, conditionsShown } from "./on-stage.js";
 import { chosenLane, explanation, followStage, keepAnswer, stageMoment } from "./steps.js";
 import { scene } from "./store.js";
 
@@ -46,7 +46,7 @@ export const giveUpState = () => (chosenState.value = null);
 
 /**
  * The lane and the move that a cell of a foot grid is; null if it is none. Its batches are those of
- * app/viewer/footgrid.py: `home` has a cell of each leg, `others` all others, leg by leg.
+ * hexapods/drawing/footgrid.py: `home` has a cell of each leg, `others` all others, leg by leg.
  * @param {Pick<Click, "node" | "instance">} cell
  * @param {FootCells} grid
  * @returns {{ lane: number, move: Move } | null}

@@ -1,10 +1,10 @@
 // The race in view at the moment that is shown: its timeline, its standings, and what is announced of it.
-import { computed, effect, signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { askForNewest, getTimeline, isLasting } from "./api.js";
-import { count, listed, metres } from "./format.js";
-import { clock, isActive, isToCome, modelOfLane, originalRace, raceInView, raceScene, shownRun } from "./selectors.js";
+import { clock, earlyEnd, originalRace, raceInView, raceScene } from "./on-stage.js";
+import { isActive, modelOfLane } from "./selectors.js";
 import { agentOf } from "./settings.js";
-import { connection, scene, stage } from "./store.js";
+import { connection } from "./store.js";
 import { messageOf } from "./titles.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -36,15 +36,8 @@ export const timelineProblem = computed(() => {
   return error && isAbout && isLasting(error) ? messageOf(error) : null;
 });
 
-/** The race time that is shown [s]: null before the race begins, Infinity after its show. */
-export const shownTime = computed(() => {
-  const race = raceInView.value;
-  if (!race) return null;
-  if (scene.value?.run_id === race.id && scene.value.kind === "race") return scene.value.time_s;
-  // The stage still shows its training, or is about to begin.
-  if (stage.value?.run_id === race.id || isToCome(race)) return null;
-  return race.state === "finished" || race.state === "stopped" ? Infinity : null;
-});
+/** The race time that is shown [s]; null before the stage shows the race. */
+export const shownTime = computed(() => raceScene.value?.time_s ?? null);
 
 /**
  * A lane's distance at a race time [m], interpolated between the points of its path.
@@ -110,9 +103,11 @@ export const followTimeline = () => askForNewest({
 const FEWEST_SHOWN_FUTURES = 100;
 
 const SAME_S = 1e-6;
+/** Times of a scene are rounded to milliseconds. */
+const SAME_MOMENT_S = 0.001;
 
 /** Numbers of the lanes that use all their steps first, under the clock in use; none while it is not known. */
-const firstTimedOut = computed(() => {
+export const firstTimedOut = computed(() => {
   const race = raceInView.value;
   if (!race) return [];
   const ends = race.config.lanes.map((_, number) => endOf(race, number));
@@ -129,21 +124,22 @@ function endOf(race, number) {
   const result = race.result?.lanes?.[number];
   const track = timeline.value?.lanes[number];
   if (result) return result.steps === race.config.steps ? timedResult(result)?.elapsed_s ?? Infinity : Infinity;
-  return track?.futures.length === race.config.steps ? track.total_s : Infinity;
+  return track?.steps === race.config.steps ? track.total_s : Infinity;
 }
 
-/** Whether the whole race was shown, or there is nothing to show of it. */
-const isOver = computed(() => shownTime.value === Infinity || raceScene.value?.phase === "finished");
+/** Whether the show of the race has ended: at its last step, or with its photo finish. */
+export const isOver = computed(() => raceScene.value?.ended ?? false);
 
 /** Whether the moment that is shown is after time-out: the first lane has used its steps. */
 export const isTimedOut = computed(() => {
-  const timeOut = timeline.value?.first_finish_s ?? null;
-  return (
-    (isOver.value && firstTimedOut.value.length > 0) ||
-    raceScene.value?.phase === "photo-finish" ||
-    (timeOut !== null && shownTime.value !== null && shownTime.value >= timeOut)
-  );
+  const { time_s, time_out_s } = raceScene.value ?? { time_s: 0, time_out_s: null };
+  return time_out_s !== null && time_s >= time_out_s - SAME_MOMENT_S;
 });
+
+/** How the race ended at the moment that is shown, if before its time-out: "Stopped"; else null. */
+export const shownEarlyEnd = computed(() =>
+  isOver.value && !isTimedOut.value ? earlyEnd(raceInView.value) : null,
+);
 
 /** One row per lane, the leader first; null before the race. */
 export const standings = computed(() => {
@@ -151,28 +147,20 @@ export const standings = computed(() => {
   const time = shownTime.value;
   if (!race || time === null) return null;
   if (!isActive(race) && !race.progress.done) return null;
-  const rows = ranked(race.config.lanes.map((lane, number) => rowOf(race, lane, number, time)));
-  return rows.sort((a, b) => a.rank - b.rank || a.lane - b.lane);
+  const rows = race.config.lanes.map((lane, number) => rowOf(race, lane, number, time));
+  return rows.sort((a, b) => a.place - b.place || a.lane - b.lane);
 });
 
-/** @typedef {Omit<ReturnType<typeof rowOf>, "rank"> & { rank: number }} Standing */
-
 /**
- * Rows with ranks: those of the scene or the result, else by distance.
- * @param {ReturnType<typeof rowOf>[]} rows
- * @returns {Standing[]}
+ * A row of the board; without a rank if the race ended before its time-out, when no rule ranks its lanes.
+ * @typedef {ReturnType<typeof rowOf>} Standing
  */
-const ranked = (rows) =>
-  rows.map((row) => ({
-    ...row,
-    rank: row.rank ?? 1 + rows.filter((other) => (other.distance_m ?? 0) > (row.distance_m ?? 0)).length,
-  }));
 
 /**
  * @param {Run} race
  * @param {LaneConfig} config
  * @param {number} number of the lane, from 0
- * @param {number} time race time that is shown [s]; Infinity after the race
+ * @param {number} time race time that is shown [s]
  */
 function rowOf(race, config, number, time) {
   const { agent, training_id } = config;
@@ -206,19 +194,20 @@ function laneOf(race, number, time) {
   const seen = raceScene.value?.lanes.find(({ lane }) => lane === number) ?? null;
   const track = timeline.value?.lanes[number] ?? null;
   const result = race.result?.lanes?.[number] ?? null;
-  const isDone = time === Infinity || (seen?.done ?? false);
-  return { seen, track, result, isDone, time };
+  const { done: isDone = false, halted: isHalted = false } = seen ?? {};
+  return { seen, track, result, isDone, isHalted, time };
 }
 
 /**
  * Steps, simulated transitions and time that a lane has used so far.
  * @param {Lane} lane
  */
-function workOf({ seen, track, result, isDone, time }) {
-  const step = (time === Infinity ? result?.steps : seen?.step) ?? 0;
+function workOf({ seen, track, result, isDone, isHalted, time }) {
+  const step = seen?.step ?? 0;
   return {
     step,
     isDone,
+    isHalted,
     simulated: isDone && result ? result.simulated_transitions : simulatedUntil(track, step),
     spent: track ? timeSpent(track, time) : { thought: 0, walked: 0 },
     elapsed_s: track ? Math.min(time, track.total_s) : null,
@@ -251,7 +240,9 @@ function placeOf(agent, seen, result) {
   return {
     title: seen?.name ?? title,
     color: seen?.color ?? color,
-    rank: seen?.rank ?? timed?.rank ?? null,
+    /** Place on the board, which is the rank where there are ranks. */
+    place: seen?.rank ?? 1,
+    rank: shownEarlyEnd.value ? null : seen?.rank ?? 1,
     hasCrossed: seen?.crossed ?? Boolean(timed?.crossed_s),
   };
 }
@@ -266,9 +257,15 @@ function distancesOf({ seen, track, result, isDone, time }) {
   return {
     distance_m,
     finished_m: isTimedOut.value ? timeOutDistance(track, timed) : null,
-    total_m: isDone ? result?.total_distance_m ?? distance_m : null,
+    total_m: isDone ? result?.total_distance_m ?? distance_m : totalBeside(result),
   };
 }
+
+/**
+ * The total distance of a lane that still walks in the picture: told once the show has ended with the photo finish.
+ * @param {LaneResult | null} result
+ */
+const totalBeside = (result) => (isOver.value ? result?.total_distance_m ?? null : null);
 
 /**
  * How far a lane came in the race from which this one branches off; null without one.
@@ -297,104 +294,4 @@ function timeOutDistance(track, timed) {
 
 /** @type {(track: TimelineLane | null, steps: number) => number | null} */
 const simulatedUntil = (track, steps) =>
-  track ? track.futures.slice(0, steps).reduce((sum, n) => sum + n, 0) : null;
-
-// ---- announcements for screen readers, each made once: results, failures, a lost connection
-
-/** The text of the page's live region. */
-export const announcement = signal("");
-
-/** Leader, or winner and time, in one sentence; null before the race. */
-export const headline = computed(() => {
-  const rows = standings.value;
-  if (!rows?.length) return null;
-  const steps = raceInView.value?.config.steps ?? 0;
-  // Of a race that ended before its timeline was loaded nothing can be said.
-  if (isOver.value && !timeline.value && !raceInView.value?.result) return null;
-  return isTimedOut.value || isOver.value ? verdictOf(rows, firstTimedOut.value, steps) : leadOf(rows);
-});
-
-export function announceOutcomes() {
-  const decided = computed(() =>
-    isTimedOut.value && raceInView.value ? `${raceInView.value.id} ${headline.value}` : "",
-  );
-  effect(() => {
-    const [, ...words] = decided.value.split(" ");
-    if (words.length) announcement.value = words.join(" ");
-  });
-  effect(() => {
-    const run = shownRun.value;
-    if (run?.state === "failed") announcement.value = `The ${run.kind} failed: ${run.error ?? ""}`;
-  });
-  effect(() => {
-    if (connection.value === "reconnecting") announcement.value = "Connection lost, reconnecting";
-  });
-}
-
-// ---- who leads or has won and by which rule, in sentences
-
-const MIN_MM = 1;
-
-/** @type {(row: Standing) => number} */
-const distanceOf = (row) => row.finished_m ?? row.distance_m ?? 0;
-
-/** @type {(rows: Standing[]) => string} */
-const titlesOf = (rows) => listed(rows.map(({ title }) => title));
-
-/**
- * The leader of a race that has not timed out.
- * @param {Standing[]} rows
- */
-function leadOf(rows) {
-  const best = Math.max(...rows.map((row) => row.distance_m ?? 0));
-  if (best <= 0) return "On the start line";
-  const ahead = rows.filter(({ rank }) => rank === 1);
-  return ahead.length > 1 ? "Level" : `${ahead[0].title} leads with ${metres(best)}`;
-}
-
-/**
- * The outcome of a race, with the moment that decided it: "Greedy wins: 0.37 m when Q-learning had used its 50 steps".
- * @param {Standing[]} rows
- * @param {number[]} first numbers of the lanes that used all their steps first; none if no lane did
- * @param {number} steps of each lane
- */
-function verdictOf(rows, first, steps) {
-  const winners = rows.filter(({ rank }) => rank === 1);
-  const distance = metres(distanceOf(winners[0]));
-  if (!first.length) {
-    return `${titlesOf(winners)} got farthest, ${distance}: no robot used its ${count(steps, "step")}`;
-  }
-  const when = momentOf(rows, winners, first, steps);
-  if (winners.length > 1) return `${titlesOf(winners)} tie: ${distance} ${when}`;
-  const [{ title, failure, step }] = winners;
-  return `${title} wins${failure ? `, stopped at step ${step}` : marginOf(rows, winners[0])}: ${distance} ${when}`;
-}
-
-/** @type {(rows: Standing[], winners: Standing[], first: number[], steps: number) => string} */
-function momentOf(rows, winners, first, steps) {
-  const used = count(steps, "step");
-  if (first.length === rows.length) return `after ${used} each`;
-  const timedOut = rows.filter(({ lane }) => first.includes(lane));
-  const isOwn = timedOut.length === 1 && winners.length === 1 && timedOut[0] === winners[0];
-  return `when ${isOwn ? "it" : titlesOf(timedOut)} had used ${timedOut.length > 1 ? "their" : "its"} ${used}`;
-}
-
-/**
- * The margin, where distances to the centimetre do not show it.
- * @type {(rows: Standing[], winner: Standing) => string}
- */
-function marginOf(rows, winner) {
-  const others = rows.filter((row) => row !== winner).map(distanceOf);
-  const next = Math.max(...others);
-  if (!others.length || metres(next) !== metres(distanceOf(winner))) return "";
-  const millimetres = Math.round(1000 * (distanceOf(winner) - next));
-  return millimetres < MIN_MM ? ` by under ${MIN_MM} mm` : ` by ${millimetres} mm`;
-}
-
-/**
- * The rule of the ranking, in one sentence.
- * @param {number} steps of each lane
- * @param {string} clockTitle
- */
-export const ruleOf = (steps, clockTitle) =>
-  `The farthest at time-out wins: when the first robot has used its ${count(steps, "step")} (${clockTitle}).`;
+  track ? track.futures.slice(0, Math.ceil(steps / track.stride)).reduce((sum, n) => sum + n, 0) : null;

@@ -3,8 +3,7 @@
 import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplay, getReplayFrames, isLasting } from "./api.js";
 import { readReplay, replayAddress, view, writeReplay } from "./page.js";
-import { decode, Follower, inRecording, SceneState } from "./replay-frames.js";
-import { endOf, placeOf, Segments } from "./replay-segments.js";
+import { decode, endOf, Follower, inRecording, placeOf, SceneState, Segments } from "./replay-frames.js";
 import { connection, ownScene, ownStage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -339,14 +338,19 @@ function tell(frame, now) {
 
 // ---- the page's stage, and its address
 
+function ownPhase() {
+  if (plan.value?.complete === false) return "live";
+  return hasEnded.value ? "ended" : "showing";
+}
+
 /** Keep the page's own stage, which takes the place of the one that all share. */
 export function followReplay() {
   effect(() => {
     const id = ownRunId.value;
     if (id === null) return;
     ownStage.value = {
-      run_id: id, next_run_id: null, playing: playing.value, ended: hasEnded.value, speed: speed.value,
-      clock: clock.value,
+      run_id: id, next_run_id: null, phase: ownPhase(), origin: "chosen", playing: playing.value,
+      ended: hasEnded.value, speed: speed.value, clock: clock.value, end_at_time_out: false, announced: null,
     };
   });
   // A server that was away may have come back with the run.

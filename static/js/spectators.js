@@ -3,7 +3,8 @@ import { batch, computed, effect, untracked } from "@preact/signals";
 import { copySettings } from "./actions.js";
 import { isChanged, readQuery, unknownParts, writeAddress } from "./form.js";
 import { hasOwnSettings, isReadOnly } from "./page.js";
-import { shownRun, trainingIds } from "./selectors.js";
+import { shownRun } from "./on-stage.js";
+import { trainingIds } from "./selectors.js";
 import { runs } from "./store.js";
 
 /** Key of the settings of the run that is shown: the run, which of its trainings are known, and changes. */

@@ -2,7 +2,7 @@
 import { computed, signal } from "@preact/signals";
 import { askForNewest, getExplanation, getTable, needsLonger } from "./api.js";
 import { count, THIN_SPACE } from "./format.js";
-import { isPlaying, shownRun } from "./selectors.js";
+import { isPlaying, shownRun } from "./on-stage.js";
 import { connection, runs, scene } from "./store.js";
 import { cellName } from "./training.js";
 

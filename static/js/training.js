@@ -4,7 +4,7 @@ import { getCurve, isLasting } from "./api.js";
 import { rateChanges } from "./changes.js";
 import { disturbancesOf, joinedBySteps } from "./disturbances.js";
 import { followRuns } from "./runs.js";
-import { trainingInView } from "./selectors.js";
+import { trainingInView } from "./on-stage.js";
 import { bestKnown, connection, evaluations, references, runs, scene, setEntry } from "./store.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */

@@ -139,6 +139,8 @@ export interface Options {
   settings: Record<string, SettingOption>;
   limits: Record<string, [number | null, number | null]>;
   help: Record<string, string>;
+  /** Extras of the package that the server lacks, each with the command that installs it. */
+  missing_extras: Record<string, string>;
 }
 
 // ---- the forms
@@ -351,7 +353,11 @@ export interface TimelineLane {
   points: TimelinePoint[];
   /** Intervals [from, to] of the race time [s]. */
   thinking: [number, number][];
-  /** Simulated transitions before each step. */
+  /** Steps that it has taken so far. */
+  steps: number;
+  /** Number of steps told as one; 1 in all but long races. */
+  stride: number;
+  /** Simulated transitions before each stride of steps. */
   futures: number[];
   total_s: number;
 }
@@ -450,12 +456,18 @@ export interface Spectators {
 
 export interface Stage {
   run_id: string | null;
+  /** Of the state machine of app/stage/state_machine.py. */
+  phase: "empty" | "live" | "decided" | "showing" | "ended";
+  origin: "none" | "started" | "chosen" | "automatic" | "restored";
   next_run_id: string | null;
   playing: boolean;
   /** Whether its end is shown; playing starts it again. */
   ended: boolean;
   speed: number | "time-lapse";
   clock: Clock;
+  end_at_time_out: boolean;
+  /** A replay that the stage will show by itself. */
+  announced: { run_id: string; in_s: number } | null;
 }
 
 // ---- GET /runs/{id}/replay
@@ -491,7 +503,10 @@ export interface SceneLane {
   distance_m: number;
   step: number;
   steps: number;
+  /** Whether it has used all its steps, or failed. */
   done: boolean;
+  /** Whether its run ended before. */
+  halted: boolean;
   thinking: boolean;
   futures: number;
   futures_total: number;
@@ -525,6 +540,10 @@ export interface Scene {
   clock: Clock;
   time_s: number;
   duration_s: number | null;
+  /** Time of the run up to which it is computed. */
+  computed_s: number;
+  time_out_s: number | null;
+  ended: boolean;
   shown_speed: number;
   replay: boolean;
   lanes: SceneLane[];

@@ -1,5 +1,5 @@
 // Clicks on the cells of the foot grids, which the page around this one is told; the server hears nothing of them.
-// Assumptions about viser's client are listed and tested in app/viewer/viser_internals.
+// Assumptions about viser's client are listed and tested in hexapods/drawing/viser_internals.
 //
 //   to the parent     {type: "hexapods:click", node, instance}: the name of a node of footgrid.py, and the number of
 //                     the cell in its batch

@@ -1,6 +1,6 @@
 // The scene's labels as elements over the canvas. viser draws its own in one size, black on white in every
 // theme, and on top of each other; here they follow the theme and give way to each other.
-// Assumptions about viser's client are listed and tested in app/viewer/viser_internals.
+// Assumptions about viser's client are listed and tested in hexapods/drawing/viser_internals.
 //
 //   events   hexapods:show {lanes?: colours of the lanes, covered?: [{left, top, right, bottom}], what is shown over
 //            the picture, in pixels of it}

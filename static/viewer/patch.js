@@ -1,5 +1,5 @@
 // Patch of viser's client: runs before it on the page /viewer/, which the dashboard has in an iframe, after client.js.
-// Assumptions about the client are listed and tested in app/viewer/viser_internals.
+// Assumptions about the client are listed and tested in hexapods/drawing/viser_internals.
 //
 //   from the parent   {type: "hexapods:show", view?: "leader" | a lane from "1" | "free", theme?: "light" | "dark"}
 //                     view "elsewhere": the parent draws by itself (labels.js), and the stream is left out

@@ -1,10 +1,10 @@
 """States, actions and transitions with which updates are computed by hand."""
 
-from app.agents.protocol import Problem, Transition
-from app.agents.tabular import TabularAgent
-from app.domain.grid import FootGrid
-from app.domain.observation import legal_actions
-from app.domain.types import Action, Cells
+from hexapods.agents.protocol import Problem, Transition
+from hexapods.agents.tabular import TabularAgent
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.types import Action, Cells
 
 PROBLEM = Problem(((1, 4), (2, 5), (3, 6)), FootGrid().cells)
 A, B, C = (0, 0, 0), (1, 0, 0), (1, 2, 0)

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from app.agents.appearance import name_of
+from hexapods.agents.appearance import name_of
 
 
 @pytest.mark.parametrize(

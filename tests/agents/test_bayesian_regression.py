@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.agents.bayesian_regression import BayesianRegression
+from hexapods.agents.bayesian_regression import BayesianRegression
 
 
 def test_posterior_of_one_weight_by_hand() -> None:

@@ -2,11 +2,11 @@
 
 import pytest
 
-from app.agents.beam import Beam
-from app.agents.lookahead import LookAhead
-from app.agents.protocol import Problem
-from app.domain.errors import InvalidInput
-from app.domain.grid import FootGrid
+from hexapods.agents.beam import Beam
+from hexapods.agents.lookahead import LookAhead
+from hexapods.agents.protocol import Problem
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.grid import FootGrid
 from tests.agents.trees import Graph, World
 from tests.agents.walkers import kinematic_walker
 

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.double_q import DoubleQ
-from app.agents.q_learning import QLearning
-from app.agents.tabular import TabularLearner
-from app.domain.observation import legal_actions
+from hexapods.agents.double_q import DoubleQ
+from hexapods.agents.q_learning import QLearning
+from hexapods.agents.tabular import TabularLearner
+from hexapods.domain.observation import legal_actions
 from tests.agents.by_hand import FIRST, PROBLEM, SECOND, THIRD, A, B, step, value
 
 

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.dyna_q import DynaQ
-from app.agents.dyna_q_plus import DynaQPlus
-from app.domain.types import Action
+from hexapods.agents.dyna_q import DynaQ
+from hexapods.agents.dyna_q_plus import DynaQPlus
+from hexapods.domain.types import Action
 from tests.agents.by_hand import FIRST, PROBLEM, SECOND, A, B, C, step, value
 
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.agents.bayesian_regression import sum_rule
-from app.agents.explanation import (
+from hexapods.agents.bayesian_regression import sum_rule
+from hexapods.agents.explanation import (
     ChoiceExplanation,
     Explaining,
     Term,
@@ -15,14 +15,14 @@ from app.agents.explanation import (
     copy_of,
     evaluate,
 )
-from app.agents.protocol import Tabular, Transition, Valuing
-from app.agents.registry import OURS, find, learns
-from app.agents.tabular import TabularLearner
-from app.assembly import build_learner
-from app.domain.types import Action, FloatArray
-from app.runs.config import TrainingConfig, training_config
-from app.runs.tables import snapshot
-from app.runs.training import Learner, train
+from hexapods.agents.protocol import Tabular, Transition, Valuing
+from hexapods.agents.registry import OURS, find, learns
+from hexapods.agents.tabular import TabularLearner
+from hexapods.assembly import build_learner
+from hexapods.domain.types import Action, FloatArray
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.tables import snapshot
+from hexapods.runs.training import Learner, train
 
 LEARNERS = [name for name in OURS if learns(name)]
 TABLE_LEARNERS = [name for name in LEARNERS if issubclass(find(name), TabularLearner)]  # type: ignore[arg-type]

@@ -6,19 +6,19 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from app.agents.fixed_policies import RandomWalk, Wave
-from app.agents.protocol import Problem
-from app.assembly import build_walkers
-from app.domain.gait import GaitSpec
-from app.domain.observation import legal_actions
-from app.domain.types import Action
-from app.runs.config import WalkingProblem, problem_of
-from app.runs.gait_analysis import gait_figures
-from app.runs.lane import LaneConfig, lane_config
-from app.runs.race_config import RaceConfig
-from app.runs.racing import record_race
-from app.runs.recorded_walk import walk_of_lane
-from app.runs.recording import LaneRecording
+from hexapods.agents.fixed_policies import RandomWalk, Wave
+from hexapods.agents.protocol import Problem
+from hexapods.assembly import build_walkers
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.types import Action
+from hexapods.runs.config import WalkingProblem, problem_of
+from hexapods.runs.gait_analysis import gait_figures
+from hexapods.runs.lane import LaneConfig, lane_config
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import record_race
+from hexapods.runs.recorded_walk import walk_of_lane
+from hexapods.runs.recording import LaneRecording
 
 RIPPLE = GaitSpec(1, 2, pairs=((1, 4), (5, 3), (6, 2)))
 FRONT_LEFT, FRONT_RIGHT = 1, 2

@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.explanation import ExplainingSearch
-from app.agents.registry import OURS, compares, searches
-from app.assembly import build_walkers
-from app.runs.lane import lane_config
-from app.runs.race_config import RaceConfig
-from app.runs.walker import Walker
+from hexapods.agents.explanation import ExplainingSearch
+from hexapods.agents.registry import OURS, compares, searches
+from hexapods.assembly import build_walkers
+from hexapods.runs.lane import lane_config
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.walker import Walker
 
 SEARCHES = [name for name in OURS if searches(name)]
 

@@ -5,18 +5,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.informed import Informed, RewardModel, shares_of
-from app.agents.protocol import Problem
-from app.assembly import build_walkers
-from app.domain.feet import Feet
-from app.domain.gait import NAMED_GAITS
-from app.domain.grid import FootGrid
-from app.domain.robot import robot
-from app.domain.types import Action
-from app.runs.lane import LaneConfig, lane_config
-from app.runs.race_config import RaceConfig
-from app.runs.racing import record_race
-from app.runs.results import race_result
+from hexapods.agents.informed import Informed, RewardModel, shares_of
+from hexapods.agents.protocol import Problem
+from hexapods.assembly import build_walkers
+from hexapods.domain.feet import Feet
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.robot import robot
+from hexapods.domain.types import Action
+from hexapods.runs.lane import LaneConfig, lane_config
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import record_race
+from hexapods.runs.results import race_result
 from tests.agents.walkers import kinematic_walker
 from tests.promises.length import at_length
 

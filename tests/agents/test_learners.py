@@ -6,25 +6,25 @@ from functools import cache
 import numpy as np
 import pytest
 
-from app.agents.appearance import colors_of, description_of, title_of
-from app.agents.protocol import Problem, Transition, Valuing
-from app.agents.registry import OURS, build, find, learns
-from app.agents.tabular import TabularAgent, TabularLearner
 from app.archive.imported_tables import checked_table
-from app.assembly import build_learner, build_walkers, finish_training
-from app.domain.errors import HexapodError
-from app.domain.feet import Feet
-from app.domain.grid import FootGrid
-from app.domain.observation import legal_actions
-from app.domain.types import Action, Cells
-from app.domain.world import UNDISTURBED
-from app.experiments.trial import TrialConfig, run_trial
-from app.runs.config import TrainingConfig, training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.seeding import RACING, generator
-from app.runs.tables import Checkpoint, from_bytes, restore, snapshot, table_of, to_bytes
-from app.runs.training import Learner, evaluate, train
+from hexapods.agents.appearance import colors_of, description_of, title_of
+from hexapods.agents.protocol import Problem, Transition, Valuing
+from hexapods.agents.registry import OURS, build, find, learns
+from hexapods.agents.tabular import TabularAgent, TabularLearner
+from hexapods.assembly import build_learner, build_walkers, finish_training
+from hexapods.domain.errors import HexapodError
+from hexapods.domain.feet import Feet
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.types import Action, Cells
+from hexapods.domain.world import UNDISTURBED
+from hexapods.experiments.trial import TrialConfig, run_trial
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.seeding import RACING, generator
+from hexapods.runs.tables import Checkpoint, from_bytes, restore, snapshot, table_of, to_bytes
+from hexapods.runs.training import Learner, evaluate, train
 
 LEARNERS = [name for name in OURS if learns(name)]
 TABULAR = [name for name in LEARNERS if issubclass(find(name), TabularAgent)]  # type: ignore[arg-type]
@@ -269,6 +269,15 @@ def test_a_damaged_array_in_a_file_is_refused(agent: str) -> None:
             data = to_bytes(Checkpoint(original.meta, arrays))
             with pytest.raises(HexapodError):
                 checked_table(data, "q.npz", LEARNERS)
+
+
+def test_a_file_that_lacks_an_array_is_refused(agent: str) -> None:
+    original = checkpoint_of(agent)
+    names = [name for name in original.arrays if name.startswith("agent.")]
+    for gone in [*([name] for name in names), names]:
+        arrays = {name: array for name, array in original.arrays.items() if name not in gone}
+        with pytest.raises(HexapodError):
+            checked_table(to_bytes(Checkpoint(original.meta, arrays)), "q.npz", LEARNERS)
 
 
 def test_every_agent_looks_different() -> None:

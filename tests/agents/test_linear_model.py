@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.linear_model import LinearModel
-from app.agents.protocol import Problem, Transition, Tunable, Valuing
-from app.assembly import build_learner
-from app.domain.errors import InvalidInput
-from app.domain.grid import FootGrid
-from app.domain.observation import Observation, legal_actions
-from app.domain.robot import PRESETS
-from app.domain.types import Action, Cells
-from app.runs.config import TrainingConfig, training_config
-from app.runs.tables import from_bytes, restore, snapshot, to_bytes
-from app.runs.training import Learner, evaluate, train
+from hexapods.agents.linear_model import LinearModel
+from hexapods.agents.protocol import Problem, Transition, Tunable, Valuing
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.observation import Observation, legal_actions
+from hexapods.domain.robot import PRESETS
+from hexapods.domain.types import Action, Cells
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.tables import from_bytes, restore, snapshot, to_bytes
+from hexapods.runs.training import Learner, evaluate, train
 
 GRID = FootGrid()
 PROBLEM = Problem(((1, 4), (2, 5), (3, 6)), GRID.cells)

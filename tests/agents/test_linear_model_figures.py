@@ -7,12 +7,12 @@ from functools import cache
 
 import pytest
 
-from app.assembly import build_learner
-from app.domain.gait import NAMED_GAITS
-from app.domain.robot import PRESETS
-from app.runs.config import training_config
-from app.runs.records import StepTaken
-from app.runs.training import evaluate, train
+from hexapods.assembly import build_learner
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.robot import PRESETS
+from hexapods.runs.config import training_config
+from hexapods.runs.records import StepTaken
+from hexapods.runs.training import evaluate, train
 from tests.figures import look_ahead
 from tests.promises.length import at_length
 

@@ -5,12 +5,12 @@ from itertools import product
 import numpy as np
 import pytest
 
-from app.agents.lookahead import Greedy, LookAhead, TwoStep
-from app.agents.protocol import Problem
-from app.domain.errors import InvalidInput
-from app.domain.gait import NAMED_GAITS
-from app.domain.grid import FootGrid
-from app.runs.walker import SimulatorExpand, Walker
+from hexapods.agents.lookahead import Greedy, LookAhead, TwoStep
+from hexapods.agents.protocol import Problem
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.grid import FootGrid
+from hexapods.runs.walker import SimulatorExpand, Walker
 from tests.agents.trees import Graph, World
 from tests.agents.walkers import kinematic_walker
 
@@ -130,7 +130,7 @@ def test_layers_in_several_batches_give_the_same_decisions(monkeypatch: pytest.M
     for _ in range(4):
         whole.carry_out(whole.decide())
         with monkeypatch.context() as context:
-            context.setattr("app.runs.walker._MAX_BATCH", 5)
+            context.setattr("hexapods.runs.walker._MAX_BATCH", 5)
             in_parts.carry_out(in_parts.decide())
 
     assert in_parts.state == whole.state

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from app.agents.mcts import HORIZON, Mcts
-from app.domain.types import Action
+from hexapods.agents.mcts import HORIZON, Mcts
+from hexapods.domain.types import Action
 from tests.agents.trees import Graph, World
 from tests.agents.walkers import kinematic_walker
 

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.posterior_sampling import PosteriorSampling
-from app.domain.observation import legal_actions
-from app.domain.types import Action
+from hexapods.agents.posterior_sampling import PosteriorSampling
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.types import Action
 from tests.agents.by_hand import FIRST, PROBLEM, SECOND, A, B, step, value
 
 

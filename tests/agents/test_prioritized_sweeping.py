@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.prioritized_sweeping import PrioritizedSweeping
+from hexapods.agents.prioritized_sweeping import PrioritizedSweeping
 from tests.agents.by_hand import FIRST, PROBLEM, SECOND, A, B, C, step, value
 
 

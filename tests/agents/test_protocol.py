@@ -2,14 +2,14 @@
 
 import pytest
 
-from app.agents.protocol import Agent, Transition
-from app.agents.registry import OURS
-from app.assembly import build_learner
-from app.domain.observation import OBSERVATIONS, Observation, observe
-from app.domain.types import Action
-from app.runs import seeding
-from app.runs.config import training_config
-from app.runs.training import Learner
+from hexapods.agents.protocol import Agent, Transition
+from hexapods.agents.registry import OURS
+from hexapods.assembly import build_learner
+from hexapods.domain.observation import OBSERVATIONS, Observation, observe
+from hexapods.domain.types import Action
+from hexapods.runs import seeding
+from hexapods.runs.config import training_config
+from hexapods.runs.training import Learner
 
 AGENTS = [
     *OURS,

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.q_lambda import QLambda
+from hexapods.agents.q_lambda import QLambda
 from tests.agents.by_hand import FIRST, PROBLEM, SECOND, THIRD, A, B, C, set_value, step, value
 
 

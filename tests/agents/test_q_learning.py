@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.protocol import Problem, Transition, Tunable, Valuing
-from app.agents.q_learning import QLearning
-from app.agents.tabular import EpsilonSchedule
-from app.domain.grid import FootGrid
-from app.domain.observation import legal_actions
-from app.domain.types import Action, Cells
+from hexapods.agents.protocol import Problem, Transition, Tunable, Valuing
+from hexapods.agents.q_learning import QLearning
+from hexapods.agents.tabular import EpsilonSchedule
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.types import Action, Cells
 
 PROBLEM = Problem(((1, 4), (2, 5), (3, 6)), FootGrid().cells)
 

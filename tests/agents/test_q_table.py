@@ -10,11 +10,11 @@ import numpy as np
 import psutil
 import pytest
 
-from app.agents.q_table import MAX_VALUES, QTable
-from app.domain.errors import InvalidInput, TableMismatch
-from app.domain.grid import FootGrid
-from app.domain.observation import legal_actions
-from app.domain.types import Action
+from hexapods.agents.q_table import MAX_VALUES, QTable
+from hexapods.domain.errors import InvalidInput, TableMismatch
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.types import Action
 
 
 def legal_values(table: QTable) -> int:

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.r_max import RMax
-from app.domain.observation import legal_actions
-from app.domain.types import Action, Cells
+from hexapods.agents.r_max import RMax
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.types import Action, Cells
 from tests.agents.by_hand import FIRST, PROBLEM, SECOND, A, B, step, value
 
 HIGHEST = 0.02 / (1 - 0.5)

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.agents import registry
-from app.agents.lookahead import Greedy, TwoStep
-from app.agents.protocol import Problem
-from app.agents.q_learning import QLearning
-from app.domain.errors import InvalidInput, UnknownName
+from hexapods.agents import registry
+from hexapods.agents.lookahead import Greedy, TwoStep
+from hexapods.agents.protocol import Problem
+from hexapods.agents.q_learning import QLearning
+from hexapods.domain.errors import InvalidInput, UnknownName
 from tests import own_agents
 
 PROBLEM = Problem(((1, 4), (2, 5), (3, 6)), np.zeros((5, 2)))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from app.agents.expected_sarsa import ExpectedSarsa
-from app.agents.n_step_sarsa import NStepSarsa
-from app.agents.sarsa import Sarsa
-from app.domain.types import Action
+from hexapods.agents.expected_sarsa import ExpectedSarsa
+from hexapods.agents.n_step_sarsa import NStepSarsa
+from hexapods.agents.sarsa import Sarsa
+from hexapods.domain.types import Action
 from tests.agents.by_hand import FIRST, PROBLEM, SECOND, THIRD, A, B, C, set_value, step, value
 
 

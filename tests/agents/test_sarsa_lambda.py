@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.protocol import Tabular, Tunable
-from app.agents.sarsa_lambda import SarsaLambda
-from app.assembly import build_learner
-from app.domain.errors import InvalidInput
-from app.domain.types import Action
-from app.runs.config import training_config
-from app.runs.training import train
+from hexapods.agents.protocol import Tabular, Tunable
+from hexapods.agents.sarsa_lambda import SarsaLambda
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import Action
+from hexapods.runs.config import training_config
+from hexapods.runs.training import train
 from tests.agents.by_hand import FIRST, PROBLEM, SECOND, THIRD, A, B, C, step, value
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from app.agents.protocol import Problem
-from app.agents.registry import OURS, build, check_problem, find, learns
-from app.agents.tabular_model import TabularModel
-from app.domain.errors import InvalidInput
-from app.domain.grid import FootGrid
+from hexapods.agents.protocol import Problem
+from hexapods.agents.registry import OURS, build, check_problem, find, learns
+from hexapods.agents.tabular_model import TabularModel
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.grid import FootGrid
 from tests.agents.by_hand import PROBLEM
 
 SHAPE = {"shape": np.array([3, 5])}

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.agents.protocol import Node
-from app.domain.types import Action, FloatArray
+from hexapods.agents.protocol import Node
+from hexapods.domain.types import Action, FloatArray
 
 World = Mapping[str, Sequence[tuple[str, float]]]
 """For each place its steps: where they lead, and the reward [m]."""

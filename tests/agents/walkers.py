@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 
-from app.agents.protocol import Agent
-from app.domain.gait import resolve
-from app.domain.grid import FootGrid
-from app.domain.kinematic import KinematicSimulator
-from app.domain.robot import Robot
-from app.runs.walker import SimulatorExpand, Walker
+from hexapods.agents.protocol import Agent
+from hexapods.domain.gait import resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.kinematic import KinematicSimulator
+from hexapods.domain.robot import Robot
+from hexapods.runs.walker import SimulatorExpand, Walker
 
 
 def kinematic_walker(

@@ -10,9 +10,9 @@ from app.api.experiment_answers import CurveOfSetting, PooledView, SettingView, 
 from app.api.experiment_body import ExperimentBody
 from app.api.schemas import ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
 from app.cli import _parser
-from app.experiments.config import ExperimentConfig
-from app.runs.config import RESERVED, TrainingConfig
-from app.runs.race_config import RaceConfig
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.runs.config import RESERVED, TrainingConfig
+from hexapods.runs.race_config import RaceConfig
 
 BODIES = (PracticeBody, TrainingBody, LaneBody, RaceBody, ExperimentBody, ChangeBody)
 ANSWERS = (

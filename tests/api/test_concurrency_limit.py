@@ -1,21 +1,24 @@
 """Concurrency limit: slots by role, fair by client, and not held by slow clients."""
 
 import asyncio
+import socket
 
 from starlette.types import Message, Receive, Scope, Send
 
 from app.api.auth import Role
 from app.api.concurrency_limit import (
-    ENCODING_SLOTS,
+    MAX_WAITING,
     PROBE_SLOTS,
     SLOTS,
-    WHAT_IF_SLOTS,
     ConcurrencyLimit,
-    RoundRobinSemaphore,
+    WorkSlots,
+    work_of,
 )
 from app.api.rate_limit import WHAT_IF
+from app.limits.connections import ConnectionTable
 
 STOP = "/api/v1/trainings/x/stop"
+READING = SLOTS["spectator"]["other"].size
 
 
 def scope(role: str, address: str, method: str = "GET", path: str = "/") -> Scope:
@@ -31,27 +34,6 @@ async def ignore(message: Message) -> None:
     del message
 
 
-def test_semaphore_is_round_robin_by_client() -> None:
-    async def scenario() -> list[str]:
-        semaphore, order = RoundRobinSemaphore(1), []
-        await semaphore.acquire("first")
-
-        async def take(client: str) -> None:
-            await semaphore.acquire(client)
-            order.append(client)
-            semaphore.release()
-
-        tasks = [asyncio.create_task(take(client)) for client in ("a", "a", "a", "b")]
-        await asyncio.sleep(0)
-        tasks[0].cancel()
-        semaphore.release()
-        await asyncio.gather(*tasks, return_exceptions=True)
-        await asyncio.wait_for(semaphore.acquire("last"), 1)
-        return order
-
-    assert asyncio.run(scenario()) == ["a", "b", "a"]
-
-
 def test_spectators_do_not_delay_operators() -> None:
     async def scenario() -> tuple[int, int]:
         working = {"spectator": 0, "operator": 0}
@@ -60,7 +42,7 @@ def test_spectators_do_not_delay_operators() -> None:
             working[scope["state"]["role"]] += 1
             await asyncio.Event().wait()
 
-        app = ConcurrencyLimit(work)
+        app = ConcurrencyLimit(work, WorkSlots())
         tasks = [
             asyncio.ensure_future(app(scope(role, "a"), nothing, ignore))
             for role in ["spectator"] * 50 + ["operator"] * 2
@@ -71,7 +53,7 @@ def test_spectators_do_not_delay_operators() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return working["spectator"], working["operator"]
 
-    assert asyncio.run(scenario()) == (SLOTS["spectator"], 2)
+    assert asyncio.run(scenario()) == (READING, 2)
 
 
 def test_what_ifs_of_spectators_do_not_delay_what_spectators_read() -> None:
@@ -82,7 +64,7 @@ def test_what_ifs_of_spectators_do_not_delay_what_spectators_read() -> None:
             working["what-if" if scope["method"] == "POST" else "read"] += 1
             await asyncio.Event().wait()
 
-        app = ConcurrencyLimit(work)
+        app = ConcurrencyLimit(work, WorkSlots())
         what_ifs = [scope("spectator", str(n), "POST", WHAT_IF) for n in range(20)]
         tasks = [
             asyncio.ensure_future(app(one, nothing, ignore))
@@ -94,7 +76,7 @@ def test_what_ifs_of_spectators_do_not_delay_what_spectators_read() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return working
 
-    assert asyncio.run(scenario()) == {"what-if": WHAT_IF_SLOTS, "read": 1}
+    assert asyncio.run(scenario()) == {"what-if": SLOTS["spectator"]["what-if"].size, "read": 1}
 
 
 def test_requests_do_not_delay_probes() -> None:
@@ -108,7 +90,7 @@ def test_requests_do_not_delay_probes() -> None:
             probed += scope["path"] == "/readyz"
             await asyncio.Event().wait()
 
-        app = ConcurrencyLimit(work)
+        app = ConcurrencyLimit(work, WorkSlots())
         paths = ["/"] * 50 + ["/readyz"] * 50
         tasks = [
             asyncio.ensure_future(app(scope("spectator", "a", path=path), nothing, ignore))
@@ -120,7 +102,7 @@ def test_requests_do_not_delay_probes() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return probed
 
-    assert asyncio.run(scenario()) == PROBE_SLOTS
+    assert asyncio.run(scenario()) == PROBE_SLOTS.size
 
 
 def test_files_that_take_long_delay_nothing_else() -> None:
@@ -132,7 +114,7 @@ def test_files_that_take_long_delay_nothing_else() -> None:
             working[kinds.get(scope["path"], "file")] += 1
             await asyncio.Event().wait()
 
-        app = ConcurrencyLimit(work)
+        app = ConcurrencyLimit(work, WorkSlots())
         paths = ["/api/v1/runs/x/mcap", "/api/v1/runs/x/page", "/api/v1/races/x/recording"]
         roles: list[Role] = ["spectator", "operator"]
         requests: list[Scope] = [
@@ -149,7 +131,7 @@ def test_files_that_take_long_delay_nothing_else() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return working
 
-    files = sum(ENCODING_SLOTS.values())
+    files = sum(kinds["encoding"].size for kinds in SLOTS.values())
     assert asyncio.run(scenario()) == {"file": files, "command": 1, "read": 1}
 
 
@@ -176,10 +158,10 @@ def test_slow_readers_and_streams_hold_no_slot() -> None:
             await asyncio.Event().wait()
             raise AssertionError
 
-        app = ConcurrencyLimit(answer)
+        app = ConcurrencyLimit(answer, WorkSlots())
         tasks = [
             asyncio.ensure_future(app(scope("spectator", client), never, stall))
-            for client in ["stream", "unread"] * 10 * SLOTS["spectator"]
+            for client in ["stream", "unread"] * 10 * READING
         ]
         await asyncio.sleep(0.05)
         for task in tasks:
@@ -187,7 +169,7 @@ def test_slow_readers_and_streams_hold_no_slot() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return answered
 
-    assert asyncio.run(scenario()) == 20 * SLOTS["spectator"]
+    assert asyncio.run(scenario()) == 20 * READING
 
 
 def test_two_tasks_of_a_request_acquire_one_slot() -> None:
@@ -208,8 +190,96 @@ def test_two_tasks_of_a_request_acquire_one_slot() -> None:
         async def slowly(message: Message) -> None:
             await asyncio.sleep(0)
 
-        app = ConcurrencyLimit(answer)
-        for _ in range(10 * SLOTS["spectator"]):
+        app = ConcurrencyLimit(answer, WorkSlots())
+        for _ in range(10 * READING):
             await asyncio.wait_for(app(scope("spectator", "a"), later, slowly), 1)
 
     asyncio.run(scenario())
+
+
+def test_each_kind_of_work_has_slots_of_its_own() -> None:
+    kinds = {
+        "/readyz": "probe",
+        "/": "other",
+        "/api/v1/runs": "other",
+        "/api/v1/runs/x": "other",
+        "/api/v1/runs/x/page": "encoding",
+        "/api/v1/runs/x/trajectory": "download",
+        "/api/v1/runs/export": "download",
+        "/api/v1/races/x/recording": "download",
+        "/api/v1/experiments/x/files/trials.csv": "download",
+        "/api/v1/races/x/timeline": "analysis",
+        "/api/v1/runs/x/replay/segments/0/1": "analysis",
+    }
+    asked = {path: {**scope("spectator", "a", path=path), "query_string": b""} for path in kinds}
+    assert {path: work_of(one) for path, one in asked.items()} == kinds
+    assert work_of(scope("operator", "a", "POST", STOP)) == "other"
+    assert work_of(scope("spectator", "a", "POST", WHAT_IF)) == "what-if"
+
+
+def test_nothing_is_begun_for_a_client_that_has_left() -> None:
+    """Those that leave before their turn, also where the event loop has not noticed."""
+
+    async def scenario() -> tuple[list[str], int]:
+        begun: list[str] = []
+        may_end = asyncio.Event()
+
+        async def work(scope: Scope, receive: Receive, send: Send) -> None:
+            begun.append(scope["client"][0])
+            await may_end.wait()
+
+        app, table = ConcurrencyLimit(work, WorkSlots()), ConnectionTable(100, 100)
+        tasks, clients = [], []
+        for address in ["first"] * READING + ["leaves"] * 5 + ["stays"]:
+            client, server = socket.socketpair()
+            connection = table.admit(address, server.fileno())
+            asked = scope("spectator", address)
+            asked["state"]["connection"] = connection
+            tasks.append(asyncio.ensure_future(app(asked, nothing, ignore)))
+            clients.append((client, server))
+        await asyncio.sleep(0)
+        for client, _ in clients[READING:-1]:
+            client.close()
+        may_end.set()
+        await asyncio.wait_for(asyncio.gather(*tasks), 5)
+        for pair in clients:
+            for one in pair:
+                one.close()
+        return begun, len(tasks)
+
+    begun, count = asyncio.run(scenario())
+    assert begun == ["first"] * READING + ["stays"]
+    assert count == READING + 6
+
+
+def test_who_cannot_wait_is_told_why() -> None:
+    async def scenario() -> list[Message]:
+        answers: list[Message] = []
+
+        async def work(scope: Scope, receive: Receive, send: Send) -> None:
+            await asyncio.Event().wait()
+
+        async def keep(message: Message) -> None:
+            answers.append(message)
+
+        slots = WorkSlots()
+        app, asked = ConcurrencyLimit(work, slots), scope("spectator", "a")
+        tasks = [
+            asyncio.ensure_future(app(asked, nothing, ignore)) for _ in range(READING + MAX_WAITING)
+        ]
+        await asyncio.sleep(0)
+        await app(asked, nothing, keep)
+        last = asyncio.ensure_future(app(scope("spectator", "b"), nothing, keep))
+        await asyncio.sleep(0)
+        slots.close()
+        await asyncio.wait_for(last, 1)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        return answers
+
+    full, why_full, stops, why_stops = asyncio.run(scenario())
+    assert (full["status"], stops["status"]) == (429, 503)
+    assert (b"retry-after", b"5") in full["headers"]
+    assert b"try again in 5 s" in why_full["body"]
+    assert b"The server is stopping" in why_stops["body"]

@@ -24,9 +24,9 @@ from app.api.option_answers import OptionsView
 from app.api.problems import STATUSES
 from app.api.rate_limit import WHAT_IF
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
-from app.domain.errors import HexapodError
 from app.server import create_app
 from app.settings import Settings
+from hexapods.domain.errors import HexapodError
 from tests.api.calls import WALK, Api
 from tests.experiments.sample_experiments import around, summary_of, walked
 from tests.storage.stores import temporary_store
@@ -214,7 +214,7 @@ def test_summaries_of_every_experiment_match_the_model(experiment: str) -> None:
 
 
 def test_summary_of_a_run_experiment_matches_the_model() -> None:
-    from app.experiments.summary import summarise
+    from hexapods.experiments.summary import summarise
 
     tried, results = walked("table1", 2, gaits=("left-right-origin",))
     SummaryView.model_validate(summarise(tried, results, {"key#0": "it died"}))

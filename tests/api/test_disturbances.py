@@ -4,13 +4,13 @@ from typing import Any
 
 import pytest
 
-from app.assembly import build_walkers
-from app.domain.world import named_world, world
-from app.runs.best_known import best_known_m
-from app.runs.config import WalkingProblem
-from app.runs.lane import lane_config
-from app.runs.race_config import Branch, RaceConfig
-from app.runs.racing import record_race
+from hexapods.assembly import build_walkers
+from hexapods.domain.world import named_world, world
+from hexapods.runs.best_known import best_known_m
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.lane import lane_config
+from hexapods.runs.race_config import Branch, RaceConfig
+from hexapods.runs.racing import record_race
 from tests.api.calls import WALK, Api, refused
 
 MUJOCO = {"gait": WALK["gait"]}

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from app.api import events
-from app.api.deps import Listener, Services
+from app.api.deps import EventListener, Services
 from app.events.run_view import run_view
 from app.server import create_app
 from app.settings import Settings
@@ -34,7 +34,7 @@ class Stream:
 
     def __init__(self, services: Services, last_event_id: int | None = None) -> None:
         header = None if last_event_id is None else str(last_event_id)
-        self.events: Any = events.get_events(services, "operator", None, Listener(), header)
+        self.events: Any = events.get_events(services, "operator", None, EventListener(), header)
 
     async def next(self) -> ReceivedEvent:
         event = await asyncio.wait_for(anext(self.events), LONG_S)

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.experiments.config import experiment_config
+from hexapods.experiments.config import experiment_config
 from tests.api.calls import Api, refused
 from tests.jobs.experiments import tried
 
@@ -142,7 +142,7 @@ def test_same_idempotency_key_returns_the_same_experiment(serve: Serve) -> None:
         ({"observations": "felt"}, "measured, commanded"),
         ({"robots": ["stiff", "soft"]}, "compliant"),
         ({"robots": [{"femur_m": -1}]}, "femur_m"),
-        ({"agents": ["app.agents.q_learning:QLearning"]}, "q-learning"),
+        ({"agents": ["hexapods.agents.q_learning:QLearning"]}, "q-learning"),
         ({"alpha": [0.3, 2]}, "alpha.1 must be a number over 0"),
         ({"alpha": "0.3"}, "alpha"),
         ({"gamma": 1}, "gamma"),

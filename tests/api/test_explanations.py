@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from app.agents.explanation import Term, evaluate
 from app.api.explanation_answers import ExplanationView, TableView
+from hexapods.agents.explanation import Term, evaluate
 from tests.api.calls import Api, refused
 
 STEPS = 100

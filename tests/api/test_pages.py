@@ -7,9 +7,9 @@ import pytest
 from starlette.applications import Starlette
 from starlette.testclient import TestClient
 
-from app import assets
 from app.api.compression import CompressedContent, accepts_gzip
 from app.api.pages import content_policy, imported_modules, page_routes, with_preloads
+from hexapods import assets
 from tests.api.calls import Api
 
 SCRIPT = "/static/js/main.js"
@@ -138,7 +138,7 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
         "audience",
     )
     opened = {
-        *(f"static/js/components/{name}.js" for name in (*lazy, "chart-files")),
+        *(f"static/js/components/{name}.js" for name in (*lazy, "chart-files", "own-choices")),
         "static/js/spectators.js",
         # Of files that play a replay offline.
         "static/js/offline/player.js",

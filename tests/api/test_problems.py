@@ -7,8 +7,8 @@ import pytest
 from starlette.requests import Request
 
 from app.api.problems import hexapod_error
-from app.domain.errors import DamagedFile, HexapodError, InvalidInput
 from app.storage.errors import Busy, Conflict, NotFound, StorageFailed, StorageFull
+from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents import registry
-from app.runs.recording import race_recording
+from hexapods.agents import registry
+from hexapods.runs.race_file import race_recording
 from tests.api.calls import WALK, Api, refused
 
 PRACTICE = {"steps": 100}

@@ -105,7 +105,7 @@ def test_a_continued_training_begins_with_the_one_before(
     shown = code(second)
     assert f"trainings/{first['id']}/q-table?format=npz" in shown["command"]
     assert commands_of(shown["command"])[0][0] == "curl"
-    assert f'Path("q-{first["id"]}.npz")' in shown["python"]
+    assert f"hx.load('q-{first['id']}.npz')" in shown["python"]
 
 
 def test_what_changed_while_it_ran_changes_in_the_program_too(

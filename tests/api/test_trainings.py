@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.assembly import build_learner, finish_training
-from app.runs.config import training_config
-from app.runs.tables import from_bytes, table_of
-from app.runs.training import train
+from hexapods.assembly import build_learner, finish_training
+from hexapods.runs.config import training_config
+from hexapods.runs.tables import from_bytes, table_of
+from hexapods.runs.training import train
 from tests.api.calls import WALK, Api, refused
 
 

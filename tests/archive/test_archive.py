@@ -14,7 +14,7 @@ import pytest
 
 from app.archive import archive
 from app.archive.archive import MANIFEST, pack, unpack
-from app.domain.errors import DamagedFile, InvalidInput
+from hexapods.domain.errors import DamagedFile, InvalidInput
 
 MEMBERS = {"run.json": b'{"a": 1}', "race.npz": bytes(range(256)) * 8}
 

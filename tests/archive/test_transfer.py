@@ -12,22 +12,24 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.registry import OURS
 from app.archive import archive
 from app.archive.transfer import RUN, export_many, export_run, import_run, import_runs
-from app.domain.disturbances import SensorNoise
-from app.domain.errors import InvalidInput
-from app.domain.settings import SettingValues
-from app.domain.world import World
-from app.runs.lane import lane_config
-from app.runs.race_config import Branch, RaceConfig
-from app.runs.recording import race_arrays
+from app.storage import stored_races
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
-from app.storage.stored_recordings import PRACTICE, RACE, evaluations_file, transitions_file
+from app.storage.stored_races import RACE, race_file
+from app.storage.stored_recordings import PRACTICE, evaluations_file, transitions_file
+from hexapods.agents.registry import OURS
+from hexapods.domain.disturbances import SensorNoise
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.settings import SettingValues
+from hexapods.domain.world import World
+from hexapods.runs.lane import lane_config
+from hexapods.runs.race_config import Branch, RaceConfig
+from hexapods.runs.race_file import race_arrays
 from tests.storage.ended_runs import ended_race, ended_training
 from tests.storage.stores import ODD, opened, temporary_store, training
 
@@ -77,6 +79,32 @@ def rewritten(data: bytes, change: Change) -> bytes:
     return repacked(data, run_json=json.dumps(content).encode())
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ('"format":', '"format": 1, "format":', "'format' twice"),
+        ('"name":', '"name": "another", "name":', "'name' twice"),
+        ('"gait":', '"gait": "left-right-vertical", "gait":', "'gait' twice"),
+        ('"curve":', '"curve": [], "curve":', "'curve' twice"),
+        ('"distance_m":', '"step": 3, "distance_m":', "twice"),
+        ('"step":', " " * 10_000 + '"step":', "blanks"),
+        ('"name":', " " * 10_000 + '"name":', "blanks"),
+        ('"name":', " " * 10_000_000 + '"name":', "too long"),
+    ],
+    ids=str,
+)
+def test_repeated_keys_and_blanks_are_refused(
+    old: str, new: str, complaint: str, source: RunStore
+) -> None:
+    data = export_run(source, TRAINING)
+    text = archive.unpack(data, "run.zip", lambda name: True)[RUN].decode()
+    # The first is in the run, except for those of the curve, which is at the end.
+    parts = text.rpartition(old) if old in ('"step":', '"distance_m":') else text.partition(old)
+    assert parts[1]
+    changed = parts[0] + new + parts[2]
+    assert complaint in refusal(repacked(data, run_json=changed.encode()))
+
+
 @pytest.mark.parametrize("run_id", [TRAINING, RACED])
 def test_export_and_import_preserve_everything(
     source: RunStore, run_id: str, tmp_path: Path
@@ -101,6 +129,32 @@ def test_export_and_import_preserve_everything(
             assert was is not None
             assert [s.step for s in practised.steps] == [s.step for s in was.steps]
             assert len(practised.evaluations) == len(was.evaluations) == 24
+
+
+def test_a_long_race_is_archived_in_its_files(
+    source: RunStore, store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(stored_races, "FILE_STEPS", 6)
+    race = ended_race(source, "00000000000r2", TRAINING)
+    names = [race_file(number) for number in range(3)]
+    data = export_run(source, race.id)
+    run = imported(data, store)
+
+    assert all(store.artifact(run.id, name) == source.artifact(race.id, name) for name in names)
+    lanes, were = Recordings(store).race(run.id), Recordings(source).race(race.id)
+    assert lanes is not None
+    assert were is not None
+    assert [len(lane.steps) for lane in lanes] == [8, 8]
+    same = zip(race_arrays(lanes).values(), race_arrays(were).values(), strict=True)
+    assert all(one.tobytes() == other.tobytes() for one, other in same)
+    for changed in (
+        {"race-0001_npz": None},
+        {"race_npz": None},
+        {"race-0001_npz": source.artifact(race.id, names[2])},
+        {"race-0003_npz": source.artifact(race.id, names[2])},
+    ):
+        assert "cannot be shown" in refusal(repacked(data, **changed))
+    source.delete(race.id)
 
 
 def test_tags_and_notes_are_archived_and_checked(source: RunStore, store: RunStore) -> None:

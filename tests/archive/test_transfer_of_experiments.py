@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 
-from app.agents.registry import OURS
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
 from app.archive.transfer import export_run
-from app.experiments.config import SUMMARY, experiment_config
-from app.experiments.engine import Outcome
-from app.experiments.plan import Plan
-from app.experiments.trial import run_trial
 from app.storage.database.store import RunStore
 from app.storage.run import State
+from hexapods.agents.registry import OURS
+from hexapods.experiments.config import SUMMARY, experiment_config
+from hexapods.experiments.engine import Outcome
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.trial import run_trial
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
 from tests.storage.ended_runs import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened

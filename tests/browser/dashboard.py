@@ -19,7 +19,7 @@ _TRANSITIONS_HAVE_ENDED = """() => Promise.all(document.getAnimations()
     .filter(({effect}) => effect.getComputedTiming().endTime !== Infinity)
     .map(animation => animation.finished.catch(() => {})))"""
 # A route of Playwright would stop each request of the page, to look at its address.
-_WITHOUT_3D = """Object.defineProperty(HTMLIFrameElement.prototype, "src", {set() {}})"""
+WITHOUT_3D = """Object.defineProperty(HTMLIFrameElement.prototype, "src", {set() {}})"""
 _STATUS = re.compile(r"status of (\d+)")
 """Part of Chromium's message about an answer of 400 and above."""
 _METRES = re.compile(r"−?\d+\.\d\d\sm")
@@ -39,7 +39,7 @@ class Dashboard:
         self.page = page
         self._has_3d = has_3d
         if not has_3d:
-            page.add_init_script(_WITHOUT_3D)
+            page.add_init_script(WITHOUT_3D)
         self.complaints: list[str] = []
         page.set_default_timeout(PATIENCE_MS)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))

@@ -31,6 +31,7 @@ def test_charts_answer(dashboard: Dashboard, flat_browser: Browser, tmp_path: Pa
         dashboard.open(f"{server.address}?{urlencode({'token': 'for-the-operator', **SHORT})}")
         dashboard.primary.click()
         expect(dashboard.page.locator(".headline")).to_contain_text("had used")
+        dashboard.button("Keep watching").click()
         race = values_of(dashboard.page, "the race")
         end_s = end_of_race(dashboard)
         dashboard.eventually(lambda: abs(position(race) - end_s) < 0.1, "the whole race is shown")
@@ -40,6 +41,7 @@ def test_charts_answer(dashboard: Dashboard, flat_browser: Browser, tmp_path: Pa
         is_saved(dashboard, tmp_path)
         assert dashboard.violations() == []
         on_a_spectators_phone(flat_browser, server)
+        taps_ahead_of_what_is_shown(dashboard, flat_browser, server)
         seeks_in_the_practice_on_stage(dashboard)
 
 
@@ -58,6 +60,17 @@ def position(chart: Locator) -> float:
     """Where the crosshair is, or would be first: seconds or steps."""
     words = chart.get_attribute("aria-valuetext") or ""
     return float(words.split("\u00a0")[0].split(" ")[0])
+
+
+def set_stage(page: Page, change: dict[str, object]) -> None:
+    """Change the stage as the operator whose page it is."""
+    page.evaluate(
+        """change => fetch("/api/v1/stage", {
+            method: "PUT", headers: {"Content-Type": "application/json"},
+            body: JSON.stringify(change),
+        })""",
+        change,
+    )
 
 
 def numbers_of_axis(chart: Locator) -> list[str]:
@@ -205,6 +218,31 @@ def on_a_spectators_phone(browser: Browser, server: Serving) -> None:
         assert dashboard.complaints == []
 
 
+def taps_ahead_of_what_is_shown(operator: Dashboard, browser: Browser, server: Serving) -> None:
+    """An operator's tap seeks there; a spectator's says that it is not shown yet, over no line."""
+
+    def opened(page: Page, query: str) -> tuple[Locator, Callable[[], None]]:
+        dashboard = Dashboard(page, has_3d=False)
+        dashboard.open(f"{server.address}{query}")
+        race = values_of(page, "the race")
+        box = box_of(race)
+        set_stage(operator.page, {"time_s": 0.5, "playing": False})
+        dashboard.eventually(lambda: position(race) == 0.5, "the beginning is shown")
+        x, y = box["x"] + 0.8 * box["width"], box["y"] + 60
+        return race, lambda: page.touchscreen.tap(x, y)
+
+    with new_page(browser, viewport=PHONE, has_touch=True) as page:
+        race, tap = opened(page, "")
+        tap()
+        expect(race).to_have_attribute("aria-valuetext", re.compile("s: not shown yet$"))
+        expect(race.locator(".readout")).to_have_text(re.compile("not shown yet$"))
+    with new_page(browser, viewport=PHONE, has_touch=True) as page:
+        race, tap = opened(page, "?token=for-the-operator")
+        time_s = sought(page, tap)
+        operator.eventually(lambda: abs(position(race) - time_s) < 0.1, "that moment is shown")
+        expect(race.locator(".readout")).to_have_count(0)
+
+
 def finger(chart: Locator, event: str, number: int, share: float, box: FloatRect) -> None:
     chart.dispatch_event(
         event,
@@ -217,13 +255,7 @@ def seeks_in_the_practice_on_stage(dashboard: Dashboard) -> None:
     [training] = dashboard.get("/api/v1/trainings")["items"]
     seek = page.locator(".seek input")
     end_of_race_s = seek.get_attribute("max") or ""
-    page.evaluate(
-        """run_id => fetch("/api/v1/stage", {
-            method: "PUT", headers: {"Content-Type": "application/json"},
-            body: JSON.stringify({run_id, time_s: 0, playing: false}),
-        })""",
-        training["id"],
-    )
+    set_stage(page, {"run_id": training["id"], "time_s": 0, "playing": False})
     curve = values_of(page, "the learning curve")
     expect(curve).to_have_class(re.compile("seeks"))
     box = box_of(curve)

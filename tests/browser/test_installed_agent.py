@@ -22,8 +22,8 @@ from typing import Annotated
 
 from annotated_types import Ge, Le
 
-from app.agents.q_learning import QLearning
-from app.domain.settings import Setting
+from hexapods.agents.q_learning import QLearning
+from hexapods.domain.settings import Setting
 
 Optimism = Annotated[
     float, Ge(0), Le(5), Setting(title="Optimism", symbol="ω", help="First guess of a value.")

@@ -40,6 +40,8 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
         page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
     ).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
+    # The ranking is settled, and the others walk on for those who want to see it.
+    dashboard.button("Keep watching").click()
     expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("468")
     check_crosshairs(page)
     assert dashboard.violations() == []
@@ -280,10 +282,10 @@ def test_two_operators_and_one_stage(
         other = Dashboard(page, has_3d=False)
         other.open(f"{server.address}?{LONG}")
         other.button("Train, don’t race").click()
-        expect(other.page.get_by_text("Another run is live on the stage")).to_be_visible()
+        expect(other.page.get_by_text("The stage shows another run")).to_be_visible()
         assert other.get("/api/v1/stage")["run_id"] == held
         other.button("Show on stage").click()
-        expect(other.page.get_by_text("Another run is live on the stage")).to_have_count(0)
+        expect(other.page.get_by_text("The stage shows another run")).to_have_count(0)
         assert other.get("/api/v1/stage")["run_id"] != held
         assert other.complaints == []
-    expect(dashboard.page.get_by_text("Another run is live on the stage")).to_be_visible()
+    expect(dashboard.page.get_by_text("The stage shows another run")).to_be_visible()

@@ -35,7 +35,7 @@ def test_an_interrupted_training_goes_on_at_a_click(tmp_path: Path, dashboard: D
         page.goto("about:blank")
     with serving(tmp_path) as server:
         dashboard.open(server.address)
-        expect(page.locator(".notice")).to_contain_text("The training was interrupted at step")
+        expect(page.locator(".stage-note")).to_contain_text("The training was interrupted at step")
         page.goto(f"{server.address}#runs")
         row = page.locator(".run")
         expect(row.locator(".state")).to_have_text("interrupted")
@@ -43,7 +43,7 @@ def test_an_interrupted_training_goes_on_at_a_click(tmp_path: Path, dashboard: D
         page.goto(f"{server.address}#")
         left_at = done(dashboard)
         dashboard.button("Resume").click()
-        expect(page.locator(".notice")).to_have_count(0)
+        expect(page.locator(".stage-note")).to_have_count(0)
         dashboard.eventually(lambda: done(dashboard) > left_at, "another step")
         dashboard.button("Stop").click()
 

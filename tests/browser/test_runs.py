@@ -145,7 +145,7 @@ def test_a_run_gets_a_name_tags_and_notes_in_its_place(
     code = page.get_by_role("region", name="Code")
     expect(code).to_contain_text("hexapods train")
     dashboard.button("Python").click()
-    expect(code).to_contain_text("build_learner")
+    expect(code).to_contain_text("hx.train")
     assert dashboard.violations() == []
     dashboard.button("Close").click()
     row.get_by_label("More for this training").click()

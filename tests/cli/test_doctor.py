@@ -59,9 +59,20 @@ def test_unusable_data_folder_is_named(tmp_path: Path) -> None:
     assert f"{tmp_path / 'data'} cannot be written" in failures(examined(tmp_path))["data folder"]
 
 
+def test_what_other_users_can_open_is_named(tmp_path: Path) -> None:
+    with opened(tmp_path / "data", None):
+        pass
+    (tmp_path / "data").chmod(0o755)
+    assert "server.lock" not in failures(examined(tmp_path))["data folder"]
+    (tmp_path / "data" / "server.lock").chmod(0o644)
+    named = failures(examined(tmp_path))["data folder"]
+    assert f"{tmp_path / 'data'}, {tmp_path / 'data' / 'server.lock'}, and stop" in named
+    assert "chmod go-rwx" in named
+
+
 def test_port_of_another_process_fails_and_that_of_the_own_server_passes(tmp_path: Path) -> None:
     folder = tmp_path / "data"
-    folder.mkdir()
+    folder.mkdir(mode=0o700)
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         found = failures(examined(tmp_path, HEXAPODS_PORT=str(port)))

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from app.experiments.folder import TRIALS
+from hexapods.experiments.folder import TRIALS
 from tests.cli.running import EXAMPLES, ROOT, hexapods, in_process, output, refusal
 
 ONE_GAIT = ("--gait", "left-right-origin", "--simulator", "kinematic")
@@ -45,7 +45,7 @@ def test_sweep_prints_its_progress_and_writes_a_report(tmp_path: Path) -> None:
     done = hexapods(*SWEEP, "--seeds", "4", "--workers", "1", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("9 trials on 1 worker, kept in sweep-results\n")
-    assert "alpha=0.1" in done.stdout
+    assert "α\u00a00.1" in done.stdout
     assert done.stdout.rstrip().endswith("The report is sweep-results/report.html.")
     folder = tmp_path / "sweep-results"
     assert len(kept(folder)) == 9
@@ -203,12 +203,12 @@ def test_table_of_a_league_has_the_shares_of_greedy_and_of_the_best_known(tmp_pa
     assert (done.returncode, done.stderr) == (0, "")
     summary = json.loads((tmp_path / "league-results" / "summary.json").read_text("utf-8"))
     (greedy,) = (one for one in summary["worlds"] if one["agent"] == "greedy")
-    name, share = greedy["key"].replace("/", " "), 100 * greedy["of_best_known"]["iqm"]
+    share = 100 * greedy["of_best_known"]["iqm"]
 
-    lines = [re.split("[┃│]", line) for line in done.stdout.splitlines()]
-    rows = {line[1].strip(): [cell.strip() for cell in line[-3:-1]] for line in lines if line[1:]}
+    lines = [re.split(" {2,}", line.strip()) for line in done.stdout.splitlines()]
+    rows = {line[0]: line[-2:] for line in lines}
     assert rows["setting"] == ["of greedy", "of best known"]
-    assert rows[name] == ["100 %", f"{share:.0f} %"]
+    assert rows["Greedy"] == ["100\u00a0%", f"{share:.0f}\u00a0%"]
 
 
 @pytest.mark.parametrize(

@@ -51,7 +51,7 @@ def test_runs_are_listed(data: Path, tmp_path: Path) -> None:
         assert [run["id"] for run in listed["items"]] == ids
     lines = in_process("runs", "list", *here, folder=tmp_path).stdout.splitlines()
     assert lines[0].split("\t")[:4] == [TRAINING, "training", "finished", "120"]
-    assert lines[1].split("\t")[4] == "greedy"
+    assert lines[1].split("\t")[4] == "Greedy"
     assert "at least 1" in refusal(
         "runs", "list", *here, "--limit", "0", folder=tmp_path, run=in_process
     )

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from app.assembly import build_learner, finish_training
-from app.runs.best_known import best_known_m
-from app.runs.config import WalkingProblem, training_config
-from app.runs.training import train
+from hexapods.assembly import build_learner, finish_training
+from hexapods.runs.best_known import best_known_m
+from hexapods.runs.config import WalkingProblem, training_config
+from hexapods.runs.training import train
 from tests.cli.running import EXAMPLES, hexapods, in_process, output, refusal
 
 GAIT = ("--gait", "left-right-origin")
@@ -51,7 +51,7 @@ def test_train_and_race_print_the_best_known_distance_where_it_is_known(
 
     assert output(*race, folder=tmp_path, run=in_process)["best_known_m"] == best_m
     shown = in_process(*race, folder=tmp_path).stdout
-    assert shown.endswith(f"Best known, in all: {best_m:.2f} m\n")
+    assert shown.endswith(f"Best known, total: {best_m:.2f} m\n")
     shown = in_process(*train, folder=tmp_path).stdout
     assert shown.endswith(f" m, the best known walk is {best_m:.2f} m.\n")
 
@@ -76,7 +76,7 @@ def test_race_of_a_table_against_look_ahead(folder: Path) -> None:
     assert [lane["simulated_transitions"] for lane in lanes] == [0, 600, 7800]
     assert lanes[1]["total_distance_m"] == pytest.approx(24.833 * 0.02, abs=1e-4)
     shown = hexapods(*race, "--clock", "free", folder=folder)
-    assert "Ranked at time-out, free clock" in shown.stdout
+    assert "Ranked at time-out, no clock" in shown.stdout
 
 
 def test_a_race_prints_the_gait_of_each_lane(tmp_path: Path) -> None:
@@ -91,6 +91,15 @@ def test_a_race_prints_the_gait_of_each_lane(tmp_path: Path) -> None:
         assert one["speed_m_s"] > 0.02
         assert one["cost_of_transport"] < 5
         assert len(one["leg_duty_factors"]) == 6
+
+
+def test_a_race_in_which_all_fail_has_no_ranking(tmp_path: Path) -> None:
+    clumsy = ("--lane", "tests.own_agents:Clumsy")
+    done = in_process("race", *QUICK, *clumsy, *clumsy, folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "No ranking: no lane used all its steps" in done.stdout
+    assert done.stdout.count("tripped") == 2
+    assert "None" not in done.stdout
 
 
 def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
@@ -110,9 +119,9 @@ def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
     assert seen == ["measured", "measured", "planned"]
     assert printed["result"]["lanes"][0]["simulated_transitions"] == 5 * 156
     shown = hexapods(*race, folder=folder).stdout.replace("\u00a0", " ")
-    assert "look-ahead, depth 2" in shown
+    assert "Look-ahead, depth 2" in shown
     assert "plans with the true model" in shown
-    assert "q-learning, α 0.5, keeps learning" in shown
+    assert "Q-learning, α 0.5, keeps learning" in shown
 
 
 def test_the_example_agent_learns_and_races(tmp_path: Path) -> None:

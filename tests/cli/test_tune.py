@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.folder import TRIALS, open_results
-from app.experiments.trial import TrialResult
-from app.experiments.tuning.summary import summarise_tuning
+from hexapods.experiments.folder import TRIALS, open_results
+from hexapods.experiments.trial import TrialResult
+from hexapods.experiments.tuning.summary import summarise_tuning
 from tests.cli.running import ROOT, hexapods, in_process, output, refusal
 from tests.experiments.test_tuning import config, tuned
 
@@ -164,7 +164,7 @@ def test_results_of_another_experiment_are_refused(tmp_path: Path) -> None:
 def test_nothing_but_a_tuning_imports_optuna(tmp_path: Path) -> None:
     code = (
         "import sys, app.server, app.cli; app.cli._parser(); print('optuna' in sys.modules); "
-        "import app.experiments.tuning.tuning; print('optuna' in sys.modules)"
+        "import hexapods.experiments.tuning.tuning; print('optuna' in sys.modules)"
     )
     done = subprocess.run(
         [sys.executable, "-c", code],

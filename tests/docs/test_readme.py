@@ -14,10 +14,11 @@ BLOCKS = re.findall(
 )
 
 
-@pytest.mark.parametrize("block", BLOCKS)
+# `tests/test_wheel.py` runs the first, in an environment that has nothing else.
+@pytest.mark.parametrize("block", BLOCKS[1:])
 def test_each_block_of_python_runs(block: str, tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-W", "error", "-c", block], check=True, cwd=tmp_path)
 
 
-def test_there_is_one() -> None:
-    assert BLOCKS
+def test_there_are_others() -> None:
+    assert len(BLOCKS) > 1

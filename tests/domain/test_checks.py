@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from app.domain.checks import check_whole
-from app.domain.errors import InvalidInput
+from hexapods.domain.checks import check_whole
+from hexapods.domain.errors import InvalidInput
 
 
 @pytest.mark.parametrize("value", [1, 5, 10_000])

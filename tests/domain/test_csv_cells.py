@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.domain.text import is_formula, text_cell
+from hexapods.domain.text import is_formula, text_cell
 
 
 @pytest.mark.parametrize("begin", ["=", "+", "-", "@", "\t", "\r", "\n", "＝"])

@@ -4,7 +4,7 @@ from dataclasses import fields
 
 import pytest
 
-from app.domain.disturbances import (
+from hexapods.domain.disturbances import (
     KINDS,
     Disturbance,
     Limp,
@@ -16,8 +16,8 @@ from app.domain.disturbances import (
     is_nothing,
     parse_disturbance,
 )
-from app.domain.errors import InvalidInput, UnknownName
-from app.domain.robot import PRESETS, Robot
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.robot import PRESETS, Robot
 
 ONE_OF_EACH = (
     "limp:legs=1,4:at=25",

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.domain.feet import Feet
+from hexapods.domain.feet import Feet
 
 FRONT_RIGHT = (0.02, 0.02)
 

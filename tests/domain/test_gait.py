@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.domain.errors import InvalidInput, UnknownName
-from app.domain.gait import NAMED_GAITS, GaitSpec, Pair, Symmetry, resolve
-from app.domain.robot import ring
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.gait import NAMED_GAITS, GaitSpec, Pair, Symmetry, resolve
+from hexapods.domain.robot import ring
 
 LEFT_RIGHT = (-30, 30, 90, 150, -150, -90)
 FRONT_BACK = (-60, 0, 60, 120, 180, -120)

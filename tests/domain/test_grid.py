@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.domain.errors import InvalidInput
-from app.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, FootGrid
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.grid import MAX_DIVISIONS, MIN_DIVISIONS, FootGrid
 
 every_division = pytest.mark.parametrize("divisions", range(MIN_DIVISIONS, MAX_DIVISIONS + 1))
 

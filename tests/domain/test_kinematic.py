@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from app.domain.errors import Unreachable
-from app.domain.gait import resolve
-from app.domain.grid import FootGrid
-from app.domain.kinematic import KinematicSimulator
-from app.domain.robot import Robot
-from app.domain.types import Action
+from hexapods.domain.errors import Unreachable
+from hexapods.domain.gait import resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.kinematic import KinematicSimulator
+from hexapods.domain.robot import Robot
+from hexapods.domain.types import Action
 
 FRONT_LEFT, FRONT_RIGHT = 1, 2
 H = 0.02

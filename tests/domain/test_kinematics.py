@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from app.domain.errors import Unreachable
-from app.domain.gait import NAMED_GAITS, GaitSpec, resolve
-from app.domain.grid import FootGrid
-from app.domain.kinematics import JOINT_LIMITS_RAD, Legs, check_reach
-from app.domain.robot import Robot, robot
-from app.domain.types import FloatArray
+from hexapods.domain.errors import Unreachable
+from hexapods.domain.gait import NAMED_GAITS, GaitSpec, resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.kinematics import JOINT_LIMITS_RAD, Legs, check_reach
+from hexapods.domain.robot import Robot, robot
+from hexapods.domain.types import FloatArray
 
 
 def legs_of(made: Robot, gait: str | GaitSpec = "left-right-origin") -> Legs:

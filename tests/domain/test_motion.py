@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from app.domain.gait import NAMED_GAITS, resolve
-from app.domain.grid import FootGrid
-from app.domain.kinematics import JOINT_LIMITS_RAD
-from app.domain.motion import StepMotion, StepPlan, ease, recorded_substeps
-from app.domain.robot import Robot, robot
-from app.domain.types import Action, FloatArray
+from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.kinematics import JOINT_LIMITS_RAD
+from hexapods.domain.motion import StepMotion, StepPlan, ease, recorded_substeps
+from hexapods.domain.robot import Robot, robot
+from hexapods.domain.types import Action, FloatArray
 
 SWING, SHIFT = 50, 30
 FRONT_LEFT, FRONT_RIGHT, BACK_LEFT = 1, 2, 3

@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import pytest
 
-from app.domain.errors import UnknownName
-from app.domain.gait import resolve
-from app.domain.grid import FootGrid
-from app.domain.kinematic import KinematicSimulator
-from app.domain.observation import OBSERVATIONS, check_observation, legal_actions, observe
-from app.domain.robot import PRESETS, Robot
-from app.domain.types import Action
-from app.physics.mujoco_simulator import MujocoSimulator
+from hexapods.domain.errors import UnknownName
+from hexapods.domain.gait import resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.kinematic import KinematicSimulator
+from hexapods.domain.observation import OBSERVATIONS, check_observation, legal_actions, observe
+from hexapods.domain.robot import PRESETS, Robot
+from hexapods.domain.types import Action
+from hexapods.physics.mujoco_simulator import MujocoSimulator
 
 HOME, FRONT_LEFT, FRONT_RIGHT, BACK_LEFT, BACK_RIGHT = range(5)
 

@@ -2,10 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from app.domain.posture import has_fallen, heading_deg
-from app.domain.robot import Robot
+from hexapods.domain.posture import TILT, has_fallen, have_fallen, heading_deg
+from hexapods.domain.robot import Robot
 
 
 def pose(z: float, tilt_deg: float = 0.0, yaw_deg: float = 0.0) -> list[float]:
@@ -32,6 +33,14 @@ def test_a_robot_has_fallen_when_its_torso_lies_on_the_ground(
     z: float, tilt_deg: float, fallen: bool
 ) -> None:
     assert has_fallen(Robot(), pose(z, tilt_deg)) == fallen
+
+
+def test_many_poses_are_told_at_once() -> None:
+    cases = [(z, tilt) for z in (0.02, 0.03, 0.06, 0.1) for tilt in (0.0, 30.0, 45.0, 90.0, 180.0)]
+    poses = [pose(z, tilt_deg) for z, tilt_deg in cases]
+    for ground_m in (0.0, 0.02):
+        told = have_fallen(Robot(), np.array(poses)[:, TILT], ground_m)
+        assert told.tolist() == [has_fallen(Robot(), one, ground_m) for one in poses]
 
 
 def test_bumps_are_ground_too() -> None:

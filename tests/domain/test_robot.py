@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.domain.errors import InvalidInput
-from app.domain.robot import PRESETS, LegMount, Robot, as_mapping, ring, robot
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.robot import PRESETS, LegMount, Robot, as_mapping, ring, robot
 
 
 def test_the_default_robot_has_the_specified_parameters() -> None:

@@ -9,8 +9,8 @@ from typing import Annotated, Any, Literal
 import pytest
 from annotated_types import Ge, Gt, Le, Lt
 
-from app.domain.errors import InvalidInput, UnknownName
-from app.domain.settings import (
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.settings import (
     REQUIRED,
     Setting,
     SettingValues,

@@ -6,15 +6,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.domain.gait import NAMED_GAITS, resolve
-from app.domain.grid import FootGrid
-from app.domain.kinematic import KinematicSimulator
-from app.domain.kinematics import Legs
-from app.domain.observation import legal_actions, observe
-from app.domain.robot import Robot, robot
-from app.domain.simulator import Simulator
-from app.domain.types import Action
-from app.physics.mujoco_simulator import MujocoSimulator
+from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.kinematic import KinematicSimulator
+from hexapods.domain.kinematics import Legs
+from hexapods.domain.observation import legal_actions, observe
+from hexapods.domain.robot import Robot, robot
+from hexapods.domain.simulator import Simulator
+from hexapods.domain.types import Action
+from hexapods.physics.mujoco_simulator import MujocoSimulator
 
 Build = Callable[..., Simulator[Any]]
 

@@ -4,8 +4,8 @@ import unicodedata
 
 import pytest
 
-from app.domain.errors import InvalidInput
-from app.domain.text import (
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.text import (
     MAX_NOTES,
     MAX_TAG,
     MAX_TAGS,

@@ -5,9 +5,9 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from app.domain.errors import InvalidInput
-from app.domain.robot import RANGES, Robot, as_mapping, robot
-from app.domain.tolerance import MAX_TOLERANCE, VARIED, build_tolerance
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.robot import RANGES, Robot, as_mapping, robot
+from hexapods.domain.tolerance import MAX_TOLERANCE, VARIED, build_tolerance
 
 
 def built(share: float, seed: int = 0, design: Robot | None = None) -> Robot:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.domain.disturbances import (
+from hexapods.domain.disturbances import (
     KINDS,
     Friction,
     Limp,
@@ -20,9 +20,9 @@ from app.domain.disturbances import (
     Weak,
     parse_disturbance,
 )
-from app.domain.errors import InvalidInput, UnknownName
-from app.domain.robot import Robot, robot
-from app.domain.world import (
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.robot import Robot, robot
+from hexapods.domain.world import (
     MAX_IN_A_RUN,
     UNDISTURBED,
     WORLDS,

@@ -5,10 +5,10 @@ from contextlib import suppress
 
 import psutil
 
-from app.experiments.config import ExperimentConfig, experiment_config
-from app.experiments.engine import Outcome
-from app.experiments.plan import Plan, Trial
-from app.experiments.trial import TrialResult, run_trial
+from hexapods.experiments.config import ExperimentConfig, experiment_config
+from hexapods.experiments.engine import Outcome
+from hexapods.experiments.plan import Plan, Trial
+from hexapods.experiments.trial import TrialResult, run_trial
 
 CRASHING = "tests.experiments.crashing_agent:CrashingAgent"
 

@@ -9,8 +9,8 @@ from typing import NoReturn
 
 import numpy as np
 
-from app.agents.protocol import Problem
-from app.domain.types import Action, Cells
+from hexapods.agents.protocol import Problem
+from hexapods.domain.types import Action, Cells
 from tests.own_agents import Restless
 
 FOLDER = "HEXAPODS_TESTS_CRASHES"

@@ -13,7 +13,7 @@ from typing import Any
 import psutil
 from distributed.security import Security
 
-from app.experiments.cluster import ClusterSpec
+from hexapods.experiments.cluster import ClusterSpec
 from tests.timeouts import LONG_S
 
 _START_S = 30.0

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from app.domain.robot import robot
-from app.experiments.config import ExperimentConfig, experiment_config
-from app.experiments.plan import Plan, Setting
-from app.experiments.summary import summarise
-from app.experiments.trial import TrialResult, run_trial
+from hexapods.domain.robot import robot
+from hexapods.experiments.config import ExperimentConfig, experiment_config
+from hexapods.experiments.plan import Plan, TrialSetting
+from hexapods.experiments.summary import summarise
+from hexapods.experiments.trial import TrialResult, run_trial
 
 Results = dict[str, TrialResult]
 GREEDY_M = 0.5
@@ -34,7 +34,7 @@ def around(middle_m: float, spread_m: float = 0.02) -> Callable[[int], float]:
 
 
 def sample_results(
-    tried: ExperimentConfig, distance_m: Callable[[Setting], Callable[[int], float]]
+    tried: ExperimentConfig, distance_m: Callable[[TrialSetting], Callable[[int], float]]
 ) -> Results:
     """Make up results in which each seed covers the given distance, and greedy half a metre.
 
@@ -75,7 +75,7 @@ def sample_results(
 
 
 def summary_of(
-    experiment: str, distance_m: Callable[[Setting], Callable[[int], float]], **given: Any
+    experiment: str, distance_m: Callable[[TrialSetting], Callable[[int], float]], **given: Any
 ) -> dict[str, Any]:
     """Summarise a made-up experiment."""
     tried = config(experiment, **given)

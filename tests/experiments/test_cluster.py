@@ -13,11 +13,11 @@ import pytest
 from distributed import Client
 from tornado.iostream import IOStream
 
-from app.domain.errors import InvalidInput
-from app.experiments import cluster
-from app.experiments.cluster import ClusterLost, ClusterSpec, connect
-from app.experiments.engine import run_trials
-from app.experiments.own_cluster import cores
+from hexapods.domain.errors import InvalidInput
+from hexapods.experiments import cluster
+from hexapods.experiments.cluster import ClusterLost, ClusterSpec, connect
+from hexapods.experiments.engine import run_trials
+from hexapods.experiments.own_cluster import cores
 from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
 from tests.experiments.existing_cluster import scheduler
 from tests.timeouts import LONG_S
@@ -71,8 +71,8 @@ def test_a_local_cluster_listens_on_loopback_with_tls_and_leaves_no_files_or_pro
 def test_workers_end_when_the_process_that_started_them_is_killed(tmp_path: Path) -> None:
     script = tmp_path / "endless.py"
     script.write_text(
-        "from app.experiments.cluster import ClusterSpec\n"
-        "from app.experiments.engine import run_trials\n"
+        "from hexapods.experiments.cluster import ClusterSpec\n"
+        "from hexapods.experiments.engine import run_trials\n"
         "from tests.experiments.clusters import small, trials_of\n"
         "if __name__ == '__main__':\n"
         "    trials = trials_of(small(seeds=1)) + trials_of(small(seeds=9, steps=9_000_000))\n"
@@ -115,7 +115,7 @@ def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(
 def test_a_scheduler_that_dies_as_the_client_reconnects_is_lost(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, workers_are_counted_every_s: float
 ) -> None:
-    monkeypatch.setattr("app.experiments.engine._WORKER_COUNT_S", workers_are_counted_every_s)
+    monkeypatch.setattr("hexapods.experiments.engine._WORKER_COUNT_S", workers_are_counted_every_s)
 
     def connection_that_closed_meanwhile(stream: IOStream, *_: object, **__: object) -> None:
         stream.close()

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from app.domain.errors import InvalidInput, UnknownName
-from app.domain.gait import NAMED_GAITS, GaitSpec
-from app.domain.robot import robot
-from app.experiments.config import (
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.robot import robot
+from hexapods.experiments.config import (
     EXPERIMENTS,
     GRID,
     MAX_SEEDS,

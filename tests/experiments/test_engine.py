@@ -8,11 +8,11 @@ from pathlib import Path
 import psutil
 import pytest
 
-from app.experiments.cluster import ClusterSpec
-from app.experiments.config import experiment_config
-from app.experiments.engine import Outcome, run_trials
-from app.experiments.plan import Trial
-from app.experiments.trial import TrialResult
+from hexapods.experiments.cluster import ClusterSpec
+from hexapods.experiments.config import experiment_config
+from hexapods.experiments.engine import Outcome, run_trials
+from hexapods.experiments.plan import Trial
+from hexapods.experiments.trial import TrialResult
 from tests.experiments import crashing_agent
 from tests.experiments.clusters import (
     CRASHING,
@@ -72,7 +72,7 @@ def test_stopped_workers_are_replaced(
     trials: list[Trial], expected: dict[str, TrialResult], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As by SIGSTOP: their connections stay open, so that Dask notices nothing."""
-    monkeypatch.setattr("app.experiments.own_cluster.STALLED_S", 0.5)
+    monkeypatch.setattr("hexapods.experiments.own_cluster.STALLED_S", 0.5)
 
     def while_stopping_workers() -> Iterator[Outcome]:
         for number, outcome in enumerate(run_trials(trials, TWO)):

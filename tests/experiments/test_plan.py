@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.registry import OURS
-from app.domain.errors import HexapodError
-from app.domain.robot import robot
-from app.experiments.config import experiment_config
-from app.experiments.plan import Plan, trial_seed
+from hexapods.agents.registry import OURS
+from hexapods.domain.errors import HexapodError
+from hexapods.domain.robot import robot
+from hexapods.experiments.config import experiment_config
+from hexapods.experiments.plan import Plan, trial_seed
 
 
 def plan(experiment: str, **given: Any) -> Plan:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from app.domain.types import FloatArray
-from app.experiments.statistics import (
+from hexapods.domain.types import FloatArray
+from hexapods.experiments.statistics import (
     Interval,
     bootstrap_exceeds,
     improvement,

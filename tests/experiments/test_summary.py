@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.domain.gait import GaitSpec
-from app.experiments.plan import Plan
-from app.experiments.published import published
-from app.experiments.summary import summarise
-from app.experiments.trial import TrialResult
-from app.runs.best_known import kept
+from hexapods.domain.gait import GaitSpec
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.published import published
+from hexapods.experiments.summary import summarise
+from hexapods.experiments.trial import TrialResult
+from hexapods.runs.best_known import kept
 from tests.experiments.sample_experiments import (
     GREEDY_M,
     ROBOTS,

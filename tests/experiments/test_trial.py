@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.registry import OURS
-from app.assembly import build_learner
-from app.domain.errors import UnknownName
-from app.domain.world import named_world
-from app.experiments.config import experiment_config
-from app.experiments.plan import Plan, Trial
-from app.experiments.trial import TrialConfig, TrialResult, run_trial
-from app.runs.config import TrainingConfig, training_config
-from app.runs.records import Evaluated, StepTaken
-from app.runs.training import train
+from hexapods.agents.registry import OURS
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import UnknownName
+from hexapods.domain.world import named_world
+from hexapods.experiments.config import experiment_config
+from hexapods.experiments.plan import Plan, Trial
+from hexapods.experiments.trial import TrialConfig, TrialResult, run_trial
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.training import train
 from tests.figures import GREEDY_H, H_M, interquartile_mean, kinematic_rows
 
 
@@ -51,7 +51,7 @@ def test_a_trial_gives_the_same_result_each_time(simulator: str) -> None:
 def test_a_trial_gives_the_same_result_in_another_process() -> None:
     config = TrialConfig(training=practice(steps=100, seed=5))
     script = (
-        "import pickle, sys; from app.experiments.trial import run_trial; "
+        "import pickle, sys; from hexapods.experiments.trial import run_trial; "
         "config = pickle.load(sys.stdin.buffer); "
         "sys.stdout.buffer.write(pickle.dumps(run_trial(config)))"
     )

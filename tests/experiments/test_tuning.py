@@ -11,21 +11,21 @@ from typing import Annotated, Any
 import pytest
 from annotated_types import Gt, Le
 
-from app.domain.errors import HexapodError
-from app.domain.settings import Setting, declare
-from app.experiments.config import as_json, experiment_config, from_json
-from app.experiments.engine import Outcome
-from app.experiments.folder import open_results
-from app.experiments.plan import Plan, Trial
-from app.experiments.progress import Progress
-from app.experiments.trial import TrialResult, run_trial
-from app.experiments.tuning.config import TuningConfig, config_json, tuning_config
-from app.experiments.tuning.ranges import SearchRange, declared_range, parse_range
-from app.experiments.tuning.report import command, tuning_files
-from app.experiments.tuning.study import Study
-from app.experiments.tuning.summary import summarise_tuning
-from app.experiments.tuning.tuning import BATCH, NothingTried, Run, Tuning, search_seeds
-from app.runs.config import agent_settings
+from hexapods.domain.errors import HexapodError
+from hexapods.domain.settings import Setting, declare
+from hexapods.experiments.config import as_json, experiment_config, from_json
+from hexapods.experiments.engine import Outcome
+from hexapods.experiments.folder import open_results
+from hexapods.experiments.plan import Plan, Trial
+from hexapods.experiments.progress import Progress
+from hexapods.experiments.trial import TrialResult, run_trial
+from hexapods.experiments.tuning.config import TuningConfig, config_json, tuning_config
+from hexapods.experiments.tuning.ranges import SearchRange, declared_range, parse_range
+from hexapods.experiments.tuning.report import command, tuning_files
+from hexapods.experiments.tuning.study import Study
+from hexapods.experiments.tuning.summary import summarise_tuning
+from hexapods.experiments.tuning.tuning import BATCH, NothingTried, Run, Tuning, search_seeds
+from hexapods.runs.config import agent_settings
 
 LRO = "left-right-origin"
 MOODY = "tests.own_agents:Moody"

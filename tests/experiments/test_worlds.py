@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 
 from app.api.experiment_answers import SummaryView
-from app.experiments.config import experiment_config
-from app.experiments.plan import Plan
-from app.experiments.report.page import page
-from app.experiments.report.trials_csv import trials_csv
-from app.experiments.summary import summarise
-from app.experiments.trial import TrialResult
-from app.experiments.worlds import mean_distance_m, steps_until
-from app.runs.best_known import kept
+from hexapods.experiments.config import experiment_config
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.report.page import page
+from hexapods.experiments.report.trials_csv import trials_csv
+from hexapods.experiments.summary import summarise
+from hexapods.experiments.trial import TrialResult
+from hexapods.experiments.worlds import mean_distance_m, steps_until
+from hexapods.runs.best_known import kept
 
 LRO = "left-right-origin"
 WALKS_M = {"greedy": 0.5, "greedy/nominal": 0.1, "informed": 0.4}
@@ -111,7 +111,7 @@ def test_report_shows_each_world_with_its_references(experiment: str) -> None:
     text = page(summary(experiment, curve_m, worlds=("limp-pair", "slope:degrees=4"), **steps))
 
     assert "Two limp legs, Left-right, opposite; best known" in text
-    assert "Slope:degrees=4, Left-right, opposite</figcaption>" in text
+    assert "Slope (slope 4.0), Left-right, opposite</figcaption>" in text
     assert "Greedy, nominal model" in text
     assert "Greedy, true model" in text
     assert "within 3&nbsp;% of its design" in text

@@ -3,18 +3,20 @@
 import gc
 import weakref
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from app.assembly import rebuild_learner
 from app.explanations import service
 from app.explanations.service import Explanations
-from app.runs.rebuilding import RebuiltLearner
-from app.runs.transition_log import TransitionLog
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
+from hexapods.assembly import rebuild_learner
+from hexapods.runs.rebuilding import RebuiltLearner
+from hexapods.runs.recording import LaneSteps
+from hexapods.runs.transition_log import TransitionLog
 from tests.runs.test_rebuilding import config_of, practised
 from tests.stage.stage_parts import StageParts
 from tests.storage.stores import temporary_store, training
@@ -86,7 +88,7 @@ def test_an_answer_is_of_the_steps_that_a_race_took_now(store: RunStore) -> None
     assert explanations.explain(run.id, 3, 0) is known
     lanes = parts.recordings.race(run.id)
     assert lanes is not None
-    other = lanes[0].steps[2]
-    lanes[0].steps[2] = type(other)(**{**vars(other), "reward_m": -0.5})
+    first, second, third, *rest = lanes[0].steps
+    lanes[0].steps = LaneSteps([first, second, replace(third, reward_m=-0.5), *rest])
 
     assert b"-0.5" in explanations.explain(run.id, 3, 0)

@@ -3,18 +3,21 @@
 import csv
 import dataclasses
 import io
+import sys
+from importlib.machinery import ModuleSpec
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pyarrow.parquet
 import pytest
 
-from app.domain.errors import InvalidInput
-from app.domain.kinematics import foot_positions
 from app.exports import extras
 from app.exports.recorded_lanes import RecordedWalks, checked_lane, recorded_walks
 from app.exports.trajectory import column_names, trajectory_csv, trajectory_parquet
 from app.storage.errors import Conflict
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.kinematics import foot_positions
 from tests.exports.conftest import AGENTS
 from tests.stage.stage_parts import StageParts
 
@@ -109,3 +112,15 @@ def test_what_runs_or_has_no_recording_is_refused(parts: StageParts) -> None:
 def test_a_missing_package_names_its_extra() -> None:
     with pytest.raises(extras.MissingExtra, match=r"pip install 'racing-hexapods\[parquet\]'"):
         extras.import_extra("no_such_module", "parquet", "a Parquet file")
+
+
+def test_extras_that_are_missing_are_named_with_the_command_that_installs_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name in ("imageio_ffmpeg", "OpenGL", "pyarrow", "foxglove"):
+        installed = ModuleType(name)
+        installed.__spec__ = ModuleSpec(name, None)
+        monkeypatch.setitem(sys.modules, name, installed)
+    assert extras.missing_extras() == {}
+    monkeypatch.setitem(sys.modules, "OpenGL", None)
+    assert extras.missing_extras() == {"video": "pip install 'racing-hexapods[video]'"}

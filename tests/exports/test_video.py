@@ -15,14 +15,14 @@ import psutil
 import pytest
 from PIL import Image, ImageSequence
 
-from app.domain.errors import HexapodError, InvalidInput
 from app.exports import video
 from app.exports.extras import MissingExtra
 from app.exports.recorded_lanes import RecordedWalks, recorded_walks
-from app.exports.video import VideoOptions, check_length, render_video
+from app.exports.video import VideoOptions, render_video, shown_poses
 from app.exports.video_renderer import VideoRenderer
 from app.jobs import process_pool
 from app.storage.errors import Busy
+from hexapods.domain.errors import HexapodError, InvalidInput
 from tests.jobs.waiting import wait_until
 from tests.stage.stage_parts import StageParts
 from tests.timeouts import LONG_S
@@ -68,7 +68,7 @@ def test_pictures_show_the_recorded_poses(raced: RecordedWalks) -> None:
 def test_a_gap_in_a_practice_is_left_out(parts: StageParts) -> None:
     run = parts.finished_training(steps=700)
     walks = recorded_walks(parts.store.find(run.id), parts.recordings)
-    times_s = video._times_s(walks, VideoOptions(fps=1), 1000)
+    times_s = shown_poses(walks, VideoOptions(fps=1), 1000).times_s
     assert times_s[-1] == pytest.approx(700 * 0.32)
     assert len(times_s) == pytest.approx(520 * 0.32, abs=2)
 
@@ -132,7 +132,7 @@ def test_what_cannot_be_rendered_is_refused(
         with pytest.raises(InvalidInput, match=words):
             VideoOptions(**wrong)
     with pytest.raises(InvalidInput, match="more than 5 frames; choose a higher speed"):
-        check_length(raced, SMALL, 5)
+        shown_poses(raced, SMALL, 5)
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setitem(sys.modules, "mujoco.egl", None)
     with pytest.raises(MissingExtra, match="apt-get install libegl1 libgl1-mesa-dri") as error:

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from app.experiments.config import ExperimentConfig, experiment_config
-from app.experiments.plan import Plan
-from app.experiments.trial import run_trial
 from app.storage.database.store import RunStore
+from hexapods.experiments.config import ExperimentConfig, experiment_config
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.trial import run_trial
 
 
 def sweep(seeds: int = 3, **more: Any) -> ExperimentConfig:

@@ -10,16 +10,16 @@ from typing import Any
 import psutil
 import pytest
 
-from app.domain.errors import InvalidInput, Unreachable
 from app.events.bus import EventBus
-from app.experiments.config import REPORT, SUMMARY, ExperimentConfig, experiment_config
-from app.experiments.plan import Plan
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import ExperimentStart
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run
+from hexapods.domain.errors import InvalidInput, Unreachable
+from hexapods.experiments.config import REPORT, SUMMARY, ExperimentConfig, experiment_config
+from hexapods.experiments.plan import Plan
 from tests.experiments.clusters import workers_of
 from tests.jobs.experiments import stored_results, sweep, tried
 from tests.jobs.waiting import wait_until, wait_until_ended

@@ -1,7 +1,9 @@
 """The fork server: jobs are its forks, share what it has imported, and end with the server."""
 
 import signal
+import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -9,6 +11,15 @@ import pytest
 
 from tests.served import BODY, ENDLESS, Served, serving_from
 from tests.timeouts import LONG_S
+
+SWEEP = {
+    "experiment": "sweep",
+    "simulator": "kinematic",
+    "gaits": ["left-right-origin"],
+    "seeds": 20,
+    "steps": 50,
+    "workers": 1,
+}
 
 
 @pytest.fixture
@@ -18,9 +29,17 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Served]]:
 
 
 def fork_server(server: Served) -> psutil.Process:
+    """Return the first one, or one that was started in its place."""
     children = psutil.Process(server.process.pid).children()
-    (found,) = [child for child in children if child.name() == "fork server"]
+    (found,) = [child for child in children if is_fork_server(child)]
     return found
+
+
+def is_fork_server(process: psutil.Process) -> bool:
+    with suppress(psutil.Error):
+        if process.status() != psutil.STATUS_ZOMBIE:
+            return process.name() == "fork server" or "forkserver" in " ".join(process.cmdline())
+    return False
 
 
 def test_jobs_are_forked_from_what_the_server_has_imported(launch: Callable[..., Served]) -> None:
@@ -53,10 +72,37 @@ def test_a_dead_fork_server_ends_its_jobs_and_is_replaced(launch: Callable[..., 
     assert again["state"] == "finished", again
 
 
+def test_a_fork_server_that_dies_as_a_process_is_started_fails_no_run(
+    launch: Callable[..., Served],
+) -> None:
+    server = launch()
+    # The second one has to import everything first, so that it is killed meanwhile.
+    for after_s in (0.0, 0.1):
+        killed = fork_server(server)
+        killed.suspend()
+        run = server.start({**BODY, "steps": 20})
+        time.sleep(after_s)
+        killed.kill()
+        assert server.in_state(run, "finished", "failed")["error"] is None
+
+
+def test_a_fork_server_that_dies_before_a_run_does_anything_fails_no_run(
+    launch: Callable[..., Served],
+) -> None:
+    server = launch()
+    run = server.start(SWEEP, "/experiments")
+    while not (jobs := server.jobs()):
+        time.sleep(0.01)
+    # It starts a cluster now, before its first trial.
+    fork_server(server).kill()
+    assert server.in_state(run, "finished", "failed")["error"] is None
+    psutil.wait_procs(jobs, timeout=LONG_S)
+    assert not any(job.is_running() for job in jobs), "not two at once"
+
+
 def test_a_job_may_fork_processes_of_its_own(launch: Callable[..., Served]) -> None:
     server = launch()
-    sweep = {"experiment": "sweep", "simulator": "kinematic", "gaits": ["left-right-origin"]}
-    run = server.start({**sweep, "seeds": 20, "steps": 50, "workers": 1}, "/experiments")
+    run = server.start(SWEEP, "/experiments")
     server.in_state(run, "running", "finished")
     assert server.in_state(run, "finished", "failed")["state"] == "finished"
 

@@ -7,13 +7,13 @@ from collections.abc import Callable
 
 import pytest
 
-from app.agents.protocol import Problem
-from app.agents.q_learning import QLearning
-from app.domain.grid import FootGrid
 from app.jobs.job_control import CHECKPOINT_EVERY_S, JobControl, Stopped
 from app.jobs.messages import Batch, Changed, Checkpointed, Command, Message
-from app.runs.records import EpisodeEnded
-from app.runs.seeding import generator
+from hexapods.agents.protocol import Problem
+from hexapods.agents.q_learning import QLearning
+from hexapods.domain.grid import FootGrid
+from hexapods.runs.records import EpisodeEnded
+from hexapods.runs.seeding import generator
 
 
 class FakePipe:

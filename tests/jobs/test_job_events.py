@@ -12,13 +12,13 @@ from app.jobs.job import Job
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, TrainingTask
 from app.jobs.submissions import TrainingStart
-from app.runs.config import TrainingConfig
 from app.settings import Settings
 from app.storage.database import progress
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import QUEUED
+from hexapods.runs.config import TrainingConfig
 from tests.jobs.waiting import wait_for_progress, wait_until
 from tests.storage.queries import recorded_queries
 from tests.storage.stores import PLAIN, training

@@ -8,23 +8,23 @@ from dataclasses import replace
 
 import pytest
 
-from app.agents.protocol import Tabular
-from app.assembly import build_learner, finish_training, rebuild_learner
-from app.domain.disturbances import Limp, SensorNoise, disturbance
-from app.domain.errors import DamagedFile, InvalidInput
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
-from app.runs.config import TrainingConfig, WalkingProblem, training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.records import StepTaken
-from app.runs.tables import snapshot, to_bytes
-from app.runs.training import train
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run
+from hexapods.agents.protocol import Tabular
+from hexapods.assembly import build_learner, finish_training, rebuild_learner
+from hexapods.domain.disturbances import Limp, SensorNoise, disturbance
+from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.runs.config import TrainingConfig, WalkingProblem, training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.records import StepTaken
+from hexapods.runs.tables import snapshot, to_bytes
+from hexapods.runs.training import train
 from tests.jobs.test_jobs import WALK, pid_of
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.storage.ended_runs import ended_training

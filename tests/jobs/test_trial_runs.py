@@ -4,15 +4,15 @@ from typing import Any
 
 import pytest
 
-from app.domain.errors import InvalidInput
-from app.domain.robot import robot
-from app.experiments.config import ExperimentConfig, experiment_config
-from app.experiments.plan import Plan
-from app.experiments.trial import run_trial
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import ExperimentStart
 from app.jobs.trial_runs import trial_start
 from app.storage.database.store import RunStore
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.robot import robot
+from hexapods.experiments.config import ExperimentConfig, experiment_config
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.trial import run_trial
 from tests.jobs.waiting import wait_until_ended
 
 SWEEP: dict[str, Any] = {

@@ -1,5 +1,7 @@
 """Connection limits in total and per address, and which connection is evicted."""
 
+import socket
+
 from app.limits.addresses import client_group
 from app.limits.connections import OPERATOR_SLOTS, Connection, ConnectionTable
 
@@ -105,6 +107,21 @@ def test_connection_without_a_protocol_is_not_evicted() -> None:
     table = ConnectionTable(1, 1, lambda: 0.0)
     assert table.admit("a", 0) is not None
     assert table.admit("a", 1) is None
+
+
+def test_a_client_has_left_once_it_has_closed_its_connection() -> None:
+    """Also if it has sent something since that nobody has read."""
+    table = ConnectionTable(1, 1)
+    client, server = socket.socketpair()
+    with server:
+        connection = table.admit("a", server.fileno())
+        assert connection is not None
+        client.sendall(b"GET")
+        assert not connection.has_left()
+        client.close()
+        assert connection.has_left()
+        connection.release()
+        assert connection.has_left()
 
 
 def test_overdue_connections_are_aborted() -> None:

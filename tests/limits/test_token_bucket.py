@@ -9,17 +9,23 @@ def test_tokens_are_used_up_and_refilled_per_caller() -> None:
     assert [buckets.take("a") for _ in range(3)] == [0, 0, 2]
     assert buckets.take("b") == 0
     clock[0] += 1
-    assert buckets.wait_s("a") == 1
+    assert buckets.take("a") == 1
     clock[0] += 1
-    assert buckets.wait_s("a") == 0
     assert [buckets.take("a"), buckets.take("a")] == [0, 2]
     clock[0] += 1e6
     assert [buckets.take("a") for _ in range(3)] == [0, 0, 2]
 
 
-def test_wait_s_takes_no_token() -> None:
-    buckets = RateLimiter(1, 1.0, lambda: 0.0)
-    assert [buckets.wait_s("a"), buckets.wait_s("a"), buckets.take("a")] == [0, 0, 0]
+def test_a_bucket_may_owe_what_something_cost() -> None:
+    clock = [1000.0]
+    buckets = RateLimiter(2, 0.5, lambda: clock[0])
+    assert buckets.take("a") == 0
+    buckets.charge("a", 1)
+    assert buckets.debt_s("a") == 0
+    buckets.charge("a", 3)
+    assert (buckets.debt_s("a"), buckets.take("a"), buckets.debt_s("b")) == (6, 8, 0)
+    clock[0] += 6
+    assert (buckets.debt_s("a"), buckets.take("a")) == (0, 2)
 
 
 def test_least_recently_used_buckets_are_dropped() -> None:

@@ -176,6 +176,7 @@ export const OPTIONS = {
     tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120], video_s: [0, 30],
     import_bytes: [1, 2 ** 20] },
   help: { alpha: "Learning rate." },
+  missing_extras: {},
 };
 
 let number = 0;

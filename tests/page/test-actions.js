@@ -2,7 +2,11 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { setImmediate } from "node:timers/promises";
-import { pause, pending, seekIn, setStage, stop, togglePause, togglePlaying } from "../../static/js/actions.js";
+import {
+  pause, pending, problems, seekIn, setStage, stop, togglePause, togglePlaying,
+} from "../../static/js/actions.js";
+import { form } from "../../static/js/form.js";
+import { practiseAtPaceOfPicture, tune } from "../../static/js/live-changes.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -98,4 +102,21 @@ test("Stop pressed twice does not stop the run that comes next", async () => {
   stop();
   await answerAll((request) => (request === "stop" ? { ...run, state: "stopped" } : STAGE));
   assert.deepEqual(sent, ["stop"]);
+});
+
+test("a change that reaches a training after its end is refused in words, with what to do", async (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const run = makeRun({ id: "a", state: "running", progress: { done: 312, total: 500 } });
+  applyEvent("snapshot", { role: "operator", runs: [run], stage: STAGE, scene: SCENE });
+  const refusal = () => Response.json({ detail: "training a is finished" }, { status: 409 });
+  globalThis.fetch = () => Promise.resolve(refusal());
+  tune({ alpha: 0.5 });
+  applyEvent("run", { ...run, state: "finished", progress: { done: 500, total: 500 } });
+  context.mock.timers.tick(1000);
+  for (let n = 0; n < 20; n += 1) await setImmediate();
+  const words = problems.value.tune?.message ?? "";
+  assert.match(words, /^The training was computed up to step 500 of 500 when .* no effect/);
+  assert.match(words, /practise at the pace of the picture/);
+  practiseAtPaceOfPicture();
+  assert.deepEqual([form.value.pace, problems.value.tune], [4, null]);
 });

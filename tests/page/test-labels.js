@@ -1,7 +1,7 @@
 // Labels of a chart: near their lines, and never over each other.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { overlap, placeCaptions, placeLabels } from "../../static/js/labels.js";
+import { chooseCaptions, overlap, passes, placeCaptions, placeLabels } from "../../static/js/labels.js";
 
 const BOUNDS = { left: 0, top: 0, width: 300, height: 160 };
 const box = (/** @type {number} */ left, /** @type {number} */ top, width = 60, height = 16) =>
@@ -69,4 +69,27 @@ test("no two labels overlap at any width, and eight find room", () => {
     assertInOrder(placed, wanted);
     assert.ok(placed.every((one) => one && one.left >= 0 && one.left + one.width <= width + 1e-9));
   }
+});
+
+test("a caption takes the first place with the fewest lines on it, and none over another caption", () => {
+  const crossed = (/** @type {{ left: number }} */ { left }) => (left < 60 ? 1 : 0);
+  assert.deepEqual(chooseCaptions([[box(0, 40), box(0, 60)]], BOUNDS, () => 0), [box(0, 40)]);
+  assert.deepEqual(chooseCaptions([[box(0, 40), box(70, 40), box(100, 40)]], BOUNDS, crossed), [box(70, 40)]);
+  assert.deepEqual(chooseCaptions([[box(0, 40)]], BOUNDS, crossed), [box(0, 40)]);
+  assert.deepEqual(
+    chooseCaptions([[box(0, 40)], [box(0, 44), box(0, 60)], [box(0, 52)]], BOUNDS, () => 0),
+    [box(0, 40), box(0, 60), null],
+  );
+  assert.deepEqual(chooseCaptions([[box(0, -4), box(0, 4)]], BOUNDS, () => 0), [box(0, 4)]);
+});
+
+test("a line passes through a box where one of its parts does, also between its points", () => {
+  const one = box(40, 40, 20, 10);
+  assert.ok(passes([[0, 0], [100, 100]], one));
+  assert.ok(!passes([[0, 0], [100, 20]], one));
+  assert.ok(passes([[0, 45], [100, 45]], one));
+  assert.ok(!passes([[0, 45], [30, 45]], one));
+  assert.ok(!passes([[70, 45], [100, 45]], one));
+  assert.ok(passes([[50, 0], [50, 100]], one));
+  assert.ok(!passes([], one));
 });

@@ -1,11 +1,10 @@
 // The race at the moment that is shown: timeline, standings, headline.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import {
-  clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeSpent,
-} from "../../static/js/race.js";
+import { headline, ruleOf } from "../../static/js/headline.js";
+import { clipped, distanceAt, isTimedOut, shownTime, standings, timeSpent } from "../../static/js/race.js";
 import { stageIds } from "../../static/js/runs.js";
-import { heldRace, stepShown } from "../../static/js/selectors.js";
+import { heldRace, raceInView, stepShown } from "../../static/js/on-stage.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { flatParts, planningModelTitle } from "../../static/js/titles.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -15,19 +14,15 @@ import { makeRun, OPTIONS } from "./options.js";
 /** Thinks for a second, walks for two, thinks for one. @type {TimelinePoint[]} */
 const PATH = [[0, 0], [1, 0], [3, 0.4], [4, 0.4]];
 
-const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
+const STAGE = {
+  run_id: null, next_run_id: null, phase: "empty", origin: "none", playing: true, ended: false, speed: 1,
+  clock: "paper", end_at_time_out: true, announced: null,
+};
 
 const laneResult = (/** @type {string} */ agent, rank = 1, finished_distance_m = 0.3, elapsed_s = 16) => ({
   agent, steps: 50, total_distance_m: 0.5, decision_s: 5, simulated_transitions: 600,
   clocks: { paper: { rank, finished_distance_m, elapsed_s, crossed_s: null } },
 });
-
-/** Puts a race of these lanes on the page, after its show. */
-const showResult = (/** @type {object[]} */ lanes, /** @type {object} */ changes = {}) => {
-  const config = { steps: 50, lanes: lanes.map((_, n) => ({ agent: ["learner", "greedy", "planner"][n] })) };
-  const race = makeRun({ kind: "race", progress: { done: 99, total: 150 }, config, result: { lanes }, ...changes });
-  applyEvent("snapshot", { runs: [race], stage: STAGE, scene: null });
-};
 
 const RACE = makeRun({
   kind: "race", progress: { done: 100, total: 100 },
@@ -36,19 +31,50 @@ const RACE = makeRun({
 });
 
 const sceneLane = (/** @type {object} */ changes) => ({
-  lane: 0, name: "Learner", color: "#111", rank: 1, distance_m: 0, step: 0, steps: 50, done: false, thinking: false,
-  futures: 0, futures_total: 0, crossed: false, marching: false, ...changes,
+  lane: 0, name: "Learner", color: "#111", rank: 1, distance_m: 0, step: 0, steps: 50, done: false, halted: false,
+  thinking: false, futures: 0, futures_total: 0, crossed: false, marching: false, ...changes,
 });
 
-/** @param {{ phase: string, time_s: number, lanes: object[] }} scene */
-const showScene = (scene) => {
-  applyEvent("stage", { ...STAGE, run_id: RACE.id });
-  applyEvent("scene", { run_id: RACE.id, kind: "race", clock: "paper", duration_s: 9, action_values: null, ...scene });
+const SCENE = {
+  kind: "race", clock: "paper", phase: "race", time_s: 1, duration_s: 9, computed_s: 9, time_out_s: null, ended: false,
+  action_values: null, lanes: [sceneLane({}), sceneLane({ lane: 1, name: "Greedy", rank: 2 })],
+};
+
+/** Put a race on stage at a moment. */
+const show = (/** @type {import("../../static/js/types.js").Run} */ race, /** @type {object} */ scene = {}) => {
+  const shown = { ...SCENE, run_id: race.id, ...scene };
+  const stage = { ...STAGE, run_id: race.id, phase: shown.ended ? "ended" : "showing", ended: shown.ended };
+  applyEvent("snapshot", { runs: [RACE, race], stage, scene: shown });
+};
+
+/** @param {object} scene */
+const showScene = (scene) => show(RACE, scene);
+
+const AT_END = { phase: "finished", time_s: 22, duration_s: 22, computed_s: 22, time_out_s: 16, ended: true };
+
+/** Put a race of these lanes on stage, at its end. */
+const showResult = (
+  /** @type {any[]} */ lanes, /** @type {object} */ changes = {}, /** @type {object} */ scene = {},
+) => {
+  const agents = ["learner", "greedy", "planner"];
+  const config = { steps: 50, lanes: lanes.map((_, n) => ({ agent: agents[n] })) };
+  const race = makeRun({ kind: "race", progress: { done: 99, total: 150 }, config, result: { lanes }, ...changes });
+  const titles = ["Learner", "Greedy", "Planner"];
+  const shown = lanes.map(({ clocks, steps, failure }, lane) => sceneLane({
+    lane, name: titles[lane], rank: clocks.paper.rank, distance_m: 0.5, step: steps, done: true, failure,
+  }));
+  show(race, { ...AT_END, lanes: shown, ...scene });
 };
 
 beforeEach(() => {
   options.value = OPTIONS;
   applyEvent("snapshot", { runs: [RACE], stage: STAGE, scene: null });
+});
+
+test("a race that is not on stage is in no panel", () => {
+  assert.deepEqual([shownTime.value, standings.value, headline.value, raceInView.value], [null, null, null, null]);
+  applyEvent("stage", { ...STAGE, run_id: "unknown", phase: "ended" });
+  assert.equal(raceInView.value, null);
 });
 
 test("distances are interpolated between the points of a path", () => {
@@ -63,7 +89,7 @@ test("what a search knows is told if something happens in the race, or if it was
   const knownIn = (/** @type {object} */ config, /** @type {object} */ lane) => {
     const lanes = [{ agent: "greedy", plans_with: "world", plans_with_by_default: true, ...lane }];
     const race = makeRun({ ...RACE, id: "other", config: { steps: 50, lanes, ...config } });
-    applyEvent("snapshot", { runs: [race], stage: STAGE, scene: null });
+    show(race, { lanes: [sceneLane({})] });
     return standings.value?.[0].plans_with;
   };
   assert.equal(knownIn({}, {}), null);
@@ -88,7 +114,8 @@ test("time is spent thinking or walking", () => {
 });
 
 test("after its show a race has its result, ranked", () => {
-  assert.equal(shownTime.value, Infinity);
+  showResult(RACE.result?.lanes ?? []);
+  assert.equal(shownTime.value, 22);
   assert.ok(isTimedOut.value);
   const [first, second] = standings.value ?? [];
   assert.deepEqual([first.title, first.rank, first.finished_m], ["Greedy", 1, 0.3]);
@@ -116,11 +143,40 @@ test("a lane that failed does not time the race out, and no time-out is claimed 
   const failed = { ...laneResult("learner", 1, 0.4, 3), steps: 9, failure: "it broke" };
   showResult([failed, laneResult("greedy", 2, 0.3, 22)]);
   assert.equal(headline.value, "Learner wins, stopped at step 9: 0.40\u00a0m when Greedy had used its 50 steps");
-  showResult([failed, { ...failed, clocks: laneResult("greedy", 2, 0.1).clocks }]);
-  assert.equal(headline.value, "Learner got farthest, 0.40\u00a0m: no robot used its 50 steps");
+  showResult([failed, failed], { state: "failed" }, { time_out_s: null });
+  assert.equal(headline.value, "Failed at step 9 of 50: Learner and Greedy had come farthest, 0.50\u00a0m");
   assert.ok(!isTimedOut.value);
-  showResult([failed, failed], { state: "stopped", result: null });
-  assert.equal(headline.value, null, "before its timeline is loaded");
+});
+
+test("a race that was stopped says so at its last step, without ranks and without a time-out", () => {
+  const lanes = [
+    sceneLane({ distance_m: 0.1, step: 26, rank: 2, halted: true }),
+    sceneLane({ lane: 1, name: "Greedy", distance_m: 0.31, step: 25, halted: true }),
+  ];
+  const result = { lanes: RACE.result?.lanes?.map((lane) => ({ ...lane, steps: 26, total_distance_m: null })) };
+  const race = makeRun({ ...RACE, id: "stopped", state: "stopped", result });
+  show(race, { ...AT_END, lanes, time_out_s: null });
+
+  assert.equal(headline.value, "Stopped at steps 25 to 26 of 50: Greedy had come farthest, 0.31\u00a0m");
+  assert.match(ruleOf(50, "paper clock"), /^No ranking: the race was stopped before its time-out/);
+  assert.deepEqual((standings.value ?? []).map(({ agent, rank, isDone, isHalted, step, finished_m, total_m }) =>
+    [agent, rank, isDone, isHalted, step, finished_m, total_m]), [
+    ["greedy", null, false, true, 25, null, null], ["learner", null, false, true, 26, null, null],
+  ]);
+  show(makeRun({ ...race, state: "interrupted" }), { ...AT_END, lanes, time_out_s: null });
+  assert.match(headline.value ?? "", /^Interrupted at steps 25 to 26 of 50/);
+  show(race, { lanes, time_s: 3 });
+  assert.equal(headline.value, "Greedy leads with 0.31\u00a0m", "on its way there");
+});
+
+test("at the photo finish lanes that walk on have their totals once the race has finished", () => {
+  const lanes = [
+    sceneLane({ distance_m: 0.2, step: 50, rank: 2, done: true }), sceneLane({ lane: 1, distance_m: 0.3, step: 40 }),
+  ];
+  show(RACE, { ...AT_END, phase: "photo-finish", time_s: 16, lanes });
+  assert.deepEqual(standings.value?.map(({ finished_m, total_m }) => [finished_m, total_m]), [[0.3, 0.5], [0.2, 0.5]]);
+  show(RACE, { phase: "photo-finish", time_s: 16, time_out_s: 16, lanes });
+  assert.deepEqual(standings.value?.map(({ finished_m, total_m }) => [finished_m, total_m]), [[0.3, null], [0.2, 0.5]]);
 });
 
 test("what flat parts are is said without contradiction under each clock", () => {
@@ -163,14 +219,13 @@ test("a race that branches off has the original's distances beside its own", () 
   const disturbances = [{ kind: "limp", at_step: 20, legs: [1] }];
   const config = { ...RACE.config, branch_from, disturbances };
   const race = makeRun({ ...RACE, id: "branch", created_at: "2031-01-01T00:00:00Z", config });
-  applyEvent("snapshot", { runs: [RACE, race], stage: STAGE, scene: null });
+  show(race, { ...AT_END, lanes: [sceneLane({ rank: 2, done: true }), sceneLane({ lane: 1, done: true })] });
   const originals = (standings.value ?? []).map(({ agent, original }) => [agent, original]);
   assert.deepEqual(originals, [
     ["greedy", { finished_m: 0.3, total_m: 0.5 }], ["learner", { finished_m: 0.2, total_m: 0.5 }],
   ]);
-  applyEvent("stage", { ...STAGE, run_id: "branch" });
   assert.deepEqual(stageIds.value, ["branch", RACE.id]);
-  applyEvent("snapshot", { runs: [RACE], stage: STAGE, scene: null });
+  show(RACE);
   assert.equal(standings.value?.[0].original, null);
 });
 
@@ -178,13 +233,7 @@ test("a fall is told once it is shown, and the heading at the end", () => {
   const lane = { ...laneResult("learner"), fell_at_step: 7, heading_deg: 35 };
   const race = makeRun({ ...RACE, id: "fall", result: { lanes: [lane, laneResult("greedy", 2)] } });
   const postureAt = (/** @type {number} */ step) => {
-    applyEvent("snapshot", {
-      runs: [race], stage: { ...STAGE, run_id: "fall" },
-      scene: {
-        run_id: "fall", kind: "race", clock: "paper", phase: "race", time_s: 1, action_values: null,
-        lanes: [sceneLane({ step, done: step === 50 }), sceneLane({ lane: 1, rank: 2 })],
-      },
-    });
+    show(race, { lanes: [sceneLane({ step, done: step === 50 }), sceneLane({ lane: 1, rank: 2 })] });
     const [{ fell_at_step, heading_deg }] = standings.value ?? [];
     return [fell_at_step, heading_deg];
   };
@@ -195,9 +244,8 @@ test("a race can be raced on while its replay is held", () => {
   const lanes = [sceneLane({ step: 50, done: true }), sceneLane({ lane: 1, step: 12 })];
   showScene({ phase: "race", time_s: 1, lanes });
   assert.deepEqual([heldRace.value, stepShown.value], [null, 12]);
-  applyEvent("stage", { ...STAGE, run_id: RACE.id, playing: false });
+  applyEvent("stage", { ...STAGE, run_id: RACE.id, phase: "showing", playing: false });
   assert.equal(heldRace.value?.id, RACE.id);
-  showScene({ phase: "finished", time_s: 9, lanes: lanes.map((lane) => ({ ...lane, done: true })) });
-  applyEvent("stage", { ...STAGE, run_id: RACE.id, ended: true });
+  showScene({ ...AT_END, lanes: lanes.map((lane) => ({ ...lane, done: true })) });
   assert.deepEqual([heldRace.value?.id, stepShown.value], [RACE.id, null]);
 });

@@ -5,9 +5,10 @@ import { copySettings, primaryAction } from "../../static/js/actions.js";
 import { enter, form, overrides, setField, setFields, trainingBody, typed } from "../../static/js/form.js";
 import { shownTime } from "../../static/js/race.js";
 import {
-  everyRun, hasTable, interruptedRun, isPlaying, isRaceRun, laneTables, liveTraining, markAsMine, matchingTable,
-  myWork, offStage, playbackName, raceInView, simulatedPerDecision, trainingInView, work,
-} from "../../static/js/selectors.js";
+  interruptedRun, isPlaying, isRaceRun, laneTables, liveTraining, matchingTable, myWork, offStage, playbackName,
+  raceInView, trainingInView, work,
+} from "../../static/js/on-stage.js";
+import { everyRun, hasTable, markAsMine, simulatedPerDecision } from "../../static/js/selectors.js";
 import { learns } from "../../static/js/settings.js";
 import {
   applyEvent, damagedRuns, evaluations, isDeleted, markDeleted, options, rates, requestRun, requestRuns, requestStage,

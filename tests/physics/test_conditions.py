@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.domain.disturbances import (
+from hexapods.domain.disturbances import (
     DeadBand,
     Delay,
     Disturbance,
@@ -21,17 +21,17 @@ from app.domain.disturbances import (
     Stuck,
     Weak,
 )
-from app.domain.errors import InvalidInput
-from app.domain.gait import resolve
-from app.domain.grid import FootGrid
-from app.domain.observation import legal_actions
-from app.domain.posture import has_fallen
-from app.domain.robot import Robot
-from app.domain.terrain import ROUGH_PERIOD_M, rough_heights
-from app.domain.types import Action, FloatArray
-from app.domain.world import WORLDS, World
-from app.physics.mjcf import compile_model
-from app.physics.mujoco_simulator import MujocoSimulator, MujocoState
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.posture import has_fallen
+from hexapods.domain.robot import Robot
+from hexapods.domain.terrain import ROUGH_PERIOD_M, rough_heights
+from hexapods.domain.types import Action, FloatArray
+from hexapods.domain.world import WORLDS, World
+from hexapods.physics.mjcf import compile_model
+from hexapods.physics.mujoco_simulator import MujocoSimulator, MujocoState
 
 STUCK = Stuck(leg=2, joint="femur", angle_rad=-0.9)
 

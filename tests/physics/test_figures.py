@@ -8,10 +8,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from app.domain.gait import NAMED_GAITS
-from app.domain.robot import robot
-from app.domain.types import FloatArray
-from app.runs.config import training_config
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.robot import robot
+from hexapods.domain.types import FloatArray
+from hexapods.runs.config import training_config
 from tests.figures import in_a_pool, look_ahead, practise
 from tests.promises.length import at_length
 

@@ -6,11 +6,17 @@ import mujoco
 import numpy as np
 import pytest
 
-from app.assets import models_dir
-from app.domain.gait import NAMED_GAITS, resolve
-from app.domain.kinematics import JOINT_LIMITS_RAD, Legs
-from app.domain.robot import Robot, ring, robot
-from app.physics.mjcf import LINKS, VISIBLE_GROUP, compile_model, compile_visual_model, robot_spec
+from hexapods.assets import models_dir
+from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.kinematics import JOINT_LIMITS_RAD, Legs
+from hexapods.domain.robot import Robot, ring, robot
+from hexapods.physics.mjcf import (
+    LINKS,
+    VISIBLE_GROUP,
+    compile_model,
+    compile_visual_model,
+    robot_spec,
+)
 
 
 @pytest.fixture(scope="module")

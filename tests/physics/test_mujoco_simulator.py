@@ -8,15 +8,15 @@ import mujoco
 import numpy as np
 import pytest
 
-from app.domain.errors import Diverged
-from app.domain.gait import NAMED_GAITS, resolve
-from app.domain.grid import FootGrid
-from app.domain.kinematics import foot_positions
-from app.domain.observation import legal_actions
-from app.domain.robot import PRESETS, Robot, robot
-from app.domain.types import Action, FloatArray
-from app.physics.mjcf import compile_model
-from app.physics.mujoco_simulator import MujocoSimulator, MujocoState
+from hexapods.domain.errors import Diverged
+from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.kinematics import foot_positions
+from hexapods.domain.observation import legal_actions
+from hexapods.domain.robot import PRESETS, Robot, robot
+from hexapods.domain.types import Action, FloatArray
+from hexapods.physics.mjcf import compile_model
+from hexapods.physics.mujoco_simulator import MujocoSimulator, MujocoState
 
 
 def build(

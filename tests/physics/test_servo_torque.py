@@ -7,16 +7,16 @@ import mujoco
 import numpy as np
 import pytest
 
-from app.domain.disturbances import Limp
-from app.domain.gait import resolve
-from app.domain.grid import FootGrid
-from app.domain.robot import PRESETS, Robot
-from app.domain.simulator import Motion
-from app.domain.types import Action
-from app.domain.world import UNDISTURBED, World
-from app.physics.mjcf import compile_model
-from app.physics.mujoco_simulator import MujocoSimulator
-from app.physics.servo_torque import servo_effort
+from hexapods.domain.disturbances import Limp
+from hexapods.domain.gait import resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.robot import PRESETS, Robot
+from hexapods.domain.simulator import Motion
+from hexapods.domain.types import Action
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.physics.mjcf import compile_model
+from hexapods.physics.mujoco_simulator import MujocoSimulator
+from hexapods.physics.servo_torque import servo_effort
 
 TRIPLET = (Action(0, 1), Action(1, 1), Action(2, 2))
 

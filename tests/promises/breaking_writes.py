@@ -22,19 +22,13 @@ from typing import Any
 import numpy as np
 from sqlalchemy import Connection, Engine, event, select
 
-from app.agents.registry import OURS
 from app.archive import table_import
 from app.archive.transfer import export_run, import_run
-from app.assembly import build_learner, finish_training
 from app.events.bus import EventBus
 from app.jobs.job import Job
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
-from app.runs.config import WalkingProblem, training_config
-from app.runs.records import Evaluated, StepTaken
-from app.runs.tables import snapshot, to_bytes
-from app.runs.training import train
 from app.storage.database.schema import ARTIFACTS
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, StorageFailed, StorageFull
@@ -42,6 +36,12 @@ from app.storage.recordings import Recordings
 from app.storage.run import TABLE, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
 from app.storage.stored_tables import load_table
+from hexapods.agents.registry import OURS
+from hexapods.assembly import build_learner, finish_training
+from hexapods.runs.config import WalkingProblem, training_config
+from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.tables import snapshot, to_bytes
+from hexapods.runs.training import train
 from tests.storage.ended_runs import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training
 

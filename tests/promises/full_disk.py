@@ -51,7 +51,7 @@ def while_full(store: RunStore) -> dict[str, object]:
     }
 
 
-def refused(write: Callable[[], None]) -> str | None:
+def refused(write: Callable[[], object]) -> str | None:
     """Return the message with which a write is refused; None if it succeeds."""
     try:
         write()

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from app.runs.tables import from_bytes
 from app.storage.run import CHECKPOINT
+from hexapods.runs.tables import from_bytes
 from tests.promises.length import at_length
 from tests.served import BODY, Served
 from tests.storage.stores import opened

@@ -2,6 +2,7 @@
 
 Promised: another process holds an exclusive lock for 5 s, 0 writes lost. Here 2 s; 5 s by
 `make soak`. Eight threads write meanwhile, each its own curve, and all compete for the same runs.
+While nothing can be written, `/readyz` says so, also if nobody tries to write.
 """
 
 import threading
@@ -16,7 +17,9 @@ from app.storage.run import QUEUED
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.processes import start_script
+from tests.served import Served, serving_from
 from tests.storage.stores import BACKENDS, database_url, opened, training
+from tests.timeouts import LONG_S
 
 HELD_S = at_length(2.0, 5.0)
 THREADS, WRITES = 8, 25
@@ -69,3 +72,25 @@ def test_a_locked_database_loses_nothing(
         for number in range(THREADS):
             assert [row["step"] for row in store.evaluations(f"t{number}")] == list(range(WRITES))
             assert store.artifact(f"t{number}", "q-table.npz") == bytes([WRITES - 1]) * 1000
+
+
+def wait_until_ready(server: Served, is_ready: bool) -> str:
+    """Wait until `/readyz` says that runs can be started, or that they cannot; return its body."""
+    deadline = time.monotonic() + LONG_S
+    while (answer := server.client.get("/readyz")).status_code != (200 if is_ready else 503):
+        assert time.monotonic() < deadline, answer.text
+        time.sleep(0.1)
+    return answer.text
+
+
+def test_a_server_that_cannot_write_is_not_ready(tmp_path: Path) -> None:
+    with serving_from(tmp_path) as launch:
+        server = launch()
+        wait_until_ready(server, True)
+        holder = start_script("tests.promises.database_holder", str(tmp_path / DATABASE_FILE), "0")
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "held\n"
+        assert "another program holds the database" in wait_until_ready(server, False)
+        assert server.client.get("/api/v1/runs").status_code == 200, "reading goes on"
+        holder.communicate("go on\n")
+        wait_until_ready(server, True)

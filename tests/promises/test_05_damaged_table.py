@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from app.assembly import build_learner
-from app.domain.errors import DamagedFile
-from app.runs.config import training_config
-from app.runs.tables import from_bytes, snapshot, to_bytes
-from app.runs.training import train
 from app.storage.run import TABLE
 from app.storage.stored_tables import load_table
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import DamagedFile
+from hexapods.runs.config import training_config
+from hexapods.runs.tables import from_bytes, snapshot, to_bytes
+from hexapods.runs.training import train
 from tests.storage.stores import opened, training
 
 DAMAGES = 1000

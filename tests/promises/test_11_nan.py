@@ -11,11 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from app.assembly import build_learner
-from app.runs.config import training_config
-from app.runs.tables import snapshot, to_bytes
-from app.runs.training import train
 from app.storage.run import CHECKPOINT
+from hexapods.assembly import build_learner
+from hexapods.runs.config import training_config
+from hexapods.runs.tables import snapshot, to_bytes
+from hexapods.runs.training import train
 from tests.promises.length import at_length
 from tests.served import Served
 from tests.storage.stores import opened, training

@@ -15,7 +15,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.viewer.viser_internals import stream
+from hexapods.drawing.viser_internals import stream
 from tests.browser.serving import Serving
 from tests.promises.length import at_length
 from tests.timeouts import LONG_S

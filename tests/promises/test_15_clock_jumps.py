@@ -15,10 +15,10 @@ import pytest
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
-from app.runs.config import training_config
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import Run
+from hexapods.runs.config import training_config
 from tests.storage.stores import opened, training
 from tests.timeouts import LONG_S
 
@@ -43,7 +43,10 @@ class Clock:
         )
         monkeypatch.setattr(time, "time", lambda: time.time_ns() / 1e9)
         for name, module in list(sys.modules.items()):
-            if name.startswith("app.") and getattr(module, "datetime", None) is datetime:
+            if (
+                name.startswith(("app.", "hexapods."))
+                and getattr(module, "datetime", None) is datetime
+            ):
                 monkeypatch.setattr(module, "datetime", Jumping)
 
 

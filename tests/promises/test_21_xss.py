@@ -7,12 +7,13 @@ import html
 import time
 from itertools import product
 from typing import Any
+from urllib.parse import urlsplit
 
 import httpx2
 import pytest
 from playwright.sync_api import ConsoleMessage, Dialog, Frame, Page, expect
 
-from tests.browser.dashboard import PATIENCE_MS
+from tests.browser.dashboard import PATIENCE_MS, WITHOUT_3D
 from tests.browser.serving import Serving
 from tests.promises.length import at_length
 
@@ -98,7 +99,8 @@ class Watched:
             self.violations.append(message.text)
 
     def _on_request(self, url: str) -> None:
-        if "evil.example" in url:
+        # The page's own address may name it.
+        if "evil.example" in (urlsplit(url).hostname or ""):
             self.violations.append(url)
 
 
@@ -159,6 +161,8 @@ def test_no_payload_in_a_run_name_is_executed(
 @pytest.mark.parametrize("path", ["docs", "nothing/", "viewer/", "api/v1/trainings/", "?x="])
 def test_no_payload_in_a_url_is_executed(page: Page, quiet_server: Serving, path: str) -> None:
     watched = Watched(page)
+    # This browser cannot draw; the view says so as an error, where a page stays long enough.
+    page.add_init_script(WITHOUT_3D)
     for payload in at_length([BREAKS_OUT], payloads()):
         page.goto(quiet_server.address + path + html.escape(payload).replace("#", "%23"))
         page.goto(quiet_server.address + path + payload.replace("#", "%23"))

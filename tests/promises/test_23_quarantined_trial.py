@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from app.experiments.cluster import ClusterSpec
-from app.experiments.config import ExperimentConfig, experiment_config
-from app.experiments.engine import run_trials
-from app.experiments.folder import ResultsFolder, open_results
-from app.experiments.plan import Plan
-from app.experiments.report.page import page
-from app.experiments.summary import summarise
+from hexapods.experiments.cluster import ClusterSpec
+from hexapods.experiments.config import ExperimentConfig, experiment_config
+from hexapods.experiments.engine import run_trials
+from hexapods.experiments.folder import ResultsFolder, open_results
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.report.page import page
+from hexapods.experiments.summary import summarise
 from tests.experiments.clusters import CRASHING, one_by_one
 from tests.experiments.crashing_agent import FOLDER, set_crashes, tries
 from tests.promises.length import at_length

@@ -5,17 +5,25 @@ The database has at most `SQLITE_FILES` open files, and the number of all others
 In full by `make soak`: the use by a class in a day: 1,000 rounds of starting, watching,
 disconnecting, reading and deleting. The gate's shorter form has 4 rounds after 2 warm-up rounds,
 and allows 10 MB: so few cannot distinguish a leak from the allocator's behaviour.
+
+The pool of processes for what-ifs and estimates has a test of its own, in full with 300 rounds of
+asking, of workers that are killed, and of shutting down when idle.
 """
 
+import threading
 import time
+from multiprocessing import forkserver
 from typing import Any
 
 import httpx2
 import psutil
 import pytest
 
+from app.jobs.process_pool import ProcessPool
 from app.storage.database.engine import SQLITE_FILES
+from app.storage.errors import Busy
 from tests.browser.serving import Serving
+from tests.jobs.waiting import wait_until
 from tests.promises.files import database_files
 from tests.promises.length import at_length
 from tests.promises.test_12_reconnect import Events
@@ -85,3 +93,52 @@ def test_memory_and_open_files_do_not_grow(server: Serving) -> None:
 
     assert memory <= memory_before * 1.05 + SOME_BYTES
     assert files <= files_before
+
+
+POOL_ROUNDS = at_length(2, 300)
+
+
+def use_pool_once(pool: ProcessPool, number: int) -> None:
+    """Ask, and let the workers end: in turns since nobody asks, and since one is killed."""
+    assert pool.map(abs, range(-20, 0)) == list(range(20, 0, -1))
+    workers = [psutil.Process(pid) for pid in pool.pids]
+    if number % 2:
+        workers[0].kill()
+        try:
+            pool.map(abs, range(-20, 0))
+        except Busy:
+            assert pool.map(abs, [-1]) == [1]
+    wait_until(lambda: pool.pids == [])
+    gone, alive = psutil.wait_procs(workers, timeout=PATIENCE_S)
+    assert not alive, f"of {len(gone) + len(alive)} workers"
+
+
+def used_by_pool() -> tuple[int, int, int]:
+    """Return the number of threads, of open files, and of the fork server's files.
+
+    The least of each in 2 s, since what ends a process is cleared up a moment later.
+    """
+    ours, fork_server = psutil.Process(), vars(forkserver._forkserver)["_forkserver_pid"]
+    end, samples = time.monotonic() + NOTICED_S, []
+    while time.monotonic() < end:
+        others = psutil.Process(fork_server).num_fds()
+        samples.append((threading.active_count(), ours.num_fds(), others))
+        time.sleep(0.05)
+    threads, files, files_of_others = map(min, zip(*samples, strict=True))
+    return threads, files, files_of_others
+
+
+@pytest.mark.timeout(3600)
+def test_a_pool_leaves_nothing_behind() -> None:
+    pool = ProcessPool(count=2, idle_s=0.2)
+    try:
+        for number in range(2):
+            use_pool_once(pool, number)
+        before, memory_before = used_by_pool(), psutil.Process().memory_info().rss
+        for number in range(POOL_ROUNDS):
+            use_pool_once(pool, number)
+        after, memory = used_by_pool(), psutil.Process().memory_info().rss
+    finally:
+        pool.close()
+    assert all(now <= then for now, then in zip(after, before, strict=True)), (before, after)
+    assert memory <= memory_before * 1.05 + SOME_BYTES

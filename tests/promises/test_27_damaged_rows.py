@@ -27,14 +27,14 @@ from app.archive import archive
 from app.archive.archived_trials import TRIALS
 from app.archive.transfer import RUN, export_run
 from app.events.run_view import run_view
-from app.runs import tables
-from app.runs.tables import from_bytes
 from app.storage.database.engine import Database, postgresql_engine
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.schema import METADATA
 from app.storage.database.store import RunStore
 from app.storage.errors import Damaged
 from app.storage.run import TABLE, DamagedRun
+from hexapods.runs import tables
+from hexapods.runs.tables import from_bytes
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import serving
 from tests.cli.running import in_process

@@ -17,8 +17,8 @@ import pytest
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
-from app.runs.config import WalkingProblem, training_config
 from app.storage.recordings import Recordings
+from hexapods.runs.config import WalkingProblem, training_config
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
 from tests.postgresql import PostgresServer, postgres_server
 from tests.promises.length import at_length

@@ -15,12 +15,12 @@ import psutil
 import psycopg
 import pytest
 
-from app.domain.errors import InvalidInput
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost
 from app.storage.server_lock import LOCK_FILE
+from hexapods.domain.errors import InvalidInput
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.trainings import uninterrupted

@@ -24,6 +24,7 @@ TOKEN, OTHER = "a-token-for-tests", "another-token-for-tests"
 GUESSES = at_length(200, 2000)
 ALLOWED = 30
 """The token bucket's 20 guesses, and its refill of one per 5 s on a slow machine."""
+LOCAL = "127.0.0.1"
 Guess = Callable[[int, int], tuple[str, ...]]
 
 KINDS: dict[str, Guess] = {
@@ -57,14 +58,14 @@ def request(server: Serving, source: str, *lines: str) -> bytes:
     return send(server.port, lines[0], host, *lines[1:], source=source)
 
 
-def sign_in(server: Serving, source: str = "127.0.0.1") -> str:
+def sign_in(server: Serving, source: str = LOCAL) -> str:
     """Sign in by the link with the token; return the header with the session's cookie."""
     answer = request(server, source, f"GET /?token={TOKEN} HTTP/1.1").decode("latin-1")
     (cookie,) = [line for line in answer.split("\r\n") if line.lower().startswith("set-cookie:")]
     return "Cookie: " + cookie.partition(":")[2].partition(";")[0].strip()
 
 
-def may_change(server: Serving, *headers: str, source: str = "127.0.0.1") -> bool:
+def may_change(server: Serving, *headers: str, source: str = LOCAL) -> bool:
     """Whether the server accepts a writing request with these headers."""
     more = ("X-Requested-With: tests", "Content-Type: application/json", "Content-Length: 2")
     head = ("PUT /api/v1/stage HTTP/1.1", f"Host: 127.0.0.1:{server.port}", *headers, *more)
@@ -83,7 +84,42 @@ def test_wrong_guesses_of_every_credential_are_rate_limited(kind: str, server: S
         refused += status_of(answer) in (429, 403)
     assert refused >= GUESSES - ALLOWED
     assert may_change(server, cookie, source=source), "guesses must not lock out an operator"
+    for _ in range(20):
+        assert may_change(server, f"Authorization: Bearer {TOKEN}", source=source)
+    sign_in(server, source)
     assert not may_change(server, source=source)
+
+
+@pytest.mark.parametrize("kind", ["bearer", "link", "cookie"])
+def test_guesses_are_counted_by_the_address_of_the_connection(kind: str, server: Serving) -> None:
+    """Nobody gets further guesses by naming other addresses, unless a proxy is configured."""
+    refused = 0
+    for number in range(GUESSES):
+        line, *more = KINDS[kind](server.port, number)
+        forwarded = f"X-Forwarded-For: 192.0.2.{number % 250}"
+        refused += status_of(request(server, LOCAL, line, forwarded, *more)) == 429
+    assert refused >= GUESSES - ALLOWED
+
+
+def test_guesses_through_a_configured_proxy_are_counted_by_its_clients(tmp_path: Path) -> None:
+    other = "127.0.2.1"
+    with serving(tmp_path, token=TOKEN, trusted_proxies=f"{LOCAL}, 192.0.2.0/24") as server:
+
+        def refused(source: str, *forwarded: str) -> int:
+            """Return how many of the guesses are refused, one for each forwarded address."""
+            lines = KINDS["bearer"](server.port, 1)
+            answers = [
+                request(server, source, *lines, f"X-Forwarded-For: {one}") for one in forwarded
+            ]
+            return [status_of(answer) for answer in answers].count(429)
+
+        many = range(2 * ALLOWED)
+        assert refused(LOCAL, *("198.51.100.200" for _ in many)) >= ALLOWED
+        assert refused(LOCAL, *(f"198.51.100.{n}" for n in many)) == 0
+        # What a client itself names is before the addresses that the proxies add.
+        forged = (f"203.0.113.{n}, 198.51.100.201, 192.0.2.9" for n in many)
+        assert refused(LOCAL, *forged) >= ALLOWED
+        assert refused(other, *(f"198.51.101.{n}" for n in many)) >= ALLOWED
 
 
 def status_after_restart(data: Path, token: str, cookie: str) -> int:

@@ -6,15 +6,15 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from app.agents.protocol import Tunable
-from app.assembly import build_learner
-from app.runs.config import TrainingConfig
-from app.runs.config_json import config_from_json
-from app.runs.records import Evaluated, StepTaken
-from app.runs.tables import from_bytes, snapshot, to_bytes
-from app.runs.training import train
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.run import CHECKPOINT
+from hexapods.agents.protocol import Tunable
+from hexapods.assembly import build_learner
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.config_json import config_from_json
+from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.tables import from_bytes, snapshot, to_bytes
+from hexapods.runs.training import train
 
 
 def uninterrupted(

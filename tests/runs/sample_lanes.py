@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.domain.simulator import Motion
-from app.domain.types import Action
-from app.runs.recording import LaneRecording
-from app.runs.records import LaneStep
+from hexapods.domain.simulator import Motion
+from hexapods.domain.types import Action
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.records import LaneStep
 
 
 def qpos(y: float) -> list[float]:

@@ -5,16 +5,16 @@ from itertools import pairwise
 
 import pytest
 
-from app.assembly import build_simulator
-from app.domain.disturbances import Friction, Payload, Push, Slope
-from app.domain.gait import NAMED_GAITS
-from app.domain.observation import legal_actions, observe
-from app.domain.robot import PRESETS, Robot, robot
-from app.domain.world import WORLDS, World, named_world
-from app.runs.best_known import PATH, best_known_in_race_m, best_known_m, kept, read, search
-from app.runs.config import WalkingProblem
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
+from hexapods.assembly import build_simulator
+from hexapods.domain.disturbances import Friction, Payload, Push, Slope
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.observation import legal_actions, observe
+from hexapods.domain.robot import PRESETS, Robot, robot
+from hexapods.domain.world import WORLDS, World, named_world
+from hexapods.runs.best_known import PATH, best_known_in_race_m, best_known_m, kept, read, search
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
 
 WALK = WalkingProblem(gait="left-right-origin")
 IDEAL = WalkingProblem(gait="left-right-origin", simulator="kinematic")

@@ -2,17 +2,17 @@
 
 import pytest
 
-from app.domain.errors import UnknownName
-from app.runs.clocks import (
+from hexapods.domain.errors import UnknownName
+from hexapods.runs.clocks import (
     CLOCKS,
     FINISH_LINE_M,
     Moment,
     Timetable,
     check_clock,
     crossing_s,
-    decision_s,
+    decisions_s,
     distance_at,
-    motion_s,
+    motions_s,
 )
 from tests.runs.sample_lanes import lane, step
 
@@ -24,19 +24,19 @@ WALK = lane(
 
 
 def test_step_time_is_decision_plus_motion() -> None:
-    first, second = WALK.steps
+    figures = WALK.steps.figures
 
-    assert motion_s(first) == 1
-    assert [decision_s(s, "free") for s in (first, second)] == [0, 0]
-    assert [decision_s(s, "wall") for s in (first, second)] == [0.7, 0.1]
+    assert motions_s(figures).tolist() == [1, 1]
+    assert decisions_s(figures, "free").tolist() == [0, 0]
+    assert decisions_s(figures, "wall").tolist() == [0.7, 0.1]
     # 0.03 × motion time for every transition.
-    assert [decision_s(s, "paper") for s in (first, second)] == pytest.approx([0.3, 0.6])
+    assert decisions_s(figures, "paper") == pytest.approx([0.3, 0.6])
 
 
 def test_paper_clock_scales_with_the_duration_of_the_motion() -> None:
-    assert decision_s(step(1, [0.1], transitions=12, frame_s=0.32), "paper") == pytest.approx(
-        0.03 * 12 * 0.32
-    )
+    figures = lane(step(1, [0.1], transitions=12, frame_s=0.32)).steps.figures
+
+    assert decisions_s(figures, "paper") == pytest.approx([0.03 * 12 * 0.32])
 
 
 @pytest.mark.parametrize(
@@ -114,7 +114,7 @@ def test_final_distance_is_exact() -> None:
 
 
 def test_lane_without_steps_has_distance_zero() -> None:
-    table = Timetable.of([], "paper")
+    table = Timetable.of(lane().steps, "paper")
 
     assert table.total_s == 0
     assert distance_at(lane(), table, 3.0) == 0

@@ -5,13 +5,13 @@ from typing import Annotated, Any
 
 import pytest
 
-from app.agents import registry
-from app.agents.q_learning import QLearning
-from app.domain.errors import InvalidInput
-from app.domain.gait import GaitSpec
-from app.domain.robot import robot
-from app.domain.settings import Setting
-from app.runs.config import (
+from hexapods.agents import registry
+from hexapods.agents.q_learning import QLearning
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.robot import robot
+from hexapods.domain.settings import Setting
+from hexapods.runs.config import (
     WalkingProblem,
     agent_settings,
     changeable_settings,

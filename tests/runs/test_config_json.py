@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import pytest
 
-from app.domain.gait import GaitSpec
-from app.domain.robot import robot
-from app.domain.settings import SettingValues
-from app.domain.world import world
-from app.runs.config import TrainingConfig, training_config
-from app.runs.config_json import as_json, config_from_json, gait_from_json
-from app.runs.lane import LaneConfig, lane_config
-from app.runs.race_config import RaceConfig
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.robot import robot
+from hexapods.domain.settings import SettingValues
+from hexapods.domain.world import world
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.config_json import as_json, config_from_json, gait_from_json
+from hexapods.runs.lane import LaneConfig, lane_config
+from hexapods.runs.race_config import RaceConfig
 
 GAIT = "left-right-origin"
 LANES = (LaneConfig(agent="greedy"),)

@@ -8,8 +8,8 @@ practices of other lengths, and the same tolerances.
 import numpy as np
 import pytest
 
-from app.domain.gait import NAMED_GAITS
-from app.domain.types import FloatArray
+from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.types import FloatArray
 from tests.figures import (
     BLOCK_STEPS,
     COMMANDED_STEPS,

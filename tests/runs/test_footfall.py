@@ -4,14 +4,14 @@ import mujoco
 import numpy as np
 import pytest
 
-from app.domain.disturbances import Lost, Rough
-from app.domain.gait import resolve
-from app.domain.grid import FootGrid
-from app.domain.robot import PRESETS, Robot
-from app.domain.types import Action, FloatArray
-from app.domain.world import UNDISTURBED, World, named_world
-from app.physics.mujoco_simulator import MujocoSimulator
-from app.runs.footfall import CONTACT_M, clearances_m, clipped, duty_factor, stance_intervals
+from hexapods.domain.disturbances import Lost, Rough
+from hexapods.domain.gait import resolve
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.robot import PRESETS, Robot
+from hexapods.domain.types import Action, FloatArray
+from hexapods.domain.world import UNDISTURBED, World, named_world
+from hexapods.physics.mujoco_simulator import MujocoSimulator
+from hexapods.runs.footfall import CONTACT_M, clearances_m, clipped, duty_factor, stance_intervals
 
 
 def test_a_foot_stands_between_the_times_at_which_it_crosses_the_threshold() -> None:

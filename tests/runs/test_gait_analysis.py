@@ -6,25 +6,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.assembly import build_learner, build_walkers
-from app.domain.disturbances import Lost, Payload
-from app.domain.errors import InvalidInput
-from app.domain.world import UNDISTURBED, World
-from app.runs.config import WalkingProblem, training_config
-from app.runs.gait_analysis import MAX_SAMPLES, MAX_WINDOW_S, gait_figures, window_of
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import record_race
-from app.runs.recorded_walk import (
+from hexapods.assembly import build_learner, build_walkers
+from hexapods.domain.disturbances import Lost, Payload
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.runs.config import WalkingProblem, training_config
+from hexapods.runs.gait_analysis import MAX_SAMPLES, MAX_WINDOW_S, gait_figures, window_of
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import record_race
+from hexapods.runs.recorded_walk import (
     EvaluatedStep,
     RecordedWalk,
     walk_of_evaluation,
     walk_of_lane,
     walk_of_practice,
 )
-from app.runs.recording import PracticeRecording
-from app.runs.records import Evaluated, StepTaken
-from app.runs.training import train
+from hexapods.runs.recording import PracticeRecording
+from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.training import train
 
 STEP_S = 0.32
 

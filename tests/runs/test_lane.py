@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from app.domain.disturbances import Limp, Push, Slope
-from app.domain.errors import InvalidInput, UnknownName
-from app.domain.world import World
-from app.runs.config import WalkingProblem
-from app.runs.lane import LaneConfig, lane_config, observation_of, plans_with
+from hexapods.domain.disturbances import Limp, Push, Slope
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.world import World
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.lane import LaneConfig, lane_config, observation_of, plans_with
 from tests.own_agents import Restless
 
 
@@ -107,7 +107,7 @@ def test_a_search_knows_what_its_lane_says_and_other_agents_plan_with_nothing() 
 def test_naming_what_a_search_knows_imports_no_module(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "agent_of_a_stored_race.py").write_text("from app.agents.beam import Beam\n")
+    (tmp_path / "agent_of_a_stored_race.py").write_text("from hexapods.agents.beam import Beam\n")
     monkeypatch.syspath_prepend(tmp_path)
     lane = LaneConfig(agent="agent_of_a_stored_race:Beam")
 

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from app.domain.errors import InvalidInput
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
+from hexapods.domain.errors import InvalidInput
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
 
 GAIT = "left-right-origin"
 LANES = (LaneConfig(agent="greedy"),)

@@ -8,22 +8,22 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.protocol import Transition
-from app.assembly import build_learner, build_walkers
-from app.domain.disturbances import Limp, SensorNoise
-from app.domain.simulator import WalkState
-from app.domain.world import World
-from app.physics.mujoco_simulator import MujocoState
-from app.runs.config import training_config
-from app.runs.lane import LaneConfig, lane_config
-from app.runs.race_config import Branch, RaceConfig
-from app.runs.racing import race, record_race
-from app.runs.records import LaneFailed, LaneStep, RaceRecord, StepTaken
-from app.runs.results import race_result
-from app.runs.seeding import RACING, generator
-from app.runs.tables import snapshot, to_bytes
-from app.runs.training import train
-from app.runs.walker import Interrupted
+from hexapods.agents.protocol import Transition
+from hexapods.assembly import build_learner, build_walkers
+from hexapods.domain.disturbances import Limp, SensorNoise
+from hexapods.domain.simulator import WalkState
+from hexapods.domain.world import World
+from hexapods.physics.mujoco_simulator import MujocoState
+from hexapods.runs.config import training_config
+from hexapods.runs.lane import LaneConfig, lane_config
+from hexapods.runs.race_config import Branch, RaceConfig
+from hexapods.runs.racing import race, record_race
+from hexapods.runs.records import LaneFailed, LaneStep, RaceRecord, StepTaken
+from hexapods.runs.results import race_result
+from hexapods.runs.seeding import RACING, generator
+from hexapods.runs.tables import snapshot, to_bytes
+from hexapods.runs.training import train
+from hexapods.runs.walker import Interrupted
 from tests.own_agents import Restless
 
 

@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from app.agents.registry import OURS, learns
-from app.assembly import build_learner, build_walkers, rebuild_lane, rebuild_learner
-from app.domain.disturbances import Limp, SensorNoise
-from app.domain.observation import Observation
-from app.domain.world import World
-from app.runs.config import TrainingConfig, training_config
-from app.runs.lane import lane_config
-from app.runs.race_config import RaceConfig
-from app.runs.racing import race
-from app.runs.rebuilding import NotRebuilt, RebuiltLearner
-from app.runs.records import LaneStep
-from app.runs.tables import Checkpoint, snapshot
-from app.runs.training import Learner, train
-from app.runs.transition_log import Logged, TransitionLog, Transitions
+from hexapods.agents.registry import OURS, learns
+from hexapods.assembly import build_learner, build_walkers, rebuild_lane, rebuild_learner
+from hexapods.domain.disturbances import Limp, SensorNoise
+from hexapods.domain.observation import Observation
+from hexapods.domain.world import World
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.lane import lane_config
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import race
+from hexapods.runs.rebuilding import NotRebuilt, RebuiltLearner
+from hexapods.runs.records import LaneStep
+from hexapods.runs.tables import Checkpoint, snapshot
+from hexapods.runs.training import Learner, train
+from hexapods.runs.transition_log import Logged, TransitionLog, Transitions
 
 LEARNERS = [name for name in OURS if learns(name)]
 

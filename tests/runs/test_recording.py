@@ -6,26 +6,25 @@ from itertools import count
 import numpy as np
 import pytest
 
-from app.assembly import build_learner, build_walkers
-from app.domain.simulator import Motion
-from app.domain.types import Action
-from app.runs.clocks import Timetable
-from app.runs.config import training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import record_race
-from app.runs.recording import (
+from hexapods.assembly import build_learner, build_walkers
+from hexapods.domain.simulator import Motion
+from hexapods.domain.types import Action
+from hexapods.runs.clocks import Timetable
+from hexapods.runs.config import training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.race_file import race_arrays, race_recording
+from hexapods.runs.racing import record_race
+from hexapods.runs.recording import (
     FIRST_STEPS,
     NEWEST_STEPS,
     LaneRecording,
     PracticeRecording,
     pose_at,
-    race_arrays,
-    race_recording,
 )
-from app.runs.records import Evaluated, LaneStep, StepTaken
-from app.runs.tables import snapshot
-from app.runs.training import train
+from hexapods.runs.records import Evaluated, LaneStep, StepTaken
+from hexapods.runs.tables import snapshot
+from hexapods.runs.training import train
 from tests.runs.sample_lanes import lane, qpos, step
 
 START = np.array(qpos(0), np.float32)

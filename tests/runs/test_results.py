@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from app.runs.recording import LaneRecording
-from app.runs.results import finish_s, race_result
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.results import finish_s, race_result
 from tests.runs.sample_lanes import lane, step
 
 
@@ -64,7 +64,9 @@ def test_first_lane_to_finish_is_at_its_total_distance() -> None:
 
 
 def test_ties_share_a_rank_and_the_next_rank_is_skipped() -> None:
-    result = race_result([tortoise(), hare(), tortoise(), lane(step(1, [0.0, 0.0]))], steps=2)
+    result = race_result(
+        [tortoise(), hare(), tortoise(), lane(step(1, [0.0, 0.0]), failure="it fell")], steps=2
+    )
 
     assert under(result, "free", "rank") == [2, 1, 2, 4]
 
@@ -81,10 +83,19 @@ def test_failed_lane_has_no_total_distance_and_a_reason() -> None:
     assert under(result, "free", "elapsed_s") == pytest.approx([1, 2])
 
 
-def test_without_a_time_out_the_current_distance_counts() -> None:
+def test_race_that_is_stopped_before_time_out_ranks_nobody() -> None:
     lanes = [lane(step(1, [0.1, 0.2])), lane()]
     result = race_result(lanes, steps=2)
 
     assert finish_s(lanes, 2, "paper") is None
-    assert under(result, "paper", "finished_distance_m") == [0.2, 0]
-    assert under(result, "paper", "rank") == [1, 2]
+    assert under(result, "paper", "finished_distance_m") == [None, None]
+    assert under(result, "paper", "rank") == [None, None]
+    assert [one["steps"] for one in result["lanes"]] == [1, 0]
+
+
+def test_lane_that_is_not_computed_up_to_the_first_finish_leaves_the_race_undecided() -> None:
+    stopped = lane(step(1, [0.3, 0.4]))
+    result = race_result([tortoise(), stopped], steps=2)
+
+    assert finish_s([tortoise(), stopped], 2, "free") is None, "one lane stands at 1 s of 2"
+    assert under(result, "free", "rank") == [None, None]

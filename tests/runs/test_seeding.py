@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.runs.seeding import EVALUATION, LEARNING, RACING, dump, generator, load
+from hexapods.runs.seeding import EVALUATION, LEARNING, RACING, dump, generator, load
 
 
 def draws(*key: int, seed: int = 7) -> list[float]:

@@ -6,18 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.assembly import build_learner
-from app.domain.simulator import Motion
-from app.runs.config import training_config
-from app.runs.recording import Arrays, PracticeRecording
-from app.runs.records import Evaluated, StepTaken
-from app.runs.stored_practice import (
+from hexapods.assembly import build_learner
+from hexapods.domain.simulator import Motion
+from hexapods.runs.config import training_config
+from hexapods.runs.recording import Arrays, PracticeRecording
+from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.stored_practice import (
     evaluation_arrays,
     practice_arrays,
     practice_recording,
     rewound,
 )
-from app.runs.training import train
+from hexapods.runs.training import train
 
 
 def practise(steps: int, simulator: str = "kinematic") -> PracticeRecording:

@@ -9,12 +9,12 @@ import numpy as np
 import psutil
 import pytest
 
-from app.agents.q_table import QTable
-from app.assembly import build_learner
-from app.domain.errors import DamagedFile, TableMismatch
-from app.runs.config import TrainingConfig, training_config
-from app.runs.table_file import TableFile
-from app.runs.tables import Checkpoint, snapshot, to_bytes
+from hexapods.agents.q_table import QTable
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import DamagedFile, TableMismatch
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.table_file import TableFile
+from hexapods.runs.tables import Checkpoint, snapshot, to_bytes
 
 CONFIG = training_config(gait="left-right-origin", simulator="kinematic", steps=10)
 

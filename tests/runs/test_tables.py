@@ -14,13 +14,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.agents.q_learning import QLearning
-from app.assembly import build_learner
-from app.domain.errors import DamagedFile, TableMismatch
-from app.domain.gait import GaitSpec
-from app.domain.robot import robot
-from app.runs.config import TrainingConfig, training_config
-from app.runs.tables import (
+from hexapods.agents.q_learning import QLearning
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import DamagedFile, TableMismatch
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.robot import robot
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.tables import (
     Checkpoint,
     check_fits,
     continue_from,
@@ -29,7 +29,7 @@ from app.runs.tables import (
     table_of,
     to_bytes,
 )
-from app.runs.training import train
+from hexapods.runs.training import train
 
 CONFIG = training_config(
     gait="left-right-origin", simulator="kinematic", steps=120, evaluate_every=0

@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.agents.q_learning import QLearning
-from app.assembly import build_learner, finish_training
-from app.domain.disturbances import Limp, SensorNoise, Slope
-from app.domain.errors import IllegalAction, InvalidInput
-from app.domain.world import World
-from app.runs import seeding
-from app.runs.config import SIMULATORS, SimulatorName, TrainingConfig, training_config
-from app.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
-from app.runs.tables import from_bytes, restore, snapshot, to_bytes
-from app.runs.training import Learner, train
-from app.runs.walker import Walker
+from hexapods.agents.q_learning import QLearning
+from hexapods.assembly import build_learner, finish_training
+from hexapods.domain.disturbances import Limp, SensorNoise, Slope
+from hexapods.domain.errors import IllegalAction, InvalidInput
+from hexapods.domain.world import World
+from hexapods.runs import seeding
+from hexapods.runs.config import SIMULATORS, SimulatorName, TrainingConfig, training_config
+from hexapods.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
+from hexapods.runs.tables import from_bytes, restore, snapshot, to_bytes
+from hexapods.runs.training import Learner, train
+from hexapods.runs.walker import Walker
 
 CONFIG = training_config(
     gait="left-right-vertical", simulator="kinematic", steps=200, seed=3, evaluate_every=50

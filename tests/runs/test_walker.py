@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.assembly import build_walkers
-from app.domain.disturbances import SensorNoise
-from app.domain.world import UNDISTURBED, World
-from app.runs.lane import lane_config
-from app.runs.race_config import RaceConfig
-from app.runs.walker import FutureNode, Walker
+from hexapods.assembly import build_walkers
+from hexapods.domain.disturbances import SensorNoise
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.runs.lane import lane_config
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.walker import FutureNode, Walker
 
 
 def walkers(

@@ -2,25 +2,26 @@
 
 import time
 from collections.abc import Callable
+from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
 
-from app.assembly import build_learner, build_walkers
 from app.events.bus import EventBus
 from app.events.run_view import run_view
-from app.runs.config import TrainingConfig, training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import race
-from app.runs.recording import LaneRecording
-from app.runs.records import StepTaken
-from app.runs.training import train
 from app.stage.stage import Stage
-from app.stage.stage_frame import StageFrame
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.run import Run
+from app.storage.run import NOT_ENDED, Run
+from hexapods.assembly import build_learner, build_walkers
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import race
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.records import StepTaken
+from hexapods.runs.training import train
+from hexapods.shows.stage_frame import StageFrame
 
 AdvanceRun = Callable[[], bool]
 """Computes a run's next step; False at the end."""
@@ -65,17 +66,20 @@ class StageParts:
         lanes = config.lanes if isinstance(config, RaceConfig) else ()
         fields = {
             "name": f"{kind.title()} {self._run_count}",
+            "id": f"{kind}{self._run_count:06}",
             "total": config.steps,
             "lane_training_ids": tuple(None for _ in lanes),
             **fields,
         }
-        run = Run(id=f"{kind}{self._run_count:03}", kind=kind, config=config, **fields)  # type: ignore[arg-type]
+        run = Run(kind=kind, config=config, **fields)  # type: ignore[arg-type]
         self.store.create(run)
         return run
 
     def set_state(self, run: Run, state: Any) -> None:
         """Change a run's state from any state, and publish it."""
-        self.publish(self.store.change(run.id, [self.store.get(run.id).state], state))
+        ended_at = None if state in NOT_ENDED else datetime.now(UTC)
+        before = self.store.get(run.id).state
+        self.publish(self.store.change(run.id, [before], state, ended_at=ended_at))
 
     def publish(self, run: Run) -> None:
         """Publish a run that changed, as jobs do."""

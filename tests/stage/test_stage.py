@@ -2,15 +2,16 @@
 
 import asyncio
 import json
-from typing import Any
+import struct
+from datetime import timedelta
 
 import pytest
 
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.stage.stage import REPLAY_AFTER_S
+from app.stage.stage import ANNOUNCE_AFTER_S, NEXT_AFTER_S
 from app.storage.errors import NotFound
-from app.storage.run import Page
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recording import LaneRecording
 from tests.stage.stage_parts import GAIT, StageParts
 
 
@@ -83,16 +84,23 @@ def test_race_is_shown_after_its_own_training(parts: StageParts) -> None:
     assert max(frame.time_s for frame in frames if frame.run_id == training.id) > 18
 
 
-def test_newest_finished_race_is_replayed_after_twenty_idle_seconds(
+def test_replay_of_the_newest_race_is_announced_and_begins_ten_seconds_later(
     parts: StageParts,
 ) -> None:
     parts.finished_race()
-    newest = parts.finished_race()
-    parts.stage.set(run_id=parts.finished_training(5).id)
+    newest, training = parts.finished_race(), parts.finished_training(5)
+    assert parts.stage.offer(training.id)
     frames = parts.watch_to_end()
 
     assert not any(frame.replay for frame in frames)
-    assert parts.watch(REPLAY_AFTER_S - 1)[-1].spec.kind == "training"
+    parts.watch(ANNOUNCE_AFTER_S - 1)
+    assert parts.stage.state()["announced"] is None
+    parts.watch(2.0)
+    assert parts.stage.state()["announced"] == {
+        "run_id": newest.id,
+        "in_s": pytest.approx(9, abs=0.2),
+    }
+    assert parts.watch(NEXT_AFTER_S - 2)[-1].run_id == training.id
     frame = parts.watch(2.0)[-1]
     assert (frame.run_id, frame.replay) == (newest.id, True)
 
@@ -101,24 +109,209 @@ def test_newest_finished_race_is_replayed_after_twenty_idle_seconds(
     assert not parts.next_frame().replay
 
 
-def test_race_that_is_deleted_as_its_replay_begins_gives_way_to_another(
-    parts: StageParts, monkeypatch: pytest.MonkeyPatch
+def test_race_that_a_person_chose_stays_until_a_run_is_started(parts: StageParts) -> None:
+    old = parts.finished_race()
+    parts.finished_race()
+    parts.stage.set(run_id=old.id)
+    parts.watch_to_end()
+
+    assert parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 10)[-1].run_id == old.id
+    assert parts.stage.state()["announced"] is None
+
+    started, _ = parts.running_race()
+    assert parts.stage.offer(started.id)
+
+
+def test_announced_replay_does_not_begin_if_a_person_wants_the_run_to_stay(
+    parts: StageParts,
 ) -> None:
+    parts.finished_race()
+    training = parts.finished_training(5)
+    parts.stage.offer(training.id)
+    parts.watch_to_end()
+    parts.watch(ANNOUNCE_AFTER_S + 1)
+    parts.stage.set(stay=True)
+
+    assert parts.stage.state()["announced"] is None
+    assert parts.stage.state()["origin"] == "chosen"
+    assert parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 5)[-1].run_id == training.id
+
+
+@pytest.mark.parametrize("state", ["stopped", "failed", "interrupted"])
+def test_no_replay_follows_a_run_that_ended_early(parts: StageParts, state: str) -> None:
+    parts.finished_race()
+    run, advance = parts.running_race()
+    parts.stage.offer(run.id)
+    for _ in range(4):
+        advance()
+    parts.set_state(run, state)
+    parts.watch_to_end()
+
+    assert parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 5)[-1].run_id == run.id
+
+
+def test_announced_race_that_is_deleted_gives_way_to_another(parts: StageParts) -> None:
     other, newest = parts.finished_race(), parts.finished_race()
-    list_runs = parts.store.list
+    training = parts.finished_training(5)
+    parts.stage.offer(training.id)
+    parts.watch_to_end()
+    parts.watch(ANNOUNCE_AFTER_S + 1)
+    assert parts.stage.state()["announced"]["run_id"] == newest.id
+    parts.delete(newest)
 
-    def list_then_delete(*args: Any, **kwargs: Any) -> Page:
-        page = list_runs(*args, **kwargs)
-        if newest.id in [run.id for run in page.runs]:
-            parts.store.delete(newest.id)
-        return page
+    assert parts.watch(ANNOUNCE_AFTER_S + 2 * NEXT_AFTER_S + 1)[-1].run_id == other.id
 
-    monkeypatch.setattr(parts.store, "list", list_then_delete)
-    assert parts.watch(REPLAY_AFTER_S + 1)[-1].run_id == other.id
+
+def test_start_of_the_server_shows_where_the_newest_run_was_interrupted(parts: StageParts) -> None:
+    parts.finished_race()
+    run, advance = parts.running_race(steps=30)
+    for _ in range(10):
+        advance()
+    parts.set_state(run, "interrupted")
+    config = RaceConfig(gait=GAIT, lanes=(LaneConfig(agent="greedy"),))
+    parts.create(config, id="race999", state="interrupted")
+    parts.stage.restore()
+
+    frame = parts.next_frame()
+    assert (frame.run_id, frame.label) == (run.id, f"{run.name}, interrupted at step 5 of 30")
+    assert parts.stage.state()["phase"] == "ended"
+
+
+def test_start_of_the_server_shows_the_run_that_was_last_at_work(parts: StageParts) -> None:
+    """An older run that was resumed is interrupted after a newer one has finished."""
+    old, advance = parts.running_race(steps=40)
+    for _ in range(20):
+        advance()
+    newer = parts.finished_race()
+    parts.store.update(newer.id, ended_at=newer.created_at + timedelta(seconds=5))
+    parts.recordings.save(old.id)
+    parts.store.interrupt_all()
+    parts.store.update(old.id, ended_at=newer.created_at + timedelta(seconds=60))
+    parts.stage.restore()
+
+    assert parts.next_frame().run_id == old.id
+
+
+def test_a_recording_that_cannot_be_decoded_does_not_keep_the_server_from_starting(
+    parts: StageParts, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def undecodable(run_id: str) -> list[LaneRecording]:
+        raise struct.error(f"the recording of {run_id} is too short")
+
+    parts.finished_race()
+    monkeypatch.setattr(parts.recordings, "race", undecodable)
+    parts.stage.restore()
+
+    assert parts.stage.state()["phase"] == "empty"
+    assert "the last run cannot be shown" in caplog.text
+
+
+def test_no_replay_follows_a_run_that_was_interrupted_before_its_first_step(
+    parts: StageParts,
+) -> None:
+    parts.finished_race()
+    race, _ = parts.running_race()
+    parts.store.interrupt_all()
+    parts.stage.restore()
+
+    frame = parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 2)[-1]
+    assert (frame.run_id, frame.replay) == (race.id, False)
+
+
+def test_race_that_was_resumed_and_computed_between_two_frames_is_shown_anew(
+    parts: StageParts,
+) -> None:
+    whole = parts.recordings.race(parts.finished_race(steps=12).id) or []
+    race, advance = parts.running_race(steps=12)
+    parts.stage.offer(race.id)
+    for _ in range(8):
+        advance()
+    parts.recordings.finish(race.id)
+    parts.set_state(race, "interrupted")
+    parts.watch_to_end()
+    for state in ("queued", "running"):
+        parts.set_state(race, state)
+    parts.recordings.begin_race(
+        race.id, [LaneRecording(lane.agent, lane.rest_qpos) for lane in whole]
+    )
+    for number in range(12):
+        for lane in whole:
+            parts.recordings.add(race.id, lane.steps[number])
+    parts.recordings.finish(race.id)
+    parts.set_state(race, "finished")
+    parts.next_frame()
+    parts.stage.set(end_at_time_out=False)
+
+    assert [lane.step for lane in parts.watch_to_end()[-1].lanes] == [12, 12]
+
+
+def test_pages_are_told_that_the_race_to_come_was_deleted(parts: StageParts) -> None:
+    training, _ = parts.running_training(60)
+    config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=(LaneConfig(agent="greedy"),))
+    race = parts.create(config, waiting_for=(training.id,))
+    parts.stage.offer(race.id)
+    parts.set_state(race, "stopped")
+    parts.next_frame()
+    events = parts.bus.subscribe(names=frozenset({"stage"}))
+    parts.delete(race)
+    parts.next_frame()
+
+    assert [json.loads(event.data)["next_run_id"] for event in events.drain()] == [None]
+
+
+def test_replay_of_the_run_on_stage_plays_although_it_was_paused_at_its_end(
+    parts: StageParts,
+) -> None:
+    parts.stage.offer(parts.finished_race().id)
+    parts.watch_to_end()
+    parts.stage.set(playing=False)
+    frame = parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 5)[-1]
+
+    assert (frame.replay, frame.playing) == (True, True)
+    assert frame.time_s > 0
+
+
+def test_announcement_ends_when_its_race_is_deleted(parts: StageParts) -> None:
+    race, training = parts.finished_race(), parts.finished_training(5)
+    parts.stage.offer(training.id)
+    parts.watch_to_end()
+    parts.watch(ANNOUNCE_AFTER_S + 1)
+    assert parts.stage.state()["announced"]["run_id"] == race.id
+    parts.delete(race)
+
+    assert parts.stage.state()["announced"] is None
+
+
+def test_run_on_stage_has_its_new_name_when_it_is_renamed(parts: StageParts) -> None:
+    race = parts.finished_race()
+    parts.stage.offer(race.id)
+    parts.publish(parts.store.update(race.id, name="Other"))
+
+    assert parts.next_frame().label.startswith("Other")
+
+
+def test_resumed_race_takes_the_stage_back_with_its_training(parts: StageParts) -> None:
+    training, advance = parts.running_training(60)
+    for _ in range(20):
+        advance()
+    lanes = (LaneConfig(agent="q-learning"), LaneConfig(agent="greedy"))
+    config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=lanes, steps=5)
+    race = parts.create(config, state="interrupted")
+    parts.set_state(training, "interrupted")
+    parts.stage.restore()
+    assert parts.next_frame().run_id == training.id
+
+    parts.set_state(training, "queued")
+    parts.store.update(race.id, waiting_for=(training.id,))
+    parts.set_state(race, "queued")
+    assert parts.stage.offer(race.id)
+
+    assert parts.next_frame().run_id == training.id
+    assert parts.stage.state()["next_run_id"] == race.id
 
 
 def test_idle_stage_without_a_finished_race_does_not_change(parts: StageParts) -> None:
-    assert parts.watch(REPLAY_AFTER_S + 5)[-1].phase == "start-line"
+    assert parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 5)[-1].phase == "start-line"
 
 
 def test_deleted_run_is_removed_from_the_stage(parts: StageParts) -> None:

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.domain.errors import HexapodError
 from app.events.bus import MAX_PENDING, EventBus
 from app.events.run_view import run_view
 from app.settings import Settings
@@ -16,6 +15,7 @@ from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import LIVE, NOT_ENDED, QUEUED, Run
+from hexapods.domain.errors import HexapodError
 from tests.storage.queries import recorded_queries
 from tests.storage.stores import experiment, race, training
 

@@ -5,23 +5,24 @@ import time
 
 import numpy as np
 
-from app.assembly import build_learner, build_walkers, finish_training
-from app.experiments.config import SUMMARY
-from app.experiments.plan import Plan
-from app.experiments.summary import summarise
-from app.experiments.trial import run_trial
-from app.runs.config import training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.runs.racing import record_race
-from app.runs.records import Evaluated, StepTaken
-from app.runs.results import race_result
-from app.runs.tables import from_bytes, snapshot, to_bytes
-from app.runs.training import train
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import TABLE, Run
 from app.storage.stored_trials import trials_as_csv
+from hexapods.assembly import build_learner, build_walkers, finish_training
+from hexapods.experiments.config import SUMMARY
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.summary import summarise
+from hexapods.experiments.trial import run_trial
+from hexapods.runs.config import training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import record_race
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.results import race_result
+from hexapods.runs.tables import from_bytes, snapshot, to_bytes
+from hexapods.runs.training import train
 from tests.jobs.experiments import sweep
 from tests.storage.stores import training
 
@@ -69,7 +70,10 @@ def ended_race(store: RunStore, run_id: str, training_id: str) -> Run:
     )
     *_, recorded = record_race(build_walkers(config, [table, None]), config, time.perf_counter)
     recordings = Recordings(store)
-    recordings.begin_race(run_id, recorded)
+    recordings.begin_race(run_id, [LaneRecording(one.agent, one.rest_qpos) for one in recorded])
+    for steps in zip(*(one.steps for one in recorded), strict=True):
+        for step in steps:
+            recordings.add(run_id, step)
     recordings.finish(run_id)
     result = race_result(recorded, config.steps)
     for lane, lane_training_id in zip(result["lanes"], (training_id, None), strict=True):

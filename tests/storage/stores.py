@@ -7,18 +7,18 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
-from app.domain.gait import GaitSpec
-from app.domain.robot import robot
-from app.domain.settings import SettingValues
-from app.experiments.config import ExperimentConfig
-from app.runs.config import TrainingConfig, training_config
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
 from app.settings import Settings
 from app.storage.database.opening import DATABASE_FILE, open_store
 from app.storage.database.sqlite_file import create_file
 from app.storage.database.store import RunStore
 from app.storage.run import Run
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.robot import robot
+from hexapods.domain.settings import SettingValues
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
 from tests.postgresql import PostgresServer
 
 StoreT = TypeVar("StoreT", bound=RunStore)

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from app.domain.errors import DamagedFile
 from app.storage.artifact_file import (
     CHUNK_BYTES,
     ReadableArtifact,
@@ -15,6 +14,7 @@ from app.storage.artifact_file import (
 )
 from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.disk_space import DiskSpace
+from hexapods.domain.errors import DamagedFile
 
 DATA = bytes(range(256)) * 1000
 

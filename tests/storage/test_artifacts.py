@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from app.domain.errors import DamagedFile
 from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.database.store import RunStore
 from app.storage.disk_space import MB, RESERVE_BYTES, DiskSpace
 from app.storage.errors import NotFound, StorageFailed, StorageFull
+from hexapods.domain.errors import DamagedFile
 from tests.storage.stores import opened, training
 
 
@@ -69,7 +69,7 @@ def test_missing_file_is_named_in_the_error(tmp_path: Path) -> None:
 
 def test_artifact_of_a_deleted_run_is_not_stored(tmp_path: Path) -> None:
     class Slow(ArtifactFiles):
-        def write(self, data: bytes) -> StoredFile:
+        def write(self, data: bytes | memoryview) -> StoredFile:
             stored = super().write(data)
             store.delete("a")
             return stored

@@ -10,7 +10,6 @@ import pytest
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
-from app.runs.config import training_config
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
@@ -18,6 +17,7 @@ from app.storage.disk_space import MB, MIN_FREE_BYTES, START_BYTES, DiskSpace
 from app.storage.errors import StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import QUEUED, TABLE
+from hexapods.runs.config import training_config
 from tests.storage.stores import training
 
 QUOTA_MB = 12

@@ -6,13 +6,13 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from app.domain.errors import InvalidInput
 from app.storage.database import keys
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Gone
 from app.storage.idempotency import Idempotency
 from app.storage.run import KEY_LIFETIME, Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
+from hexapods.domain.errors import InvalidInput
 from tests.storage.stores import training
 
 new_id = RunIds()

@@ -1,17 +1,20 @@
 """Recordings survive a restart; incremental writes, resuming, and the LRU cache."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from app.runs.recording import LaneRecording, PracticeRecording
-from app.runs.transition_log import Logged, TransitionLog, Transitions
 from app.storage import stored_recordings
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.stored_recordings import CACHE_RECORDINGS
+from app.storage.stored_recordings import CACHE_RECORDINGS, StoredRecordings
+from hexapods.runs.recording import LaneRecording, PracticeRecording
+from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.transition_log import Logged, TransitionLog, Transitions
 from tests.runs.sample_lanes import lane, step
 from tests.runs.test_stored_practice import assert_same, practise
 from tests.storage.stores import copy_new_database, opened, race, training
@@ -42,8 +45,9 @@ def test_training_recording_survives_a_restart(store: RunStore) -> None:
     for reader in (recordings, Recordings(store)):
         recording = reader.training("a")
         assert recording is not None
-        assert_same(recording, practised)
+        assert_same(recording, of_newest_motion(practised))
         assert reader.training("a") is recording
+    assert_stored(store, practised)
 
 
 def test_race_recordings_survive_a_restart(store: RunStore) -> None:
@@ -80,9 +84,48 @@ def test_resumed_training_continues_the_saved_recording(store: RunStore) -> None
     for evaluation in whole.evaluations[4:]:
         resumed.add("a", evaluation)
     resumed.finish("a")
-    stored = Recordings(store).training("a")
+    assert_stored(store, whole)
+
+
+def test_evaluations_of_a_long_training_are_not_all_in_memory(store: RunStore) -> None:
+    """Each has the motion of 50 steps: 80 kB. In the files they all are, also after a resume."""
+    store.create(training("a"))
+    practised = practise(450)
+    recordings = Recordings(store)
+    record(recordings, "a", practised)
+    recordings.save("a")
+    growing = recordings.training("a")
+    assert growing is not None
+    # Those of the last file, which will be written again, and in any case the newest one.
+    assert [one.step for one in growing.evaluations if one.motion] == [410, 420, 430, 440, 450]
+    recordings.finish("a")
+    assert_stored(store, practised)
+
+    recordings.begin_training("a", practised.rest_qpos, after_step=305)
+    for step_taken in practised.steps:
+        if step_taken.step > 305:
+            recordings.add("a", step_taken)
+    for evaluation in practised.evaluations[30:]:
+        recordings.add("a", evaluation)
+    recordings.finish("a")
+    assert_stored(store, practised)
+
+
+def of_newest_motion(recording: PracticeRecording) -> PracticeRecording:
+    """Return a recording as it is read: of its evaluations only the newest has its motion."""
+    *earlier, newest = recording.evaluations
+    shown = PracticeRecording(recording.rest_qpos)
+    stripped = [replace(one, motion=None) for one in earlier]
+    records: list[StepTaken | Evaluated] = [*recording.steps, *stripped, newest]
+    for one in records:
+        shown.add(one)
+    return shown
+
+
+def assert_stored(store: RunStore, recording: PracticeRecording) -> None:
+    stored = StoredRecordings(store).whole_training("a")
     assert stored is not None
-    assert_same(stored, whole)
+    assert_same(stored, recording)
 
 
 def logged(steps: int) -> TransitionLog:
@@ -141,9 +184,9 @@ def test_saving_again_writes_only_new_files(
     written: list[str] = []
     put_artifact = store.put_artifact
 
-    def spy(run_id: str, name: str, data: bytes) -> None:
+    def spy(run_id: str, name: str, data: bytes, **fields: Any) -> None:
         written.append(name)
-        put_artifact(run_id, name, data)
+        put_artifact(run_id, name, data, **fields)
 
     monkeypatch.setattr(store, "put_artifact", spy)
     monkeypatch.setattr(stored_recordings, "EVALUATIONS_PER_FILE", 2)
@@ -175,7 +218,7 @@ def test_cache_evicts_the_least_recently_used_recording(store: RunStore) -> None
     newest, oldest = recordings.training(ids[-1]), recordings.training(ids[0])
     assert recordings.training(ids[-1]) is newest
     assert oldest is not None
-    assert_same(oldest, practised)
+    assert_same(oldest, of_newest_motion(practised))
     for run_id in ids[1:]:
         recordings.training(run_id)
     assert recordings.training(ids[0]) is not oldest

@@ -13,13 +13,13 @@ from typing import Any
 
 import pytest
 
-from app.domain.disturbances import Slope
-from app.domain.errors import InvalidInput
-from app.domain.world import World
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, SORTS, AnyRun, Run, State
 from app.storage.run_ids import RunIds
+from hexapods.domain.disturbances import Slope
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.world import World
 from tests.storage.stores import (
     ODD,
     RACE,

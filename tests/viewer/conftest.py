@@ -13,7 +13,7 @@ import pytest
 from tests.stage.conftest import parts
 
 if TYPE_CHECKING:
-    from app.viewer.viser_internals.server import InProcessViser
+    from hexapods.drawing.viser_internals.server import InProcessViser
     from tests.viewer.serving import Robots
 
 __all__ = ["parts"]
@@ -31,7 +31,7 @@ def viser_server() -> Iterator[InProcessViser]:
 @pytest.fixture
 def server() -> Iterator[InProcessViser]:
     """A viser without a scene."""
-    from app.viewer.viser_internals.server import in_process_viser
+    from hexapods.drawing.viser_internals.server import in_process_viser
 
     with in_process_viser() as started:
         yield started

@@ -4,14 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from app.domain.robot import Robot
-from app.runs.lane import LaneConfig
-from app.runs.race_config import RaceConfig
-from app.stage.scene_spec import race_scene, rest_pose
-from app.stage.stage_frame import LaneView, SceneSpec, StageFrame
 from app.viewer.snapshot import Snapshot
-from app.viewer.viser_internals import stream
-from app.viewer.viser_internals.server import InProcessViser
+from hexapods.domain.robot import Robot
+from hexapods.drawing.viser_internals import stream
+from hexapods.drawing.viser_internals.server import InProcessViser
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.shows.scene_spec import race_scene, rest_pose
+from hexapods.shows.stage_frame import LaneFrame, SceneSpec, StageFrame
 from tests.viewer.serving import Reader
 
 GAIT = "left-right-vertical"
@@ -49,10 +49,10 @@ def race_of(lanes: int, robot: Robot | None = None) -> SceneSpec:
 
 
 def frame_at_rest(spec: SceneSpec) -> StageFrame:
-    lane = LaneView(rest_pose(spec), 3, 50, 0.0)
+    lane = LaneFrame(rest_pose(spec), 3, 50, 0.0)
     return StageFrame(spec, "run", "race", "Race", (lane,) * len(spec.lane_specs))
 
 
-def frame_of(spec: SceneSpec, *lanes: LaneView) -> StageFrame:
+def frame_of(spec: SceneSpec, *lanes: LaneFrame) -> StageFrame:
     """Return a frame of a race with these lanes."""
     return StageFrame(spec, "run", "race", "Race", lanes)

@@ -21,8 +21,8 @@ from app.server import GRACE_S
 from app.viewer.hub import Hub
 from app.viewer.service import viewer_routes
 from app.viewer.session import websocket_options
-from app.viewer.viser_internals import stream
-from app.viewer.viser_internals.server import InProcessViser
+from hexapods.drawing.viser_internals import stream
+from hexapods.drawing.viser_internals.server import InProcessViser
 
 T = TypeVar("T")
 

@@ -11,9 +11,9 @@ from viser import _messages
 from websockets.exceptions import ConnectionClosed
 
 from app.viewer.hub import Hub
-from app.viewer.track import Position
-from app.viewer.viser_internals import stream
-from app.viewer.viser_internals.server import InProcessViser
+from hexapods.drawing.track import Position
+from hexapods.drawing.viser_internals import stream
+from hexapods.drawing.viser_internals.server import InProcessViser
 from tests.viewer.serving import (
     Robots,
     ServedHub,

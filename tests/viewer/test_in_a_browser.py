@@ -13,9 +13,9 @@ from starlette.responses import HTMLResponse, Response
 from starlette.routing import Route
 
 from app.viewer.hub import Hub
-from app.viewer.track import Position
-from app.viewer.viser_internals import stream
-from app.viewer.viser_internals.server import InProcessViser
+from hexapods.drawing.track import Position
+from hexapods.drawing.viser_internals import stream
+from hexapods.drawing.viser_internals.server import InProcessViser
 from tests.conftest import new_page
 from tests.viewer.serving import ServedHub, Upstream, serving, start_viser, wait_until
 

@@ -6,10 +6,10 @@ import viser
 import zstandard
 
 from app.jobs.stopping import Stopping
-from app.runs.race_config import Branch, RaceConfig
-from app.stage.race_show import original_of
+from app.stage.playback import original_of
 from app.storage.errors import Busy
 from app.viewer.recorded_stream import MAX_LENGTH_S, recorded_stream
+from hexapods.runs.race_config import Branch, RaceConfig
 from tests.stage.stage_parts import StageParts
 
 

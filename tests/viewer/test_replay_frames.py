@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replays
+from app.stage.playback import Replays
 from app.viewer.replay_frames import ReplayFrames
-from app.viewer.robot_mesh import RobotMesh
-from app.viewer.scene import SCENE_ROOT
+from hexapods.drawing.robot_mesh import RobotMesh
+from hexapods.drawing.scene import SCENE_ROOT
+from hexapods.shows.replay import FRAMES_PER_S, SEGMENT_FRAMES
 from tests.stage.stage_parts import StageParts
 
 LANES = ("q-learning", "greedy", "two-step")

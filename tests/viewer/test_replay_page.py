@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from app.jobs.stopping import Stopping
-from app.stage.playback import FRAMES_PER_S, SEGMENT_FRAMES, Replays
+from app.stage.playback import Replays
 from app.storage.errors import Busy, Conflict
 from app.viewer.replay_frames import ReplayFrames
-from app.viewer.replay_page import MAX_SEGMENTS, _notes, _recorded_segments, replay_page
-from app.viewer.robot_mesh import RobotMesh
-from app.viewer.scene import SCENE_ROOT
+from hexapods.drawing.replay_page import MAX_SEGMENTS, _notes, _recorded_segments
+from hexapods.drawing.robot_mesh import RobotMesh
+from hexapods.drawing.scene import SCENE_ROOT
+from hexapods.shows.replay import FRAMES_PER_S, SEGMENT_FRAMES
 from tests.stage.stage_parts import StageParts
 from tests.viewer.test_replay_frames import LANES, decoded, frames_of, shown
 
@@ -21,7 +22,7 @@ _BLOCK = re.compile(r'<script type="text/plain" id="([\w-]+)">([^<]*)</script>')
 
 
 def page_of(frames: ReplayFrames, run_id: str, **more: int) -> str:
-    return b"".join(replay_page(frames, run_id, "A <race> & more", "paper", **more)).decode()
+    return b"".join(frames.page(run_id, "A <race> & more", "paper", **more)).decode()
 
 
 def blocks_of(page: str) -> dict[str, str]:

@@ -8,9 +8,9 @@ import msgspec
 import pytest
 from starlette.websockets import WebSocket
 
-from app.runs.race_config import MAX_LANES
 from app.viewer.session import Counters, Session, decode_view, valid_view
-from app.viewer.viser_internals import stream
+from hexapods.drawing.viser_internals import stream
+from hexapods.runs.race_config import MAX_LANES
 
 
 class FakeBrowser:

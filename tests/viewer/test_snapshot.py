@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from app.viewer.snapshot import Snapshot
-from app.viewer.viser_internals import stream
-from app.viewer.viser_internals.server import InProcessViser
+from hexapods.drawing.viser_internals import stream
+from hexapods.drawing.viser_internals.server import InProcessViser
 from tests.viewer.serving import Reader, Robots, array, has_message
 
 Record = Callable[[], list[stream.Frame]]

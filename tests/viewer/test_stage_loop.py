@@ -11,10 +11,10 @@ import pytest
 
 from app.events.bus import EventBus
 from app.stage.stage import Stage
-from app.stage.stage_frame import StageFrame
-from app.viewer.scene import StageScene
 from app.viewer.stage_loop import IDLE_FRAMES_PER_S, StageLoop
-from app.viewer.viser_internals.server import in_process_viser
+from hexapods.drawing.scene import StageScene
+from hexapods.drawing.viser_internals.server import in_process_viser
+from hexapods.shows.stage_frame import StageFrame
 from tests.stage.stage_parts import StageParts
 from tests.viewer.serving import wait_until
 
@@ -101,7 +101,7 @@ def test_end_of_a_show_is_published_at_once(
         async for event in events:
             scene = json.loads(event.data)
             scenes.append((scene["run_id"], scene["phase"]))
-            if scene["phase"] == "finished":
+            if scene["ended"]:
                 events.close()
         return scenes
 
@@ -111,7 +111,7 @@ def test_end_of_a_show_is_published_at_once(
     ):
         scenes = asyncio.run(asyncio.wait_for(scenes_until_the_end(), 30))
 
-    assert scenes[-1] == (run.id, "finished")
+    assert scenes[-1] == (run.id, "photo-finish")
     assert len(scenes) <= 2
 
 

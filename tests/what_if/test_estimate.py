@@ -9,16 +9,16 @@ from typing import Any
 
 import pytest
 
-from app.assembly import build_learner
-from app.domain.errors import InvalidInput
-from app.experiments.config import experiment_config
 from app.jobs.process_pool import ProcessPool
 from app.jobs.submissions import ExperimentStart, LaneStart, RaceStart, TrainingStart
-from app.runs.config import WalkingProblem, training_config
-from app.runs.training import train
 from app.storage.errors import Busy
 from app.what_if.estimate import MAX_AT_ONCE, Estimates
-from app.what_if.step_time import Steps
+from app.what_if.step_time import TimedSteps
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import InvalidInput
+from hexapods.experiments.config import experiment_config
+from hexapods.runs.config import WalkingProblem, training_config
+from hexapods.runs.training import train
 from tests.jobs.waiting import wait_until
 
 WALK = WalkingProblem(gait="left-right-origin", simulator="kinematic")
@@ -36,12 +36,18 @@ class TimedPool(ProcessPool):
         """Return a context in which it answers no request."""
         return self._free
 
-    def map(self, function: Callable[[Any], Any], arguments: Sequence[Any]) -> list[Any]:
-        kinds: Sequence[Steps] = arguments
+    def map(
+        self,
+        function: Callable[[Any], Any],
+        arguments: Sequence[Any],
+        check: Callable[[], None] = lambda: None,
+        timeout_s: float | None = None,
+    ) -> list[Any]:
+        kinds: Sequence[TimedSteps] = arguments
         with self._free:
             return self._times_of(kinds)
 
-    def _times_of(self, kinds: Sequence[Steps]) -> list[Any]:
+    def _times_of(self, kinds: Sequence[TimedSteps]) -> list[Any]:
         self.timed += [one.training.agent for one in kinds]
         return [0.1 if one.practises else 1.0 for one in kinds]
 

@@ -4,14 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any, TypeVar
 
-from sqlalchemy import ColumnElement, Connection, delete, insert, select, update
+from sqlalchemy import ColumnElement, Connection, and_, delete, insert, select, update
 
-from app.domain.errors import DamagedFile
 from app.storage.artifacts import ArtifactFiles, StoredFile
 from app.storage.database.engine import Database
 from app.storage.database.queries import Row, fetch_rows, fetch_run_row
 from app.storage.database.schema import ARTIFACTS, RUNS
 from app.storage.errors import StorageFailed
+from hexapods.domain.errors import DamagedFile
 
 T = TypeVar("T")
 _FILE = (ARTIFACTS.c.file, ARTIFACTS.c.size, ARTIFACTS.c.sha256)
@@ -33,23 +33,36 @@ class Artifacts:
         if rows:
             connection.execute(insert(ARTIFACTS), rows)
 
-    def put(self, run_id: str, name: str, data: bytes, columns: Mapping[str, Any]) -> None:
+    def put(
+        self,
+        run_id: str,
+        name: str,
+        data: bytes | memoryview,
+        columns: Mapping[str, Any],
+        *,
+        replaces_all: bool,
+    ) -> StoredFile:
         """Store a file of the run and set columns of the run's row, atomically.
 
-        Replaces the file that had this name.
+        Replaces the file that had this name, or all files of the run.
+
+        Returns:
+            the new file.
 
         Raises:
             NotFound: if there is no such run.
             StorageFull: if there is too little disk space.
         """
         stored = self._files.write(data)
-        of_this_name = ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name
+        is_former = ARTIFACTS.c.run_id == run_id
+        if not replaces_all:
+            is_former &= ARTIFACTS.c.name == name
 
         def work(connection: Connection) -> Sequence[str]:
             fetch_run_row(connection, run_id, for_update=True)
-            former = select(ARTIFACTS.c.file).where(*of_this_name)
+            former = select(ARTIFACTS.c.file).where(is_former)
             names = connection.execute(former).scalars().all()
-            connection.execute(delete(ARTIFACTS).where(*of_this_name))
+            connection.execute(delete(ARTIFACTS).where(is_former))
             self.insert(connection, run_id, {name: stored})
             if columns:
                 of_run = RUNS.c.id == run_id
@@ -66,6 +79,7 @@ class Artifacts:
             raise
         # After a retried commit the new file itself is among the former ones.
         self._files.remove(*(name for name in former if name != stored.file))
+        return stored
 
     def read(self, run_id: str, name: str, read: Callable[[StoredFile, str], T]) -> T | None:
         """Read a file of the run with `read(file, label)`; None if it has no file of this name.
@@ -103,12 +117,20 @@ class Artifacts:
         files = self._database.read(lambda connection: connection.execute(names).scalars().all())
         return self._files.delete_orphans(files)
 
+    def files_of(self, run_id: str) -> Mapping[str, StoredFile]:
+        """Return the files of a run by their names; raises NotFound if there is no such run."""
+        return self._rows(run_id, ARTIFACTS.c.run_id == run_id)
+
     def _row(self, run_id: str, name: str) -> StoredFile | None:
-        query = select(*_FILE).where(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
+        is_it = and_(ARTIFACTS.c.run_id == run_id, ARTIFACTS.c.name == name)
+        return self._rows(run_id, is_it).get(name)
+
+    def _rows(self, run_id: str, is_meant: ColumnElement[bool]) -> Mapping[str, StoredFile]:
+        query = select(ARTIFACTS.c.name, *_FILE).where(is_meant)
 
         def work(connection: Connection) -> Sequence[Row]:
             fetch_run_row(connection, run_id)
             return fetch_rows(connection, query)
 
         rows = self._database.read(work)
-        return StoredFile(**rows[0]) if rows else None
+        return {row["name"]: StoredFile(*(row[column.name] for column in _FILE)) for row in rows}

@@ -9,6 +9,8 @@ from app.storage.database.engine import Database
 from app.storage.database.queries import Row, fetch_rows, fetch_run_row
 from app.storage.database.schema import EVALUATIONS
 
+_ROWS_AT_ONCE = 10_000
+
 
 class Curves:
     """Reads and writes the learning curves in a database."""
@@ -34,8 +36,10 @@ class Curves:
         self, connection: Connection, run_id: str, rows: Sequence[Mapping[str, Any]]
     ) -> None:
         """Insert rows within a transaction, for steps that the run does not have yet."""
-        if rows:
-            connection.execute(insert(EVALUATIONS), [{"run_id": run_id, **row} for row in rows])
+        # In parts, since an import may have very many.
+        for first in range(0, len(rows), _ROWS_AT_ONCE):
+            part = rows[first : first + _ROWS_AT_ONCE]
+            connection.execute(insert(EVALUATIONS), [{"run_id": run_id, **row} for row in part])
 
     def get(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         """See `RunStore.evaluations`."""

@@ -8,19 +8,19 @@ import sqlite3
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, select
+from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, select, text
 from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
-from app.domain.errors import HexapodError
-from app.storage.database.fair_semaphore import FairSemaphore
+from app.storage.database.fifo_semaphore import FifoSemaphore
 from app.storage.database.schema import ABOUT
 from app.storage.errors import OwnershipLost, StorageFailed, StorageFull
+from hexapods.domain.errors import HexapodError
 
 BUSY_S = 10.0
 """Time to wait for a lock that another process holds on the database."""
@@ -31,6 +31,9 @@ SQLITE_CONNECTIONS = 5
 """Concurrent connections to SQLite; further reads are queued."""
 SQLITE_FILES = 2 * SQLITE_CONNECTIONS + 1
 """Maximum of open database files: `.db` and `-wal` per connection, and one shared `-shm`."""
+PROBE_BUSY_S = 2.0
+"""The same for a probe."""
+_TOUCH = text("UPDATE about SET owner = owner")
 T = TypeVar("T")
 _READ_ONLY = "hexapods_only_reads"
 _PRIMARY_CODE = 0xFF  # mask: an extended result code of SQLite has the primary one in its low byte
@@ -71,6 +74,7 @@ class Database:
             write is retried.
         fencing_token: number of this server's ownership, which every write compares with the one
             in the database; None, before the database is claimed, skips the check.
+        write_problem: why the last write or probe failed; None if it succeeded.
         check_available: circuit breaker; while it raises `StorageFailed` every call fails at once,
             so that threads do not pile up behind a database that hangs.
     """
@@ -78,11 +82,12 @@ class Database:
     def __init__(self, engine: Engine, on_disk_full: Callable[[], bool] = lambda: False) -> None:
         self.engine, self.on_disk_full = engine, on_disk_full
         self.fencing_token: int | None = None
+        self.write_problem: HexapodError | None = None
         self.check_available: Callable[[], None] = lambda: None
         # SQLite's busy handler polls, and the pool's queue is not fair, so waiters would starve.
         is_sqlite = engine.dialect.name == "sqlite"
-        self._writers = FairSemaphore(1) if is_sqlite else None
-        self._connections = FairSemaphore(SQLITE_CONNECTIONS) if is_sqlite else None
+        self._writers = FifoSemaphore(1) if is_sqlite else None
+        self._connections = FifoSemaphore(SQLITE_CONNECTIONS) if is_sqlite else None
 
     def read(self, work: Callable[[Connection], T]) -> T:
         """Run a function in a read-only transaction, which sees one snapshot of the database.
@@ -139,7 +144,49 @@ class Database:
                     raise
             pause_s = min(2 * pause_s, _LAST_RETRY_S)
 
+    def probe_write(self) -> None:
+        """Begin and end a write, so that `write_problem` is known without one, and when it is over.
+
+        To be called regularly. After a failure the probe writes to the disk. PostgreSQL is only
+        probed then: where it does not answer, reads fail, too.
+        """
+        try:
+            if self._writers is None:
+                if self.write_problem is not None:
+                    self._write(lambda connection: connection.execute(_TOUCH))
+            # A write that is in progress tells by itself how it ends.
+            elif not self._writers.is_exhausted:
+                with _slot(self._writers), _slot(self._connections), translate_errors():
+                    self._probe_sqlite()
+        except (StorageFull, StorageFailed) as error:
+            self.write_problem = error
+        except sqlite3.Error as error:
+            self.write_problem = _sqlite_error(error)
+
+    def _probe_sqlite(self) -> None:
+        with closing(self.engine.raw_connection()) as connection:
+            cursor = connection.cursor()
+            try:
+                # Not as long as a write: who asks whether the server is ready waits for it.
+                cursor.execute(f"PRAGMA busy_timeout = {1000 * PROBE_BUSY_S:.0f}")
+                cursor.execute("BEGIN IMMEDIATE")
+                if self.write_problem is not None:
+                    cursor.execute(str(_TOUCH))
+                cursor.execute("COMMIT")
+            finally:
+                cursor.execute(f"PRAGMA busy_timeout = {1000 * BUSY_S:.0f}")
+        self.write_problem = None
+
     def _write(self, work: Callable[[Connection], T]) -> T:
+        try:
+            result = self._transaction(work)
+        except (StorageFull, StorageFailed) as error:
+            self.write_problem = error
+            raise
+        self.write_problem = None
+        return result
+
+    def _transaction(self, work: Callable[[Connection], T]) -> T:
         with (
             _slot(self._writers),
             _slot(self._connections),
@@ -174,7 +221,7 @@ class Database:
         self.engine.dispose()
 
 
-def _slot(semaphore: FairSemaphore | None) -> AbstractContextManager[None]:
+def _slot(semaphore: FifoSemaphore | None) -> AbstractContextManager[None]:
     return nullcontext() if semaphore is None else semaphore.acquired(BUSY_S, _busy_error)
 
 
@@ -279,7 +326,7 @@ def unreachable_error() -> StorageFailed:
 
 def _busy_error() -> HexapodError:
     return StorageFailed(
-        f"another program holds the database for over {BUSY_S:g} s; close it, then try again"
+        "another program holds the database for longer than a write waits; close it, then try again"
     )
 
 

@@ -13,8 +13,6 @@ from typing import Any, NamedTuple
 from sqlalchemy import ColumnElement, Connection, Double, String, and_, cast, func, or_, select
 from sqlalchemy import type_coerce as coerced
 
-from app.domain.errors import InvalidInput
-from app.domain.text import MAX_NAME
 from app.storage.database.queries import (
     Row,
     fetch_rows,
@@ -25,6 +23,8 @@ from app.storage.database.queries import (
 )
 from app.storage.database.schema import RUNS
 from app.storage.run import KINDS, Kind, Sort, State
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.text import MAX_NAME
 
 _NO_DISTANCE = -1.7e308
 _KEY = "sort_key"

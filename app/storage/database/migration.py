@@ -8,8 +8,8 @@ from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection
 
-from app.domain.errors import InvalidInput
 from app.storage.database.engine import Database
+from hexapods.domain.errors import InvalidInput
 
 CONNECTION = "connection"
 """Key of the open connection among the attributes of Alembic's config (see `migrations/env`)."""

@@ -4,19 +4,28 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 
-from app.files import sync_folder
 from app.settings import Settings
 from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
-from app.storage.database.sqlite_file import check_file, create_file
+from app.storage.database.sqlite_file import SUFFIXES, check_file, create_file
 from app.storage.database.store import RunStore
-from app.storage.disk_space import DiskSpace
-from app.storage.server_lock import lock_folder
+from app.storage.disk_space import RESERVE_FILE, DiskSpace
+from app.storage.private_folder import make_private
+from app.storage.server_lock import ADDRESS_FILE, LOCK_FILE, lock_folder
+from hexapods.files import sync_folder
 
 DATABASE_FILE = "hexapods.db"
 ARTIFACTS_FOLDER = "artifacts"
+ENTRIES = (
+    *(name + suffix for name in (DATABASE_FILE, f"{DATABASE_FILE}.new") for suffix in SUFFIXES),
+    ARTIFACTS_FOLDER,
+    RESERVE_FILE,
+    LOCK_FILE,
+    ADDRESS_FILE,
+)
+"""All that a data folder holds."""
 _logger = logging.getLogger(__name__)
 
 
@@ -40,6 +49,7 @@ def open_store(
         StorageFailed: if the database is damaged or unavailable.
     """
     settings.prepare_data()
+    make_private(settings.data, ENTRIES)
     with lock_folder(settings.data):
         disk_space = DiskSpace(settings.data, settings.quota_mb)
         with closing(_database(settings, disk_space)) as database:
@@ -47,7 +57,8 @@ def open_store(
             with _locked(ownership):
                 migrate(database)
                 folder = settings.data / ARTIFACTS_FOLDER / claim(database).database_id
-                folder.mkdir(parents=True, exist_ok=True)
+                folder.parent.mkdir(mode=0o700, exist_ok=True)
+                folder.mkdir(mode=0o700, exist_ok=True)
                 sync_folder(folder.parent)
                 store = RunStore(database, ArtifactFiles(folder, disk_space))
                 _recover(store)

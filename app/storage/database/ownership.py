@@ -22,11 +22,11 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, Executable, insert, select, text, update
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.domain.errors import HexapodError, InvalidInput
 from app.storage.database.engine import Database, translate_errors, unreachable_error
 from app.storage.database.schema import ABOUT
 from app.storage.database.sqlite_file import file_identity
 from app.storage.errors import StorageFailed
+from hexapods.domain.errors import HexapodError, InvalidInput
 
 _LOCK_NUMBER = 0x6865_7861_706F_6473
 _TRY_LOCK = text("SELECT pg_try_advisory_lock(:number)").bindparams(number=_LOCK_NUMBER)
@@ -42,7 +42,7 @@ _JOIN_S = 2.0
 _logger = logging.getLogger(__name__)
 
 
-class Claim(NamedTuple):
+class ClaimedDatabase(NamedTuple):
     """Result of claiming a database."""
 
     database_id: str
@@ -51,20 +51,20 @@ class Claim(NamedTuple):
     """Number of this ownership, one higher than that of the previous owner."""
 
 
-def claim(database: Database) -> Claim:
+def claim(database: Database) -> ClaimedDatabase:
     """Increment the fencing token, so that previous owners of the database can no longer write.
 
     Raises:
         StorageFailed: if the database is unavailable.
     """
 
-    def work(connection: Connection) -> Claim:
+    def work(connection: Connection) -> ClaimedDatabase:
         database_id = connection.execute(select(ABOUT.c.id)).scalar()
         if database_id is None:
             database_id = secrets.token_hex(8)
             connection.execute(insert(ABOUT), [{"id": database_id, "owner": 0}])
         increment = update(ABOUT).values(owner=ABOUT.c.owner + 1).returning(ABOUT.c.owner)
-        return Claim(database_id, connection.execute(increment).scalar_one())
+        return ClaimedDatabase(database_id, connection.execute(increment).scalar_one())
 
     claimed = database.write(work)
     database.fencing_token = claimed.fencing_token
@@ -152,6 +152,7 @@ class Ownership:
             self._poll_began_s = time.monotonic()
             try:
                 owner = self._read_owner()
+                self._database.probe_write()
             except HexapodError as error:
                 self._note_failure(error)
                 continue

@@ -7,8 +7,6 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Any, TypeVar
 
-from app.domain.text import NOTES_CONTROLS, visible
-from app.runs.race_config import RaceConfig
 from app.storage.database.columns import decode_json, decode_tags
 from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged
@@ -24,6 +22,8 @@ from app.storage.run import (
     ranking_distance_m,
     run_config_from_json,
 )
+from hexapods.domain.text import NOTES_CONTROLS, visible
+from hexapods.runs.race_config import RaceConfig
 
 MAX_ERROR_CHARS = 10_000
 """Maximum length of a run's error; exceptions of user-defined agents may be longer."""

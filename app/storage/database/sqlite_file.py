@@ -10,14 +10,14 @@ from contextlib import closing
 from pathlib import Path
 from urllib.parse import quote
 
-from app.domain.errors import DamagedFile
-from app.files import sync_folder
 from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.migration import migrate
+from hexapods.domain.errors import DamagedFile
+from hexapods.files import sync_folder
 
 _TABLES = frozenset({"alembic_version", "about", "runs", "evaluations", "artifacts"})
 """Tables of the first released schema, which all later schemas contain."""
-_SUFFIXES = ("", "-wal", "-shm")
+SUFFIXES = ("", "-wal", "-shm")
 _ADVICE = (
     "put a backup of it back, with its artifacts; or, if nothing is missed, move it away, and the "
     "next start begins anew"
@@ -37,10 +37,12 @@ def create_file(path: Path, on_disk_full: Callable[[], bool]) -> None:
     if path.exists():
         return
     new = path.with_name(f"{path.name}.new")
-    for suffix in _SUFFIXES:
+    for suffix in SUFFIXES:
         # Leftovers of a killed start, and a stale `-wal` of another database at this path.
         new.with_name(new.name + suffix).unlink(missing_ok=True)
         path.with_name(path.name + suffix).unlink(missing_ok=True)
+    # SQLite gives the files beside it the same permissions.
+    new.touch(mode=0o600)
     with closing(Database(sqlite_engine(new), on_disk_full)) as database:
         migrate(database)
     new.replace(path)

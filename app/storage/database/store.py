@@ -47,12 +47,13 @@ from app.storage.run import (
     IdempotencyKey,
     KeyRecord,
     Kind,
-    Page,
+    ListedRuns,
     Run,
     Sort,
     State,
 )
 from app.storage.sessions import SessionRows
+from hexapods.domain.errors import DamagedFile
 
 _INTERRUPTED_ERROR = "The server ended before the run did."
 
@@ -82,6 +83,15 @@ class RunStore:
             StorageFull: if there is too little, or would be while the run runs.
         """
         self._files.check_disk_space(START_BYTES)
+
+    def check_writable(self) -> None:
+        """Check that the last write to the database succeeded, or one that was tried since then.
+
+        Raises:
+            StorageFailed: if it failed.
+        """
+        if (problem := self._database.write_problem) is not None:
+            raise StorageFailed(str(problem))
 
     def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
         """Insert new runs, all or none, in one transaction.
@@ -211,7 +221,7 @@ class RunStore:
         search: str | None = None,
         tag: str | None = None,
         sort: Sort = "newest",
-    ) -> Page:
+    ) -> ListedRuns:
         """Return one page of runs; the arguments are those of a `Listing`.
 
         A run that cannot be decoded is listed in its place as a `DamagedRun`.
@@ -222,7 +232,7 @@ class RunStore:
         listing = Listing(kind, state, limit, cursor, search, tag, sort)
         progress = self._progress.snapshot()
         rows, cursor = self._database.read(lambda connection: fetch_page(connection, listing))
-        return Page(
+        return ListedRuns(
             [try_decode_run(_with_progress(row, progress.get(row["id"], {}))) for row in rows],
             cursor,
         )
@@ -369,18 +379,31 @@ class RunStore:
         """
         return self._trials.get(run_id)
 
-    def put_artifact(self, run_id: str, name: str, data: bytes, **fields: Any) -> None:
+    def put_artifact(
+        self,
+        run_id: str,
+        name: str,
+        data: bytes | memoryview,
+        *,
+        replaces_all: bool = False,
+        **fields: Any,
+    ) -> StoredFile:
         """Store a file of the run and set fields of the run, atomically.
 
-        Replaces the file that had this name.
+        Replaces the file that had this name, or all files of the run.
+
+        Returns:
+            the new file.
 
         Raises:
             NotFound: if there is no such run.
             StorageFull: if there is too little disk space.
         """
         self.get(run_id)
-        self._artifacts.put(run_id, name, data, encode_fields(fields))
+        columns = encode_fields(fields)
+        stored = self._artifacts.put(run_id, name, data, columns, replaces_all=replaces_all)
         self._invalidate_progress(run_id, fields)
+        return stored
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
         """Return the content of a file of the run; None if it has no file of this name."""
@@ -392,6 +415,33 @@ class RunStore:
         The caller closes it.
         """
         return self._artifacts.read(run_id, name, self._files.open)
+
+    def artifact_files(self, run_id: str) -> Mapping[str, StoredFile]:
+        """Return the files of a run, by their names, as they are at one moment.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
+        return self._artifacts.files_of(run_id)
+
+    def open_file(
+        self, stored: StoredFile, label: str, *, is_verified: bool = False
+    ) -> ArtifactFile:
+        """Open a file that a run has, or had, for reading in chunks. The caller closes it.
+
+        Args:
+            stored: the file.
+            label: name of the file for error messages.
+            is_verified: whether it was verified just before, which takes reading all of it.
+
+        Raises:
+            DamagedFile: if it is damaged, or not there: also if it was replaced or deleted.
+        """
+        opened = self._files.open_verified if is_verified else self._files.open
+        try:
+            return opened(stored, label)
+        except FileNotFoundError as error:
+            raise DamagedFile(f"{label} was replaced or deleted, or it is missing") from error
 
     def interrupt_all(self) -> Sequence[str]:
         """Mark every unended run as interrupted, after the server that ran it crashed.

@@ -6,11 +6,11 @@ from typing import Any
 
 from sqlalchemy import Connection, String, bindparam, cast, delete, insert, select
 
-from app.domain.text import visible
 from app.storage.database.columns import decode_json
 from app.storage.database.engine import Database
 from app.storage.database.queries import Row, fetch_rows, fetch_run_row
 from app.storage.database.schema import TRIALS
+from hexapods.domain.text import visible
 
 
 class Trials:

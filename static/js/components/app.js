@@ -1,26 +1,23 @@
 // The page: header, the views, the first lesson, keyboard shortcuts, the help dialog and messages.
-import { effect, signal } from "@preact/signals";
+import { effect } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
 import {
   clickedCell, closeLesson, helpIsOpen, isNarrow, isPresenting, leavePresenter, lesson, nextTheme, openLesson,
-  place, present, setShortcuts, shortcuts, theme, view,
+  place, present, scrollToTop, setShortcuts, shortcuts, stepsAreOpen, theme, view,
 } from "../page.js";
-import { announcement } from "../race.js";
+import { announcement } from "../headline.js";
 import { ownRunId, stepReplay } from "../replay.js";
 import { isOperator } from "../selectors.js";
 import { share, toastMessage } from "../share.js";
-import { connection, isLockedOut, options, setEntry, viewers } from "../store.js";
+import { connection, isLockedOut, options, viewers } from "../store.js";
 import { Controls } from "./controls.js";
-import { html, Icon } from "./elements.js";
-import { LazyPanel } from "./lazy.js";
+import { html, Icon, LazyPanel, Loaded, loaded } from "./elements.js";
 import { ActionValues, LearningChart } from "./learning.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Stage } from "./stage.js";
 import { SharedChoices } from "./transport.js";
 import { WhatIf } from "./what-if.js";
-
-/** @import { Signal } from "@preact/signals" */
 
 export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
@@ -89,25 +86,7 @@ const RaceView = ({ isHidden }) => html`
 const loadAudience = () => import("./audience.js").then(({ Audience }) => Audience);
 const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 
-// ---- what is loaded when it is first opened: most visits do not
-
-/** Loaded components, by their names on the page. @type {Signal<Record<string, any>>} */
-const loaded = signal({});
-
-/** `load`: imports the module and returns its component. */
-function Loaded({ name, load }) {
-  const [hasFailed, setFailed] = useState(false);
-  const state = connection.value;
-  useEffect(() => {
-    if (loaded.value[name] || state !== "live") return;
-    load().then((component) => setEntry(loaded, name, component), () => setFailed(true));
-  }, [state]);
-  const View = loaded.value[name];
-  if (View) return html`<${View} />`;
-  return hasFailed
-    ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
-    : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`;
-}
+// ---- the views that are loaded when they are first opened: most visits do not
 
 const LOADERS = {
   experiments: () => import("./experiments/experiments.js").then(({ Experiments }) => Experiments),
@@ -121,7 +100,6 @@ function LoadedView({ name }) {
 }
 
 const loadSteps = () => import("./steps/steps.js").then(({ Steps }) => Steps);
-const stepsAreOpen = signal(false);
 
 function StepsPanel() {
   const panel = useRef(/** @type {HTMLElement | null} */ (null));
@@ -129,7 +107,7 @@ function StepsPanel() {
   useEffect(() => effect(() => {
     if (!clickedCell.value) return;
     stepsAreOpen.value = true;
-    panel.current?.scrollIntoView({ block: "start" });
+    if (panel.current) scrollToTop(panel.current);
   }), []);
   return html`
     <section class="panel steps" aria-labelledby="steps-title" ref=${panel}>
@@ -232,10 +210,11 @@ const Header = () => html`
 `;
 
 function Connection() {
-  const state = connection.value;
+  // A page without access is not about to be connected.
+  const state = isLockedOut.value ? "no access" : connection.value;
   const watching = viewers.value ? html` · ${viewers.value}<span class="roomy"> watching</span>` : "";
   return html`
-    <p class=${`live ${state}`}>
+    <p class=${`live ${state.replace(" ", "-")}`}>
       <span class="dot" aria-hidden="true"></span>
       <span>${state === "live" ? html`live${watching}` : state}</span>
     </p>

@@ -1,10 +1,16 @@
-// The presenter view's strip below the picture: where others can watch, as an address and a QR code, and how many do.
+// The presenter view's strip below the picture: where others can watch, as an address and a QR code, how many do, and
+// the rule of the race with the figures that decide it.
 import { useEffect, useState } from "preact/hooks";
 import { getSpectators } from "../api.js";
 import { canStart, primaryAction, runPrimaryAction } from "../actions.js";
 import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
-import { canPlay, isOperator } from "../selectors.js";
+import { ruleOf } from "../headline.js";
+import { canPlay, clock } from "../on-stage.js";
+import { standings } from "../race.js";
+import { reason } from "../reason.js";
+import { isOperator } from "../selectors.js";
 import { connection, viewers } from "../store.js";
+import { clockTitle } from "../titles.js";
 import { html } from "./elements.js";
 
 /** @import { Spectators } from "../types.js" */
@@ -26,6 +32,7 @@ export function Audience() {
         <${Address} known=${known} problem=${problem} />
         <p class="watching-count"><b>${viewers.value ?? known?.watching ?? "…"}</b> watching</p>
       </div>
+      <${Rule} />
       <${Keys} />
     </section>
   `;
@@ -34,6 +41,17 @@ export function Audience() {
 function Address({ known, problem }) {
   if (known?.address) return html`<p class="address">${known.address.replace(/^http:\/\/|\/$/g, "")}</p>`;
   return html`<p class="dim" role="status">${known?.reason || problem}</p>`;
+}
+
+/** By what a race is ranked and timed, and the figures that have decided so far. */
+function Rule() {
+  const [row] = standings.value ?? [];
+  return row && html`
+    <div class="audience-rule">
+      <p>${ruleOf(row.steps, clockTitle(clock.value))}</p>
+      ${reason.value.map((line) => html`<p><b>${line}</b></p>`)}
+    </div>
+  `;
 }
 
 const Keys = () => html`

@@ -40,10 +40,12 @@ const MAX_SEEDS = 200;
  * @param {number[]} props.xs where the crosshair stops: the rows of the table
  * @param {number} [props.now] the index that is read first; by default the last
  * @param {((x: number) => unknown) | null} [props.seek] shows a moment; null where there is none, or for who may not
+ * @param {{ shown: number, computed: number } | null} [props.reach] of the axis: up to where lines are shown, and up to
+ *   where they can be; null where all that is known is shown
  * @param {any} [props.children] between the picture and the table
  */
 export function Chart(props) {
-  const { name, label, x, y, lines, marks = [], xs, now = xs.length - 1, seek = null, children } = props;
+  const { name, label, x, y, lines, marks = [], xs, now = xs.length - 1, seek = null, reach = null, children } = props;
   const [host, width, scale] = useSize();
   /** @type {[number, number]} */
   const whole = [x.min ?? 0, x.max];
@@ -53,7 +55,7 @@ export function Chart(props) {
   const all = [y.min ?? 0, y.max];
   const frame = frameOf(width, { y, lines, part, values: zoom ? valuesIn(lines, part, all) : all });
   const chart = { ...props, marks };
-  const axis = { axis: x.axis, xs, whole, part, now, seek };
+  const axis = { axis: x.axis, xs, whole, part, now, seek, reach };
   const inset = {
     left: scale * frame.left, right: scale * (width - frame.right), top: scale * TOP_PX, bottom: scale * BOTTOM_PX,
   };
@@ -121,7 +123,7 @@ function Picture({ label, x, y, lines, marks, frame, scale }) {
         ${lines.map((line) => html`<${Curve} key=${line.name} line=${line} frame=${frame} />`)}
       </g>
       <${MarkLines} marks=${inView} frame=${frame} />
-      <${LineLabels} marks=${inView} lines=${ended} frame=${frame} />
+      <${LineLabels} marks=${inView} lines=${ended} curves=${lines} frame=${frame} />
     </svg>
   `;
 }
@@ -183,10 +185,9 @@ function useSize() {
   return [host, Math.round(width / larger), larger];
 }
 
-/** The line of the best known walk, thin; its caption stands where those of other lines do not begin. */
-export const bestKnownMark = (y, more = {}) => ({
-  y, name: "Best known", kind: "best-known", ink: "--dim", share: 0.62, text: `best known: ${metres(y)}`, ...more,
-});
+/** The line of the best known walk, thin. */
+export const bestKnownMark = (y) =>
+  ({ y, name: "Best known", kind: "best-known", ink: "--dim", text: `best known: ${metres(y)}` });
 
 /** Note on the thin line, where its caption has no room. */
 export const BestKnownKey = ({ distance }) => html`

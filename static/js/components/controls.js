@@ -4,15 +4,19 @@ import {
   canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
   showOnStage, stop,
 } from "../actions.js";
+import { practiseAtPaceOfPicture } from "../live-changes.js";
 import { raceEstimate } from "../estimate.js";
-import { chooseLearner, form, mistakes, tryOwnSettings, unknownParts } from "../form.js";
+import { chooseLearner, form, mistakes, unknownParts } from "../form.js";
 import { count, listed, sentence, whole } from "../format.js";
 import { hasOwnSettings, isNarrow, isReadOnly } from "../page.js";
-import { interruptedRun, isOperator, myWork, offStage, progress, shownRun, work } from "../selectors.js";
+import { interruptedRun, myWork, offStage, progress, shownRun, steering, work } from "../on-stage.js";
+import { isOperator } from "../selectors.js";
 import { agentOf, learners, ratesInWords } from "../settings.js";
 import { scene } from "../store.js";
 import { gaitTitle, inFormWords, labelOf } from "../titles.js";
-import { EstimateNote, goToField, Held, html, Icon, Problem, ProgressBar, UnknownParts } from "./elements.js";
+import {
+  EstimateNote, goToField, Held, html, Icon, Loaded, Problem, ProgressBar, UnknownParts,
+} from "./elements.js";
 import { Settings } from "./settings.js";
 import { Branch, LiveWorld } from "./world-controls.js";
 
@@ -68,6 +72,7 @@ function Actions() {
       ${!myWork.value && html`<${SecondaryActions} />`}
       <${Progress} />
       ${work.value && html`<${WorkActions} />`}
+      <${Steering} />
       <${LiveWorld} />
       <${Branch} />
       <${Problem} at="work" />
@@ -138,17 +143,37 @@ function Progress() {
   return html`
     <div class="progress">
       <p><span>${shown.label}</span><span class="dim">${shown.left}</span></p>
-      <${ProgressBar} label=${shown.label} share=${shown.share} />
+      <${ProgressBar} ...${shown} />
     </div>
   `;
 }
+
+/** What a live setting acts on while the computation is ahead of the picture: its next step, or the next training. */
+function Steering() {
+  const state = steering.value;
+  if (state === null) return null;
+  const isOver = state === "computed";
+  const words = isOver
+    ? "This training is computed to its end; the picture is still on its way. A change acts on the next training."
+    : `A change acts on step ${whole(state.step)}, which is computed next${seenStep(state)}.`;
+  return html`
+    <div class="steering">
+      <p>${words}</p>
+      <button class="link" onClick=${practiseAtPaceOfPicture}>
+        ${isOver ? "Let the next one practise" : "Practise on"} at the pace of the picture, to steer it
+      </button>
+    </div>
+  `;
+}
+
+const seenStep = ({ shown }) => (shown === null ? "; it is not on stage" : `; the picture shows step ${whole(shown)}`);
 
 function OffStage() {
   const run = offStage.value;
   if (!run) return null;
   return html`
     <div class="notice">
-      <p>Another run is live on the stage, so yours continues without a picture.</p>
+      <p>The stage shows another run; your ${run.kind} goes on without a picture.</p>
       <button class="secondary" onClick=${() => showOnStage(run)}>Show on stage</button>
       <${Problem} at=${run.id} />
     </div>
@@ -172,6 +197,7 @@ function Failure() {
   `;
 }
 
+/** Of the newest run, while another one is on stage: the stage offers to resume its own. */
 function Interrupted() {
   const run = interruptedRun.value;
   if (!run) return null;
@@ -179,7 +205,7 @@ function Interrupted() {
   const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
   return html`
     <div class="notice">
-      <p><b>The ${run.kind} was interrupted${where}.</b> ${run.error}</p>
+      <p><b>${sentence(run.kind)} “${run.name}” was interrupted${where}; it is not on stage.</b> ${run.error}</p>
       <${ResumeButton} run=${run} />
     </div>
   `;
@@ -187,14 +213,14 @@ function Interrupted() {
 
 // ---- spectators: every setting, to read or to try
 
-const START_WORDS = "Runs are started with the operator’s link.";
+const loadOwnChoices = () => import("./own-choices.js").then(({ OwnChoices }) => OwnChoices);
 
 /** Shown to spectators in place of the controls. */
 function Spectator() {
   const kind = shownRun.value?.kind;
   const of = kind ? `the ${kind} that is shown` : "the next run, as they are by default";
   const words = isReadOnly.value
-    ? `These are the settings of ${of}. ${START_WORDS}`
+    ? `These are the settings of ${of}. The operator starts runs. On your own page you can:`
     : "Only “What if?” tries these settings; the stage goes on as it is.";
   return html`
     <section class="panel controls" aria-label="Run on stage">
@@ -202,15 +228,15 @@ function Spectator() {
         <h2>You are watching</h2>
         <p class="dim">${words}</p>
         ${progress.value && html`<${Progress} />`}
-        <div class="row">
-          ${isReadOnly.value
-            ? html`<button class="secondary compact" onClick=${tryOwnSettings}>Try other settings</button>`
-            : html`
+        ${isReadOnly.value
+          ? html`<${Loaded} name="choices" load=${loadOwnChoices} />`
+          : html`
+            <div class="row">
               <button class="secondary compact" onClick=${() => (hasOwnSettings.value = false)}>
                 Back to the settings on stage
               </button>
-            `}
-        </div>
+            </div>
+          `}
         ${!isReadOnly.value && html`<${UnknownParts} parts=${unknownParts} />`}
       </div>
       <${FoldedSettings} />

@@ -26,6 +26,7 @@ const DOUBLE_CLICK_MS = 250;
  * @property {Range} part that is shown
  * @property {number} now the index that is read first
  * @property {((x: number) => unknown) | null} seek
+ * @property {{ shown: number, computed: number } | null} reach up to where lines are shown, and to where they can be
  */
 
 /** The index at the crosshair, if it is on this axis and in view; else null. @param {Axis} axis */
@@ -53,8 +54,8 @@ export function Crosshair(props) {
   const last = xs.length - 1;
   if (last < 0) return null;
   const shown = index ?? Math.max(0, Math.min(now, last));
-  const { at, values } = readingOf(props, xs[shown]);
-  const words = `${at}: ${values.map((one) => `${one.name} ${one.value}`).join(", ")}`;
+  const { at, values, missing } = readingOf(props, xs[shown]);
+  const words = `${at}: ${missing || values.map((one) => `${one.name} ${one.value}`).join(", ")}`;
   const style = Object.fromEntries(Object.entries(inset).map(([side, px]) => [side, `${px}px`]));
   const share = shareOf(xs[shown], low, high);
   const onFocus = ({ currentTarget }) => {
@@ -67,7 +68,7 @@ export function Crosshair(props) {
       ${selection && html`<${Selection} from=${Math.min(...selection)} to=${Math.max(...selection)} />`}
       ${index !== null && html`
         <i class="line" style=${{ left: percent(share) }}></i>
-        <${Readout} at=${at} values=${values} share=${share} />
+        <${Readout} at=${missing ? words : at} values=${values} share=${share} isHigh=${Boolean(missing)} />
       `}
     </div>
   `;
@@ -77,8 +78,16 @@ const Selection = ({ from, to }) => html`
   <i class="selection" style=${{ left: percent(from), right: percent(1 - to) }}></i>
 `;
 
-/** Readings at a position: of each line, and of each named level. */
-function readingOf({ lines, marks, x, y }, position) {
+/** Why there are no values at a position; empty where there are. */
+function missingAt(reach, position) {
+  if (!reach || position <= reach.shown) return "";
+  return position <= reach.computed ? "not shown yet" : "not computed yet";
+}
+
+/** Readings at a position: of each line, and of each named level; or why there are none. */
+function readingOf({ lines, marks, x, y, reach }, position) {
+  const missing = missingAt(reach, position);
+  if (missing) return { at: x.text(position), values: [], missing };
   const valueOf = (line) => {
     const value = valueAt(line, position);
     const interval = intervalAt(line, position);
@@ -87,6 +96,7 @@ function readingOf({ lines, marks, x, y }, position) {
   };
   return {
     at: x.text(position),
+    missing,
     values: [
       ...lines.map((line) => ({ name: line.name, color: line.color, value: valueOf(line) })),
       ...marks.filter((mark) => mark.name).map((mark) => ({ ...mark, value: y.text(mark.y) })),
@@ -119,7 +129,7 @@ function placeOf({ clientX, currentTarget }, [low, high]) {
   return { share, width, x: low + (high - low) * share };
 }
 
-/** Handlers of a mouse, which reads, selects and seeks, and of fingers, of which two zoom. */
+/** Handlers of a mouse, which reads, selects and seeks, and of fingers: one reads, and seeks ahead; two zoom. */
 function usePointer(props, setSelection) {
   const mouse = useMouse(props, setSelection);
   const finger = useFingers(props);
@@ -191,32 +201,44 @@ function useMouse({ axis, whole, part, seek }, setSelection) {
   };
 }
 
-function useFingers({ axis, whole, part }) {
+function useFingers({ axis, whole, part, seek, reach }) {
   const fingers = useRef(/** @type {Map<number, { x: number, share: number }>} */ (new Map()));
+  const hasZoomed = useRef(false);
   const lift = ({ pointerId }) => fingers.current.delete(pointerId);
   return {
-    up: lift,
+    /** Where nothing is to be read yet but can be shown, a finger seeks. */
+    up(event) {
+      lift(event);
+      const { x } = placeOf(event, part);
+      if (hasZoomed.current || !seek || !reach || x <= reach.shown || x > reach.computed) return;
+      crosshair.value = null;
+      seek(x);
+    },
     cancel: lift,
-    down: (event) => fingers.current.set(event.pointerId, placeOf(event, part)),
+    down(event) {
+      if (!fingers.current.size) hasZoomed.current = false;
+      fingers.current.set(event.pointerId, placeOf(event, part));
+    },
     /** Whether two fingers zoom, which reads nothing. */
     move(event) {
       const moved = fingers.current.get(event.pointerId);
       if (moved) moved.share = placeOf(event, part).share;
       const [one, other] = [...fingers.current.values()];
       if (!other) return false;
+      hasZoomed.current = true;
       zoomTo(axis, pinned([one.x, other.x], [one.share, other.share]), whole);
       return true;
     },
   };
 }
 
-function Readout({ at, values, share }) {
+function Readout({ at, values, share, isHigh }) {
   // Beside the crosshair, on the side with more room and no wider than that.
   const side = share < FLIP_SHARE
     ? { left: percent(share), maxWidth: percent(1 - share) }
     : { right: percent(1 - share), maxWidth: percent(share) };
   return html`
-    <div class="readout num" style=${side} aria-hidden="true">
+    <div class=${`readout num ${isHigh ? "high" : ""}`} style=${side} aria-hidden="true">
       <p class="dim">${at}</p>
       ${values.map(({ name, color, value }) => html`
         <p>

@@ -1,10 +1,14 @@
 // The `html` template tag, and the elements that all views share: icons, glyphs, errors, bars, switches.
+import { signal } from "@preact/signals";
 import htm from "htm";
 import { h } from "preact";
-import { useLayoutEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { dismissProblem, problems } from "../actions.js";
 import { listed } from "../format.js";
+import { connection, setEntry } from "../store.js";
 import { labelOf, messageOf } from "../titles.js";
+
+/** @import { Signal } from "@preact/signals" */
 
 export const html = htm.bind(h);
 
@@ -136,10 +140,12 @@ export function goToField(id) {
   field?.focus();
 }
 
-export const ProgressBar = ({ label, share }) => html`
+/** `share` is done; `shown`, if it is told, is the part of the whole that the picture has shown. */
+export const ProgressBar = ({ label, share, shown = null }) => html`
   <div class="bar" role="progressbar" aria-label=${label} aria-valuemin="0" aria-valuemax="100"
     aria-valuenow=${Math.round(100 * share)}>
-    <i style=${{ width: `${100 * share}%` }}></i>
+    <i class=${shown === null ? "" : "computed"} style=${{ width: `${100 * share}%` }}></i>
+    ${shown !== null && html`<i style=${{ width: `${100 * shown}%` }}></i>`}
   </div>
 `;
 
@@ -171,4 +177,59 @@ export function useWidth() {
     return () => watcher.disconnect();
   }, []);
   return [host, width];
+}
+
+// ---- a panel whose module is loaded when the panel comes near the window
+
+const NEAR = "300px";
+
+/**
+ * @param {object} props
+ * @param {string} props.title of the panel, which stands there while it loads
+ * @param {string} [props.style] its class
+ * @param {() => Promise<(props: any) => any>} props.load resolves to the component of what the panel shows
+ */
+export function LazyPanel({ title, style = "", load }) {
+  const panel = useRef(/** @type {HTMLElement | null} */ (null));
+  const [loaded, setLoaded] = useState(/** @type {{ Content: any } | null} */ (null));
+  const [hasFailed, setFailed] = useState(false);
+  const [isNear, setNear] = useState(false);
+  useEffect(() => {
+    const watcher = new IntersectionObserver((entries) => setNear(entries.at(-1)?.isIntersecting ?? false), {
+      rootMargin: NEAR,
+    });
+    if (panel.current) watcher.observe(panel.current);
+    return () => watcher.disconnect();
+  }, []);
+  useEffect(() => {
+    if (isNear && !loaded) load().then((Content) => setLoaded({ Content }), () => setFailed(true));
+  }, [isNear]);
+  const id = `${title.toLowerCase().replaceAll(" ", "-")}-panel`;
+  return html`
+    <section class=${`panel chart ${style}`} aria-labelledby=${id} ref=${panel}>
+      <h2 id=${id}>${title}</h2>
+      ${loaded && html`<${loaded.Content} isNear=${isNear} />`}
+      ${hasFailed && !loaded && html`<p role="alert">This could not be loaded. Load the page again.</p>`}
+    </section>
+  `;
+}
+
+// ---- what is loaded when it is first opened: most visits do not
+
+/** Loaded components, by their names on the page. @type {Signal<Record<string, any>>} */
+export const loaded = signal({});
+
+/** `load`: imports the module and returns its component. */
+export function Loaded({ name, load }) {
+  const [hasFailed, setFailed] = useState(false);
+  const state = connection.value;
+  useEffect(() => {
+    if (loaded.value[name] || state !== "live") return;
+    load().then((component) => setEntry(loaded, name, component), () => setFailed(true));
+  }, [state]);
+  const View = loaded.value[name];
+  if (View) return html`<${View} />`;
+  return hasFailed
+    ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
+    : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`;
 }

@@ -4,7 +4,7 @@ import { changesInWords, rateInWords } from "../changes.js";
 import { inTime, inWords } from "../disturbances.js";
 import { count, metres, millimetres, whole } from "../format.js";
 import { largest, valueColours } from "../scale.js";
-import { shownRun } from "../selectors.js";
+import { shownRun } from "../on-stage.js";
 import { agentOf } from "../settings.js";
 import { options, scene, served } from "../store.js";
 import { bestMove, cellName, curve } from "../training.js";
@@ -179,9 +179,9 @@ function NextMove({ known }) {
   if (pair < 0) return null;
   const value = values_m[pair][cell] ?? 0;
   const tried = visits?.[pair]?.[cell] ?? 0;
-  const { name = agentOf(agent).title, done = false } = scene.value?.lanes?.[lane] ?? {};
+  const { name = agentOf(agent).title, done, halted } = scene.value?.lanes?.[lane] ?? {};
   const legs = pairs[pair].join(" and ");
-  const move = `${name} ${done ? "would" : "will"} move legs ${legs} to ${cellName(known, cell, " mm")}`;
+  const move = `${name} ${done || halted ? "would" : "will"} move legs ${legs} to ${cellName(known, cell, " mm")}`;
   const times = tried === 1 ? "once" : count(tried, "time");
   return html`
     <b>${move}${value < best.value ? " to explore" : ""}.</b> ${tried

@@ -1,5 +1,6 @@
-// A chart's straight lines with their captions, and a label at the end of each curve; none over another.
-import { placeCaptions, placeLabels } from "../labels.js";
+// A chart's straight lines with their captions, and a label at the end of each curve: none over another, and captions
+// on no line where another place is free.
+import { chooseCaptions, overlap, passes, placeLabels } from "../labels.js";
 import { html } from "./elements.js";
 
 /** @import { Box } from "../labels.js" */
@@ -69,15 +70,16 @@ export const MarkLines = ({ marks, frame }) => marks.map(({ x, y, kind, color, d
 });
 
 /** Captions of straight lines, as many as have room, and the ends of curves with their labels: those in the frame. */
-export function LineLabels({ marks, lines, frame }) {
+export function LineLabels({ marks, lines, curves, frame }) {
   const { left, bottom, width } = frame;
   /** Above the axis, and up to the right edge. @type {Box} */
   const bounds = { left, top: 0, width: width - left, height: bottom };
   const captioned = byImportance(marks.filter(({ text }) => text));
-  const captions = placeCaptions(captioned.map((mark) => captionBox(frame, mark)), bounds);
+  const places = captioned.map((mark) => captionPlaces(frame, mark));
   const ends = lines.filter(({ end }) => end).map((line) => ({
     ...line, x: frame.x(line.xs.at(-1)), y: frame.y(line.ys.at(-1)),
   }));
+  const captions = chooseCaptions(places, bounds, covering(marks, curves, ends, frame));
   const labels = placeLabels(ends.map(endBox), captions.filter((box) => box !== null), bounds);
   return html`
     ${captions.map((box, n) => box && html`
@@ -104,16 +106,41 @@ const Label = ({ text, box: { left, top, height }, color }) => html`
 const endBox = ({ end, x, y }) =>
   ({ left: x + TEXT_FROM_DOT_PX, top: y - LINE_PX / 2, width: widthOf(end), height: LINE_PX });
 
-/** Where a caption is wanted: on its horizontal line, or above its vertical one. @returns {Box} */
-function captionBox(frame, { x, y, text, share = 0 }) {
+/** Counts what a box would cover: straight lines, curves and dots; labels half, since they can move. */
+function covering(marks, curves, ends, frame) {
+  const { left, right, top, bottom } = frame;
+  const straight = marks.map(({ x, y }) => (x === undefined
+    ? [[left, frame.y(y)], [right, frame.y(y)]]
+    : [[frame.x(x), top], [frame.x(x), bottom]]));
+  const paths = curves.map(({ xs, ys }) =>
+    xs.flatMap((x, n) => (typeof ys[n] === "number" ? [[frame.x(x), frame.y(ys[n])]] : [])));
+  const [dots, labels] = [ends.map(dotBox), ends.map(endBox)];
+  return (/** @type {Box} */ box) => {
+    const covered = (/** @type {Box[]} */ boxes) => boxes.filter((one) => overlap(one, box)).length;
+    return [...straight, ...paths].filter((points) => passes(points, box)).length + covered(dots) + covered(labels) / 2;
+  };
+}
+
+/** Shares of the width at which a caption of a horizontal line may begin. */
+const SHARES = [0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8];
+
+/** Where the dot of a line's end is. @returns {Box} */
+const dotBox = ({ x, y }) =>
+  ({ left: x - END_DOT_PX, top: y - END_DOT_PX, width: 2 * END_DOT_PX, height: 2 * END_DOT_PX });
+
+/** Where a caption may be: along its horizontal line, above it or below, or above its vertical one. @returns {Box[]} */
+function captionPlaces(frame, { x, y, text }) {
   const width = widthOf(text);
   const height = CAPTION_PX;
   if (x === undefined) {
-    const left = frame.left + share * (frame.right - frame.left) + TEXT_FROM_LINE_PX;
-    return { left, top: frame.y(y) - height - 3, width, height };
+    const tops = [frame.y(y) - height - 3, frame.y(y) + 3];
+    return SHARES.flatMap((share) => tops.map((top) => {
+      const left = frame.left + share * (frame.right - frame.left) + TEXT_FROM_LINE_PX;
+      return { left, top, width, height };
+    }));
   }
   const at = frame.x(x);
   const isFarRight = at > frame.left + 0.6 * (frame.right - frame.left);
   const left = isFarRight ? at + TEXT_FROM_LINE_PX - width : at - TEXT_FROM_LINE_PX;
-  return { left, top: frame.top - height - 2, width, height };
+  return [{ left, top: frame.top - height - 2, width, height }];
 }

@@ -3,12 +3,15 @@ import { seekIn } from "../actions.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
+import { headline, ruleOf } from "../headline.js";
 import {
-  clipped, distanceAt, headline, isTimedOut, ruleOf, shownTime, standings, timeline, timelineProblem,
+  clipped, distanceAt, isOver, isTimedOut, shownEarlyEnd, shownTime, standings, timeline, timelineProblem,
 } from "../race.js";
-import { clock, isActive, originalRace, raceInView, raceScene, simulatedPerDecision } from "../selectors.js";
+import { clock, earlyEnd, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
+import { replayProblem } from "../replay.js";
+import { simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
-import { runs, served } from "../store.js";
+import { runs, served, stage } from "../store.js";
 import { clockTitle, flatParts, planningModelTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
@@ -62,7 +65,7 @@ function Board({ rows }) {
           <th scope="col"><span class="sr-only">Rank</span></th>
           <th scope="col"><span class="sr-only">Agent</span></th>
           <th scope="col" title="Distance at time-out: when the first lane has used its steps">
-            ${isTimedOut.value ? html`<span class="sr-only">Distance </span>At time-out` : "Now"}
+            ${distanceTitle()}
           </th>
           <th scope="col" title="Distance after all of its own steps">Total</th>
           <th scope="col" class="aside" title="Measured time of one decision, on average">Decision</th>
@@ -73,6 +76,11 @@ function Board({ rows }) {
       <${BestKnown} />
     </table>
   `;
+}
+
+function distanceTitle() {
+  if (isTimedOut.value) return html`<span class="sr-only">Distance </span>At time-out`;
+  return shownEarlyEnd.value ? "Reached" : "Now";
 }
 
 function BestKnown() {
@@ -90,10 +98,10 @@ function BestKnown() {
 const Lane = ({ row, longest }) => html`
   <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }}>
     <tr>
-      <td class="rank">${row.rank}</td>
+      <td class="rank">${row.rank ?? "–"}</td>
       <th scope="row" class="agent"><span class="swatch"></span>${row.title}</th>
       <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
-      <td class=${row.isDone ? "" : "dim"}>${isTimedOut.value ? metres(row.total_m ?? row.distance_m) : "–"}</td>
+      <td class=${row.isDone ? "" : "dim"}>${isTimedOut.value ? metres(row.total_m ?? distanceSoFar(row)) : "–"}</td>
       <td class="aside">${decision(row.decision_s)}</td>
       <td class="aside">${whole(row.simulated)}</td>
     </tr>
@@ -109,7 +117,7 @@ const Lane = ({ row, longest }) => html`
         <p class="dim">
           ${row.original && html`
             <span>
-              Original: ${metres(row.original.finished_m)} at time-out, ${metres(row.original.total_m)} in all
+              Original: ${metres(row.original.finished_m)} at time-out, total ${metres(row.original.total_m)}
             </span>
           `}
           <span>${planningModelOf(row)}</span>
@@ -119,6 +127,9 @@ const Lane = ({ row, longest }) => html`
     </tr>
   </tbody>
 `;
+
+/** Distance of a lane that walks on after time-out; none once the show has ended there. */
+const distanceSoFar = (row) => (isOver.value ? null : row.distance_m);
 
 function TimeStrip({ spent: { walked, thought }, longest }) {
   const width = (seconds) => ({ width: `${(100 * seconds) / longest}%` });
@@ -157,7 +168,9 @@ function activityOf(row) {
     const steps = count(row.steps, "step");
     return row.elapsed_s ? `${steps} in ${clockTime(row.elapsed_s)}${crossed}` : steps;
   }
+  if (row.isHalted) return `${earlyEnd(raceInView.value) ?? "Stopped"} at step ${row.step}`;
   const step = `Step ${row.step} of ${row.steps}`;
+  if (isOver.value && row.step) return `${step} at time-out`;
   if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} simulated`;
   return row.step ? step : agentSummary(row.agent, row.training_id);
 }
@@ -183,14 +196,21 @@ function agentSummary(agent, trainingId) {
 
 function startSentence(race) {
   if (!race) return "The lanes of the next race.";
-  return isActive(race) || race.state === "finished"
-    ? "The race starts when practice is over."
-    : `The race ${race.state === "stopped" ? "was stopped" : race.state} before it began.`;
+  if (shownRun.value === race) {
+    const end = earlyEnd(race);
+    if (end && !race.progress.done) return `${end} before it began.`;
+    return race.progress.done ? "Its figures come with the picture." : "The race is about to begin.";
+  }
+  return "The race starts when practice is over.";
 }
 
 /** The lanes before the race. */
 function StartList() {
   const race = raceInView.value;
+  if (!race && stage.value?.run_id && !shownRun.value) {
+    const words = replayProblem.value ? "No run is shown, so there are no figures." : "Loading the run on stage…";
+    return html`<p class="dim" role="status">${words}</p>`;
+  }
   const lanes = race?.config?.lanes ?? raceBody().lanes;
   return html`
     <p class="dim">${startSentence(race)}</p>
@@ -259,7 +279,8 @@ function Lines({ known, time }) {
   return html`
     <${Chart} name="the race" label=${caption} x=${x} lines=${lanes} marks=${marksOf(known, until, best_m)}
       y=${{ min: Math.min(0, ...lanes.flatMap(({ ys }) => ys)), max: HEADROOM * far, unit: "m", text: metres }}
-      xs=${moments} now=${moments.indexOf(until)} seek=${seekIn(known.id)}>
+      xs=${moments} now=${moments.indexOf(until)} seek=${seekIn(known.id)}
+      reach=${{ shown: until, computed: longest }}>
       ${best_m !== null && html`<${BestKnownKey} distance=${best_m} />`}
     <//>
   `;
@@ -289,11 +310,9 @@ function lastMoment({ first_finish_s }, until, longest) {
 
 /** The finish line, the best known walk, and time-out once it is past. */
 function marksOf({ finish_line_m, first_finish_s }, until, best_m) {
-  // Its caption stands where no line passes: first on the left, later behind the lanes that have arrived.
-  const share = first_finish_s && until > 1.5 * first_finish_s ? 0.55 : 0;
   /** @type {object[]} */
-  const marks = [{ y: finish_line_m, color: "--finish", text: "finish line", share }];
-  if (best_m !== null) marks.push(bestKnownMark(best_m, { share }));
+  const marks = [{ y: finish_line_m, color: "--finish", text: "finish line" }];
+  if (best_m !== null) marks.push(bestKnownMark(best_m));
   if (first_finish_s && until >= first_finish_s) {
     marks.push({ x: first_finish_s, color: "--dim", dash: [2, 3], text: "time-out" });
   }

@@ -1,12 +1,13 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
 import { useState } from "preact/hooks";
-import { tune } from "../actions.js";
+import { tune } from "../live-changes.js";
 import { presentRates, rateInWords } from "../changes.js";
 import { inTime, parseText } from "../disturbances.js";
 import { chooseLearner, enter, form, setField, wrong } from "../form.js";
 import { count, listed } from "../format.js";
 import { isReadOnly } from "../page.js";
-import { isOperator, liveTraining, trainingInView } from "../selectors.js";
+import { liveTraining, trainingInView } from "../on-stage.js";
+import { isOperator } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,
   ratesInWords, settingOf, settingsOf, sliderOf,

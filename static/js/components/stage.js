@@ -1,15 +1,20 @@
 // The 3D stage in its frame, with labels over it.
 import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { metres, sentence, times, whole } from "../format.js";
 import { clickedCell, drawHere, isPresenting, shownTheme, view } from "../page.js";
+import { headline } from "../headline.js";
 import { standings } from "../race.js";
 import { closeReplay, drawIn, ghostId, isBuffering, ownRunId, replayProblem } from "../replay.js";
-import { conditionsShown, playbackName, raceScene } from "../selectors.js";
+import {
+  conditionsShown, isDecided, playbackName, raceScene, resumableOnStage, shownRun,
+} from "../on-stage.js";
+import { isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
-import { html } from "./elements.js";
+import { html, Icon, Problem } from "./elements.js";
 import { Transport } from "./transport.js";
 
 /** A frame that has not reported its status for so long is shown as it is. */
@@ -74,6 +79,7 @@ export function Stage() {
           </p>
         `}
       </div>
+      <${StageNotes} />
       <${Transport} />
     </section>
   `;
@@ -89,6 +95,71 @@ const ReplayProblem = () => replayProblem.value && html`
     <button class="secondary" onClick=${closeReplay}>Watch the stage</button>
   </div>
 `;
+
+// ---- notes under the picture: what ended and how to go on, and what comes next
+
+const StageNotes = () => html`
+  <div class="stage-notes">
+    <${EarlyEndNote} />
+    <${DecidedNote} />
+    <${AnnouncementNote} />
+  </div>
+`;
+
+/** Of a run on stage that was interrupted or failed: where, and how to go on. */
+function EarlyEndNote() {
+  const run = shownRun.value;
+  const resumable = resumableOnStage.value;
+  if (!run || !resumable || ownRunId.value !== null || (stage.value && !stage.value.ended)) return null;
+  const { done, total } = run.progress;
+  const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
+  const verb = run.state === "failed" ? "failed" : "was interrupted";
+  return html`
+    <div class="stage-note" role="status">
+      <p><b>The ${run.kind} ${verb}${where}.</b> This is its last picture.</p>
+      ${isOperator.value && html`
+        <button class="primary compact" disabled=${pending.value[resumable.id]} onClick=${() => resumeRun(resumable)}>
+          <${Icon} name="play" />Resume ${resumable === run ? "" : `the ${resumable.kind}`}
+        </button>
+        <${Problem} at=${resumable.id} />
+      `}
+    </div>
+  `;
+}
+
+/** At the photo finish: who won, while other lanes still walk. */
+const DecidedNote = () => isDecided.value && html`
+  <div class="stage-note">
+    <p><b>${headline.value}</b></p>
+    ${isOperator.value && ownRunId.value === null && stage.value?.end_at_time_out && html`
+      <button class="secondary compact" onClick=${keepWatching}>Keep watching</button>
+    `}
+  </div>
+`;
+
+/** The replay that begins by itself. */
+function AnnouncementNote() {
+  const announced = ownRunId.value === null ? stage.value?.announced : null;
+  const [left, setLeft] = useState(0);
+  useEffect(() => {
+    if (!announced) return undefined;
+    const end = performance.now() + 1000 * announced.in_s;
+    const count = () => setLeft(Math.max(0, Math.ceil((end - performance.now()) / 1000)));
+    count();
+    const timer = setInterval(count, 250);
+    return () => clearInterval(timer);
+  }, [announced]);
+  if (!announced) return null;
+  const name = runs.value.get(announced.run_id)?.name ?? "a race";
+  const what = announced.run_id === stage.value?.run_id ? "the same again" : `a replay of ${name}`;
+  return html`
+    <div class="stage-note">
+      <p role="status">Next: ${what}</p>
+      <p class="dim num" aria-hidden="true">in ${left} s</p>
+      ${isOperator.value && html`<button class="secondary compact" onClick=${stay}>Stay</button>`}
+    </div>
+  `;
+}
 
 // ---- a drawing of the robots on the start line, shown until the stage has a picture
 
@@ -137,7 +208,7 @@ function StagePlaceholder({ status }) {
 const GRID_COLOURS = "Colours of the foot grid: dark is worth less, light is worth more, grey was never tried";
 
 function StageLabels() {
-  const thinking = (raceScene.value && standings.value?.filter((row) => row.isThinking)) || [];
+  const thinking = (raceScene.value && !stage.value?.ended && standings.value?.filter((row) => row.isThinking)) || [];
   const labels = useRef(/** @type {HTMLElement | null} */ (null));
   const measure = () => measureChips(/** @type {HTMLElement} */ (labels.current));
   // After the page is painted: before, the browser would lay it out twice.
@@ -210,9 +281,9 @@ function WorldChip() {
 }
 
 function SpeedChip({ now }) {
-  if (stage.value?.playing === false && now?.kind !== "idle") {
+  if (stage.value?.playing === false && !stage.value.ended && now?.kind !== "idle") {
     return html`<p class="chip">${sentence(playbackName.value)} paused</p>`;
   }
-  if (!now || now.kind === "idle" || now.phase === "finished" || !(now.shown_speed > 0)) return null;
+  if (!now || now.kind === "idle" || stage.value?.ended || !(now.shown_speed > 0)) return null;
   return html`<p class="chip num" title="Times real time">${times(now.shown_speed)}</p>`;
 }

@@ -1,13 +1,14 @@
 // The transport below the stage: play, seek, speed, clock, camera. The camera is this page's own; all else is shared by
 // every page, unless this one plays a replay of its own.
-import { setStage, skipToEnd, togglePlaying } from "../actions.js";
+import { endAtTimeOut, setStage, skipToEnd, togglePlaying } from "../actions.js";
 import { conditionsAt, conditionsInWords, disturbancesOf } from "../disturbances.js";
 import { clockTime, count, metres, sentence } from "../format.js";
 import { isNarrow, view } from "../page.js";
 import {
   closeReplay, endTime, openReplay, ownRunId, plan, replayTime, seekReplay, stepReplay,
 } from "../replay.js";
-import { canPlay, clock, isActive, isOperator, isPlaying, playbackName, shownRun } from "../selectors.js";
+import { canPlay, clock, isPlaying, playbackName, shownRun } from "../on-stage.js";
+import { isActive, isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { options, scene, stage } from "../store.js";
 import { choicesOf, clockTitle } from "../titles.js";
@@ -143,38 +144,60 @@ function OwnSeek() {
 }
 
 /** Speed and clock; on a phone in a row of their own, which may scroll away. */
-export const SharedChoices = () => canPlay.value && html`<${Speed} /><${ClockChoice} />`;
+export const SharedChoices = () => canPlay.value && html`<${EndAtTimeOut} /><${Speed} /><${ClockChoice} />`;
+
+/** Whether the show of a race ends with its photo finish: its last robots may walk on for a minute. */
+function EndAtTimeOut() {
+  if (ownRunId.value !== null || scene.value?.kind !== "race" || scene.value.lanes.length < 2) return null;
+  return html`
+    <label class="check end-at-time-out" title="For every page: end with the photo finish, which settles the ranking">
+      <input type="checkbox" name="end_at_time_out" checked=${stage.value?.end_at_time_out ?? true}
+        onChange=${({ target }) => endAtTimeOut(target.checked)} />
+      End at time-out
+    </label>
+  `;
+}
 
 const isOneLaneLeft = (now) =>
   now?.kind === "race" && now.phase !== "finished" && now.lanes?.length > 1 && now.duration_s &&
-  now.lanes.filter(({ done }) => !done).length === 1;
+  now.lanes.filter(({ done, halted }) => !done && !halted).length === 1;
 
 function Seek({ now }) {
   if (ownRunId.value !== null) return html`<${OwnSeek} />`;
   if (!now || now.kind === "idle") return html`<span class="seek"></span>`;
-  const { time_s, duration_s } = now;
-  if (!duration_s) {
+  const { time_s, computed_s } = now;
+  const isComputing = isActive(shownRun.value);
+  const end = now.duration_s ?? computed_s;
+  if (!end) {
+    const words = isComputing ? "its first steps are being computed" : "";
     return html`
-      <span class="seek">
-        <span class="num">${clockTime(time_s)}</span>
-        <span class="dim">${isActive(shownRun.value) ? "still being simulated" : ""}</span>
-      </span>
+      <span class="seek"><span class="num">${clockTime(time_s)}</span><span class="dim">${words}</span></span>
     `;
   }
-  const words = `${clockTime(time_s)} of ${clockTime(duration_s)}`;
-  const seek = ({ target }) => setStage({ time_s: Number(target.value) });
+  const computed = isComputing ? `, computed up to ${clockTime(computed_s)}` : "";
+  const words = `${clockTime(time_s)}${now.duration_s ? ` of ${clockTime(end)}` : ""}${computed}`;
+  const seek = ({ target }) => setStage({ time_s: Math.min(Number(target.value), computed_s) });
+  const places = { "--share": `${(100 * time_s) / end}%`, "--computed": `${(100 * computed_s) / end}%` };
   return html`
     <span class="seek">
       <span class="num">${clockTime(time_s)}</span>
-      <input type="range" min="0" max=${duration_s} step="0.1" value=${time_s} disabled=${!isOperator.value}
-        style=${{ "--share": `${(100 * time_s) / duration_s}%` }}
-        aria-label="Moment that is shown" aria-valuetext=${words} onChange=${seek} />
-      <span class="num dim">${clockTime(duration_s)}</span>
+      <span class="slider">
+        <input type="range" min="0" max=${end} step="0.1" value=${time_s} disabled=${!isOperator.value} style=${places}
+          aria-label="Moment that is shown" aria-valuetext=${words} onChange=${seek} />
+        ${now.time_out_s && html`
+          <span class="marks" aria-hidden="true">
+            <i class="time-out" style=${{ left: `${(100 * now.time_out_s) / end}%` }} title="Time-out"></i>
+          </span>
+        `}
+      </span>
+      ${isComputing && html`<span class="num dim" title="Computed up to">▸ ${clockTime(computed_s)}</span>`}
+      ${now.duration_s && html`<span class="num dim">${clockTime(now.duration_s)}</span>`}
     </span>
   `;
 }
 
-function Choice({ label, name, getValue, choices, onValue, title }) {
+/** `isSelfEvident`: the values say what they are, so the label is only for screen readers. */
+function Choice({ label, isSelfEvident = false, name, getValue, choices, onValue, title }) {
   const change = async ({ target }) => {
     await onValue(target.value);
     // A choice that was refused is undone.
@@ -182,7 +205,7 @@ function Choice({ label, name, getValue, choices, onValue, title }) {
   };
   return html`
     <label class="choice" title=${title}>
-      <span>${label}</span>
+      <span class=${isSelfEvident ? "sr-only" : ""}>${label}</span>
       <select name=${name} onChange=${change}>
         ${choices.map(([one, words]) => html`
           <option value=${String(one)} selected=${String(one) === String(getValue())}>${words}</option>
@@ -194,11 +217,11 @@ function Choice({ label, name, getValue, choices, onValue, title }) {
 
 function Follow() {
   const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
-  const robots = lanes.map((lane, n) => [String(n + 1), lane.name ?? agentOf(lane.agent).title]);
-  const choices = [["leader", "leader"], ...robots, ["free", "free camera"]];
+  const robots = lanes.map((lane, n) => [String(n + 1), `Follow ${lane.name ?? agentOf(lane.agent).title}`]);
+  const choices = [["leader", "Follow leader"], ...robots, ["free", "Free camera"]];
   if (!choices.some(([one]) => one === view.value)) choices.push([view.value, `lane ${view.value}`]);
   return html`
-    <${Choice} label="Follow" name="follow" getValue=${() => view.value} choices=${choices}
+    <${Choice} label="Follow" isSelfEvident name="follow" getValue=${() => view.value} choices=${choices}
       title="The robot that your camera follows; keys 1 to 8, 0 for a free camera"
       onValue=${(value) => (view.value = value)} />
   `;
@@ -210,10 +233,10 @@ function Speed() {
   const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
   const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
   const isOwn = ownRunId.value !== null;
-  const automatic = isOwn ? [] : [["time-lapse", "auto"]];
+  const automatic = isOwn ? [] : [["time-lapse", "Auto speed"]];
   const choices = [...automatic, ...numbers.map((n) => [n, `×${n}`])];
   return html`
-    <${Choice} label="Speed" name="speed" getValue=${getSpeed} choices=${choices}
+    <${Choice} label="Speed" isSelfEvident name="speed" getValue=${getSpeed} choices=${choices}
       title=${isOwn ? "On this page" : "For every page"}
       onValue=${(value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
   `;
@@ -222,7 +245,7 @@ function Speed() {
 function ClockChoice() {
   const about = options.value?.clocks.find(({ name }) => name === clock.value)?.description ?? "";
   return html`
-    <${Choice} label="Clock" name="clock" getValue=${() => clock.value}
+    <${Choice} label="Clock" isSelfEvident name="clock" getValue=${() => clock.value}
       title=${`${sentence(clockTitle(clock.value))}. ${about}`}
       choices=${choicesOf(options.value?.clocks, clockTitle)} onValue=${(value) => setStage({ clock: value })} />
   `;

@@ -4,7 +4,8 @@ import { canStart, continueTraining, practiseMore } from "../actions.js";
 import { form, mistakes, validSteps } from "../form.js";
 import { count, metres, whole } from "../format.js";
 import { isNarrow, isReadOnly } from "../page.js";
-import { isOperator, matchingTable, work } from "../selectors.js";
+import { matchingTable, work } from "../on-stage.js";
+import { isOperator } from "../selectors.js";
 import { agentOf, learns } from "../settings.js";
 import {
   answer, error, evaluateSettings, isComputing, isCurrent, isPanelOpen, isTooLong, mostSteps, seeds,

@@ -2,14 +2,15 @@
 // runs, and for a race that is held, which is raced on from there.
 import { signal } from "@preact/signals";
 import { useRef, useState } from "preact/hooks";
-import { branchRace, disturb, pending } from "../actions.js";
+import { disturb } from "../live-changes.js";
+import { branchRace, pending } from "../actions.js";
 import {
   chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, isSimulated,
   kindNamed, legStates, nothingOf, pressed, PUSH, withUnit,
 } from "../disturbances.js";
 import { listed } from "../format.js";
 import { azimuthsOf } from "../robots.js";
-import { heldRace, liveTraining, stepShown } from "../selectors.js";
+import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
 import { html, pointAt, Problem } from "./elements.js";

@@ -6,7 +6,7 @@ import { askForNewest, getSummary } from "../api.js";
 import { makeEstimate } from "../estimate.js";
 import { count, duration, whole } from "../format.js";
 import { followQuery, place } from "../page.js";
-import { announcement } from "../race.js";
+import { announcement } from "../headline.js";
 import { absentIds, followRuns, makeList, NO_FILTERS } from "../runs.js";
 import { everyRun, isActive, isOperator } from "../selectors.js";
 import { connection, isDeleted, options, requestRun, runs, setEntry, summarised } from "../store.js";

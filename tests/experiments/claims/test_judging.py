@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
-from app.experiments.plan import Setting
-from app.experiments.summary import summarise
+from hexapods.experiments.plan import TrialSetting
+from hexapods.experiments.summary import summarise
 from tests.experiments.sample_experiments import (
     ROBOTS,
     around,
@@ -16,7 +16,7 @@ from tests.experiments.sample_experiments import (
 )
 
 ODD_GAIT = "left-right-vertical"
-Far = Callable[[Setting], Callable[[int], float]]
+Far = Callable[[TrialSetting], Callable[[int], float]]
 
 
 def table1(far: Far, seeds: int = 12, name: str = "", **given: object) -> dict[str, object]:
@@ -58,7 +58,7 @@ def test_as_fast_in_real_time_means_at_least_95_percent_of_greedy(
     assert found["verdict"] == verdict
 
 
-def alpha_of(one: Setting) -> float:
+def alpha_of(one: TrialSetting) -> float:
     alpha = one.training.settings["alpha"]
     assert isinstance(alpha, float)
     return alpha
@@ -67,7 +67,7 @@ def alpha_of(one: Setting) -> float:
 def test_the_papers_text_and_table_are_judged_separately() -> None:
     """Q-learning wins in the table's gait, and not in the text's."""
 
-    def far(one: Setting) -> Callable[[int], float]:
+    def far(one: TrialSetting) -> Callable[[int], float]:
         return around(0.42 if one.gait == "front-back-origin" else 0.3)
 
     assert table1(far, name="table-beats-greedy")["verdict"] == "holds"
@@ -97,7 +97,7 @@ def test_the_odd_gait_is_slow_if_it_covers_less_than_the_others(odd_m: float, ve
 
 
 def test_the_other_gaits_are_alike_unless_one_is_far_behind() -> None:
-    def uneven(one: Setting) -> Callable[[int], float]:
+    def uneven(one: TrialSetting) -> Callable[[int], float]:
         return around({ODD_GAIT: 0.1, "front-back-origin": 0.2}.get(one.gait, 0.4))
 
     assert (
@@ -156,7 +156,7 @@ def test_a_curve_that_stays_near_zero_neither_improves_nor_satisfies() -> None:
 
 
 def test_tuning_helps_if_the_best_is_established_to_come_further() -> None:
-    def far(one: Setting) -> Callable[[int], float]:
+    def far(one: TrialSetting) -> Callable[[int], float]:
         return around({0.1: 0.3, 0.3: 0.35, 0.6: 0.45}[alpha_of(one)])
 
     found = claim(summary_of("sweep", far, seeds=8, alpha=(0.1, 0.3, 0.6)), "tuning")

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 
 import pytest
 
-from app.domain.observation import OBSERVATIONS
-from app.experiments.plan import Setting
+from hexapods.domain.observation import OBSERVATIONS
+from hexapods.experiments.plan import TrialSetting
 from tests.experiments.sample_experiments import ROBOTS, around, summary_of
 
 ODD_GAIT = "left-right-vertical"
@@ -22,7 +22,7 @@ def headings(summary: dict[str, list[dict[str, str]]]) -> Sequence[str]:
     return [one["heading"] for one in summary["story"]]
 
 
-def alpha_of(one: Setting) -> float:
+def alpha_of(one: TrialSetting) -> float:
     alpha = one.training.settings["alpha"]
     assert isinstance(alpha, float)
     return alpha
@@ -45,7 +45,7 @@ def test_the_seeds_spread_and_wrong_winners_are_described() -> None:
 def test_the_observation_closer_to_the_printed_numbers_is_named() -> None:
     printed = {500: 0.16, 1000: 0.28}  # the printed numbers' averages
 
-    def far(one: Setting) -> Callable[[int], float]:
+    def far(one: TrialSetting) -> Callable[[int], float]:
         near = one.training.observation == "commanded"
         return around(printed[one.training.steps] if near else 0.49)
 
@@ -70,7 +70,7 @@ def test_equal_observations_leave_the_closer_one_not_established() -> None:
 
 
 def test_the_odd_gait_is_explained_only_on_mujoco() -> None:
-    def far(one: Setting) -> Callable[[int], float]:
+    def far(one: TrialSetting) -> Callable[[int], float]:
         return around(0.15 if one.gait == ODD_GAIT and one.robot == "compliant" else 0.4)
 
     heading = "Why Left-right, mirrored (LeftRight-Vertical) is the odd one"
@@ -127,7 +127,7 @@ def test_a_sweep_of_learners_names_what_varies_for_each_and_not_what_only_some_h
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])
 def test_an_experiment_without_trials_has_no_narrative(experiment: str) -> None:
-    from app.experiments.summary import summarise
+    from hexapods.experiments.summary import summarise
     from tests.experiments.sample_experiments import config
 
     assert summarise(config(experiment), {})["story"] == []

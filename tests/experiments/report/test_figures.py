@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from app.experiments.report.drawing import (
+from hexapods.experiments.report.drawing import (
     CSS_NAMES,
     FORMATS,
     agent_colours,
@@ -16,8 +16,8 @@ from app.experiments.report.drawing import (
     jitter,
     render,
 )
-from app.experiments.report.figures import panels, sheets
-from app.experiments.summary import summarise
+from hexapods.experiments.report.figures import panels, sheets
+from hexapods.experiments.summary import summarise
 from tests.experiments.sample_experiments import ROBOTS, around, config, sample_results, summary_of
 
 EXPERIMENTS = ("table1", "figure4", "sweep")

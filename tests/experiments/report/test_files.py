@@ -14,14 +14,20 @@ from app.cli import experiment as experiment_command
 from app.cli import sweep as sweep_command
 from app.cli.options import CommandParser, settings_from
 from app.cli.trial_options import trial_grid_from
-from app.domain.gait import GaitSpec
-from app.domain.robot import robot
-from app.experiments.config import GRID, ExperimentConfig, as_json, experiment_config, from_json
-from app.experiments.report.files import report_files, write_report
-from app.experiments.report.page import POLICY, command, page
-from app.experiments.report.trials_csv import trials_csv
-from app.experiments.summary import summarise
-from app.experiments.trial import TrialResult
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.robot import robot
+from hexapods.experiments.config import (
+    GRID,
+    ExperimentConfig,
+    as_json,
+    experiment_config,
+    from_json,
+)
+from hexapods.experiments.report.files import report_files, write_report
+from hexapods.experiments.report.page import POLICY, command, page
+from hexapods.experiments.report.trials_csv import trials_csv
+from hexapods.experiments.summary import summarise
+from hexapods.experiments.trial import TrialResult
 from tests.experiments.sample_experiments import (
     ROBOTS,
     Results,

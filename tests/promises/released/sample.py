@@ -4,9 +4,9 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from app.domain.settings import SettingValues
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE, Run
+from hexapods.domain.settings import SettingValues
 from tests.storage.stores import ODD, SWEEP, TRIALS, experiment, race, training
 
 # Schemas up to 0003 were released when every agent had Q-learning's settings.

@@ -11,7 +11,7 @@ import pytest
 from sqlalchemy import text
 
 from app.storage.database.engine import SQLITE_FILES, Database, sqlite_engine
-from app.storage.database.fair_semaphore import FairSemaphore
+from app.storage.database.fifo_semaphore import FifoSemaphore
 from tests.jobs.waiting import wait_until
 from tests.promises.files import database_files
 
@@ -40,7 +40,7 @@ def reading(database: Database) -> Iterator[None]:
 
 
 def test_semaphore_is_handed_over_in_order_of_arrival() -> None:
-    semaphore, order = FairSemaphore(1), []
+    semaphore, order = FifoSemaphore(1), []
 
     def take(number: int) -> None:
         with semaphore.acquired(60.0, AssertionError):

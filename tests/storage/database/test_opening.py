@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 from sqlalchemy import text
 
-from app.domain.errors import InvalidInput
 from app.settings import Settings
 from app.storage.database import engine
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.opening import DATABASE_FILE, open_store
 from app.storage.errors import StorageFailed
 from app.storage.run import NOT_ENDED, State
+from hexapods.domain.errors import InvalidInput
 from tests.postgresql import PostgresServer
 from tests.storage.stores import BACKENDS, database_url, opened, training
 

@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 from sqlalchemy import create_engine, text
 
-from app.domain.errors import InvalidInput
 from app.settings import Settings
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.read_only import open_read_only
 from app.storage.errors import NotFound, StorageFailed
 from app.storage.run import RUNNING, TABLE
+from hexapods.domain.errors import InvalidInput
 from tests.storage.stores import BACKENDS, database_url, opened, training
 
 

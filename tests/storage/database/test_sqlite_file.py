@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from app.domain.errors import DamagedFile
 from app.settings import Settings
 from app.storage.database import sqlite_file
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.read_only import open_read_only
+from hexapods.domain.errors import DamagedFile
 from tests.cli.running import hexapods
 from tests.storage.stores import opened, training
 

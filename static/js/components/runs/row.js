@@ -1,8 +1,6 @@
 // A run in the list: what it is, what came of it, what users say of it, and what can be done with it.
 import { useState } from "preact/hooks";
-import {
-  attempt, copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage,
-} from "../../actions.js";
+import { attempt, copySettings, deleteRun, isShown, pending, resumeRun, runAgain, showOnStage } from "../../actions.js";
 import { changesInWords, rateChanges } from "../../changes.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
@@ -101,7 +99,8 @@ function Outcome({ run }) {
   }
   const lanes = result.lanes.map((lane) => ({ ...lane, ...lane.clocks.paper }));
   const first = lanes.find(({ rank }) => rank === 1);
-  if (!first) return null;
+  // Earlier versions ranked a race that was stopped before its time-out.
+  if (!first || lanes.every(({ steps }) => steps < run.config.steps)) return null;
   const { title, color } = agentOf(first.agent);
   const distance = metres(first.finished_distance_m);
   return html`
@@ -167,6 +166,13 @@ function Menu({ run }) {
 
 /** Have a video rendered; the menu says so until it is there, or why there is none stands in the row. */
 function VideoButton({ run }) {
+  const install = served().missing_extras.video;
+  return install
+    ? html`<p class="dim">Video (MP4): not installed on the server; <code>${install}</code> adds it.</p>`
+    : html`<${RenderButton} run=${run} />`;
+}
+
+function RenderButton({ run }) {
   const [isRendering, setRendering] = useState(false);
   const onClick = async () => {
     setRendering(true);

@@ -3,7 +3,7 @@ import { useEffect } from "preact/hooks";
 import { setStage } from "../../actions.js";
 import { whole } from "../../format.js";
 import { chooseState, chosenState, followChosenState, giveUpState } from "../../posture.js";
-import { canPlay, shownRun } from "../../selectors.js";
+import { canPlay, shownRun } from "../../on-stage.js";
 import { ownStage, scene } from "../../store.js";
 import {
   chosenLane, chooseStep, explanation, firstState, followMoment, followStage, isFollowing, lastStep, moment, stateIndex,

@@ -1,0 +1,113 @@
+"""Routes that export runs as an archive, and import them."""
+
+from collections.abc import Callable
+
+from fastapi import APIRouter, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.answers import ExperimentView, ImportedView, RaceView, TrainingView
+from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
+from app.api.deps import ServicesDep, StartRequestDep
+from app.api.formats import attachment
+from app.api.runs import RunIdsQuery, RunPath, find, phrase
+from app.archive import archive
+from app.archive.transfer import export_chunks, export_many, import_run, import_runs
+from app.events.run_view import run_view
+from app.storage.run import KINDS, Kind
+from hexapods.domain.errors import InvalidInput
+
+router = APIRouter()
+
+
+def _export(kind: Kind) -> Callable[..., Response]:
+    def export(services: ServicesDep, run_id: RunPath) -> Response:
+        """Return a `.zip` that another server's import, or `hexapods import`, accepts."""
+        run = find(services, kind, run_id)
+        data = export_chunks(services.store, run.id, services.exports)
+        return attachment(data, archive.MEDIA_TYPE, f"{kind}-{run.id}.zip")
+
+    return export
+
+
+for _kind in KINDS:
+    router.add_api_route(
+        f"/{_kind}s/{{run_id}}/export",
+        _export(_kind),
+        tags=[f"{_kind}s"],
+        summary=phrase("Export {}", _kind),
+        name=f"export_{_kind}",
+        response_class=Response,
+        responses=answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
+    )
+
+
+@router.get(
+    "/runs/export",
+    tags=["runs"],
+    summary="Export several runs as one archive",
+    response_class=Response,
+    responses={
+        **answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
+        404: {},
+        409: {},
+    },
+)
+def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
+    """Return one `.zip` with the archive of each, which `POST /runs/import` accepts."""
+    data = export_many(services.store, ids, services.exports)
+    count = len(dict.fromkeys(ids))
+    return attachment(data, archive.MEDIA_TYPE, f"{count}-run{'' if count == 1 else 's'}.zip")
+
+
+@router.post(
+    "/runs/import",
+    status_code=201,
+    tags=["runs"],
+    summary="Import an archive of runs",
+    response_model=ImportedView,
+    openapi_extra=takes_file("application/octet-stream"),
+)
+def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep) -> Response:
+    """Import the body, an archive, whole or not at all; otherwise as `POST /import`."""
+    body = _not_empty(start_request.body)
+    store, agents, ids = services.store, services.agents, services.jobs.new_id
+    runs = start_request.import_runs(
+        services, lambda key: import_runs(store, body, ids, agents, "the archive", key=key)
+    )
+    views = [run_view(run) for run in runs]
+    for view in views:
+        services.bus.publish("run", view, view["id"])
+    return JSONResponse({"items": views}, 201)
+
+
+@router.post(
+    "/import",
+    status_code=201,
+    tags=["trainings", "races", "experiments"],
+    summary="Import an archive of one run",
+    response_model=TrainingView | RaceView | ExperimentView,
+    responses=answers(201, headers=LOCATION),
+    openapi_extra=takes_file("application/octet-stream"),
+)
+def import_archive(
+    services: ServicesDep, request: Request, start_request: StartRequestDep
+) -> Response:
+    """Import the body, an archive. A run that exists already is not replaced but duplicated.
+
+    A repeated request with the same `Idempotency-Key` returns the run that it imported first. The
+    run keeps its id if that is free here and not in the future; the response has the actual id.
+    """
+    body = _not_empty(start_request.body)
+    store, agents, ids = services.store, services.agents, services.jobs.new_id
+    run = start_request.start(
+        services, lambda key: import_run(store, body, ids, agents, "the archive", key=key)
+    )
+    services.bus.publish("run", run_view(run), run.id)
+    location = request.url_for(f"get_{run.kind}", run_id=run.id).path
+    return JSONResponse(run_view(run), 201, {"Location": location})
+
+
+def _not_empty(body: bytes) -> bytes:
+    if not body:
+        raise InvalidInput("send the .zip file of an exported run as the request's body")
+    return body

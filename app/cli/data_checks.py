@@ -1,0 +1,133 @@
+"""Checks of `hexapods doctor` on the data folder, the database and the server's address."""
+
+import os
+import shutil
+import socket
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from app.cli.machine_checks import CheckFailed
+from app.events.damage import damaged_runs
+from app.settings import PREFIX, Settings
+from app.storage.database.opening import ENTRIES
+from app.storage.database.read_only import open_read_only
+from app.storage.disk_space import MB, DiskSpace
+from app.storage.private_folder import exposed_paths
+from app.storage.server_lock import LOCK_FILE, FolderInUse, lock_folder, read_address_file
+
+WANTED_FREE_MB = 200
+_NEARLY_FULL = 0.9
+_MAX_NAMED = 10
+
+
+def _folder(settings: Settings) -> str:
+    """Check that the data folder is writable, without creating it."""
+    folder = settings.data
+    there = next(path for path in (folder, *folder.parents) if path.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+        raise CheckFailed(
+            f"{there} cannot be written by this user; give it to this user, or choose another "
+            f"data folder with --data or {PREFIX}DATA"
+        )
+    if there != folder:
+        return f"{folder} will be made when a server starts"
+    with tempfile.TemporaryFile(dir=folder):
+        pass
+    if exposed := exposed_paths(folder, ENTRIES):
+        raise CheckFailed(
+            f"other users of this machine can open {', '.join(map(str, exposed))}, and stop all "
+            "writes by a lock: take their permissions with `chmod go-rwx`"
+        )
+    return f"{folder} can be written, and is closed to other users"
+
+
+def _disk_space(settings: Settings) -> str:
+    there = next(path for path in (settings.data, *settings.data.parents) if path.exists())
+    free_mb = shutil.disk_usage(there).free // MB
+    if free_mb < WANTED_FREE_MB:
+        raise CheckFailed(
+            f"the disk has {free_mb:,} MB left, and runs need some: make room for "
+            f"{WANTED_FREE_MB} MB at least, or delete runs"
+        )
+    used_mb = DiskSpace(settings.data).used_bytes() // MB if there == settings.data else 0
+    if settings.quota_mb is None:
+        return f"{used_mb:,} MB are used, {free_mb:,} MB are free, and there is no quota"
+    if used_mb >= _NEARLY_FULL * settings.quota_mb:
+        raise CheckFailed(
+            f"{used_mb:,} MB of {settings.quota_mb:,} MB are used: delete runs, or raise "
+            f"{PREFIX}QUOTA_MB"
+        )
+    return f"{used_mb:,} MB of {settings.quota_mb:,} MB are used, {free_mb:,} MB are free"
+
+
+def _lock(settings: Settings) -> str:
+    if not _is_locked(settings.data):
+        return "no server has the data folder now"
+    address = read_address_file(settings.data) or "an address unsaid"
+    return f"a server has the data folder, at {address}"
+
+
+def _database(settings: Settings) -> str:
+    # The URL is not shown, because it may contain a password.
+    kind = "SQLite in the data folder" if settings.database_url is None else "PostgreSQL"
+    with open_read_only(settings) as store:
+        has_runs = bool(store.list(limit=1).items)
+        damaged = damaged_runs(store)
+    if damaged:
+        named = "; ".join(
+            f"{run.kind or 'run'} {run.id}: {run.damaged}" for run in damaged[:_MAX_NAMED]
+        )
+        raise CheckFailed(
+            f"{len(damaged):,} of the runs cannot be shown, {named}; remove them with `hexapods "
+            "runs delete`, or put a backup back"
+        )
+    return f"{kind} can be read, " + ("and has runs" if has_runs else "and is empty or to be made")
+
+
+def _address(settings: Settings) -> str:
+    where = f"{settings.host} port {settings.port}"
+    if _can_listen(settings):
+        return f"{where} is free"
+    recorded_address = read_address_file(settings.data) or ""
+    if _is_locked(settings.data) and recorded_address.rstrip("/").endswith(f":{settings.port}"):
+        return f"{where} is where this data folder's server listens"
+    raise CheckFailed(
+        f"something else listens on {where}, or the address is not this machine's; choose another "
+        f"with {PREFIX}HOST and {PREFIX}PORT"
+    )
+
+
+def _can_listen(settings: Settings) -> bool:
+    """Whether the address belongs to this machine and is free."""
+    try:
+        candidates = socket.getaddrinfo(settings.host, settings.port, type=socket.SOCK_STREAM)
+        family, kind, protocol, _, address = candidates[0]
+        with socket.socket(family, kind, protocol) as probe:
+            if sys.platform != "win32":
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind(address)
+            probe.listen(1)
+    except OSError:
+        return False
+    return True
+
+
+def _is_locked(folder: Path) -> bool:
+    if not (folder / LOCK_FILE).exists():
+        return False
+    try:
+        with lock_folder(folder):
+            return False
+    except FolderInUse:
+        return True
+
+
+CHECKS: Mapping[str, Callable[[Settings], str]] = {
+    "data folder": _folder,
+    "room": _disk_space,
+    "lock": _lock,
+    "database": _database,
+    "address": _address,
+}

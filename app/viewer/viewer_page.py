@@ -1,0 +1,90 @@
+"""The page at /viewer/: viser's client, patched, and the parameters that its address may have."""
+
+import gzip
+import hashlib
+import re
+from collections.abc import Mapping
+from functools import cache
+from urllib.parse import urlencode
+
+from starlette.datastructures import QueryParams
+from starlette.responses import Response
+
+from hexapods.drawing.viser_internals.client import content_policy, patched_page
+
+STAGE_SCRIPTS = ("client.js", "patch.js", "clicks.js", "labels.js")
+ALLOWED_QUERY = frozenset(
+    {
+        "view",
+        "theme",
+        "initialCameraPosition",
+        "initialCameraLookAt",
+        "initialCameraUp",
+        "initialCameraFov",
+        "darkMode",
+        "showStats",
+        "fixedDpr",
+    }
+)
+_RECORDING = re.compile(r"/api/v1/races/[\w-]+/recording(\?[\w=&.-]*)?", re.ASCII)
+
+
+def sanitized_query(query: QueryParams) -> str | None:
+    """Return the query without parameters that are not allow-listed; None if all are.
+
+    viser's client would connect to any `websocket` and play any `playbackPath`, and run scripts
+    from there, so that a link to our own page could inject them. Allowed are parameters that only
+    change the appearance, and recordings of this server.
+    """
+    items = query.multi_items()
+    allowed = [
+        (name, value)
+        for name, value in items
+        if name in ALLOWED_QUERY or (name == "playbackPath" and _RECORDING.fullmatch(value))
+    ]
+    return None if len(allowed) == len(items) else urlencode(allowed)
+
+
+class ViewerPage:
+    """The patched page, plain and compressed."""
+
+    def __init__(self) -> None:
+        """Read viser's client and inject the patch.
+
+        Raises:
+            RuntimeError: The installed viser's page does not have the expected form.
+        """
+        page = patched_page("Racing Hexapods: the stage", STAGE_SCRIPTS)
+        self._policy = content_policy(page)
+        html = page.encode("utf-8")
+        digest = hashlib.sha256(html).hexdigest()[:16]
+        # A strong entity tag identifies the bytes sent, so each encoding needs its own.
+        self._plain = (html, f'"{digest}"')
+        self._gzipped = (gzip.compress(html, mtime=0), f'"{digest}-gzip"')
+
+    def response(self, headers: Mapping[str, str]) -> Response:
+        """Return the page for a request with these headers, or 304 if its copy is current."""
+        accepts_gzip = "gzip" in headers.get("accept-encoding", "")
+        body, tag = self._gzipped if accepts_gzip else self._plain
+        response_headers = {
+            "ETag": tag,
+            "Cache-Control": "no-cache",
+            "Vary": "Accept-Encoding",
+            # With 304 too, which updates the headers of the cached copy.
+            "Content-Security-Policy": self._policy,
+        }
+        if tag in headers.get("if-none-match", ""):
+            return Response(status_code=304, headers=response_headers)
+        if accepts_gzip:
+            response_headers["Content-Encoding"] = "gzip"
+        return Response(body, media_type="text/html", headers=response_headers)
+
+
+@cache
+def viewer_page() -> ViewerPage:
+    """Return the page of this process: building it takes a tenth of a second.
+
+    Raises:
+        RuntimeError: as `ViewerPage`.
+    """
+    return ViewerPage()

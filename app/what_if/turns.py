@@ -1,0 +1,81 @@
+"""Turns of requests that take all cores: one at a time, those of operators first."""
+
+import itertools
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from app.storage.errors import Busy
+
+MAX_WAITING = 4
+"""Requests of operators, and of spectators, that may wait."""
+GRACE_S = 1.0
+"""For so long an operator's request lets a spectator's go on, which is mostly done by then [s]."""
+_LOOK_EVERY_S = 0.1
+_RETRY_S = 5
+
+
+class Turns:
+    """Gives turns to requests, each in a thread of its own. Thread-safe."""
+
+    def __init__(self) -> None:
+        """Create it with nobody waiting."""
+        self._changed = threading.Condition()
+        self._waiting: list[tuple[bool, int]] = []
+        """Whether each is a spectator's, and its number; the least is the next."""
+        self._numbers = itertools.count()
+        self._is_taken = False
+
+    @contextmanager
+    def turn(self, is_operator: bool, check: Callable[[], None]) -> Iterator[Callable[[], None]]:
+        """Wait for the turn, and have it.
+
+        Args:
+            is_operator: whether it comes before the requests of spectators.
+            check: called ten times a second while it waits; if it raises, it waits no more.
+
+        Returns:
+            what to call while having the turn, often: it calls `check`, and raises `Busy` if an
+            operator has waited for a spectator's request for `GRACE_S`.
+
+        Raises:
+            Busy: if too many are waiting.
+        """
+        ticket = (not is_operator, next(self._numbers))
+        with self._changed:
+            if sum(one[0] == ticket[0] for one in self._waiting) >= MAX_WAITING:
+                raise Busy(f"{MAX_WAITING} questions are waiting; ask again later", 2)
+            self._waiting.append(ticket)
+            try:
+                while self._is_taken or min(self._waiting) != ticket:
+                    self._changed.wait(_LOOK_EVERY_S)
+                    check()
+                self._is_taken = True
+            finally:
+                self._waiting.remove(ticket)
+                self._changed.notify_all()
+        try:
+            check()
+            yield check if is_operator else self._check_for_operators(check)
+        finally:
+            with self._changed:
+                self._is_taken = False
+                self._changed.notify_all()
+
+    def _check_for_operators(self, check: Callable[[], None]) -> Callable[[], None]:
+        since_s: float | None = None
+
+        def check_both() -> None:
+            nonlocal since_s
+            check()
+            with self._changed:
+                is_wanted = any(not is_spectators for is_spectators, _ in self._waiting)
+            since_s = (since_s or time.monotonic()) if is_wanted else None
+            if since_s is not None and time.monotonic() - since_s > GRACE_S:
+                raise Busy(
+                    f"the operator asked meanwhile, and goes first; ask again in {_RETRY_S} s",
+                    _RETRY_S,
+                )
+
+        return check_both

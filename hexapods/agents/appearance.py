@@ -1,0 +1,79 @@
+"""Titles, descriptions and colours of agents for the stage, the page and reports.
+
+The paper's agents have colours of the Okabe–Ito palette, which colour-blind viewers can
+distinguish; it has too few for all agents, so the others are distinct for most viewers only.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+from hexapods.agents.registry import OURS, registered, settings_of
+
+_COLOR = re.compile("#[0-9A-Fa-f]{6}")
+_FURTHER_COLORS = ("#CC79A7", "#D55E00", "#F0E442", "#0072B2", "#882255", "#88CCEE", "#6B4E16")
+
+
+def title_of(agent: str) -> str:
+    """Return an agent's title; for `my.module:Agent` the name of the class."""
+    return _attribute(agent, "title") or agent.rpartition(":")[2]
+
+
+def description_of(agent: str) -> str:
+    """Return the description of a registered agent, one sentence."""
+    return _attribute(agent, "description") or "An agent of an installed package."
+
+
+def name_of(
+    agent: str,
+    settings: Mapping[str, Any] = MappingProxyType({}),
+    keep_learning: bool | None = None,
+    title: str | None = None,
+) -> str:
+    """Return an agent's title with its settings in short: `Beam, width 8, depth 3`.
+
+    Args:
+        agent: a name; `my.module:Agent` is not imported, and so has no settings here.
+        settings: values by name. Of a learner, those that differ from the defaults are shown.
+        keep_learning: whether it learns in the race; shown if that is not the agent's default.
+        title: replaces the agent's title.
+    """
+    parts = [title or title_of(agent)]
+    found = None if ":" in agent else OURS.get(agent) or registered().get(agent)
+    if found is not None:
+        shows_all = not getattr(found, "learns", True)
+        parts += [
+            one.describe(settings[name])
+            for name, one in settings_of(found).items()
+            if name in settings and (shows_all or settings[name] != one.default)
+        ]
+    if keep_learning not in (None, bool(getattr(found, "keeps_learning", False))):
+        parts.append("keeps learning" if keep_learning else "frozen")
+    return ", ".join(parts)
+
+
+def colors_of(agents: Sequence[str]) -> list[str]:
+    """Return a colour, `#RRGGBB`, for each agent; distinct until the palette is exhausted.
+
+    An agent gets the colour of its class, or a free one if that is taken or there is none.
+    """
+    own = [_attribute(agent, "color") for agent in agents]
+    others = (_attribute(agent, "color") for agent in OURS)
+    candidates = list(dict.fromkeys([*_FURTHER_COLORS, *(color for color in others if color)]))
+    assigned: list[str] = []
+    for color in own:
+        free = [one for one in candidates if one not in assigned]
+        spare = next((one for one in free if one not in own), (free or candidates)[0])
+        assigned.append(spare if color is None or color in assigned else color)
+    return assigned
+
+
+def _attribute(agent: str, name: str) -> str | None:
+    """Return an attribute of a registered agent's class; `my.module:Agent` is not imported."""
+    if ":" in agent:
+        return None
+    found = getattr(OURS.get(agent) or registered().get(agent), name, None)
+    if not isinstance(found, str) or (name == "color" and not _COLOR.fullmatch(found)):
+        return None
+    return found

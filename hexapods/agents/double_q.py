@@ -1,0 +1,82 @@
+"""Tabular Double Q-learning (van Hasselt 2010; Sutton and Barto, 2nd edition, §6.7)."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from hexapods.agents.explanation import Term
+from hexapods.agents.protocol import AgentState, Transition
+from hexapods.agents.q_table import QTable
+from hexapods.agents.tabular import TabularLearner
+
+
+class DoubleQ(TabularLearner):
+    """Off-policy learner with two tables: one names the best next action, the other values it.
+
+    A maximum over noisy values is too high on average; with two tables that learned from different
+    steps the noise of the choice is not that of the value. `table` holds the mean of both, in which
+    the policy is ε-greedy.
+    """
+
+    title = "Double Q"
+    description = "Q-learning with two tables that check each other, against wishful thinking."
+    color = "#DDCC77"
+
+    def __init__(self, *args: Any, **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self._halves = tuple(QTable(self.table.pairs, self.table.cells) for _ in range(2))
+
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Q₁(s, a) ← (1 − α) Q₁(s, a) + α (r + γ Q₂(s′, argmax Q₁(s′, ·))).
+
+        Which of the two tables is Q₁ is drawn by lot; ties of the maximum as well.
+        """
+        chosen = int(self._rng.integers(2))
+        learning, valuing = self._halves[chosen], self._halves[1 - chosen]
+        observation, legal = transition.next_observation, transition.next_legal
+        best = self._highest(legal, learning.values_of(observation, legal))
+        (value,) = valuing.values_of(observation, [best])
+        target = transition.reward_m + self._gamma * value
+        values, means = learning.row(state)[0], self.table.row(state)[0]
+        own, other, before = values[column], valuing.row(state)[0][column], means[column]
+        values[column] = (1 - self._alpha) * own + self._alpha * target
+        means[column] = (values[column] + other) / 2
+        if self._update_log is not None:
+            terms = (
+                Term("α", self._alpha, "learning rate"),
+                Term("Q₁", float(own), f"value in table {chosen + 1}, which was drawn to learn"),
+                *self._explain_rates(transition),
+                Term("Q₂′", value, "value in the other table of the best next action by the first"),
+                Term("Q₂", float(other), "value in the other table"),
+            )
+            rule = "((1 − α) · Q₁ + α · (r + γ · Q₂′) + Q₂) / 2"
+            self._update_log.record((state, column), rule, terms, (before, means[column]))
+
+    def _explain_target(
+        self,
+        transition: Transition,  # noqa: ARG002
+    ) -> tuple[str, Sequence[Term]]:
+        """Return nothing: only the drawn table tells, which the update notes."""
+        return "", ()
+
+    def state(self) -> AgentState:
+        """Return the state of `TabularLearner`, and the values of both tables at `where`."""
+        state = super().state()
+        halves = [half.values_at(state["where"]) for half in self._halves]
+        return state | {"halves": np.array(halves)}
+
+    def _load_learned(self, state: AgentState) -> None:
+        super()._load_learned(state)
+        for half, values in zip(self._halves, state["halves"], strict=True):
+            half.load({**state, "q": values})
+
+    @staticmethod
+    def check_state(state: AgentState) -> None:
+        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        TabularLearner.check_state(state)
+        halves = state["halves"]
+        if halves.shape != (2, len(state["q"])) or halves.dtype.kind != "f":
+            raise ValueError("its two tables do not fit together")
+        if not np.array_equal(halves.sum(axis=0) / 2, state["q"]):
+            raise ValueError("its values are not the mean of its two tables")

@@ -1,0 +1,294 @@
+"""Explanations of a learner's steps: why it chose an action, and how its values changed.
+
+A rule is arithmetic over named terms, such as `(1 − α) · Q + α · (r + γ · Q′)`: `evaluate` gives
+what the learner computed, to the last bit. A learner explains a step while it takes it, by the
+functions that it acts and learns with, so that its explanations cannot differ from what it does.
+"""
+
+import ast
+import operator
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+
+from hexapods.agents.protocol import Transition
+from hexapods.domain.types import Action, Cells, FloatArray
+
+
+class Term(NamedTuple):
+    """A number in a rule."""
+
+    symbol: str
+    value: float
+    meaning: str
+
+
+class ValueUpdate(NamedTuple):
+    """Update of one value by a rule."""
+
+    observation: Cells
+    """The state whose value it is."""
+    action: Action
+    rule: str
+    """Formula of the new value, in the symbols of the terms."""
+    terms: tuple[Term, ...]
+    before: float
+    after: float
+
+    @property
+    def numbers(self) -> str:
+        """The rule with rounded numbers in place of its symbols."""
+        return _substituted(self.rule, self.terms, _rounded)
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the rule gives the value after the update, to the last bit."""
+        return evaluate(self.rule, self.terms) == self.after
+
+
+class Belief(NamedTuple):
+    """Quantity of a learned model, such as an expected reward, before and after a step."""
+
+    name: str
+    before: float
+    after: float
+    unit: str = "m"
+    deviation_before: float | None = None
+    """Standard deviation of the belief, for one that knows how sure it is."""
+    deviation_after: float | None = None
+
+
+@dataclass(frozen=True)
+class UpdateExplanation:
+    """Update of a learner's values by a transition.
+
+    Attributes:
+        summary: in a sentence or two.
+        update: of the value that the step taught directly; None if it taught none.
+        others: further updates, such as planned ones and those of earlier steps, in order. No
+            value has one among them before its direct update.
+        beliefs: what a model believes of the step.
+    """
+
+    summary: str
+    update: ValueUpdate | None = None
+    others: Sequence[ValueUpdate] = ()
+    beliefs: Sequence[Belief] = ()
+
+    @property
+    def stored(self) -> float | None:
+        """The value of the direct update when all is done, as others may have changed it again."""
+        if self.update is None:
+            return None
+        place = self.update.observation, self.update.action
+        updates = [self.update, *self.others]
+        return [one.after for one in updates if (one.observation, one.action) == place][-1]
+
+
+@dataclass(frozen=True)
+class ChoiceExplanation:
+    """Why a learner chose an action.
+
+    Attributes:
+        action: the action.
+        kind: whether it was the best by the scores, a random one, or one that is tried because it
+            is unknown.
+        criterion: what the scores are.
+        scores: by which it chooses [m], (pairs, cells); NaN where it could not choose.
+        epsilon: probability of a random action; None for a learner without.
+        draw: the random number that was compared with it; None if none was drawn.
+    """
+
+    action: Action
+    kind: Literal["exploited", "explored", "unknown"]
+    criterion: str
+    scores: FloatArray
+    epsilon: float | None = None
+    draw: float | None = None
+
+    @property
+    def best(self) -> Sequence[Action]:
+        """The actions with the highest score; several if they are tied."""
+        highest = np.nanmax(self.scores)
+        return [Action(*place) for place in np.argwhere(self.scores == highest).tolist()]
+
+    @property
+    def runner_up(self) -> Action | None:
+        """The action with the highest score but the chosen one; None if there is no other."""
+        others = self.scores.copy()
+        others[self.action] = np.nan
+        if np.isnan(others).all():
+            return None
+        return Action(*map(int, np.unravel_index(np.nanargmax(others), others.shape)))
+
+    @property
+    def margin(self) -> float | None:
+        """Its score less that of the runner-up [m]; negative if it is lower."""
+        other = self.runner_up
+        return None if other is None else float(self.scores[self.action] - self.scores[other])
+
+    @property
+    def probability(self) -> float:
+        """Probability of this action in this state, by chance and by ties."""
+        if self.kind == "unknown":
+            return 1.0 / len(self.best)
+        epsilon, count = self.epsilon or 0.0, int(np.isfinite(self.scores).sum())
+        best = self.best
+        return epsilon / count + (1 - epsilon) * (self.action in best) / len(best)
+
+
+class Future(NamedTuple):
+    """Finding of a search about an action of the present state."""
+
+    action: Action
+    reward_m: float
+    """Reward of the step, as simulated."""
+    return_m: float
+    """The score compared, such as the highest sum of rewards of the sequences below."""
+    sequences: int
+    """Simulated sequences of steps that begin with it."""
+    steps: int
+    """Number of steps ahead that these go."""
+
+
+@runtime_checkable
+class ExplainingSearch(Protocol):
+    """Search that tells what it found for its newest decision.
+
+    Its class says in `compares` what `Future.return_m` is.
+    """
+
+    def futures(self) -> Sequence[Future]:
+        """Return what was found about each action that was simulated."""
+
+
+@runtime_checkable
+class Explaining(Protocol):
+    """Learner that explains its steps. Other learners show their values only."""
+
+    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+
+    def explain_update(self, transition: Transition) -> UpdateExplanation:
+        """Learn as `learn` does, and explain how what is known changes."""
+
+
+class ValueChange(NamedTuple):
+    """Change of a table's value, as a learner notes it."""
+
+    state: int
+    column: int
+    rule: str
+    terms: tuple[Term, ...]
+    before: float
+    after: float
+
+    def with_target(self, rule: str, terms: Sequence[Term]) -> "ValueChange":
+        """Return it with what its target, the term `T`, was computed from."""
+        if "T" not in {term.symbol for term in self.terms}:
+            return self
+        kept = [term for term in self.terms if term.symbol != "T"]
+        known = {term.symbol for term in kept}
+        added = [term for term in terms if term.symbol not in known]
+        return self._replace(rule=self.rule.replace("T", f"({rule})"), terms=(*kept, *added))
+
+
+class UpdateLog:
+    """Records the changes of values while a learner learns from one transition.
+
+    Attributes:
+        transition: the transition.
+        rule, terms: what the target of the direct update is computed from.
+        changes: the changes so far.
+    """
+
+    def __init__(self, transition: Transition, rule: str, terms: Sequence[Term]) -> None:
+        self.transition, self.rule, self.terms = transition, rule, terms
+        self.changes: list[ValueChange] = []
+
+    def record(
+        self, entry: tuple[int, int], rule: str, terms: Sequence[Term], values: Sequence[float]
+    ) -> None:
+        """Record a change.
+
+        Args:
+            entry: row and column of the table.
+            rule: as in `ValueUpdate`.
+            terms: of the rule.
+            values: the value before and after.
+        """
+        before, after = map(float, values)
+        self.changes.append(ValueChange(*entry, rule, tuple(terms), before, after))
+
+    def explain_target(self, rule: str, terms: Sequence[Term]) -> None:
+        """Tell what the target of the newest change was computed from."""
+        self.changes[-1] = self.changes[-1].with_target(rule, terms)
+
+
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
+
+
+def evaluate(rule: str, terms: Sequence[Term]) -> float:
+    """Return the value of a rule with the numbers of its terms, in IEEE double precision.
+
+    Raises:
+        ValueError: if a symbol is not among the terms, or the rule is no arithmetic.
+    """
+    text = _substituted(rule, terms, repr).replace("−", "-").replace("·", "*")
+    try:
+        return _value(ast.parse(text, mode="eval").body)
+    except SyntaxError as error:
+        raise ValueError(f"{text} is no arithmetic") from error
+
+
+def _value(node: ast.expr) -> float:
+    if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
+        return _OPERATORS[type(node.op)](_value(node.left), _value(node.right))
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        return -_value(node.operand)
+    if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+        return node.value
+    raise ValueError(f"{ast.unparse(node)} is no arithmetic")
+
+
+def _substituted(rule: str, terms: Sequence[Term], text_of: Callable[[float], str]) -> str:
+    """Return a rule with numbers in place of its symbols; negative ones in parentheses."""
+    values = {term.symbol: float(term.value) for term in terms}
+    longest_first = sorted(values, key=len, reverse=True)
+    if not longest_first:
+        return rule
+
+    def number(match: re.Match[str]) -> str:
+        text = text_of(values[match[0]])
+        return f"({text})" if text[0] in "-−" else text
+
+    return re.sub("|".join(map(re.escape, longest_first)), number, rule)
+
+
+def _rounded(value: float) -> str:
+    mantissa, _, exponent = f"{value:.4g}".partition("e")
+    power = f" · 10{str(int(exponent)).translate(_SUPERSCRIPTS)}" if exponent else ""
+    return mantissa.replace("-", "−") + power
+
+
+def in_millimetres(metres: float) -> str:
+    """Return a length for a sentence, with three or more digits: "12.3 mm"."""
+    value = 1000 * float(metres)
+    text = f"{value:.2f} mm" if abs(value) < 10 else f"{value:.1f} mm"
+    return text.replace("-", "−")
+
+
+def copy_of(rng: np.random.Generator) -> np.random.Generator:
+    """Return a generator that draws the same numbers, to look at what will be drawn."""
+    bits = type(rng.bit_generator)()
+    bits.state = rng.bit_generator.state
+    return np.random.Generator(bits)

@@ -1,0 +1,126 @@
+"""Policies that neither learn nor look ahead: a metachronal wave made by hand, and a random walk.
+
+A step of this robot swings one pair of legs. So of the gaits of insects (Wilson 1966, "Insect
+walking", Annual Review of Entomology 11) only those are possible in which two legs swing at a time,
+pair after pair: metachronal waves. A tripod gait is not, whatever the pairs are, since it swings
+three legs at once.
+"""
+
+from collections.abc import Sequence
+from typing import Annotated, Literal
+
+import numpy as np
+
+from hexapods.agents.protocol import AgentState, Problem, Transition
+from hexapods.domain.settings import Setting
+from hexapods.domain.types import Action, Cells
+
+Direction = Annotated[
+    Literal["direct", "retrograde"],
+    Setting(
+        title="Direction",
+        help="Direction of the wave. Direct: from back to front, as insects walk; retrograde: from "
+        "front to back.",
+        choice_titles=("direct", "retrograde"),
+        phrase="{}",
+    ),
+]
+
+
+_ON_AXIS = 1e-9
+"""Sine of the azimuth of a leg straight ahead or behind, at most."""
+
+
+class Wave:
+    """Metachronal wave: swings pair after pair to the front edge of the foot grid, in turn.
+
+    The order is that of the pairs' right legs, from back to front.
+
+    - With mirrored pairs the wave runs along both sides at once. In the wave gait of insects the
+      sides are half a cycle apart, and one leg swings at a time.
+    - With opposite pairs it runs from back to front on the right, and so the other way on the left.
+    - With pairs by hand whose left legs follow each other from back to front too, such as (1, 4),
+      (5, 3), (6, 2) in a left-right gait, it is the ripple gait with two legs in the air.
+
+    Args:
+        problem: pairs, foot grid and where the legs are.
+        direction: of the wave.
+    """
+
+    learns = False
+    title = "Wave"
+    description = "Made by hand: puts pair after pair of legs forward, from back to front."
+    color = "#A6761D"
+
+    def __init__(self, problem: Problem, *, direction: Direction = "direct") -> None:
+        self._order = _from_back_to_front(problem)
+        if direction == "retrograde":
+            self._order.reverse()
+        places = [(float(x), float(y)) for x, y in problem.cells_m]
+        front = max(y for _, y in places)
+        edge = [cell for cell, (_, y) in enumerate(places) if y == front]
+        self._front = sorted(edge, key=lambda cell: abs(places[cell][0]))
+        self._steps = 0
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:  # noqa: ARG002
+        """Return the next pair's step to the front, as near to straight ahead as is legal."""
+        pair = self._order[self._steps % len(self._order)]
+        self._steps += 1
+        steps = (Action(pair, cell) for cell in self._front)
+        return next(step for step in steps if step in legal)
+
+    def learn(self, transition: Transition) -> None:
+        """Do nothing."""
+
+    def state(self) -> AgentState:
+        """Return the number of steps, by which the next pair is known."""
+        return {"steps": np.array([self._steps])}
+
+    def load(self, state: AgentState) -> None:
+        """Restore the number of steps."""
+        self._steps = int(state["steps"][0])
+
+
+def _from_back_to_front(problem: Problem) -> list[int]:
+    """Return the numbers of the pairs, in the order of their right legs from back to front.
+
+    A pair on the axis counts by its middle.
+    """
+
+    def place_of(pair: int) -> float:
+        angles = np.deg2rad([problem.azimuths_deg[leg - 1] for leg in problem.pairs[pair]])
+        is_right = np.sin(angles) < -_ON_AXIS
+        counted = angles[is_right] if is_right.any() else angles
+        return round(float(np.cos(counted).mean()), 9)
+
+    return sorted(range(len(problem.pairs)), key=place_of)
+
+
+class RandomWalk:
+    """Takes every legal action with the same probability.
+
+    Args:
+        rng: random generator of the walk.
+    """
+
+    learns = False
+    title = "Random walk"
+    description = "Takes any legal step, each with the same chance: what knowing nothing is worth."
+    color = "#7F7F7F"
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self._rng = rng
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:  # noqa: ARG002
+        """Return a legal action."""
+        return legal[int(self._rng.integers(len(legal)))]
+
+    def learn(self, transition: Transition) -> None:
+        """Do nothing."""
+
+    def state(self) -> AgentState:
+        """Return nothing: there is nothing to keep."""
+        return {}
+
+    def load(self, state: AgentState) -> None:
+        """Do nothing."""

@@ -1,0 +1,492 @@
+"""Generalising learner: a Bayesian linear model of a step's reward, chosen from by optimism.
+
+A table learns each state and action by itself. This learner assumes that the reward depends on
+where the feet stand after landing, by a sum over leg pairs, and so learns from every step about
+every other. Sources: Bayesian linear regression (Bishop 2006, §3.3), LinUCB (Li et al. 2010),
+choice between experts as a non-stationary bandit with discounted rewards (Garivier & Moulines
+2011) and optimistic initial values (Sutton & Barto 2018, §2.6).
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+from annotated_types import Ge, Le
+
+from hexapods.agents.bayesian_regression import BayesianRegression, sum_rule
+from hexapods.agents.explanation import (
+    Belief,
+    ChoiceExplanation,
+    Term,
+    UpdateExplanation,
+    ValueUpdate,
+    in_millimetres,
+)
+from hexapods.agents.protocol import AgentState, Observe, Problem, Transition
+from hexapods.domain.settings import Setting, declare
+from hexapods.domain.types import Action, Cells, FloatArray, IntArray
+
+Prior = Annotated[
+    Literal["none", "kinematic"],
+    Setting(
+        title="Prior",
+        phrase="prior\u00a0{}",
+        help="What it assumes before its first step: nothing, or the law of a step without slip.",
+    ),
+]
+Optimism = Annotated[
+    float,
+    Ge(0),
+    Le(10),
+    Setting(
+        title="Optimism",
+        symbol="β",
+        help="Posterior standard deviations added to an expected reward; higher explores more.",
+        live=True,
+        examples=(0.5, 1),
+    ),
+]
+
+# All lengths are shares of h, half the side of the foot grid: at h = 0.02 m the deviations are
+# those of the prototypes, 0.02 m a priori and 0.003 m of noise.
+_NOISE = 0.15
+_DEVIATION, _LATERAL_DEVIATION = 1.0, 0.1
+_TURNS = 2
+"""Turns of every pair for which a policy decides: six steps of a robot with three pairs."""
+_FORGETTING = 0.98
+"""Share of the evidence, and of what policies earned, that remains at each further step."""
+_UNTRIED, _UNTRIED_MEASURED = 0.5, 0.25
+"""Reward per step that a policy is expected to earn before it was tried, counted as one step; 0.5
+is the best possible without slip, so that orders are tried early: they cost little where they are
+no better. A policy by measured cells has much to learn at first, and is tried where others fail."""
+_FAST, _SLOW = 1 / 4, 1 / 40
+"""Weights of the newest squared error in the short and the long moving average."""
+_CHANGE_RATIO, _CHANGE_LEAST = 4.0, 4.0
+"""A change is noticed where the short average exceeds the long one by this ratio, and the noise's
+variance by that one."""
+_KEPT = 0.1
+"""Share of the evidence that remains after a change."""
+
+
+class Readings(NamedTuple):
+    """The state before a step, as the experts read it."""
+
+    cells: Cells
+    """The measured cells, whatever the run's observation is."""
+    planned_m: FloatArray
+    """Offset (x, y) of each pair from home by dead reckoning, (pairs, 2)."""
+
+
+class Expert(ABC):
+    """One reading of the state, as features of where the feet stand after landing."""
+
+    name: str
+
+    def __init__(self, problem: Problem, prior: Prior) -> None:
+        self._cells_m = problem.cells_m
+        self._half_side_m = float(np.abs(problem.cells_m).max()) or 1.0
+        weights, deviations = self._prior(len(problem.pairs))
+        weights = weights if prior == "kinematic" else np.zeros_like(weights)
+        half = self._half_side_m
+        self.model = BayesianRegression(
+            weights * half, deviations * half, _NOISE * half, _FORGETTING
+        )
+
+    @abstractmethod
+    def _prior(self, pairs: int) -> tuple[FloatArray, FloatArray]:
+        """Return the weights of the kinematic law, and their prior deviations [h], (d,)."""
+
+    @abstractmethod
+    def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:
+        """Return the features of each of n actions, (n, d)."""
+
+    def expected_m(self, before: Readings, actions: Sequence[Action]) -> FloatArray:
+        """Return the expected rewards of n actions [m], (n,)."""
+        return self.model.expected(self.features(before, actions))
+
+    def explain(self, features: FloatArray) -> tuple[str, Sequence[Term]]:
+        """Return the rule of the expected reward for features (d,), with its terms."""
+        used = np.flatnonzero(features).tolist()
+        terms, products = [], {}
+        for number, index in enumerate(used, 1):
+            name = self.feature_name(index)
+            terms += [
+                Term(f"w{number}", float(self.model.mean[index]), f"weight of {name} [m]"),
+                Term(f"x{number}", float(features[index]), name),
+            ]
+            products[index] = f"x{number} · w{number}"
+        return sum_rule(products, len(features)) or "0", terms
+
+    @abstractmethod
+    def feature_name(self, index: int) -> str:
+        """Return what a feature is, in words."""
+
+    def upper_bound_m(
+        self, before: Readings, actions: Sequence[Action], optimism: float
+    ) -> FloatArray:
+        """Return the upper confidence bounds of the rewards of n actions [m], (n,)."""
+        features = self.features(before, actions)
+        return self.model.expected(features) + optimism * self.model.deviation(features)
+
+
+class MeasuredExpert(Expert):
+    """One-hot features of each pair's observed cell after landing: pairs × cells weights."""
+
+    name = "measured"
+
+    def _prior(self, pairs: int) -> tuple[FloatArray, FloatArray]:
+        weights = np.tile(self._cells_m[:, 1] / self._half_side_m, pairs) / pairs
+        return weights, np.full(len(weights), _DEVIATION)
+
+    def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:  # noqa: D102
+        landed = np.tile(before.cells, (len(actions), 1))  # (n, pairs)
+        for row, action in enumerate(actions):
+            landed[row, action.pair] = action.cell
+        one_hot: FloatArray = np.eye(len(self._cells_m))[landed]
+        return one_hot.reshape(len(actions), -1)
+
+    def feature_name(self, index: int) -> str:  # noqa: D102
+        pair, cell = divmod(index, len(self._cells_m))
+        return f"pair {pair + 1} on cell {cell}"
+
+
+class PlannedExpert(Expert):
+    """Features of the planned offsets after landing, which are continuous: 1 + pairs weights.
+
+    They are the mean forward offset of all feet, by which the body would move without slip, and
+    each pair's lateral offset, as a wider or narrower stance slips less or more. One weight for
+    all forward offsets: with a weight for each pair, greedy steps favour the pairs that push well
+    and never bring the others forward.
+    """
+
+    name = "planned"
+
+    def _prior(self, pairs: int) -> tuple[FloatArray, FloatArray]:
+        deviations = np.array([_DEVIATION, *[_LATERAL_DEVIATION] * pairs])
+        return np.array([1.0, *[0.0] * pairs]), deviations
+
+    def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:  # noqa: D102
+        landed = np.tile(before.planned_m, (len(actions), 1, 1))  # (n, pairs, 2)
+        for row, action in enumerate(actions):
+            landed[row, action.pair] = self._cells_m[action.cell]
+        landed /= self._half_side_m
+        return np.column_stack((landed[:, :, 1].mean(1), landed[:, :, 0]))
+
+    def feature_name(self, index: int) -> str:  # noqa: D102
+        return f"how far pair {index} stands out" if index else "how far forward the feet stand"
+
+
+class Policy(NamedTuple):
+    """One way of choosing: by an expert, and in which order the pairs take turns."""
+
+    expert: Expert
+    successor: tuple[int, ...] | None
+    """The pair that moves after each pair; None if any may."""
+    untried: float
+    """Reward per step that it is expected to earn before it was tried [h]."""
+
+    def allowed(self, legal: Sequence[Action], last_pair: int) -> Sequence[Action]:
+        """Return the legal actions among which it chooses; all if the pair in turn has none."""
+        if self.successor is None:
+            return legal
+        return [one for one in legal if one.pair == self.successor[last_pair]] or legal
+
+
+class LinearModel:
+    """Bayesian linear models of the reward by two experts, one for each reading of the state.
+
+    Both learn from every step. One of three policies decides, for six steps at a time: the one
+    whose steps paid most lately. Two follow the plan, and let the pairs take turns in one order
+    or the other, which one step's reward does not tell apart; the third follows the measured
+    cells. A policy takes the action with the highest mean plus `optimism` posterior deviations
+    (LinUCB). Where errors of prediction rise suddenly, most of the evidence is forgotten, which
+    makes it explore again. It makes no random choices: ties go to the first action in `legal`.
+
+    Args:
+        problem: number of pairs, and the cells' displacements.
+        observe: reads the plan of the feet beside the run's observation.
+        explore: if False, an action is chosen by the mean alone.
+        prior: the prior mean of the reward: 0, or what the kinematic law predicts.
+        optimism: β, the weight of the posterior's standard deviation.
+    """
+
+    title = "Linear model"
+    description = (
+        "Learns what each place of the feet is worth, tries what it is unsure of, never stops."
+    )
+    color = "#D55E00"
+    needs_practice = True
+    keeps_learning = True
+
+    def __init__(
+        self,
+        problem: Problem,
+        observe: Observe,
+        *,
+        explore: bool = True,
+        prior: Prior = "none",
+        optimism: Optimism = 0.5,
+    ) -> None:
+        self._observe, self._explore, self._optimism = observe, explore, optimism
+        self._tuned_optimism = np.nan
+        self._cells = len(problem.cells_m)
+        self._half_side_m = float(np.abs(problem.cells_m).max()) or 1.0
+        self._experts = (PlannedExpert(problem, prior), MeasuredExpert(problem, prior))
+        self._visits: IntArray = np.zeros((len(problem.pairs), self._cells), np.int64)
+        planned, measured = self._experts
+        pairs = len(problem.pairs)
+        self._block_steps = _TURNS * pairs
+        forth = tuple((pair + 1) % pairs for pair in range(pairs))
+        back = tuple((pair - 1) % pairs for pair in range(pairs))
+        self._policies = (
+            Policy(planned, forth, _UNTRIED),
+            Policy(planned, back, _UNTRIED),
+            Policy(measured, None, _UNTRIED_MEASURED),
+        )
+        self._deciding, self._decided, self._last_pair = 0, 0, pairs - 1
+        self._earned: FloatArray = np.zeros((len(self._policies), 2))
+        """Discounted steps that each policy decided, and the rewards [m] in them."""
+        self._noise_variance = (_NOISE * self._half_side_m) ** 2
+        self._errors: FloatArray = np.array([[0.0, self._noise_variance]] * len(self._experts))
+        """Short and long moving average of each expert's squared errors [m²]."""
+        self._predicted: FloatArray = np.zeros(len(self._experts))
+        """Rewards [m] that each expert predicted since a frozen copy last chose a policy."""
+        self._before = self._read()
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:  # noqa: ARG002
+        """Return the action with the highest upper confidence bound, by the policy that decides."""
+        return self._choose(legal)[0]
+
+    def explain_choice(
+        self,
+        observation: Cells,  # noqa: ARG002
+        legal: Sequence[Action],
+    ) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        action, allowed, bounds_m = self._choose(legal)
+        scores = np.full(self._visits.shape, np.nan)
+        scores[tuple(np.transpose(allowed))] = bounds_m
+        policy, beta = self._policies[self._deciding], self._optimism if self._explore else 0.0
+        criterion = f"expected reward of the step by its {policy.expert.name} model"
+        if beta:
+            criterion += f", plus {beta:g} standard deviations"
+        if policy.successor is not None:
+            criterion += "; the pairs take turns"
+        return ChoiceExplanation(action, "exploited", criterion, scores)
+
+    def _choose(self, legal: Sequence[Action]) -> tuple[Action, Sequence[Action], FloatArray]:
+        """Return an action, those from which it is chosen, and their upper confidence bounds [m].
+
+        The policy that decides is chosen first, if it is time to.
+        """
+        self._before = self._read()
+        if self._decided % self._block_steps == 0:
+            self._choose_policy()
+        self._decided += 1
+        policy = self._policies[self._deciding]
+        allowed = policy.allowed(legal, self._last_pair)
+        optimism = self._optimism if self._explore else 0.0
+        bounds_m = policy.expert.upper_bound_m(self._before, allowed, optimism)
+        best = allowed[int(bounds_m.argmax())]
+        self._predicted += self._predictions(best)
+        self._last_pair = best.pair
+        return best, allowed, bounds_m
+
+    def learn(self, transition: Transition) -> None:
+        """Update both experts' posteriors, and the record of the policy that decided."""
+        action, reward = transition.action, transition.reward_m
+        errors = (reward - self._predictions(action)) ** 2
+        for expert in self._experts:
+            (features,) = expert.features(self._before, [action])
+            expert.model.update(features, reward)
+        self._visits[action] += 1
+        self._earned *= _FORGETTING
+        self._earned[self._deciding] += 1, reward
+        self._errors[:, 0] += _FAST * (errors - self._errors[:, 0])
+        self._errors[:, 1] += _SLOW * (errors - self._errors[:, 1])
+        if self._has_changed():
+            self._forget()
+
+    def explain_update(self, transition: Transition) -> UpdateExplanation:
+        """Learn as `learn` does, and explain how both experts' expectations change.
+
+        The rule is the expectation of the step's reward, by the expert that decided, after it.
+        """
+        before = [self._belief(expert, transition.action) for expert in self._experts]
+        self.learn(transition)
+        after = [self._belief(expert, transition.action) for expert in self._experts]
+        beliefs = [
+            Belief(f"reward by its {expert.name} model", old[0], new[0], "m", old[1], new[1])
+            for expert, old, new in zip(self._experts, before, after, strict=True)
+        ]
+        decided = self._policies[self._deciding].expert
+        index = self._experts.index(decided)
+        (features,) = decided.features(self._before, [transition.action])
+        rule, terms = decided.explain(features)
+        (expected, deviation), (became, _) = before[index], after[index]
+        place = transition.observation, transition.action
+        update = ValueUpdate(*place, rule, tuple(terms), expected, became)
+        error = transition.reward_m - expected
+        summary = (
+            f"It expected {in_millimetres(expected)}, ± {in_millimetres(deviation)}, and got "
+            f"{in_millimetres(transition.reward_m)}: {in_millimetres(abs(error))} "
+            f"{'more' if error > 0 else 'less'}. It now expects {'more' if error > 0 else 'less'} "
+            "of every step that ends alike, not of this one alone."
+        )
+        return UpdateExplanation(summary, update, (), beliefs)
+
+    def _belief(self, expert: Expert, action: Action) -> tuple[float, float]:
+        """Return the reward of the last step that an expert expects, and its deviation [m]."""
+        features = expert.features(self._before, [action])
+        return float(expert.model.expected(features)[0]), float(expert.model.deviation(features)[0])
+
+    def _read(self) -> Readings:
+        return Readings(self._observe("measured"), np.array(self._observe.planned_offsets_m, float))
+
+    def _predictions(self, action: Action) -> FloatArray:
+        """Return the reward that each expert expects [m], (experts,)."""
+        return np.array([expert.expected_m(self._before, [action])[0] for expert in self._experts])
+
+    def _choose_policy(self) -> None:
+        """Let the policy decide that earned most lately; untried ones are estimated optimistically.
+
+        A frozen copy is told no rewards. It keeps its policy, unless that treads on the spot: in a
+        cycle of cells that it values, where the plan predicts hardly any advance.
+        """
+        if self._explore:
+            self._deciding = self._best_policy(self._policies, optimistic=True)
+        else:
+            by_plan, by_cells = self._predicted
+            is_planned = self._policies[self._deciding].expert is self._experts[0]
+            if not is_planned and by_plan < by_cells / 4:
+                self._deciding = self._best_policy(self._policies[:-1], optimistic=False)
+        self._predicted = np.zeros_like(self._predicted)
+
+    def _best_policy(self, policies: Sequence[Policy], optimistic: bool) -> int:
+        """Return the index of the first policies that earned most per step.
+
+        Each record is completed by one step with the reward expected before any, or with none.
+        """
+        steps, rewards = self._earned[: len(policies)].T
+        untried = np.array([policy.untried * self._half_side_m for policy in policies])
+        return int(((rewards + optimistic * untried) / (steps + 1)).argmax())
+
+    def _has_changed(self) -> bool:
+        """Whether the errors of all experts have risen above what they were for long."""
+        short, long = self._errors.T
+        risen = (short > _CHANGE_RATIO * long) & (short > _CHANGE_LEAST * self._noise_variance)
+        return self._decided > 2 * self._block_steps and bool(risen.all())
+
+    def _forget(self) -> None:
+        for expert in self._experts:
+            expert.model.discount(_KEPT)
+        self._earned *= _KEPT
+        self._errors[:, 1] = np.maximum(self._errors[:, 1], self._errors[:, 0])
+
+    def tune(self, *, optimism: Optimism | None = None) -> None:
+        """Change the optimism from the next step on."""
+        if optimism is not None:
+            self._optimism = self._tuned_optimism = optimism
+
+    def values(self, observation: Cells) -> FloatArray:
+        """Return the expected reward of the next step [m], (pairs, cells), NaN where illegal."""
+        pairs, cells = self._visits.shape
+        actions = [Action(pair, cell) for pair in range(pairs) for cell in range(cells)]
+        expected_m = self._policies[self._deciding].expert.expected_m(self._read(), actions)
+        return _without_illegal(expected_m.reshape(pairs, cells), observation)
+
+    def visits(self, observation: Cells) -> FloatArray:
+        """Return how often each action was taken in any state, (pairs, cells), NaN where illegal.
+
+        Every visit teaches the model about all states.
+        """
+        return _without_illegal(self._visits.astype(float), observation)
+
+    def state(self) -> AgentState:
+        """Return the evidence, the experts' records, visits and optimism."""
+        evidence: AgentState = {}
+        for expert in self._experts:
+            evidence[f"{expert.name}_moments"] = expert.model.moments.copy()
+            evidence[f"{expert.name}_products"] = expert.model.products.copy()
+        return {
+            **evidence,
+            "earned": self._earned.copy(),
+            "errors": self._errors.copy(),
+            "visits": self._visits.copy(),
+            "deciding": np.array([self._deciding, self._decided, self._last_pair], np.int64),
+            "tuned_optimism": np.array([self._tuned_optimism]),
+        }
+
+    def continue_from(self, state: AgentState) -> None:
+        """Load what was learned, but not the optimism that was tuned.
+
+        Raises:
+            ValueError: if it is of another number of pairs or cells.
+        """
+        self.load({**state, "tuned_optimism": np.array([np.nan])})
+
+    def load(self, state: AgentState) -> None:
+        """Restore a state that `state` returned.
+
+        Raises:
+            ValueError: if it is of another number of pairs or cells.
+        """
+        own = self.state()
+        for name, array in own.items():
+            if state[name].shape != array.shape:
+                raise ValueError(f"{name} has the shape {state[name].shape}, not {array.shape}")
+        for expert in self._experts:
+            expert.model.set_evidence(
+                state[f"{expert.name}_moments"].copy(), state[f"{expert.name}_products"].copy()
+            )
+        self._earned, self._errors = state["earned"].copy(), state["errors"].copy()
+        self._visits = state["visits"].copy()
+        self._deciding, self._decided, self._last_pair = state["deciding"].tolist()
+        (self._tuned_optimism,) = state["tuned_optimism"].tolist()
+        if not np.isnan(self._tuned_optimism):
+            self._optimism = self._tuned_optimism
+        if not self._explore:  # a walk of its own, from rest
+            self._deciding, self._decided = self._best_policy(self._policies, optimistic=False), 0
+            self._last_pair = len(self._visits) - 1
+
+    @staticmethod
+    def check_state(state: AgentState) -> None:
+        """Check what `load` relies on.
+
+        Raises:
+            InvalidInput: for an optimism out of its limits.
+            KeyError, ValueError: if `state` is not a state of this agent.
+        """
+        (optimism,) = state["tuned_optimism"].tolist()
+        if not np.isnan(optimism):
+            declare("optimism", Optimism).check(optimism)
+        for name in ("planned", "measured"):
+            moments, products = state[f"{name}_moments"], state[f"{name}_products"]
+            if moments.shape != (len(products), len(products)) or products.ndim != 1:
+                raise ValueError(f"its {name} evidence has no shape of a regression")
+            if not np.array_equal(moments, moments.T) or (moments.diagonal() < 0).any():
+                raise ValueError(f"its {name} evidence is no sum of squares")
+        for name in ("planned_products", "measured_products", "earned", "errors"):
+            if state[name].dtype.kind != "f" or not np.isfinite(state[name]).all():
+                raise ValueError(f"its {name} are no numbers")
+        if state["earned"].shape != (3, 2) or state["errors"].shape != (2, 2):
+            raise ValueError("it has no records of three policies and two experts")
+        if (state["earned"][:, 0] < 0).any() or (state["errors"] < 0).any():
+            raise ValueError("it has records below zero")
+        deciding, decided, last_pair = state["deciding"].tolist()
+        visits = state["visits"]
+        kinds = state["deciding"].dtype.kind + visits.dtype.kind
+        counts = kinds == "ii" and visits.ndim == 2 and (visits >= 0).all()
+        if (
+            not counts
+            or decided < 0
+            or deciding not in range(3)
+            or last_pair not in range(len(visits))
+        ):
+            raise ValueError("its counters are out of range")
+
+
+def _without_illegal(values: FloatArray, observation: Cells) -> FloatArray:
+    values[np.arange(len(values)), observation] = np.nan
+    return values

@@ -1,0 +1,164 @@
+"""Prioritized sweeping (Moore and Atkeson 1993; Sutton and Barto, 2nd edition, §8.4)."""
+
+from collections.abc import Sequence
+from heapq import heapify, heappop, heappush
+from typing import Annotated, Any
+
+import numpy as np
+from annotated_types import Ge, Le
+
+from hexapods.agents.explanation import Term, UpdateExplanation, UpdateLog
+from hexapods.agents.planning import PlanningLearner, planning_summary
+from hexapods.agents.protocol import AgentState, Transition
+from hexapods.agents.tabular import Alpha, summary_of
+from hexapods.agents.tabular_model import TriedPair
+from hexapods.domain.settings import Setting
+
+Threshold = Annotated[
+    float,
+    Ge(0),
+    Le(0.1),
+    Setting(
+        title="Smallest change",
+        symbol="θ",
+        unit="m",
+        help="Values that would change by less are not worked on.",
+        examples=(0.00001, 0.0001, 0.001),
+    ),
+]
+
+
+class PrioritizedSweeping(PlanningLearner):
+    """Learner that plans where it matters: first the pair whose value would change the most.
+
+    A change is handed on, backwards, to the pairs that lead there. Updates are expectations over
+    all that has followed a pair, so the world may be stochastic.
+
+    Args:
+        alpha: share of a planned change that is made; 1 as in the paper.
+        threshold_m: θ [m].
+        settings: as for `PlanningLearner`.
+    """
+
+    title = "Prioritized sweeping"
+    description = "Remembers what followed each step; a surprise is passed on to the steps before."
+    color = "#CC6677"
+
+    def __init__(
+        self, *args: Any, alpha: Alpha = 1.0, threshold_m: Threshold = 0.00001, **settings: Any
+    ) -> None:
+        super().__init__(*args, alpha=alpha, **settings)
+        self._threshold_m = threshold_m
+        self._priorities: dict[int, float] = {}
+        """Change of value [m] that is due, by the number of the pair."""
+        self._heap: list[tuple[float, int]] = []
+        """The same as (−priority, number), with entries that are out of date."""
+
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Add the step to the model, and make the n largest changes of values that are due."""
+        after = self.table.index(transition.next_observation)
+        self._enqueue(self._model.learn(state, column, transition.reward_m, after))
+        for _ in range(self._planning_steps):
+            if not self._priorities:
+                break
+            self._sweep(self._model.pairs[self._dequeue()])
+        if len(self._heap) > 2 * len(self._priorities) + 1000:
+            self._rebuild_heap()
+
+    def _sweep(self, pair: TriedPair) -> None:
+        """Q ← (1 − α) Q + α (r̄ + γ Σ p max Q(s′, ·)); then queue the pairs that led to its s."""
+        before = self.table.best(pair.state)
+        later = self._later(pair)
+        self._move_towards(pair.state, pair.column, self._planned_target(pair, later))
+        if self._update_log is not None:
+            terms = (
+                Term("r̄", pair.mean_reward_m, "mean reward of all tries [m]"),
+                Term("γ", self._gamma, "discount"),
+                Term("Σ", later, "sum of the highest values in the states that followed"),
+                Term("N", pair.tries, "number of tries"),
+            )
+            self._update_log.explain_target("r̄ + γ · Σ / N", terms)
+        if self.table.best(pair.state) != before:
+            for number in self._model.leading_to(pair.state):
+                self._enqueue(number)
+
+    def _planned_target(self, pair: TriedPair, later: float) -> float:
+        return pair.mean_reward_m + self._gamma * later / pair.tries
+
+    def _later(self, pair: TriedPair) -> float:
+        """Return the sum of the highest values in all states that followed a pair."""
+        best = self.table.best
+        return sum(count * best(state) for state, count in pair.outcomes.items())
+
+    def _explain_target(
+        self,
+        transition: Transition,  # noqa: ARG002
+    ) -> tuple[str, Sequence[Term]]:
+        """Return nothing: a step is added to the model, and its value follows by planning."""
+        return "", ()
+
+    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
+        """Return the explanation of the first change of this step's value, if it was due."""
+        sweeps = [self._value_update(one) for one in update_log.changes]
+        entry = update_log.transition.observation, update_log.transition.action
+        own = [one for one in sweeps if (one.observation, one.action) == entry]
+        others = [one for one in sweeps if not own or one is not own[0]]
+        if own:
+            summary = summary_of(own[0])
+        else:
+            summary = "Its own value was not worked on: others would change more, or it hardly."
+        planned = planning_summary(sweeps)
+        return UpdateExplanation(f"{summary} {planned}", own[0] if own else None, others)
+
+    def _enqueue(self, number: int) -> None:
+        """Set the priority of a pair; it leaves the queue if its value would hardly change."""
+        pair = self._model.pairs[number]
+        value = float(self.table.row(pair.state)[0][pair.column])
+        priority = abs(self._planned_target(pair, self._later(pair)) - value)
+        if priority > self._threshold_m:
+            self._priorities[number] = priority
+            heappush(self._heap, (-priority, number))
+        else:
+            self._priorities.pop(number, None)
+
+    def _dequeue(self) -> int:
+        """Remove the pair with the highest priority; ties go to the one that was tried first."""
+        while True:
+            priority, number = heappop(self._heap)
+            if self._priorities.get(number) == -priority:
+                del self._priorities[number]
+                return number
+
+    def _rebuild_heap(self) -> None:
+        self._heap = [(-priority, number) for number, priority in self._priorities.items()]
+        heapify(self._heap)
+
+    def state(self) -> AgentState:
+        """Return the state of `PlanningLearner`, and the queue."""
+        queue = sorted(self._priorities.items())
+        return super().state() | {
+            "queued": np.array([number for number, _ in queue], np.int64),
+            "priorities": np.array([priority for _, priority in queue]),
+        }
+
+    def load(self, state: AgentState) -> None:
+        """Restore a state that `state` returned; the caller restores the generator."""
+        super().load(state)
+        queued = zip(state["queued"].tolist(), state["priorities"].tolist(), strict=True)
+        self._priorities = dict(queued)
+        self._rebuild_heap()
+
+    @staticmethod
+    def check_state(state: AgentState) -> None:
+        """Check what `load` relies on beyond the table, as in `PlanningLearner`."""
+        PlanningLearner.check_state(state)
+        queued, priorities = state["queued"], state["priorities"]
+        if (
+            queued.dtype.kind != "i"
+            or not np.isin(queued, np.arange(len(state["model_pairs"]))).all()
+        ):
+            raise ValueError("its queue has steps that were never tried")
+        if queued.shape != priorities.shape or not (priorities > 0).all():
+            raise ValueError("its queue has steps without a priority")
+        if (state["model_pairs"][queued, 2] < 1).any():
+            raise ValueError("its queue has steps that were never tried")

@@ -1,0 +1,259 @@
+"""Q-table, sparse by rows: one row per state, one column per action (pair, cell)."""
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hexapods.agents.table_rows import NOT_RISING
+from hexapods.domain.errors import InvalidInput, TableMismatch
+from hexapods.domain.types import Action, Cells, FloatArray
+
+MAX_VALUES = 64_000_000
+"""Maximum number of values; a table of six legs at eight divisions has 53,551,875."""
+_ROWS_AT_ONCE = 1_000
+_VALUES_AT_ONCE = 100_000
+_NO_SLOT = -1
+
+
+class QTable:
+    """Values and visit counts of all states of `pairs` leg pairs over `cells` cells.
+
+    The index of a state is the number whose base-`cells` digits are its cells, the first pair the
+    most significant; the column of an action is pair · cells + cell. Moving a pair to its current
+    cell is illegal: those entries are never read, and are NaN in all output.
+
+    Sparse by rows: only states that were written to take memory, 12 bytes per value. Rows are
+    stored in the order of their first write, in arrays of the full size, of which the operating
+    system commits used pages only.
+
+    Raises:
+        InvalidInput: if the table would be larger than `MAX_VALUES`.
+    """
+
+    def __init__(self, pairs: int, cells: int) -> None:
+        self.pairs, self.cells = pairs, cells
+        self.states: int = cells**pairs
+        self.actions = pairs * cells
+        check_size(pairs, cells)
+        self._clear()
+
+    def _clear(self) -> None:
+        self._q: FloatArray = np.zeros((self.states, self.actions))
+        self._n: NDArray[np.uint32] = np.zeros((self.states, self.actions), np.uint32)
+        self._slots = np.full(self.states, _NO_SLOT, np.int32)
+        """Row of each state in the arrays; `_NO_SLOT` if it was never written to."""
+        self._used = 0
+
+    def index(self, observation: Cells) -> int:
+        """Return the index of a state."""
+        row: int = 0
+        for cell in observation:
+            row = row * self.cells + cell
+        return row
+
+    def column(self, action: Action) -> int:
+        """Return the column of an action."""
+        return action.pair * self.cells + action.cell
+
+    def cells_at(self, state: int) -> Cells:
+        """Return the observation of a state given by its index."""
+        cells = []
+        for _ in range(self.pairs):
+            state, cell = divmod(state, self.cells)
+            cells.append(cell)
+        return tuple(reversed(cells))
+
+    def action_at(self, column: int) -> Action:
+        """Return the action of a column."""
+        return Action(*divmod(column, self.cells))
+
+    def values_of(self, observation: Cells, actions: Sequence[Action]) -> list[float]:
+        """Return the values of some actions in a state, as plain floats."""
+        slot = self._slots[self.index(observation)]
+        if slot == _NO_SLOT:
+            return [0.0] * len(actions)
+        row: list[float] = self._q[slot].tolist()
+        cells = self.cells
+        return [row[pair * cells + cell] for pair, cell in actions]
+
+    def best(self, state: int) -> float:
+        """Return the highest value of a legal action in a state given by its index."""
+        slot = self._slots[state]
+        if slot == _NO_SLOT:
+            return 0.0
+        row: list[float] = self._q[slot].tolist()
+        return max([row[column] for column in legal_columns(state, self.pairs, self.cells)])
+
+    def values(self, observation: Cells) -> FloatArray:
+        """Return the action values in a state, (pairs, cells), NaN where illegal."""
+        return self._row(self._q, observation)
+
+    def visits(self, observation: Cells) -> FloatArray:
+        """Return the visit counts in a state, (pairs, cells), NaN where illegal."""
+        return self._row(self._n, observation)
+
+    def row(self, state: int) -> tuple[FloatArray, NDArray[np.uint32]]:
+        """Return writable views of a state's values and visits by its index, (actions,) each."""
+        slot = self._slots[state]
+        if slot == _NO_SLOT:
+            slot = self._slots[state] = self._used
+            self._used += 1
+        return self._q[slot], self._n[slot]
+
+    def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
+        """Iterate over all states in order, with values and visits, (pairs, cells), NaN illegal."""
+        for state in product(range(self.cells), repeat=self.pairs):
+            yield state, self.values(state), self.visits(state)
+
+    @property
+    def size(self) -> int:
+        """Number of legal state-action values: 1,500 at two divisions and three pairs."""
+        return self.states * (self.actions - self.pairs)
+
+    def sha256(self) -> str:
+        """Return the SHA-256 of the values as little-endian float64, row-major, NaN if illegal."""
+        digest = hashlib.sha256()
+        for first in range(0, self.states, _ROWS_AT_ONCE):
+            slots = self._slots[first : first + _ROWS_AT_ONCE]
+            rows = np.zeros((len(slots), self.actions), "<f8")
+            written = np.flatnonzero(slots != _NO_SLOT)
+            rows[written] = self._q[slots[written]]
+            by_pair = rows.reshape(-1, self.pairs, self.cells)
+            places = np.arange(len(rows))
+            at = np.unravel_index(first + places, (self.cells,) * self.pairs)
+            for pair in range(self.pairs):
+                by_pair[places, pair, at[pair]] = np.nan
+            digest.update(rows.data)
+        return digest.hexdigest()
+
+    def dump(self) -> dict[str, NDArray[np.generic]]:
+        """Return the entries that were visited or have a value, sparse (see `table_rows`)."""
+        states, size = np.flatnonzero(self._slots != _NO_SLOT), 0
+        parts = range(0, len(states), _ROWS_AT_ONCE)
+        for first in parts:
+            size += int(np.count_nonzero(self._is_used(states[first : first + _ROWS_AT_ONCE])))
+        where, begin = np.empty(size, np.int64), 0
+        q, n = np.empty(size), np.empty(size, np.uint32)
+        for first in parts:
+            some = states[first : first + _ROWS_AT_ONCE]
+            slots = self._slots[some]
+            row, column = np.nonzero(self._is_used(some))
+            end = begin + len(row)
+            where[begin:end] = some[row] * self.actions + column
+            q[begin:end] = self._q[slots[row], column]
+            n[begin:end] = self._n[slots[row], column]
+            begin = end
+        return {"shape": np.array([self.pairs, self.cells]), "where": where, "q": q, "n": n}
+
+    def values_at(self, where: NDArray[np.int64]) -> FloatArray:
+        """Return the values of entries given by their flat indices, as in `dump`."""
+        states, columns = np.divmod(where, self.actions)
+        slots = self._slots[states]
+        values: FloatArray = np.where(slots == _NO_SLOT, 0.0, self._q[slots, columns])
+        return values
+
+    def load(self, arrays: dict[str, NDArray[np.generic]]) -> None:
+        """Replace all values and visits by the output of `dump`.
+
+        Raises:
+            TableMismatch: if the arrays are inconsistent, or of a table of another shape.
+        """
+        check_arrays(arrays, self.pairs, self.cells)
+        where, q, n = (arrays[name] for name in ("where", "q", "n"))
+        self._clear()
+        for first in range(0, len(where), _VALUES_AT_ONCE):
+            part = slice(first, first + _VALUES_AT_ONCE)
+            states, columns = np.divmod(where[part].astype(np.int64), self.actions)
+            slots = self._slots_of(states)
+            self._q[slots, columns], self._n[slots, columns] = q[part], n[part]
+
+    def _slots_of(self, states: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the rows of some states in the arrays; allocate those that are missing."""
+        new = np.unique(states[self._slots[states] == _NO_SLOT])
+        self._slots[new] = np.arange(self._used, self._used + len(new), dtype=np.int32)
+        self._used += len(new)
+        return self._slots[states]
+
+    def _is_used(self, states: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Whether the entries of some states were visited or have a value, (states, actions)."""
+        slots = self._slots[states]
+        used: NDArray[np.bool_] = (self._n[slots] > 0) | (self._q[slots] != 0)
+        return used
+
+    def _row(self, table: NDArray[Any], observation: Cells) -> FloatArray:
+        slot = self._slots[self.index(observation)]
+        row = np.zeros(self.actions) if slot == _NO_SLOT else table[slot].astype(float)
+        row = row.reshape(self.pairs, self.cells)
+        row[range(self.pairs), observation] = np.nan
+        return row
+
+
+@lru_cache(maxsize=1 << 12)
+def legal_columns(state: int, pairs: int, cells: int) -> tuple[int, ...]:
+    """Return the columns of the legal actions in a state given by its index, in order."""
+    columns = []
+    for pair in range(pairs):
+        present = state // cells ** (pairs - 1 - pair) % cells
+        columns += [pair * cells + cell for cell in range(cells) if cell != present]
+    return tuple(columns)
+
+
+def table_size(pairs: int, cells: int) -> int:
+    """Return the number of values of a table: cells^pairs states times pairs · cells actions."""
+    size: int = cells**pairs * pairs * cells
+    return size
+
+
+def check_size(pairs: int, cells: int) -> None:
+    """Check that a table of this shape has at most `MAX_VALUES` values.
+
+    Raises:
+        InvalidInput: if it is larger.
+    """
+    values = table_size(pairs, cells)
+    if values > MAX_VALUES:
+        raise InvalidInput(
+            f"a table of {pairs} leg pairs and {cells} cells has {values:,} values; the most is "
+            f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
+        )
+
+
+def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: int) -> None:
+    """Check that arrays are a valid output of `QTable.dump` for a table of this shape.
+
+    Raises:
+        TableMismatch: if they are inconsistent, or of a table of another shape.
+    """
+    if missing := {"shape", "where", "q", "n"} - set(arrays):
+        raise TableMismatch(f"this is no Q-table: it lacks {', '.join(sorted(missing))}")
+    shape, where, q, n = (arrays[name] for name in ("shape", "where", "q", "n"))
+    if shape.tolist() != [pairs, cells]:
+        raise TableMismatch(
+            f"the table's leg pairs and cells are {shape.tolist()}, this problem's {[pairs, cells]}"
+        )
+    kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind
+    has_equal_shapes = where.ndim == 1 and where.shape == q.shape == n.shape
+    if kinds != "ifu" or not has_equal_shapes or not np.isfinite(q).all():
+        raise TableMismatch("the table's values, visits and places do not fit together")
+    if where.size and not (where.min() >= 0 and where.max() < table_size(pairs, cells)):
+        raise TableMismatch("the table has values for states that do not exist")
+    if not np.all(np.diff(where) > 0):
+        raise TableMismatch(NOT_RISING)
+
+
+def check_entries(places: NDArray[Any], count: int, shape: NDArray[Any]) -> None:
+    """Check that places are the (state, column) of `count` entries of a table, (count, 2).
+
+    Raises:
+        ValueError: if they are not.
+    """
+    pairs, cells = shape.tolist()
+    if places.shape != (count, 2) or places.dtype.kind != "i":
+        raise ValueError("its steps are no list of states and actions")
+    if (places < 0).any() or (places >= [cells**pairs, pairs * cells]).any():
+        raise ValueError("it has steps from states that do not exist")

@@ -1,0 +1,90 @@
+"""Streaming reader of a Q-table's sparse form: converts it to dense rows in constant memory.
+
+The sparse form is three arrays of equal length: `where`, the flat indices (state · actions +
+column) of the visited entries in ascending order, and their values `q` and visits `n`.
+"""
+
+import hashlib
+from collections.abc import Callable, Iterator
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hexapods.domain.errors import TableMismatch
+from hexapods.domain.types import Cells, FloatArray
+
+VALUES_AT_ONCE = 4096
+Part = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
+"""A chunk of `where`, `q` and `n`."""
+
+
+class TableRows:
+    """Dense rows of a sparse table of `pairs` leg pairs over `cells` cells, as in `QTable`."""
+
+    def __init__(self, pairs: int, cells: int, parts: Callable[[], Iterator[Part]]) -> None:
+        """Store the source; reading starts with the iteration.
+
+        Args:
+            pairs: number of leg pairs.
+            cells: number of cells of the foot grid.
+            parts: starts an iteration over the chunks of the sparse form, in order.
+        """
+        self.pairs, self.cells = pairs, cells
+        self._parts = parts
+
+    def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
+        """Iterate over all states in order, with values and visits, (pairs, cells), NaN illegal.
+
+        Raises:
+            TableMismatch: if the indices are not ascending.
+        """
+        pairs = range(self.pairs)
+        states = product(range(self.cells), repeat=self.pairs)
+        for q, n in self._dense(max(1, VALUES_AT_ONCE // (self.pairs * self.cells))):
+            for values, visits in zip(q, n, strict=True):
+                state = next(states)
+                values[pairs, state] = visits[pairs, state] = np.nan
+                yield state, values, visits
+
+    def sha256(self) -> str:
+        """Return the same hash as `QTable.sha256`.
+
+        Raises:
+            TableMismatch: if the indices are not ascending.
+        """
+        digest, first = hashlib.sha256(), 0
+        for q, _ in self._dense(1000):
+            places = np.arange(len(q))
+            at = np.unravel_index(first + places, (self.cells,) * self.pairs)
+            for pair in range(self.pairs):
+                q[places, pair, at[pair]] = np.nan
+            digest.update(q.astype("<f8", copy=False).data)
+            first += len(q)
+        return digest.hexdigest()
+
+    def _dense(self, at_once: int) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """Iterate over blocks of rows: values and visits, (rows, pairs, cells) each."""
+        parts, actions = self._parts(), self.pairs * self.cells
+        where, q, n = next(parts, _EMPTY_PART)
+        states: int = self.cells**self.pairs
+        for first in range(0, states, at_once):
+            rows = min(at_once, states - first)
+            values, visits = np.zeros(rows * actions), np.zeros(rows * actions)
+            begin, end = first * actions, (first + rows) * actions
+            while where.size:
+                count = int(np.searchsorted(where, end))
+                if (where[:count] < begin).any():
+                    raise TableMismatch(NOT_RISING)
+                values[where[:count] - begin], visits[where[:count] - begin] = q[:count], n[:count]
+                where, q, n = where[count:], q[count:], n[count:]
+                if where.size:
+                    break
+                where, q, n = next(parts, _EMPTY_PART)
+            shape = (rows, self.pairs, self.cells)
+            yield values.reshape(shape), visits.reshape(shape)
+
+
+NOT_RISING = "the table's values are not in rising order of their states"
+_EMPTY_PART: Part = (np.empty(0, np.int64), np.empty(0), np.empty(0))

@@ -1,0 +1,376 @@
+"""Base classes: agents that act greedily in a Q-table, and learners with an ε-greedy policy."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge, Gt, Le, Lt
+
+from hexapods.agents.explanation import (
+    ChoiceExplanation,
+    Term,
+    UpdateExplanation,
+    UpdateLog,
+    ValueChange,
+    ValueUpdate,
+    copy_of,
+    in_millimetres,
+)
+from hexapods.agents.protocol import AgentState, Problem, Transition
+from hexapods.agents.q_table import QTable
+from hexapods.domain.settings import Setting, declare
+from hexapods.domain.types import Action, Cells, FloatArray
+
+Share = Annotated[float, Ge(0), Le(1)]
+Alpha = Annotated[
+    float,
+    Gt(0),
+    Le(1),
+    Setting(
+        title="Learning rate",
+        symbol="α",
+        help="How much one experience counts against all before.",
+        live=True,
+        examples=(0.1, 0.3, 0.6),
+    ),
+]
+Gamma = Annotated[
+    float,
+    Ge(0),
+    Lt(1),
+    Setting(
+        title="Discount",
+        symbol="γ",
+        help="How much the steps to come count against the next one.",
+        live=True,
+        examples=(0.5, 0.9),
+    ),
+]
+Epsilon = Annotated[
+    Share,
+    Setting(
+        title="Exploration now",
+        symbol="ε",
+        help="Share of random steps from now on, in place of the falling schedule.",
+        live=True,
+    ),
+]
+EpsilonStart = Annotated[
+    Share,
+    Setting(
+        title="Initial exploration",
+        symbol="ε",
+        quantity="exploration",
+        phrase="ε\u00a0from\u00a0{}",
+        help="Share of random steps at the beginning of practice.",
+        examples=(0.5, 1),
+    ),
+]
+EpsilonEnd = Annotated[
+    Share,
+    Setting(
+        title="Final exploration",
+        symbol="ε",
+        quantity="exploration",
+        phrase="ε\u00a0to\u00a0{}",
+        help="Share of random steps at the end of practice.",
+        examples=(0, 0.1),
+    ),
+]
+
+
+@dataclass(frozen=True)
+class EpsilonSchedule:
+    """Linear decay of ε over the episodes: start + (end − start) · e / max(1, n − 1)."""
+
+    start: float = 1.0
+    end: float = 0.0
+    episodes: int = 1
+
+    def __call__(self, episode: int) -> float:
+        """Return the ε of an episode, counted from 0; constant after the last episode."""
+        last = self.episodes - 1
+        return self.start + (self.end - self.start) * min(episode, last) / max(1, last)
+
+
+class TabularAgent(ABC):
+    """Learner whose greedy actions follow from a Q-table; ties are broken at random.
+
+    A subclass implements `learn`, `state` and `load`.
+
+    Args:
+        rng: random generator, the only source of chance.
+        problem: determines the size of the table.
+        explore: if False, the policy is greedy in the table.
+    """
+
+    needs_practice = True
+
+    def __init__(self, rng: np.random.Generator, problem: Problem, *, explore: bool = True) -> None:
+        self.table = QTable(len(problem.pairs), len(problem.cells_m))
+        self._rng, self._explore = rng, explore
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        """Return the action with the highest value in the table."""
+        return self._highest(legal, self.table.values_of(observation, legal))
+
+    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        scores = self.values(observation)
+        action = self.act(observation, legal)
+        return ChoiceExplanation(action, "exploited", "value in the table", scores)
+
+    def _highest(self, legal: Sequence[Action], values: Sequence[float]) -> Action:
+        """Return the action with the highest of some values; ties are broken at random."""
+        highest = max(values)
+        best = [action for action, value in zip(legal, values, strict=True) if value == highest]
+        return best[0] if len(best) == 1 else self._any(best)
+
+    def _any(self, actions: Sequence[Action]) -> Action:
+        """Return one of some actions at random."""
+        return actions[int(self._rng.integers(len(actions)))]
+
+    @abstractmethod
+    def learn(self, transition: Transition) -> None:
+        """Learn from the transition of the last action."""
+
+    def values(self, observation: Cells) -> FloatArray:
+        """Return the action values in this state, (pairs, cells), NaN where illegal."""
+        return self.table.values(observation)
+
+    def visits(self, observation: Cells) -> FloatArray:
+        """Return the visit counts in this state, (pairs, cells), NaN where illegal."""
+        return self.table.visits(observation)
+
+    @abstractmethod
+    def state(self) -> AgentState:
+        """Return the complete state; `where`, `q`, `n` and `shape` are those of the table."""
+
+    @abstractmethod
+    def load(self, state: AgentState) -> None:
+        """Restore a state that `state` returned; the caller restores the generator."""
+
+    def share_table(self, other: "TabularAgent") -> None:
+        """Share the table of another learner, without a copy; for evaluation only."""
+        self.table = other.table
+
+    def continue_from(self, state: AgentState) -> None:
+        """Load what was learned only; rates are those of this run, and the ε schedule restarts."""
+        self._load_learned(state)
+
+    def _load_learned(self, state: AgentState) -> None:
+        """Load values and visits, and in subclasses what else was learned, but no settings."""
+        self.table.load(state)
+
+
+class TabularLearner(TabularAgent):
+    """Learner of action values in a Q-table, with an ε-greedy policy.
+
+    A subclass implements the value of the next state, `_next_value`, or another update rule,
+    `_update`, and may add settings.
+
+    Args:
+        rng: random generator for exploration and for breaking ties.
+        problem: determines the size of the table.
+        explore: if False, the policy is greedy in the table (ε = 0).
+        alpha: learning rate α.
+        gamma: discount factor γ.
+        epsilon_start, epsilon_end: ε of the first and the last episode.
+        steps: planned number of steps, which gives the number of episodes.
+        steps_per_episode: number of steps for which ε is constant.
+    """
+
+    def __init__(
+        self,
+        rng: np.random.Generator,
+        problem: Problem,
+        *,
+        explore: bool = True,
+        alpha: Alpha = 0.3,
+        gamma: Gamma = 0.9,
+        epsilon_start: EpsilonStart = 1.0,
+        epsilon_end: EpsilonEnd = 0.0,
+        steps: int = 500,
+        steps_per_episode: int = 50,
+    ) -> None:
+        super().__init__(rng, problem, explore=explore)
+        self._alpha, self._gamma = alpha, gamma
+        self._schedule = EpsilonSchedule(epsilon_start, epsilon_end, -(-steps // steps_per_episode))
+        self._steps_per_episode = steps_per_episode
+        self._learned = 0
+        self._fixed_epsilon: float | None = None
+        self._update_log: UpdateLog | None = None
+        """Notes each change of a value while an update is explained."""
+
+    next_meaning = "value of the next state"
+    """Meaning of `_next_value`, for explanations."""
+
+    @property
+    def epsilon(self) -> float:
+        """The probability of a random action at the next step."""
+        if not self._explore:
+            return 0.0
+        if self._fixed_epsilon is not None:
+            return self._fixed_epsilon
+        return self._schedule(self._learned // self._steps_per_episode)
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        """Return an ε-greedy action; ties are broken at random."""
+        if self._explores(self._rng):
+            return self._any(legal)
+        return super().act(observation, legal)
+
+    def _explores(self, rng: np.random.Generator) -> bool:
+        """Whether the next action is a random one, by a draw."""
+        epsilon = self.epsilon
+        return epsilon > 0 and rng.random() < epsilon
+
+    def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
+        """Choose as `act` does, and explain the choice."""
+        epsilon = self.epsilon
+        draw = float(copy_of(self._rng).random()) if epsilon > 0 else None
+        explores = self._explores(copy_of(self._rng))
+        greedy = super().explain_choice(observation, legal)
+        explained = replace(greedy, epsilon=epsilon, draw=draw)
+        return replace(explained, kind="explored") if explores else explained
+
+    def learn(self, transition: Transition) -> None:
+        """Update the table, and the visit count of the state and action."""
+        table = self.table
+        state, column = table.index(transition.observation), table.column(transition.action)
+        self._update(transition, state, column)
+        table.row(state)[1][column] += 1
+        self._learned += 1
+
+    def explain_update(self, transition: Transition) -> UpdateExplanation:
+        """Learn as `learn` does, and explain how the values change."""
+        self._update_log = update_log = UpdateLog(transition, *self._explain_target(transition))
+        try:
+            self.learn(transition)
+        finally:
+            self._update_log = None
+        return self._explanation(update_log)
+
+    def _explain_target(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+        """Return what the target of the update is computed from, before it is made."""
+        rule, terms = self._explain_next(transition)
+        return f"r + γ · {rule}", (*self._explain_rates(transition), *terms)
+
+    def _explain_rates(self, transition: Transition) -> Sequence[Term]:
+        return (
+            Term("r", transition.reward_m, "reward of this step [m]"),
+            Term("γ", self._gamma, "discount"),
+        )
+
+    def _explain_next(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+        """Return what `_next_value` is computed from."""
+        return "Q′", (Term("Q′", self._next_value(transition), self.next_meaning),)
+
+    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
+        """Return the explanation of an update whose first noted change is the direct one."""
+        first, *others = update_log.changes
+        update = self._value_update(first.with_target(update_log.rule, update_log.terms))
+        return UpdateExplanation(
+            summary_of(update), update, [self._value_update(one) for one in others]
+        )
+
+    def _value_update(self, change: ValueChange) -> ValueUpdate:
+        table = self.table
+        observation, action = table.cells_at(change.state), table.action_at(change.column)
+        return ValueUpdate(observation, action, *change[2:])
+
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Apply the update rule for a transition from row `state` by the action in `column`.
+
+        Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Q′), Q′ being the value of the next state.
+        """
+        self._move_towards(state, column, self._target(transition))
+
+    def _target(self, transition: Transition) -> float:
+        return transition.reward_m + self._gamma * self._next_value(transition)
+
+    def _next_value(self, transition: Transition) -> float:
+        """Return the value of the next state, by the rule of this learner. No state is terminal."""
+        raise NotImplementedError
+
+    def _move_towards(self, state: int, column: int, target: float) -> None:
+        """Q(s, a) ← (1 − α) Q(s, a) + α target."""
+        values, _ = self.table.row(state)
+        before = values[column]
+        values[column] = (1 - self._alpha) * before + self._alpha * target
+        if self._update_log is not None:
+            terms = (
+                Term("Q", float(before), "value before"),
+                Term("α", self._alpha, "learning rate"),
+                Term("T", float(target), "target"),
+            )
+            change = before, values[column]
+            self._update_log.record((state, column), "(1 − α) · Q + α · T", terms, change)
+
+    def _best_next(self, transition: Transition) -> float:
+        """Return max Q(s′, ·)."""
+        return max(self.table.values_of(transition.next_observation, transition.next_legal))
+
+    def _chosen_next(self, transition: Transition) -> float:
+        """Return Q(s′, a′) of the next action that an on-policy learner has chosen."""
+        assert transition.next_action is not None  # noqa: S101 - is_on_policy
+        return self.table.values_of(transition.next_observation, [transition.next_action])[0]
+
+    def tune(
+        self,
+        *,
+        alpha: Alpha | None = None,
+        gamma: Gamma | None = None,
+        epsilon: Epsilon | None = None,
+    ) -> None:
+        """Change rates from the next step on; a given epsilon replaces the schedule."""
+        self._alpha = self._alpha if alpha is None else alpha
+        self._gamma = self._gamma if gamma is None else gamma
+        self._fixed_epsilon = self._fixed_epsilon if epsilon is None else epsilon
+
+    def state(self) -> AgentState:
+        """Return values, visits, rates and the position in the ε schedule."""
+        fixed = np.nan if self._fixed_epsilon is None else self._fixed_epsilon
+        progress = np.array([self._learned], np.int64)
+        rates = np.array([self._alpha, self._gamma, fixed])
+        return {**self.table.dump(), "learned": progress, "rates": rates}
+
+    def load(self, state: AgentState) -> None:
+        """Restore a state that `state` returned; the caller restores the generator."""
+        self._load_learned(state)
+        self._learned = int(state["learned"][0])
+        self._alpha, self._gamma, fixed = state["rates"].tolist()
+        self._fixed_epsilon = None if np.isnan(fixed) else fixed
+
+    @staticmethod
+    def check_state(state: AgentState) -> None:
+        """Check what `load` relies on beyond the table.
+
+        Raises:
+            InvalidInput: for a rate out of its limits.
+            KeyError, TypeError, ValueError: if `state` is not a state of this agent.
+        """
+        alpha, gamma, epsilon = state["rates"].tolist()
+        declare("alpha", Alpha).check(alpha)
+        declare("gamma", Gamma).check(gamma)
+        # NaN while the schedule is in use.
+        if not np.isnan(epsilon):
+            declare("epsilon", Epsilon).check(epsilon)
+        (learned,) = state["learned"].tolist()
+        if not isinstance(learned, int) or learned < 0:
+            raise ValueError("its step count is negative or not whole")
+
+
+def summary_of(update: ValueUpdate) -> str:
+    """Return in a sentence how a value changed."""
+    change = update.after - update.before
+    if change == 0:
+        return "It got what it expected: the value stays as it was."
+    came = "more" if change > 0 else "less"
+    return (
+        f"It got {came} than it expected, counting what it expects from there on: the value "
+        f"{'rises' if change > 0 else 'falls'} from {in_millimetres(update.before)} to "
+        f"{in_millimetres(update.after)}."
+    )

@@ -1,0 +1,111 @@
+"""Eligibility traces, which credit a reward to earlier steps (Sutton and Barto 1998, chapter 7)."""
+
+from typing import Annotated, Any
+
+import numpy as np
+
+from hexapods.agents.explanation import Term, UpdateExplanation, UpdateLog
+from hexapods.agents.protocol import AgentState, Transition
+from hexapods.agents.q_table import check_entries
+from hexapods.agents.tabular import Share, TabularLearner, summary_of
+from hexapods.domain.settings import Setting, declare
+
+TraceDecay = Annotated[
+    Share,
+    Setting(
+        title="Trace decay",
+        symbol="λ",
+        help="How far back a reward counts: 0 is the last step only, 1 all steps before it.",
+        live=True,
+        examples=(0, 0.5, 0.9),
+    ),
+]
+_MIN_TRACE = 1e-3
+"""Cut-off: eligibility traces below it are dropped."""
+
+
+class TraceLearner(TabularLearner):
+    """Base class of learners with replacing eligibility traces.
+
+    Args:
+        trace_decay: λ; the eligibility of a step is (γλ)^k for a reward k steps later.
+        settings: as for `TabularLearner`.
+    """
+
+    def __init__(self, *args: Any, trace_decay: TraceDecay = 0.9, **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self._trace_decay = trace_decay
+        self._traces: dict[tuple[int, int], float] = {}
+        """Eligibility traces by (row, column) of the table, the newest last."""
+
+    def _update(self, transition: Transition, state: int, column: int) -> None:
+        """Credit the error δ = r + γ Q′ − Q(s, a) to every step with a trace."""
+        value = self.table.row(state)[0][column]
+        self._credit(state, column, self._target(transition) - value)
+
+    def _credit(self, state: int, column: int, error: float) -> None:
+        """Q ← Q + α δ e for every trace e, that of this step being 1; then e ← γ λ e."""
+        self._traces.pop((state, column), None)
+        self._traces[state, column] = 1.0
+        decay, kept = self._gamma * self._trace_decay, {}
+        for place, trace in self._traces.items():
+            values, at = self.table.row(place[0])[0], place[1]
+            before = values[at]
+            values[at] += self._alpha * error * trace
+            if self._update_log is not None:
+                terms = (
+                    Term("Q", float(before), "value before"),
+                    Term("α", self._alpha, "learning rate"),
+                    Term("δ", float(error), "what came, less what this step was worth before"),
+                    Term("e", trace, "trace: how much the step counts for it"),
+                )
+                self._update_log.record(place, "Q + α · δ · e", terms, (before, values[at]))
+            if trace * decay >= _MIN_TRACE:
+                kept[place] = trace * decay
+        self._traces = kept
+
+    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
+        """Return the explanation of the newest trace's change, and those of the other traces."""
+        *others, own = update_log.changes
+        by_symbol = {term.symbol: term for term in own.terms}
+        shown = own._replace(
+            rule=f"Q + α · ({update_log.rule} − Q) · e",
+            terms=(by_symbol["Q"], by_symbol["α"], *update_log.terms, by_symbol["e"]),
+        )
+        update = self._value_update(shown)
+        earlier = "the step before" if len(others) == 1 else f"{len(others)} steps before"
+        summary = summary_of(update)
+        if others:
+            summary += f" {earlier[0].upper()}{earlier[1:]} share in it, by their traces."
+        return UpdateExplanation(summary, update, [self._value_update(one) for one in others])
+
+    def tune(self, *, trace_decay: TraceDecay | None = None, **changes: Any) -> None:
+        """Change rates from the next step on, as in `TabularLearner`."""
+        super().tune(**changes)
+        self._trace_decay = self._trace_decay if trace_decay is None else trace_decay
+
+    def state(self) -> AgentState:
+        """Return the state of `TabularLearner`, λ and the eligibility traces."""
+        places = np.array(list(self._traces), np.int64).reshape(-1, 2)
+        traces = np.array(list(self._traces.values()))
+        own = {"trace_decay": np.array([self._trace_decay]), "places": places, "traces": traces}
+        return super().state() | own
+
+    def load(self, state: AgentState) -> None:
+        """Restore a state that `state` returned; the caller restores the generator."""
+        super().load(state)
+        (self._trace_decay,) = state["trace_decay"].tolist()
+        places = ((row, column) for row, column in state["places"].tolist())
+        self._traces = dict(zip(places, state["traces"].tolist(), strict=True))
+
+    @staticmethod
+    def check_state(state: AgentState) -> None:
+        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        TabularLearner.check_state(state)
+        declare("trace_decay", TraceDecay).check(*state["trace_decay"].tolist())
+        traces = state["traces"]
+        if traces.ndim != 1 or traces.dtype.kind != "f":
+            raise ValueError("its traces are no list of numbers")
+        check_entries(state["places"], len(traces), state["shape"])
+        if not ((traces > 0) & (traces <= 1)).all():
+            raise ValueError("its traces are not from 0 to 1")

@@ -1,0 +1,333 @@
+"""Composition root of runs: builds simulators, learners and walkers from configs.
+
+The only module that imports the concrete simulators; loops and commands use what it builds.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from hexapods.agents import registry
+from hexapods.agents.protocol import Agent, Problem, Tabular
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.kinematic import KinematicSimulator
+from hexapods.domain.observation import Observation
+from hexapods.domain.settings import complete
+from hexapods.domain.simulator import Simulator
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.runs.best_known import best_known_m
+from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings
+from hexapods.runs.lane import LaneConfig, check_lane
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.rebuilding import LoggedSensors, RebuiltLearner
+from hexapods.runs.seeding import EVALUATION, LEARNING, RACING, SENSING, generator
+from hexapods.runs.tables import Checkpoint, check_fits, continue_from, load_agent
+from hexapods.runs.training import Learner, evaluate, measure_baseline
+from hexapods.runs.walker import Sensors, SimulatorExpand, Walker
+
+_NOT_OFFERED = ("settings", "world", "tolerance")
+"""Fields of a training that its agent's constructor does not get: no agent is told of the world."""
+
+
+def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
+    """Create the simulator of a walking problem.
+
+    Args:
+        walk: the walking problem.
+        threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
+
+    Raises:
+        Unreachable: if the robot's legs cannot reach the grid.
+    """
+    gait, grid = walk.resolved_gait, walk.grid
+    if walk.simulator == "kinematic":
+        return KinematicSimulator(walk.robot, gait, grid, walk.world)
+    # Only here: importing MuJoCo takes as long as a short kinematic training.
+    from hexapods.physics.mujoco_simulator import MujocoSimulator  # noqa: PLC0415
+
+    built = walk.built_robot
+    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world, built=built)
+
+
+def build_learner(
+    config: TrainingConfig, table: Checkpoint | None = None, threads: int = 1
+) -> Learner:
+    """Create a learner at rest, initialised from a table if one is given.
+
+    Args:
+        config: the training.
+        table: checkpoint whose values, visits and generator the learner continues from.
+        threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent or one of its settings is invalid.
+        TableMismatch: if the table is of another walking problem or agent.
+        Unreachable: if the robot's legs cannot reach the grid.
+    """
+    offered = _offered_by(config)
+    rng = generator(config.seed, LEARNING)
+    walker = _walker(
+        build_simulator(config, threads),
+        config.agent,
+        config.observation,
+        rng=rng,
+        noise=_noise(config.seed),
+        offered=offered,
+        explore=True,
+    )
+    simulators: dict[World, Simulator[Any]] = {}
+
+    def simulator_of(world: World) -> Simulator[Any]:
+        if world not in simulators:
+            simulators.clear()  # only that of the world as it is stays in memory
+            simulators[world] = build_simulator(replace(config, world=world), threads)
+        return simulators[world]
+
+    def evaluator(world: World, evaluation_rng: np.random.Generator) -> Walker:
+        copy = _walker(
+            simulator_of(world),
+            config.agent,
+            config.observation,
+            rng=evaluation_rng,
+            noise=_noise(config.seed, EVALUATION),
+            offered=offered,
+            explore=False,
+        )
+        if isinstance(copy.agent, Tabular):
+            # Copying a large table for each evaluation would double the memory use.
+            copy.agent.share_table(walker.agent)
+        else:
+            copy.agent.load(walker.agent.state())
+        return copy
+
+    def baseline(world: World) -> Walker:
+        return _walker(
+            simulator_of(world),
+            "greedy",
+            "measured",
+            rng=rng,
+            noise=_noise(config.seed, EVALUATION),
+            offered={},
+            explore=False,
+        )
+
+    learner = Learner(walker, rng, evaluator, baseline)
+    if table is not None:
+        check_fits(table, config, config.observation)
+        continue_from(walker.agent, rng, table)
+    return learner
+
+
+def rebuild_learner(config: TrainingConfig, table: Checkpoint | None = None) -> RebuiltLearner:
+    """Create the learner of a training without its robot, to be fed the training's log.
+
+    Args:
+        config: the training.
+        table: checkpoint from which the training continued.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent does not exist any more, or needs a simulator.
+        TableMismatch: if the table is of another walking problem or agent.
+    """
+    rng, sensors = generator(config.seed, LEARNING), LoggedSensors(config, config.observation)
+    agent = _agent_without_robot(
+        config, config.agent, rng=rng, sensors=sensors, offered=_offered_by(config), explore=True
+    )
+    if table is not None:
+        check_fits(table, config, config.observation)
+        continue_from(agent, rng, table)
+    return RebuiltLearner(agent, rng, sensors)
+
+
+def rebuild_lane(
+    config: RaceConfig, number: int, table: Checkpoint | None = None
+) -> RebuiltLearner:
+    """Create the learner of a lane without its robot, to be fed the lane's recording.
+
+    Args:
+        config: the race.
+        number: of the lane, counted from 0.
+        table: checkpoint of its agent.
+
+    Raises:
+        UnknownName, InvalidInput, TableMismatch: as `rebuild_learner`.
+    """
+    lane = config.lanes[number]
+    rng, sensors = generator(config.seed, RACING, number), LoggedSensors(config, lane.observation)
+    offered = _offered_in(config, lane) if table is None else table.meta["config"]
+    agent = _agent_without_robot(
+        *(config, lane.agent),
+        rng=rng,
+        sensors=sensors,
+        offered=offered,
+        explore=lane.keep_learning,
+    )
+    if table is not None:
+        check_fits(table, config, lane.observation)
+        load_agent(agent, table)
+    return RebuiltLearner(agent, rng, sensors, learns=lane.keep_learning)
+
+
+def _agent_without_robot(
+    walk: WalkingProblem,
+    agent_name: str,
+    *,
+    rng: np.random.Generator,
+    sensors: LoggedSensors,
+    offered: Mapping[str, Any],
+    explore: bool,
+) -> Agent:
+    agent_class = registry.find(agent_name)
+    if registry.searches(agent_name):
+        raise InvalidInput(
+            f"{agent_name} plans with a simulator, and what it simulated was not recorded"
+        )
+    problem = Problem(walk.resolved_gait.pairs, walk.grid.cells)
+    own = {"rng": rng, "problem": problem, "explore": explore, "observe": sensors}
+    return registry.build(agent_class, {**offered, **own})
+
+
+def build_walkers(
+    config: RaceConfig, tables: Sequence[Checkpoint | None], threads: int = 0
+) -> list[Walker]:
+    """Create the walkers of a race, one per lane, at rest.
+
+    Args:
+        config: the race.
+        tables: checkpoint of the agent of each lane, or None.
+        threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
+
+    Raises:
+        UnknownName, InvalidInput: if a lane's agent or one of its settings is invalid.
+        TableMismatch: if a table is of another walking problem or agent.
+    """
+    simulator = build_simulator(config, threads)
+    walkers = []
+    for number, (lane, table) in enumerate(zip(config.lanes, tables, strict=True)):
+        check_lane(lane, has_training=table is not None)
+        if table is None:
+            offered = _offered_in(config, lane)
+        else:
+            check_fits(table, config, lane.observation)
+            offered = table.meta["config"]
+        walker = _walker(
+            simulator,
+            lane.agent,
+            lane.observation,
+            rng=generator(config.seed, RACING, number),
+            noise=_noise(config.seed, RACING, number),
+            offered=offered,
+            explore=lane.keep_learning,
+            planner=_planner(config, lane, simulator, threads),
+        )
+        if table is not None:
+            load_agent(walker.agent, table)
+        walker.keeps_learning = lane.keep_learning
+        walkers.append(walker)
+    return walkers
+
+
+def _planner(
+    config: RaceConfig, lane: LaneConfig, simulator: Simulator[Any], threads: int
+) -> Simulator[Any]:
+    """Return the simulator that a lane's search plans with; see `LaneConfig.plans_with`."""
+    if lane.plans_with == "world":
+        return simulator
+    if lane.plans_with in (None, "start"):
+        known = replace(config, world=config.world.at_start)
+    else:
+        known = replace(config, world=UNDISTURBED, tolerance=0.0)
+    return simulator if known == config else build_simulator(known, threads)
+
+
+def _noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
+    """Return a factory of the sensor-noise generator for a step count."""
+    return lambda steps: generator(seed, SENSING, *key, steps)
+
+
+def _offered_by(config: TrainingConfig) -> dict[str, Any]:
+    """Return what a training offers to its agent's constructor: its fields and the settings."""
+    declared = agent_settings(config.agent)
+    # Earlier versions stored the settings of Q-learning with every agent.
+    own = {name: value for name, value in config.settings.items() if name in declared}
+    settings = complete(declared, own, config.agent)
+    return {
+        **{name: value for name, value in vars(config).items() if name not in _NOT_OFFERED},
+        **settings,
+    }
+
+
+def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
+    """Return what a race offers to the agent of a lane without a table.
+
+    To one that keeps learning this is what a training of as many steps would offer.
+    """
+    if not lane.keep_learning:
+        return complete(agent_settings(lane.agent), lane.settings, lane.agent)
+    walk = {one.name: getattr(config, one.name) for one in fields(WalkingProblem)}
+    walk |= {"world": UNDISTURBED, "tolerance": 0.0}  # no agent is told of it
+    training = TrainingConfig(
+        **walk,
+        steps=config.steps,
+        seed=config.seed,
+        observation=lane.observation,
+        agent=lane.agent,
+        settings=lane.settings,
+    )
+    return _offered_by(training)
+
+
+def finish_training(
+    learner: Learner, config: TrainingConfig, measure_reference: bool = True
+) -> dict[str, Any]:
+    """Return the result of a training: an evaluation, its references, the hash of the Q-table.
+
+    Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
+    """
+    distance = evaluate(learner, config, learner.epsilon).distance_m
+    conditions = learner.conditions(config.steps)
+    is_measured = learner.greedy_distance_m is not None and learner.measured_in == conditions
+    if measure_reference and not is_measured:
+        measure_baseline(learner, config, conditions)
+    agent, is_known = learner.walker.agent, is_measured or measure_reference
+    return {
+        "distance_m": distance,
+        "greedy_distance_m": learner.greedy_distance_m if is_known else None,
+        "best_known_m": best_known_m(config, conditions),
+        "q_table_sha256": agent.table.sha256() if isinstance(agent, Tabular) else None,
+        "fell_at_step": learner.fell_at_step,
+    }
+
+
+def _walker(
+    simulator: Simulator[Any],
+    agent_name: str,
+    observation: Observation,
+    *,
+    rng: np.random.Generator,
+    noise: Callable[[int], np.random.Generator],
+    offered: Mapping[str, Any],
+    explore: bool,
+    planner: Simulator[Any] | None = None,
+) -> Walker:
+    """Create a walker; its agent gets a simulator only if its constructor has `expand`.
+
+    That is `planner`, by default the simulator of the walk itself.
+    """
+    agent_class = registry.find(agent_name)
+    expand = None
+    if "expand" in registry.parameter_names(agent_class):
+        expand = SimulatorExpand(planner or simulator, observation)
+    sensors = Sensors(simulator, noise)
+    arguments = {
+        **offered,
+        "rng": rng,
+        "problem": Problem(simulator.gait.pairs, simulator.grid.cells, simulator.gait.azimuths_deg),
+        "explore": explore,
+        "expand": expand,
+        "observe": sensors,
+    }
+    agent = registry.build(agent_class, arguments)
+    return Walker(simulator, agent, observation, expand, sensors)

@@ -1,0 +1,46 @@
+"""Checks of numbers that a user gave: whole ones, and limits as annotated in a type."""
+
+from dataclasses import asdict
+
+from annotated_types import Ge, Gt, Le, Lt
+
+from hexapods.domain.errors import InvalidInput
+
+Limit = Ge | Gt | Le | Lt
+
+
+def check_whole(name: str, value: int, low: int, high: int | None) -> None:
+    """Check that a value is an integer from `low` to `high`; `high` None is no upper limit.
+
+    Raises:
+        InvalidInput: if it is not.
+    """
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise InvalidInput(f"{name} must be a whole number, not {value!r}")
+    if value < low or (high is not None and value > high):
+        limits = f"at least {low}" if high is None else f"from {low} to {high:,}"
+        raise InvalidInput(f"{name} must be {limits}, not {value:,}")
+
+
+def bound_of(limit: Limit) -> float:
+    """Return the number of a limit."""
+    (bound,) = asdict(limit).values()
+    return bound  # type: ignore[no-any-return]
+
+
+def satisfies(limit: Limit, value: float) -> bool:
+    """Whether a number is within a limit."""
+    bound = bound_of(limit)
+    if isinstance(limit, Gt):
+        return value > bound
+    if isinstance(limit, Ge):
+        return value >= bound
+    return value < bound if isinstance(limit, Lt) else value <= bound
+
+
+def parse_number(text: str, is_whole: bool) -> float | int | str:
+    """Parse a number; return the text itself if it is none."""
+    try:
+        return int(text) if is_whole else float(text)
+    except ValueError:
+        return text

@@ -1,0 +1,474 @@
+"""Disturbances: what can happen to a robot or to the ground it walks on; one class for each kind.
+
+Each begins with a step and may end with one. Steps are counted from 0, so that `at_step: 0` holds
+from the start. Each field is declared once, as `hexapods.domain.settings` describes.
+"""
+
+from collections.abc import Mapping
+from dataclasses import MISSING, dataclass, fields, replace
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+
+from annotated_types import Ge, Gt, Le
+
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.kinematics import JOINT_LIMITS_RAD
+from hexapods.domain.robot import MAX_LEGS, RANGES, Robot
+from hexapods.domain.settings import Setting, declared_fields
+
+MAX_STEP = 10_000_000
+"""The highest step in which something may begin or end; no run has more."""
+Joint = Literal["coxa", "femur", "tibia"]
+Direction = Annotated[
+    float,
+    Ge(-180),
+    Le(180),
+    Setting(
+        title="Direction",
+        unit="°",
+        help="0 along the track, 90 to the left, 180 against it.",
+    ),
+]
+_Friction = Annotated[
+    float,
+    Ge(RANGES["friction"][0]),
+    Le(RANGES["friction"][1]),
+    Setting(title="Friction", symbol="μ", help="Sliding friction of all that touches the ground."),
+]
+LEGS = Setting(title="Legs", help="The numbers of the legs, from 1.")
+"""Description of the field `legs`."""
+Key = tuple[Any, ...]
+"""Part that a disturbance changes; that of a leg is the beginning of those of its joints."""
+
+
+class RangesByChoice(NamedTuple):
+    """Limits of a field that depend on what is chosen in another.
+
+    Attributes:
+        field: the other field.
+        ranges: (low, high) of each of its choices.
+    """
+
+    field: str
+    ranges: Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disturbance:
+    """Something that happens to a robot or to the ground; subclasses are the kinds.
+
+    Attributes:
+        at_step: the first step in which it holds, counted from 0.
+        until_step: the first step in which it no longer holds; None if it stays.
+
+    Raises:
+        InvalidInput: if a value is out of its limits; the message names them.
+    """
+
+    kind: ClassVar[str]
+    title: ClassVar[str]
+    help: ClassVar[str]
+    """One sentence for users."""
+    size: ClassVar[str | None] = None
+    """The field that says how much happens; None if there is no less of it."""
+    nothing: ClassVar[float | str | None] = 0.0
+    """The size at which nothing happens: a number, or the field of the robot that has it; None if
+    something always happens."""
+    ranges: ClassVar[Mapping[str, RangesByChoice]] = MappingProxyType({})
+    """Narrower limits of fields, by the choice of another field."""
+
+    at_step: Annotated[
+        int,
+        Ge(0),
+        Le(MAX_STEP),
+        Setting(title="Begins at step", help="The first step in which it holds; 0 is the start."),
+    ] = 0
+    until_step: (
+        Annotated[
+            int,
+            Ge(1),
+            Le(MAX_STEP),
+            Setting(title="Ends at step", help="The first step in which it no longer holds."),
+        ]
+        | None
+    ) = None
+
+    def __post_init__(self) -> None:
+        for setting in declared_fields(type(self)).values():  # type: ignore[arg-type]  # mypy: no hash
+            try:
+                value = setting.normalized(getattr(self, setting.name))
+            except InvalidInput as error:
+                raise InvalidInput(f"{self.kind}: {error}") from error
+            object.__setattr__(self, setting.name, value)
+        if self.until_step is not None and self.until_step <= self.at_step:
+            raise InvalidInput(
+                f"{self.kind}: until_step must be over at_step, {self.at_step}, not "
+                f"{self.until_step}"
+            )
+
+    def holds_at(self, step: int) -> bool:
+        """Whether it holds in a step."""
+        return self.at_step <= step and (self.until_step is None or step < self.until_step)
+
+    def parts(self) -> "Mapping[Key, Disturbance]":
+        """Return it by what it changes, leg by leg; the newest disturbance of a key holds."""
+        return {(self.kind,): self}
+
+    def check(self, robot: Robot) -> None:
+        """Check that it can happen to this robot.
+
+        Raises:
+            InvalidInput: if the robot has no such leg.
+        """
+
+
+@dataclass(frozen=True, kw_only=True)
+class _OfLegs(Disturbance):
+    """Something that happens to legs, given by their numbers from 1."""
+
+    part: ClassVar[Key] = ()
+    """The part of a leg to which it happens; by default all of it."""
+    legs: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        legs: Any = self.legs  # as a user gave them
+        is_list = isinstance(legs, list | tuple)
+        if not is_list or not legs or any(type(leg) is not int for leg in legs):
+            raise InvalidInput(f"{self.kind}: legs must be a list of numbers of legs, such as 1,4")
+        if len(set(legs)) < len(legs) or not 1 <= min(legs) <= max(legs) <= MAX_LEGS:
+            raise InvalidInput(
+                f"{self.kind}: legs must be different numbers from 1 to {MAX_LEGS}, not "
+                f"{', '.join(map(str, legs))}"
+            )
+        object.__setattr__(self, "legs", tuple(sorted(legs)))
+
+    def parts(self) -> "Mapping[Key, Disturbance]":
+        return {("leg", leg, *self.part): replace(self, legs=(leg,)) for leg in self.legs}
+
+    def check(self, robot: Robot) -> None:
+        for leg in self.legs:
+            _check_leg(self.kind, leg, robot)
+
+
+def _check_leg(kind: str, leg: int, robot: Robot) -> None:
+    if leg > len(robot.legs):
+        raise InvalidInput(
+            f"{kind}: there is no leg {leg}; this robot has legs 1 to {len(robot.legs)}"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limp(_OfLegs):
+    """Legs whose servos are without power."""
+
+    kind = "limp"
+    title = "Limp legs"
+    help = "The servos of these legs have no power: the legs hang and are dragged along."
+    part = ("power",)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stuck(Disturbance):
+    """A joint whose servo holds one angle, whatever it is told."""
+
+    kind = "stuck"
+    title = "Stuck joint"
+    help = "One joint holds this angle, whatever it is told."
+    ranges = MappingProxyType({"angle_rad": RangesByChoice("joint", JOINT_LIMITS_RAD)})
+    leg: Annotated[
+        int, Ge(1), Le(MAX_LEGS), Setting(title="Leg", help="The number of the leg, from 1.")
+    ]
+    joint: Annotated[
+        Joint, Setting(title="Joint", help="Coxa turns the leg, femur lifts it, tibia bends it.")
+    ]
+    angle_rad: Annotated[
+        float,
+        Ge(min(low for low, _ in JOINT_LIMITS_RAD.values())),
+        Le(max(high for _, high in JOINT_LIMITS_RAD.values())),
+        Setting(title="Angle", unit="rad", help="Positive lifts; 0 is straight."),
+    ]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        low, high = JOINT_LIMITS_RAD[self.joint]
+        if not low <= self.angle_rad <= high:
+            raise InvalidInput(
+                f"stuck: the {self.joint} turns from {low:g} to {high:g} rad, not to "
+                f"{self.angle_rad:g}"
+            )
+
+    def parts(self) -> "Mapping[Key, Disturbance]":
+        """Return itself as what happened to the joint."""
+        return {("leg", self.leg, self.joint): self}
+
+    def check(self, robot: Robot) -> None:
+        """Check that the robot has the leg."""
+        _check_leg(self.kind, self.leg, robot)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lost(_OfLegs):
+    """Legs that are gone."""
+
+    kind = "lost"
+    title = "Lost legs"
+    help = "These legs are gone, with their weight."
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weak(_OfLegs):
+    """Legs whose servos have less torque."""
+
+    kind = "weak"
+    title = "Weak servos"
+    help = "The servos of these legs have only a share of their torque."
+    part = ("power",)
+    size, nothing = "torque_share", 1.0
+    torque_share: Annotated[
+        float, Gt(0), Le(1), Setting(title="Share of torque", help="1 is all of it.")
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Repair(_OfLegs):
+    """Legs that work again as they were built: ends what happened to them before."""
+
+    kind = "repair"
+    title = "Repaired legs"
+    help = "These legs work again as they were built."
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.until_step is not None:
+            raise InvalidInput("repair: a repaired leg stays so; leave out until_step")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slope(Disturbance):
+    """Tilted ground: gravity is tilted instead, and the track lies in the plane."""
+
+    kind = "slope"
+    title = "Slope"
+    help = "The ground rises in this direction."
+    size = "degrees"
+    degrees: Annotated[float, Ge(0), Le(30), Setting(title="Slope", unit="°", help="0 is flat.")]
+    direction_deg: Direction = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rough(Disturbance):
+    """Rough ground: a height field from a seed, repeated along the track."""
+
+    kind = "rough"
+    title = "Rough ground"
+    help = "Bumps up to this height; the seed decides where they are."
+    size = "amplitude_m"
+    amplitude_m: Annotated[
+        float, Ge(0), Le(0.04), Setting(title="Height of bumps", unit="m", help="0 is flat.")
+    ]
+    seed: Annotated[
+        int, Ge(0), Le(2**32 - 1), Setting(title="Seed of the ground", help="Where the bumps are.")
+    ] = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction(Disturbance):
+    """Another friction of the whole ground."""
+
+    kind = "friction"
+    title = "Friction"
+    help = "How much the ground grips: 1 is rubber on wood, 0.1 is ice."
+    size, nothing = "value", "friction"
+    value: _Friction
+
+
+@dataclass(frozen=True, kw_only=True)
+class Patch(Disturbance):
+    """A strip across the track with another friction."""
+
+    kind = "patch"
+    title = "Patch"
+    help = "A strip across the track with another friction."
+    # On other ground, such as ice, a strip with the robot's own friction is something.
+    size, nothing = "friction", None
+    from_m: Annotated[
+        float, Ge(-10), Le(1000), Setting(title="From", unit="m", help="Where the strip begins.")
+    ]
+    to_m: Annotated[
+        float, Ge(-10), Le(1000), Setting(title="To", unit="m", help="Where the strip ends.")
+    ]
+    friction: _Friction
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.to_m <= self.from_m:
+            raise InvalidInput(f"patch: to_m must be over from_m, {self.from_m:g}")
+
+    def parts(self) -> "Mapping[Key, Disturbance]":
+        """Return itself as what happened to this part of the track."""
+        return {("patch", self.from_m, self.to_m): self}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Payload(Disturbance):
+    """A mass on top of the torso."""
+
+    kind = "payload"
+    title = "Payload"
+    help = "A mass on top of the robot, in its middle or beside it."
+    size = "kg"
+    kg: Annotated[float, Ge(0), Le(20), Setting(title="Mass", unit="kg", help="0 is none.")]
+    x_m: Annotated[
+        float, Ge(-1), Le(1), Setting(title="To the right", unit="m", help="From the middle.")
+    ] = 0.0
+    y_m: Annotated[
+        float, Ge(-1), Le(1), Setting(title="Forward", unit="m", help="From the middle.")
+    ] = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Push(Disturbance):
+    """A push at the beginning of one step, spread over the whole robot by mass."""
+
+    kind = "push"
+    title = "Push"
+    help = "A push at the beginning of the step."
+    size = "impulse_ns"
+    impulse_ns: Annotated[
+        float, Ge(0), Le(20), Setting(title="Impulse", unit="N·s", help="Of the push.")
+    ]
+    direction_deg: Direction = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.until_step is not None:
+            raise InvalidInput("push: it happens in one step; leave out until_step")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SensorNoise(Disturbance):
+    """Normally distributed errors of the measured offsets of the feet."""
+
+    kind = "sensor-noise"
+    title = "Sensor noise"
+    help = "Where the feet are is measured with this error."
+    size = "sd_m"
+    sd_m: Annotated[
+        float,
+        Ge(0),
+        Le(0.05),
+        Setting(title="Standard deviation", unit="m", help="0 is none; sideways and forward."),
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Delay(Disturbance):
+    """Servos that receive every command later."""
+
+    kind = "delay"
+    title = "Servo delay"
+    help = "Servos execute commands this much later."
+    size = "seconds"
+    seconds: Annotated[float, Ge(0), Le(0.1), Setting(title="Delay", unit="s", help="0 is none.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeadBand(Disturbance):
+    """Servos that ignore a command which differs too little from the one they hold."""
+
+    kind = "dead-band"
+    title = "Servo dead band"
+    help = "Servos ignore changes of their command that are smaller than this."
+    size = "radians"
+    radians: Annotated[
+        float, Ge(0), Le(0.2), Setting(title="Dead band", unit="rad", help="0 is none.")
+    ]
+
+
+KINDS: Mapping[str, type[Disturbance]] = {
+    one.kind: one
+    for one in (
+        Limp, Stuck, Lost, Weak, Repair, Slope, Rough, Friction, Patch, Payload, Push,
+        SensorNoise, Delay, DeadBand,
+    )
+}  # fmt: skip
+
+
+def is_nothing(one: Disturbance, robot: Robot) -> bool:
+    """Whether it only ends an earlier one: a slope of 0°, the friction with which it was built."""
+    if one.size is None:
+        return False
+    nothing = getattr(robot, one.nothing) if isinstance(one.nothing, str) else one.nothing
+    return bool(getattr(one, one.size) == nothing)
+
+
+def disturbance(data: Mapping[str, Any]) -> Disturbance:
+    """Build a disturbance from user input: its kind and its fields by name.
+
+    Raises:
+        UnknownName: for an unknown kind or field.
+        InvalidInput: for a missing field, or a value out of its limits.
+    """
+    given = dict(data)
+    name = given.pop("kind", None)
+    if not isinstance(name, str) or name not in KINDS:
+        raise UnknownName("disturbance", name, KINDS)
+    kind = KINDS[name]
+    known = fields(kind)
+    for field in given:
+        if field not in {one.name for one in known}:
+            raise UnknownName(f"field of {name}", field, [one.name for one in known])
+    missing = [one.name for one in known if one.default is MISSING and one.name not in given]
+    if missing:
+        raise InvalidInput(f"{name} needs {', '.join(missing)}")
+    return kind(**given)
+
+
+def as_mapping(value: Disturbance) -> dict[str, Any]:
+    """Return a disturbance in plain types, the inverse of `disturbance`."""
+    given = {one.name: getattr(value, one.name) for one in fields(value)}
+    plain = {k: list(v) if isinstance(v, tuple) else v for k, v in given.items() if v is not None}
+    return {"kind": value.kind, **plain}
+
+
+_SHORT = {"at": "at_step", "until": "until_step"}
+
+
+def as_text(value: Disturbance) -> str:
+    """Return a disturbance as on a command line, the inverse of `parse_disturbance`."""
+    given = as_mapping(value)
+    name = given.pop("kind")
+    times = [(short, given.pop(field)) for short, field in _SHORT.items() if field in given]
+    parts = [
+        f"{field}={','.join(map(str, one)) if isinstance(one, list) else one}"
+        for field, one in [*given.items(), *times]
+    ]
+    return ":".join([name, *parts])
+
+
+def parse_disturbance(text: str) -> Disturbance:
+    """Parse a disturbance from a command line, such as `limp:legs=1,4:at=25`.
+
+    Raises:
+        UnknownName, InvalidInput: if it is not valid.
+    """
+    name, *parts = text.split(":")
+    if name not in KINDS:
+        raise UnknownName("disturbance", name, KINDS)
+    settings = declared_fields(KINDS[name])  # type: ignore[arg-type]
+    given: dict[str, Any] = {}
+    for part in parts:
+        field, equals, value = part.partition("=")
+        field = _SHORT.get(field, field)
+        if not equals or field in given or field == "kind":
+            raise InvalidInput(
+                f"{text!r}: give each field once, as in limp:legs=1,4:at=25; {part!r} is not"
+            )
+        if field in settings:
+            given[field] = settings[field].parse(value)
+        elif field == "legs" and all(leg.isdecimal() and len(leg) < 4 for leg in value.split(",")):
+            given[field] = [int(leg) for leg in value.split(",")]
+        else:
+            given[field] = value
+    return disturbance({"kind": name, **given})

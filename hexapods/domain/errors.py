@@ -1,0 +1,53 @@
+"""Exception hierarchy. Each message is a sentence for the user that names the valid choices."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+
+class HexapodError(Exception):
+    """Base class of all errors that are reported to the user, as one sentence."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # By default an error is pickled as a call with its message alone. A pool of processes would
+        # break on one whose constructor takes something else.
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(
+    kind: type[HexapodError], args: tuple[Any, ...], attributes: Mapping[str, Any]
+) -> HexapodError:
+    error = kind.__new__(kind)
+    error.args = args
+    error.__dict__.update(attributes)
+    return error
+
+
+class InvalidInput(HexapodError):
+    """The user's input is invalid; the message names the valid choices."""
+
+
+class UnknownName(InvalidInput):
+    """A name that is not registered: of a gait, an agent, a robot, a field and so on."""
+
+    def __init__(self, kind: str, name: object, valid: Iterable[str]) -> None:
+        super().__init__(f"unknown {kind} {name!r}; choose one of: {', '.join(valid)}")
+
+
+class Unreachable(InvalidInput):
+    """A cell of the foot grid is out of reach of a leg of this robot."""
+
+
+class TableMismatch(InvalidInput):
+    """A Q-table was learned for another walking problem than the one it is used for."""
+
+
+class DamagedFile(InvalidInput):
+    """A file is truncated, or its content is not of the expected format."""
+
+
+class IllegalAction(HexapodError):
+    """An agent chose an action that is illegal in the current state."""
+
+
+class Diverged(HexapodError):
+    """The physics simulation diverged to non-finite numbers."""

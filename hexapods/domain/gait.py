@@ -1,0 +1,192 @@
+"""Gaits in the paper's sense: the robot's forward direction, and the pairs of its legs.
+
+Elsewhere in the field a gait is a pattern of footfalls over time. Here (paper §4, Figure 2) it is
+an orientation of the robot and a symmetry that pairs its legs; the pattern over time is learned.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from hexapods.domain.errors import InvalidInput, UnknownName
+
+Symmetry = Literal["origin", "vertical"]
+Pair = tuple[int, int]
+"""(leader, partner), legs counted from 1: the leader goes to (x, y), its partner to (−x, y)."""
+
+_SAME_DIRECTION_DEG = 1e-6
+
+
+@dataclass(frozen=True)
+class GaitSpec:
+    """Specification of a gait, independent of a robot; `resolve` applies it to one.
+
+    Attributes:
+        right_leg, left_leg: forward is the bisector of the anticlockwise arc from the right to
+            the left leg; legs count from 1, anticlockwise seen from above.
+        symmetry: how legs are paired by their azimuths: `origin` pairs opposite legs, `vertical`
+            mirror images about the forward axis. Either this or `pairs` is given.
+        pairs: the explicit pairs.
+
+    Raises:
+        InvalidInput: if both or neither of symmetry and pairs are given.
+        UnknownName: if the symmetry is unknown.
+    """
+
+    right_leg: int
+    left_leg: int
+    symmetry: Symmetry | None = None
+    pairs: tuple[Pair, ...] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.symmetry is None) == (self.pairs is None):
+            raise InvalidInput("a gait needs either symmetry (origin or vertical) or pairs")
+        if self.symmetry is not None and self.symmetry not in get_args(Symmetry):
+            raise UnknownName("symmetry", self.symmetry, get_args(Symmetry))
+
+
+NAMED_GAITS: dict[str, GaitSpec] = {
+    "left-right-origin": GaitSpec(1, 2, "origin"),
+    "left-right-vertical": GaitSpec(1, 2, "vertical"),
+    "front-back-origin": GaitSpec(1, 3, "origin"),
+    "front-back-vertical": GaitSpec(1, 3, "vertical"),
+}
+GAIT_TITLES: Mapping[str, str] = {
+    "left-right-origin": "Left-right, opposite",
+    "left-right-vertical": "Left-right, mirrored",
+    "front-back-origin": "Front-back, opposite",
+    "front-back-vertical": "Front-back, mirrored",
+}
+"""Display names of the named gaits."""
+
+
+@dataclass(frozen=True)
+class Gait:
+    """A gait of one robot.
+
+    Attributes:
+        name: its name, or a description of a user's specification.
+        forward_deg: the forward direction in the body frame, anticlockwise from body x.
+        azimuths_deg: each leg's azimuth relative to forward, anticlockwise, in (−180, 180].
+        pairs: the leg pairs, in the order of the state vector.
+    """
+
+    name: str
+    forward_deg: float
+    azimuths_deg: tuple[float, ...]
+    pairs: tuple[Pair, ...]
+
+    @property
+    def title(self) -> str:
+        """The display name; a user's own gait keeps its name."""
+        return GAIT_TITLES.get(self.name, self.name)
+
+
+def gait_spec(gait: str | GaitSpec) -> GaitSpec:
+    """Return the specification of a named gait; a specification is returned unchanged.
+
+    Raises:
+        UnknownName: if there is no gait of this name.
+    """
+    if isinstance(gait, GaitSpec):
+        return gait
+    if gait not in NAMED_GAITS:
+        raise UnknownName("gait", gait, NAMED_GAITS)
+    return NAMED_GAITS[gait]
+
+
+def resolve(gait: str | GaitSpec, body_azimuths_deg: Sequence[float]) -> Gait:
+    """Apply a gait to a robot with the given leg azimuths.
+
+    Args:
+        gait: a name of `NAMED_GAITS`, or a specification.
+        body_azimuths_deg: each leg's azimuth in the body frame, anticlockwise from body x.
+
+    Raises:
+        UnknownName: if there is no gait of this name.
+        InvalidInput: if a leg does not exist, has no mirror image, or is paired twice or never.
+    """
+    spec = gait_spec(gait)
+    count = len(body_azimuths_deg)
+    for leg in (spec.right_leg, spec.left_leg):
+        _check_leg(leg, count)
+    if spec.right_leg == spec.left_leg:
+        raise InvalidInput(f"right_leg and left_leg are both {spec.right_leg}; name two legs")
+    right, left = (body_azimuths_deg[leg - 1] for leg in (spec.right_leg, spec.left_leg))
+    forward = right + ((left - right) % 360) / 2
+    azimuths = tuple(_wrap(a - forward) for a in body_azimuths_deg)
+    if spec.pairs is not None:
+        pairs = spec.pairs
+    elif spec.symmetry == "origin":
+        pairs = _origin_pairs(azimuths)
+    else:
+        pairs = _vertical_pairs(azimuths)
+    _check_partition(pairs, count)
+    return Gait(_name(gait), _wrap(forward), azimuths, pairs)
+
+
+def _name(gait: str | GaitSpec) -> str:
+    if isinstance(gait, str):
+        return gait
+    for name, spec in NAMED_GAITS.items():
+        if spec == gait:
+            return name
+    how = gait.symmetry or " ".join(f"{a}+{b}" for a, b in gait.pairs or ())
+    return f"right {gait.right_leg}, left {gait.left_leg}, {how}"
+
+
+def _wrap(angle_deg: float) -> float:
+    """Wrap an angle to (−180, 180], rounded to 1e-9°, since azimuths are compared exactly."""
+    wrapped = round((angle_deg + 180) % 360 - 180, 9)
+    return 180.0 if wrapped == -180 else wrapped
+
+
+def _leg_at(azimuth_deg: float, azimuths: Sequence[float], of_leg: int, symmetry: str) -> int:
+    for leg, other in enumerate(azimuths, start=1):
+        if abs(_wrap(other - azimuth_deg)) < _SAME_DIRECTION_DEG and leg != of_leg:
+            return leg
+    raise InvalidInput(
+        f"leg {of_leg} has no partner under {symmetry} symmetry: no other leg stands at "
+        f"{_wrap(azimuth_deg):g}° from forward; give the pairs by hand"
+    )
+
+
+def _origin_pairs(azimuths: Sequence[float]) -> tuple[Pair, ...]:
+    """Pair opposite legs; the lower number leads, in ascending order."""
+    partners = {
+        leg: _leg_at(a + 180, azimuths, leg, "origin") for leg, a in enumerate(azimuths, start=1)
+    }
+    return tuple((leg, partner) for leg, partner in partners.items() if leg < partner)
+
+
+def _vertical_pairs(azimuths: Sequence[float]) -> tuple[Pair, ...]:
+    """Pair mirror images about the forward axis; the right leg leads.
+
+    Pairs are ordered from front to back; a pair on the axis comes last.
+    """
+    numbered = dict(enumerate(azimuths, start=1))
+    right = [leg for leg, a in numbered.items() if -180 < a < 0]
+    right.sort(key=lambda leg: -numbered[leg])
+    pairs = [(leg, _leg_at(-numbered[leg], azimuths, leg, "vertical")) for leg in right]
+    on_axis = sorted(
+        (leg for leg, a in numbered.items() if a in (0, 180)), key=numbered.__getitem__
+    )
+    if len(on_axis) == 1:
+        raise InvalidInput(f"leg {on_axis[0]} stands alone on the axis; give the pairs by hand")
+    return (*pairs, *([(on_axis[0], on_axis[1])] if on_axis else []))
+
+
+def _check_leg(leg: int, count: int) -> None:
+    if not 1 <= leg <= count:
+        raise InvalidInput(f"there is no leg {leg}; this robot has legs 1 to {count}")
+
+
+def _check_partition(pairs: Sequence[Pair], count: int) -> None:
+    used = [leg for pair in pairs for leg in pair]
+    for leg in used:
+        _check_leg(leg, count)
+        if used.count(leg) > 1:
+            raise InvalidInput(f"leg {leg} is used {used.count(leg)} times in the pairs, not once")
+    for leg in range(1, count + 1):
+        if leg not in used:
+            raise InvalidInput(f"the pairs leave out leg {leg}; each leg belongs to one pair")

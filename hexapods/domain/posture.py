@@ -1,0 +1,57 @@
+"""Posture of a robot: whether it has fallen, and its heading."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hexapods.domain.robot import Robot
+from hexapods.domain.types import FloatArray
+
+_TOUCHING_M = 0.002
+"""Height of the torso over the ground below which it lies there."""
+
+
+def has_fallen(robot: Robot, pose: Sequence[float], ground_m: float = 0.0) -> bool:
+    """Whether the torso lies on the ground, by the lowest point of its cylinder.
+
+    Args:
+        robot: the robot.
+        pose: torso position [m] and rotation (wxyz), which may be followed by joint angles [rad].
+        ground_m: height of the highest bumps of the ground [m].
+    """
+    _, _, z, _, x, y, _ = pose[:7]
+    upright = 1 - 2 * (x * x + y * y)  # cosine of the torso's tilt
+    tilt = math.sqrt(max(0.0, 1 - upright * upright))
+    low = z - abs(upright) * robot.torso_half_height_m - tilt * robot.torso_radius_m
+    return low <= ground_m + _TOUCHING_M
+
+
+TILT = (2, 4, 5)
+"""Of a pose the numbers by which it has fallen: the height, and x and y of its rotation."""
+
+
+def have_fallen(robot: Robot, tilts: FloatArray, ground_m: float = 0.0) -> NDArray[np.bool_]:
+    """Return whether each of n poses `has_fallen`, by their `TILT`, (n, 3), to the same bit."""
+    z, x, y = tilts.T
+    upright = 1 - 2 * (x * x + y * y)
+    tilt = np.sqrt(np.maximum(0.0, 1 - upright * upright))
+    low = z - abs(upright) * robot.torso_half_height_m - tilt * robot.torso_radius_m
+    return np.asarray(low <= ground_m + _TOUCHING_M)
+
+
+def heading_deg(pose: Sequence[float], start: Sequence[float]) -> float:
+    """Return by how much the torso has turned since the start, anticlockwise from above [°].
+
+    Args:
+        pose: torso position and rotation (wxyz), which may be followed by joint angles.
+        start: likewise, at the start.
+    """
+    turned = math.degrees(_yaw(pose) - _yaw(start))
+    return (turned + 180) % 360 - 180
+
+
+def _yaw(pose: Sequence[float]) -> float:
+    w, x, y, z = pose[3:7]
+    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))

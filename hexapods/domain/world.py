@@ -1,0 +1,358 @@
+"""Worlds: what a robot walks in and what has happened to it.
+
+A `World` is a frozen value beside the robot. `World.as_of(step)` are the conditions of one step: a
+world whose disturbances all hold from the start, by which physics models are compiled and cached.
+"""
+
+from bisect import bisect_right
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple, TypeVar
+
+from hexapods.domain.disturbances import (
+    Disturbance,
+    Friction,
+    Key,
+    Limp,
+    Lost,
+    Patch,
+    Payload,
+    Push,
+    Repair,
+    Rough,
+    SensorNoise,
+    Slope,
+    Stuck,
+    Weak,
+    disturbance,
+    parse_disturbance,
+)
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.robot import Robot
+
+MAX_DISTURBANCES = 20
+"""Maximum that a request may start with."""
+MAX_IN_A_RUN = 200
+"""Maximum with all that happens while it runs."""
+KINEMATIC_KINDS = (SensorNoise.kind,)
+"""Kinds that the kinematic simulator knows, which has no ground and no servos."""
+D = TypeVar("D", bound=Disturbance)
+
+
+def is_simulated(kind: str, simulator: str) -> bool:
+    """Whether a simulator knows a kind of disturbance."""
+    return simulator != "kinematic" or kind in KINEMATIC_KINDS
+
+
+@dataclass(frozen=True)
+class World:
+    """Disturbances of a walk. The default is flat ground and a robot as it was built.
+
+    A later disturbance replaces an earlier one of the same thing, such as of a leg.
+
+    Raises:
+        InvalidInput: if two disturbances contradict each other.
+    """
+
+    disturbances: tuple[Disturbance, ...] = ()
+
+    def __post_init__(self) -> None:
+        for number, one in enumerate(self.disturbances):
+            for other in self.disturbances[:number]:
+                _check_compatible(other, one)
+        for one in self.disturbances:
+            _check_possible(self, one)
+
+    def __bool__(self) -> bool:
+        return bool(self.disturbances)
+
+    def __add__(self, more: Iterable[Disturbance]) -> "World":
+        return World((*self.disturbances, *more))
+
+    def check(self, robot: Robot, simulator: str, steps: int | None = None) -> None:
+        """Check that a simulator can show it to a robot, in a walk of so many steps.
+
+        Raises:
+            InvalidInput: if not; the message names what is valid.
+        """
+        if len(self.disturbances) > MAX_IN_A_RUN:
+            raise InvalidInput(
+                f"a run has at most {MAX_IN_A_RUN} disturbances, not {len(self.disturbances)}"
+            )
+        for one in self.disturbances:
+            one.check(robot)
+            if not is_simulated(one.kind, simulator):
+                raise InvalidInput(
+                    f"the kinematic simulator knows no {one.kind}, only "
+                    f"{', '.join(KINEMATIC_KINDS)}; choose the simulator mujoco"
+                )
+            if steps is not None and one.at_step >= steps:
+                raise InvalidInput(
+                    f"{one.kind}: at_step must be from 0 to {steps - 1:,}, the last step of this "
+                    f"run, not {one.at_step:,}"
+                )
+
+    @cached_property
+    def change_steps(self) -> tuple[int, ...]:
+        """The steps after the start in which conditions change, ascending."""
+        ends = {one.until_step for one in self.disturbances if one.until_step is not None}
+        begins = {one.at_step for one in self.disturbances if one.at_step > 0}
+        return tuple(sorted(begins | ends))
+
+    @cached_property
+    def _conditions(self) -> tuple["World", ...]:
+        """The conditions from the start, and from each of `change_steps`."""
+        return tuple(self._conditions_at(step) for step in (0, *self.change_steps))
+
+    def as_of(self, step: int) -> "World":
+        """Return the conditions of a step as a world that stays so: leg by leg, without pushes."""
+        if not self.disturbances:
+            return self
+        return self._conditions[bisect_right(self.change_steps, step)]
+
+    def _conditions_at(self, step: int) -> "World":
+        newest: dict[Key, Disturbance] = {}
+        for one in sorted(self.disturbances, key=lambda one: one.at_step):
+            if not one.holds_at(step) or isinstance(one, Push):
+                continue
+            for covered in [key for key in newest if _covers(one, key)]:
+                del newest[covered]
+            for key, part in one.parts().items():
+                newest[key] = replace(part, at_step=0, until_step=None)
+        lasting = [one for one in newest.values() if not isinstance(one, Repair)]
+        return _conditions(lasting)
+
+    def then(self, one: Disturbance) -> "World":
+        """Return the world in which something else happens, after what begins in the same step.
+
+        What is of the same thing replaces that; of several pushes in a step each acts.
+
+        Raises:
+            InvalidInput: if it contradicts the others.
+        """
+        kept: list[Disturbance] = []
+        for other in self.disturbances:
+            parts = other.parts()
+            is_undone = other.at_step == one.at_step and not isinstance(one, Push)
+            rest = [p for k, p in parts.items() if not (is_undone and _covers(one, k))]
+            kept += [other] if len(rest) == len(parts) else rest
+        return World((*kept, one))
+
+    @property
+    def at_start(self) -> "World":
+        """Disturbances that hold from the start, for good and as given; without pushes."""
+        early = (d for d in self.disturbances if d.at_step == 0 and not isinstance(d, Push))
+        return World(tuple(replace(one, until_step=None) for one in early))
+
+    def later(self, steps: int) -> "World":
+        """Return the world in which all of this happens so many steps later."""
+        return World(
+            tuple(
+                replace(
+                    one,
+                    at_step=one.at_step + steps,
+                    until_step=None if one.until_step is None else one.until_step + steps,
+                )
+                for one in self.disturbances
+            )
+        )
+
+    def ground_m(self, step: int) -> float:
+        """Return the height of the highest bumps of the ground in a step [m]."""
+        if not self.disturbances:
+            return 0.0
+        return max((one.amplitude_m for one in self.as_of(step).all_of(Rough)), default=0.0)
+
+    def pushes_at(self, step: int) -> tuple[Push, ...]:
+        """Return the pushes at the beginning of a step."""
+        return tuple(push for push in self.all_of(Push) if push.at_step == step)
+
+    def all_of(self, kind: type[D]) -> tuple[D, ...]:
+        """Return the disturbances of a kind."""
+        return tuple(one for one in self.disturbances if isinstance(one, kind))
+
+    def one_of(self, kind: type[D]) -> D | None:
+        """Return the first disturbance of a kind; None without one."""
+        return next(iter(self.all_of(kind)), None)
+
+
+UNDISTURBED = World()
+
+
+def check_ends(disturbances: Iterable[Disturbance], steps: int) -> None:
+    """Check what a user asks for: that what ends does so in the run, of so many steps.
+
+    Only of new requests: earlier versions stored later ends, which mean the same as none.
+
+    Raises:
+        InvalidInput: if not.
+    """
+    for one in disturbances:
+        if one.until_step is not None and one.until_step > steps:
+            raise InvalidInput(
+                f"{one.kind}: until_step must be at most {steps:,}, the end of this run, not "
+                f"{one.until_step:,}; leave it out for what lasts"
+            )
+
+
+def world(data: Iterable[Mapping[str, Any]]) -> World:
+    """Build a world from user input, a list of disturbances.
+
+    Raises:
+        UnknownName, InvalidInput: if a disturbance is not valid, or two contradict each other.
+    """
+    return World(tuple(disturbance(one) for one in data))
+
+
+def _conditions(disturbances: Iterable[Disturbance]) -> World:
+    """Return a world of what holds at once, which was checked before; in one order."""
+    conditions = object.__new__(World)
+    object.__setattr__(conditions, "disturbances", tuple(sorted(disturbances, key=repr)))
+    return conditions
+
+
+def _covers(one: Disturbance, key: Key) -> bool:
+    """Whether a disturbance replaces an earlier one of this key: of a leg all of its joints."""
+    return any(key[: len(own)] == own for own in one.parts())
+
+
+def _check_compatible(one: Disturbance, other: Disturbance) -> None:
+    """Check that two disturbances do not begin at once if they are of the same thing.
+
+    Raises:
+        InvalidInput: if they contradict each other.
+    """
+    if one.at_step != other.at_step or isinstance(one, Push) or isinstance(other, Push):
+        return
+    if any(_covers(one, key) for key in other.parts()) or any(
+        _covers(other, key) for key in one.parts()
+    ):
+        raise InvalidInput(
+            f"{one.kind} and {other.kind} at step {one.at_step:,} contradict each other; let one "
+            "begin later, or leave one out"
+        )
+
+
+def _check_possible(world: World, one: Disturbance) -> None:
+    """Check that something can happen, by what holds just before.
+
+    Raises:
+        InvalidInput: if it contradicts that.
+    """
+    if isinstance(one, Push | Repair):
+        return
+    earlier = [d for d in world.disturbances if d.at_step <= one.at_step and d is not one]
+    for held in _held_at(earlier, one.at_step):
+        same = any(_covers(held, key) for key in one.parts())
+        is_lost = isinstance(held, Lost) and same and not isinstance(one, Lost)
+        if is_lost or _is_patch_on_bumps(one, held) or _overlap(one, held):
+            raise InvalidInput(
+                f"{one.kind} at step {one.at_step:,} contradicts {held.kind}, which holds then; "
+                "let one end before the other begins, or leave one out"
+            )
+
+
+def _held_at(disturbances: Iterable[Disturbance], step: int) -> tuple[Disturbance, ...]:
+    """Return what holds in a step, by its newest, leg by leg."""
+    unchecked = object.__new__(World)
+    object.__setattr__(unchecked, "disturbances", tuple(disturbances))
+    return unchecked._conditions_at(step).disturbances
+
+
+def _is_patch_on_bumps(one: Disturbance, other: Disturbance) -> bool:
+    """Whether one is a patch and the other rough ground: patches lie on flat ground."""
+    rough = one if isinstance(one, Rough) else other
+    is_rough = isinstance(rough, Rough) and rough.amplitude_m > 0
+    return is_rough and (isinstance(one, Patch) or isinstance(other, Patch))
+
+
+def _overlap(one: Disturbance, other: Disturbance) -> bool:
+    """Whether two patches lie on each other, without being the same."""
+    if not isinstance(one, Patch) or not isinstance(other, Patch) or one.parts() == other.parts():
+        return False
+    places = (one.from_m, one.to_m), (other.from_m, other.to_m)
+    return places[0] != places[1] and one.from_m < other.to_m and other.from_m < one.to_m
+
+
+class NamedWorld(NamedTuple):
+    """A world with a name, for users to choose.
+
+    Attributes:
+        title: its name on the page.
+        help: one sentence.
+        world: its disturbances, from the start.
+    """
+
+    title: str
+    help: str
+    world: World
+
+
+WORLDS: Mapping[str, NamedWorld] = {
+    "flat": NamedWorld("Flat ground", "Nothing happens to the robot.", World()),
+    "slope": NamedWorld(
+        "Slope", "The track rises by 8°.", World((Slope(degrees=8.0),))
+    ),
+    "rough": NamedWorld(
+        "Rough ground", "Bumps of up to 15 mm.", World((Rough(amplitude_m=0.015),))
+    ),
+    "ice": NamedWorld(
+        "Ice", "The ground grips a tenth as well.", World((Friction(value=0.1),))
+    ),
+    "patch": NamedWorld(
+        "Icy patch", "Ice between 0.1 and 0.25 m of the track.",
+        World((Patch(from_m=0.1, to_m=0.25, friction=0.05),)),
+    ),
+    "payload": NamedWorld(
+        "Payload", "1 kg on the right side.", World((Payload(kg=1.0, x_m=0.08),))
+    ),
+    "limp-pair": NamedWorld(
+        "Two limp legs", "Legs 1 and 4 have no power.", World((Limp(legs=(1, 4)),))
+    ),
+    "stuck-leg": NamedWorld(
+        "Stuck leg", "The femur of leg 2 is stuck.",
+        World((Stuck(leg=2, joint="femur", angle_rad=-0.9),)),
+    ),
+    "lost-leg": NamedWorld("Lost leg", "Leg 2 is gone.", World((Lost(legs=(2,)),))),
+    "weak": NamedWorld(
+        "Weak legs",
+        "Legs 1 to 4 have a third of their torque.",
+        World((Weak(legs=(1, 2, 3, 4), torque_share=0.33),)),
+    ),
+    "noise": NamedWorld(
+        "Sensor noise", "Feet are measured 4 mm wrong.", World((SensorNoise(sd_m=0.004),))
+    ),
+}  # fmt: skip
+
+
+def world_from(name: str | None, more: Iterable[Disturbance]) -> World:
+    """Return the world of a name, or an undisturbed one, with what else happens.
+
+    Raises:
+        UnknownName: if there is no world of this name.
+        InvalidInput: if what happens contradicts itself.
+    """
+    return (UNDISTURBED if name is None else named_world(name)) + more
+
+
+def named_world(name: str) -> World:
+    """Return a world by its name.
+
+    Raises:
+        UnknownName: if there is none of this name.
+    """
+    if name not in WORLDS:
+        raise UnknownName("world", name, WORLDS)
+    return WORLDS[name].world
+
+
+def parse_world(text: str) -> World:
+    """Parse a world: a name, or disturbances joined by +, such as `limp:legs=1,4+slope:degrees=4`.
+
+    Raises:
+        UnknownName, InvalidInput: if it is neither.
+    """
+    if text in WORLDS or ":" not in text:
+        return named_world(text)
+    return World(tuple(parse_disturbance(part) for part in text.split("+")))

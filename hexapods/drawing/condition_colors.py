@@ -1,0 +1,48 @@
+"""Colours of what happens to a robot and to its ground; the same in the light and dark theme."""
+
+from hexapods.domain.disturbances import Friction, Limp, Lost, Patch, Stuck, Weak
+from hexapods.domain.world import World
+from hexapods.drawing.colormap import Rgb, mix
+
+HOLLOW: Rgb = (52, 60, 74)
+TOP: Rgb = (134, 144, 160)
+"""Of rough ground: its lowest points and the highest bumps."""
+ICE: Rgb = (64, 160, 228)
+"""Ground with less friction than before."""
+GRIP: Rgb = (150, 104, 62)
+"""Ground with more friction than before."""
+PAYLOAD: Rgb = (186, 190, 196)
+RED: Rgb = (226, 33, 52)
+"""Pushes, and links whose joint is stuck."""
+UPHILL: Rgb = (245, 196, 60)
+_NO_TORQUE: Rgb = (126, 130, 136)
+_HIGHEST_SHARE = 0.7
+"""Share of grey of a leg with hardly any torque; limp ones are grey altogether."""
+
+
+def link_color(color: Rgb, conditions: World, leg: int, joint: str) -> Rgb | None:
+    """Return the colour of a leg's link; None if the leg is lost.
+
+    A link is the greyer the less torque its servos have; one whose joint is stuck is red.
+
+    Args:
+        color: of the link as it was built.
+        conditions: what holds, a result of `World.as_of`.
+        leg: number of the leg, from 1.
+        joint: the joint that moves the link: `coxa`, `femur` or `tibia`.
+    """
+    for one in conditions.disturbances:
+        if isinstance(one, Lost) and leg in one.legs:
+            return None
+        if isinstance(one, Limp) and leg in one.legs:
+            return _NO_TORQUE
+        if isinstance(one, Weak) and leg in one.legs:
+            color = mix(color, _NO_TORQUE, _HIGHEST_SHARE * (1 - one.torque_share))
+    stuck = conditions.all_of(Stuck)
+    return RED if any((one.leg, one.joint) == (leg, joint) for one in stuck) else color
+
+
+def ground_color(ground: Friction | Patch, friction: float) -> Rgb:
+    """Return the colour of ground that has another friction than the one around it."""
+    own = ground.friction if isinstance(ground, Patch) else ground.value
+    return ICE if own < friction else GRIP

@@ -1,0 +1,136 @@
+"""Distances in a photo finish, and ghosts of evaluations."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import viser
+
+from hexapods.domain.text import metres, whole
+from hexapods.drawing.colormap import rgb
+from hexapods.drawing.robot_mesh import RobotMesh
+from hexapods.drawing.robots import GHOST_OPACITY
+from hexapods.drawing.shapes import strip
+from hexapods.drawing.temporary import Temporary
+from hexapods.drawing.viser_internals.client import batch_colors
+from hexapods.shows.scene_spec import rest_pose
+from hexapods.shows.stage_frame import Ghost, SceneSpec, StageFrame
+
+_BAR_M = 0.05
+_TEXT_SCALE = 1.7
+
+
+class PhotoFinish(Temporary):
+    """A bar from the start line to each robot with its distance, shown during the photo finish.
+
+    Args:
+        server: where to draw.
+        root: scene node of the bars.
+        spec: the scene.
+        xs: centres of the lanes [m].
+    """
+
+    def __init__(
+        self, server: viser.ViserServer, root: str, spec: SceneSpec, xs: Sequence[float]
+    ) -> None:
+        super().__init__(server, root)
+        self._spec, self._xs = spec, xs
+
+    def draw(self, frame: StageFrame) -> None:
+        """Show or hide the bars as the frame says; redraw them if ranks or distances changed."""
+        frozen = frame.phase == "photo-finish"
+        ranking = tuple(
+            (lane.rank, lane.distance_m, lane.conditions.ground_m(0))
+            for lane in frame.lanes
+            if frozen
+        )
+        if not self._begin(ranking):
+            return
+        for number, (shown, x) in enumerate(zip(ranking, self._xs, strict=True)):
+            rank, distance_m, ground_m = shown
+            bar = strip(_BAR_M, max(abs(distance_m), 0.002))
+            color = rgb(self._spec.lane_specs[number].color)
+            self._server.scene.add_mesh_simple(
+                f"{self._root}/bar{number}",
+                bar.vertices,
+                bar.faces,
+                color=color,
+                position=(x, distance_m / 2, ground_m + 0.004),
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+            self._server.scene.add_label(
+                f"{self._root}/far{number}",
+                f"{rank}.  {metres(distance_m)}",
+                position=(x, -0.02, 0.0),
+                anchor="top-center",
+                font_screen_scale=_TEXT_SCALE,
+            )
+
+
+class Ghosts(Temporary):
+    """Evaluations on a lane of their own: a line for each, a translucent robot for the newest.
+
+    Args:
+        server: where to draw.
+        root: scene node of the ghosts.
+        spec: the scene.
+        mesh: the robot.
+        x_m: centre of the lane [m].
+    """
+
+    def __init__(
+        self, server: viser.ViserServer, root: str, spec: SceneSpec, mesh: RobotMesh, x_m: float
+    ) -> None:
+        super().__init__(server, root, x_m)
+        self._mesh = mesh
+        self._width = 2 * spec.robot.home_radius_m
+        self._color, self._rest = rgb(spec.lane_specs[0].color), rest_pose(spec)
+
+    def draw(self, ghosts: tuple[Ghost, ...]) -> None:
+        """Show these ghosts, ordered from the oldest to the newest."""
+        if not self._begin(ghosts):
+            return
+        for number, ghost in enumerate(ghosts):
+            self._draw_line(number, ghost, (number + 1) / len(ghosts))
+        self._draw_robot(ghosts[-1])
+
+    def _draw_line(self, number: int, ghost: Ghost, newness: float) -> None:
+        line = strip(self._width, 0.008)
+        self._server.scene.add_mesh_simple(
+            f"{self._root}/line{number}",
+            line.vertices,
+            line.faces,
+            color=self._color,
+            opacity=0.15 + 0.75 * newness,
+            position=(0.0, ghost.distance_m, ghost.conditions.ground_m(0) + 0.004),
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+
+    def _draw_robot(self, ghost: Ghost) -> None:
+        height_m = ghost.conditions.ground_m(0)
+        body_poses = self._mesh.body_poses(self._rest).moved(0.0, ghost.distance_m, height_m)
+        for number, part in enumerate(self._mesh.parts):
+            colors = self._mesh.link_colors(part, self._color, ghost.conditions)
+            links = [link for link, color in zip(part.links, colors, strict=True) if color]
+            if not links:
+                continue
+            self._server.scene.add_batched_meshes_simple(
+                f"{self._root}/robot/{number}",
+                part.shape.vertices,
+                part.shape.faces,
+                batched_positions=body_poses.positions[links],
+                batched_wxyzs=body_poses.rotations[links],
+                batched_colors=batch_colors(np.array([*filter(None, colors)], np.uint8)),
+                opacity=GHOST_OPACITY,
+                lod="off",
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+        self._server.scene.add_label(
+            f"{self._root}/robot/label",
+            f"{metres(ghost.distance_m)}\nafter {whole(ghost.step)} steps",
+            position=(0.0, ghost.distance_m, 0.22),
+            anchor="bottom-center",
+            font_screen_scale=1.35,
+        )

@@ -1,0 +1,158 @@
+"""A replay as one page that needs no server: viser's client, a player and the frames of the run.
+
+The page is `viser_internals.client`'s with `static/js/offline/player.js` and the modules that this
+imports, all inline, and blocks of data: `replay`, JSON about the run; `scene` and `segment-…`, the
+encodings of `replay_encoding` in base64. By its Content-Security-Policy it can load nothing.
+"""
+
+import base64
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from hexapods import assets
+from hexapods.domain.errors import HexapodError
+from hexapods.drawing.viser_internals.client import OFFLINE_SCRIPTS, content_policy, patched_page
+from hexapods.runs.recording import FIRST_STEPS, NEWEST_STEPS
+from hexapods.shows.replay import HIGHEST_LEVEL
+
+MAX_BYTES = 15_000_000
+"""Maximum size of a page; a longer run has fewer frames in a second."""
+MAX_SEGMENTS = 1000
+"""Maximum number of segments, 35 minutes at 30 frames a second: a robot that stands still is small,
+and takes as long to encode as one that walks."""
+Segment = Callable[[int, int], bytes]
+_SAMPLED = 8
+"""Segments by which it is told that a level is far too large."""
+_PLAYER = "js/offline/player.js"
+_STYLE = "style/offline.css"
+_IMPORT = re.compile(r'^import \{[^}]*\} from "(?P<path>\.[^"]*)";\n', re.MULTILINE)
+_EXPORT = re.compile(r"^export (?=(async )?(function|class|const)\b)", re.MULTILINE)
+_HEAD_END, _BODY_END = "</head>", "</body>"
+
+
+class TooLong(HexapodError):
+    """A run does not fit into a page; the message continues "the race is"."""
+
+
+def replay_page(
+    plan: Mapping[str, Any],
+    scene: Callable[[], bytes],
+    segment: Segment,
+    title: str,
+    max_bytes: int = MAX_BYTES,
+) -> Iterator[bytes]:
+    """Yield the page of a run that has ended, in chunks of at most a segment.
+
+    Args:
+        plan: of its replay.
+        scene: returns the encoding of the scene at the start of the run.
+        segment: returns the encoding of a segment, by its level and number.
+        title: of the page.
+        max_bytes: maximum size of the page.
+
+    Raises:
+        TooLong: at the call.
+    """
+    start = base64.b64encode(scene())
+    before, after = _around_frames(title)
+    room = max_bytes - len(before) - len(after) - len(start) - len(json.dumps(plan)) - 2000
+    level, numbers = _segments_that_fit(segment, plan, room)
+    replay = {**plan, "title": title, "level": level, "notes": _notes(plan, level)}
+
+    def chunks() -> Iterator[bytes]:
+        yield before
+        # "<" could end the block.
+        yield _block("replay", json.dumps(replay).replace("<", "\\u003c").encode())
+        yield _block("scene", start)
+        for number in numbers:
+            yield _block(f"segment-{number}", base64.b64encode(segment(level, number)))
+        yield after
+
+    return chunks()
+
+
+def _block(name: str, data: bytes) -> bytes:
+    """Return an element that holds data; its type is none that browsers run."""
+    return b'<script type="text/plain" id="%s">%s</script>\n' % (name.encode(), data)
+
+
+def _segments_that_fit(
+    segment: Segment, plan: Mapping[str, Any], room: int
+) -> tuple[int, list[int]]:
+    """Return the lowest level from 0 on whose segments fit, and their numbers."""
+
+    def size_of(level: int, number: int) -> int:
+        encoded = 4 * -(-len(segment(level, number)) // 3)
+        return len(_block(f"segment-{number}", b"")) + encoded
+
+    for level in range(HIGHEST_LEVEL + 1):
+        numbers, size = _recorded_segments(plan, level), 0
+        if len(numbers) > MAX_SEGMENTS:
+            continue
+        # Of a level that is far too large, only a few are encoded.
+        few = numbers[:: max(1, len(numbers) // _SAMPLED)]
+        if sum(size_of(level, number) for number in few) * len(numbers) > 2 * room * len(few):
+            continue
+        for number in numbers:
+            size += size_of(level, number)
+            if size > room:
+                break
+        else:
+            return level, numbers
+    raise TooLong(f"too long for a page of {MAX_BYTES // 1_000_000} MB; replay it on the server")
+
+
+def _recorded_segments(plan: Mapping[str, Any], level: int) -> list[int]:
+    """Return the numbers of the segments that have recorded frames, `MAX_SEGMENTS` + 1 at most."""
+    segment_s = plan["frame_s"] * plan["segment_frames"] * 2**level
+    numbers: list[int] = []
+    for from_s, to_s in plan["recorded_s"]:
+        first = max(int(from_s / segment_s), numbers[-1] + 1 if numbers else 0)
+        last = int(to_s / segment_s)
+        numbers += range(first, min(last, first + MAX_SEGMENTS - len(numbers)) + 1)
+    return [number for number in numbers if number * segment_s <= plan["recorded_s"][-1][1]]
+
+
+def _notes(plan: Mapping[str, Any], level: int) -> list[str]:
+    """Return what the page leaves out, in sentences."""
+    notes = []
+    if level > 0:
+        rate = 1 / (plan["frame_s"] * 2**level)
+        notes.append(f"{rate:.3g} pictures a second of the run's time, so that the file is small.")
+    if len(plan["recorded_s"]) > 1:
+        notes.append(
+            f"Only the first {FIRST_STEPS} and the newest {NEWEST_STEPS} steps of this practice "
+            "are recorded."
+        )
+    return notes
+
+
+def _around_frames(title: str) -> tuple[bytes, bytes]:
+    """Return the page before and after the blocks of data."""
+    style = (assets.static_dir() / _STYLE).read_text("utf-8")
+    head = f'<style>{style}</style><script type="module">{_inlined(_PLAYER)}</script>'
+    page = patched_page(title, OFFLINE_SCRIPTS, head)
+    policy = content_policy(page, is_file=True)
+    meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+    page = page.replace("<head>", f'<head><meta charset="utf-8">{meta}', 1)
+    before, after = page.rsplit(_BODY_END, 1)
+    return before.encode(), (_BODY_END + after).encode()
+
+
+def _inlined(entry: str) -> str:
+    """Return a module with all that it imports in one, each before what imports it."""
+    texts: dict[str, str] = {}
+
+    def add(path: str) -> None:
+        source = (assets.static_dir() / path).read_text("utf-8")
+        for found in _IMPORT.finditer(source):
+            target = (assets.static_dir() / path).parent / found["path"]
+            imported = target.resolve().relative_to(assets.static_dir().resolve()).as_posix()
+            if imported not in texts:
+                add(imported)
+        texts[path] = _EXPORT.sub("", _IMPORT.sub("", source))
+
+    add(entry)
+    return "\n".join(texts.values())

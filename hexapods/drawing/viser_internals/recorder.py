@@ -1,0 +1,57 @@
+"""Records what is drawn on a viser server, message by message, without sending it."""
+
+import contextlib
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import viser
+from viser.infra import StateSerializer
+
+from hexapods.drawing.viser_internals.stream import BLOCKED_TYPES, Message
+
+
+class Recorded(NamedTuple):
+    """Messages in order, and the arrays that they reference by index."""
+
+    messages: list[Message]
+    arrays: list[memoryview]
+
+
+class _Recorder(StateSerializer):
+    """Takes the place of a serializer of a whole file, but can be emptied again and again."""
+
+    def take(self) -> Recorded:
+        """Return what was recorded since the last call."""
+        with self._handler._record_lock:
+            taken = Recorded([message for _, message in self._messages], self._binary_buffers)
+            self._messages, self._binary_buffers = [], []
+        return taken
+
+
+@contextlib.contextmanager
+def recorder(server: viser.ViserServer) -> Iterator[Any]:
+    """Record within a `with` block; `take()` of what it yields returns what was drawn since.
+
+    The first `take()` returns the whole scene. Messages of `BLOCKED_TYPES` and those that are no
+    part of the scene are left out.
+    """
+    handler = server._websock_server
+    recording = _Recorder(
+        handler,
+        lambda message: (
+            message.include_in_scene_serialization and type(message).__name__ not in BLOCKED_TYPES
+        ),
+    )
+    # As `ViserServer.get_scene_serializer` does it.
+    buffer = handler.get_message_buffer()
+    with handler._record_lock:
+        handler._record_handles.append(recording)
+        with buffer.buffer_lock:
+            messages = list(buffer.message_from_id.values())
+        for message in messages:
+            recording._insert_message(message)
+    try:
+        yield recording
+    finally:
+        with handler._record_lock:
+            handler._record_handles.remove(recording)

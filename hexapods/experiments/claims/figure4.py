@@ -1,0 +1,159 @@
+"""The paper's claims about its Figure 4, the learning curves."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from hexapods.domain.text import metres
+from hexapods.domain.types import FloatArray
+from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
+from hexapods.experiments.claims.gaits import ODD_GAIT, gait_claims
+from hexapods.experiments.claims.judging import CaseFinding, Claim
+from hexapods.experiments.formatting import percent, shares
+from hexapods.experiments.labels import gait_name_with_papers
+from hexapods.experiments.measures import WALKER_SHARE
+from hexapods.experiments.statistics import (
+    Interval,
+    Verdict,
+    bootstrap_exceeds,
+    paired_interval,
+    share_at_least,
+)
+
+FLAT_RATIO = 0.25
+"""A curve counts as flat if steps 1,001 to 2,000 add less than this share of the first 1,000."""
+FIRST, MIDDLE, LAST = 250, 1000, 2000
+
+
+class _Curve:
+    """Q-learning's learning curve over all gaits at 250, 1,000 and 2,000 steps.
+
+    Heights are shares of greedy's distance; the gaits are the strata.
+    """
+
+    def __init__(self, case: Case) -> None:
+        curves = [
+            one
+            for one in case.curves
+            if one["agent"] == PAPERS_AGENT
+            and one["greedy_m"]
+            and {FIRST, MIDDLE, LAST} <= set(one["steps"])
+        ]
+        self._strata = [_shares(one) for one in curves]
+        self._seed = case.seed
+        self.fewest = min((one.shape[1] for one in self._strata), default=0)
+
+    def statistic(self, number: Callable[[FloatArray], FloatArray]) -> Interval:
+        """Return the interval of a function of the curve's three heights, (3, …)."""
+        return paired_interval(self._strata, number, self._seed)
+
+    def at(self, steps: int) -> Interval:
+        """Return the curve's height at one of the three steps."""
+        place = (FIRST, MIDDLE, LAST).index(steps)
+        return self.statistic(lambda heights: heights[place])
+
+
+def _shares(curve: Mapping[str, Any]) -> FloatArray:
+    """Return each seed's share of greedy's distance at the three steps, (3, n)."""
+    at = [curve["points_m"][curve["steps"].index(steps)] for steps in (FIRST, MIDDLE, LAST)]
+    return np.asarray(at, dtype=np.float64) / float(curve["greedy_m"])
+
+
+def _judge_curve(find: Callable[[_Curve], CaseFinding]) -> Callable[[Case], CaseFinding | None]:
+    def find_in(case: Case) -> CaseFinding | None:
+        curve = _Curve(case)
+        return find(curve) if curve.fewest else None
+
+    return find_in
+
+
+def _improves(curve: _Curve) -> CaseFinding:
+    middle = curve.at(MIDDLE)
+    return CaseFinding.of(
+        bootstrap_exceeds(middle, WALKER_SHARE, curve.fewest),
+        f"{shares(curve.at(FIRST))} of greedy's distance after 250 steps, {shares(middle)} after "
+        "1,000.",
+    )
+
+
+def _flattens(curve: _Curve) -> CaseFinding:
+    more = curve.statistic(lambda at: (at[2] - at[1]) - FLAT_RATIO * at[1])
+    middle, last = curve.at(MIDDLE), curve.at(LAST)
+    adds = f"{percent(last.value / middle.value - 1)}" if middle.value > 0 else "all"
+    return CaseFinding.of(
+        bootstrap_exceeds(-more, 0, curve.fewest),
+        f"{shares(middle)} of greedy's distance after 1,000 steps, {shares(last)} after 2,000: the "
+        f"second thousand steps add {adds} to what the first brought.",
+    )
+
+
+def _inclines(curve: _Curve) -> CaseFinding:
+    gain = curve.statistic(lambda at: at[2] - at[1])
+    return CaseFinding.of(
+        bootstrap_exceeds(gain, 0, curve.fewest),
+        f"From 1,000 to 2,000 steps the curve rises by {shares(gain)} of greedy's distance.",
+    )
+
+
+def _approaches(curve: _Curve) -> CaseFinding:
+    closer, last = curve.statistic(lambda at: at[2] - at[0]), curve.at(LAST)
+    under = bootstrap_exceeds(-last, -1, curve.fewest)
+    nearer = bootstrap_exceeds(closer, 0, curve.fewest)
+    both: Verdict = (
+        "no" if "no" in (under, nearer) else "yes" if under == nearer else "not established"
+    )
+    return CaseFinding.of(
+        both,
+        f"From 250 to 2,000 steps the curve rises by {shares(closer)} of greedy's distance, to "
+        f"{shares(last)} of it.",
+    )
+
+
+def _satisfies(case: Case) -> CaseFinding | None:
+    curve = case.curve(ODD_GAIT)
+    if curve is None or curve["greedy_m"] is None:
+        return None
+    walkers = share_at_least(curve["points_m"][-1], WALKER_SHARE * curve["greedy_m"])
+    return CaseFinding.of(
+        walkers.exceeds(0.5),
+        f"After {curve['steps'][-1]:,} steps {shares(walkers)} of its seeds walk; the middle "
+        f"covers {metres(curve['iqm_m'][-1])}, greedy {metres(curve['greedy_m'])}.",
+    )
+
+
+FIGURE4_CLAIMS: Sequence[Claim] = (
+    Claim(
+        "improves",
+        "“improves substantially in the first few hundred trials, up to around 1000” (§5.1)",
+        "It starts from nothing; after 1,000 steps the middle covers more than half of greedy's "
+        "distance.",
+        _judge_curve(_improves),
+    ),
+    Claim(
+        "flattens",
+        "“the improvement flattens out quickly before 1000 steps of learning” (§5.1)",
+        "The second thousand steps add less than a quarter of what the first brought.",
+        _judge_curve(_flattens),
+    ),
+    Claim(
+        "inclines",
+        "“the plateau in Figure 4 is really a small incline” (§6)",
+        "From 1,000 to 2,000 steps the curve still rises.",
+        _judge_curve(_inclines),
+    ),
+    Claim(
+        "approaches",
+        "Greedy “is higher than all walking gaits, the Q-Learning curves slowly approach” (§5.1)",
+        "After 2,000 steps the curve is under greedy, and nearer to it than after 250.",
+        _judge_curve(_approaches),
+    ),
+    *gait_claims(alike_after=2000, slow_after=500),
+    Claim(
+        "odd-gait-satisfies",
+        f"{gait_name_with_papers(ODD_GAIT)} “eventually Q-Learns its way to a satisfactory gait” "
+        "(§5.1)",
+        "After 2,000 steps more than half of the seeds cover half of greedy's distance.",
+        _satisfies,
+    ),
+)

@@ -1,0 +1,290 @@
+"""Configs of experiments: a grid of settings, each repeated over many seeds."""
+
+import contextlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, ClassVar, Literal, get_args
+
+from hexapods.agents.registry import learns
+from hexapods.domain.checks import check_whole
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.observation import PAPER_OBSERVATIONS, Observation
+from hexapods.domain.robot import Robot, as_mapping, robot
+from hexapods.domain.settings import (
+    REQUIRED,
+    DeclaredSetting,
+    SettingValues,
+    Value,
+    declared_fields,
+)
+from hexapods.domain.world import parse_world
+from hexapods.runs.config import SimulatorName, TrainingConfig, agent_settings
+from hexapods.runs.config_json import gait_from_json
+
+ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery"]
+EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
+MAX_SEEDS = 10_000
+MAX_TRIALS = 200_000
+MAX_WORKERS = 512
+FIGURE4_BLOCKS = 8
+
+SUMMARY = "summary.json"
+"""File of a report: statistics and claims computed from the trials so far."""
+REPORT = "report.html"
+"""The report as one self-contained page."""
+TRIALS_TABLE = "trials.csv"
+"""Every trial, with its result."""
+
+GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")
+"""Fields that a sweep varies beside agent, gait, observation, robot and the agents' settings;
+table1 and figure4 keep them at the paper's values."""
+DISTURBED: tuple[ExperimentName, ...] = ("league", "recovery")
+"""Experiments in several worlds, with robots that differ by seed and references that search."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExperimentConfig:
+    """Config of an experiment. `experiment_config` adds the defaults of the experiment.
+
+    Attributes:
+        experiment: `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid;
+            `league`: learners and searchers in several worlds; `recovery`: learners to which
+            something happens in the middle of their practice.
+        seeds: number of seeds for each setting of an agent that learns.
+        seed: root seed, from which the seeds of all trials are spawned.
+        agents: the learners; in a sweep also look-ahead agents. Table 1 has a fixed list.
+        gaits, observations, robots: every combination is a setting.
+        simulator: simulator of all trials.
+        steps, steps_per_episode, divisions, grid_side_m: values of these fields of a training;
+            every combination is a setting.
+        settings: values of the agents' settings by name; every combination is a setting of the
+            agents that have them; the agent's default applies to others.
+        blocks: number of blocks of `steps` of practice; between blocks the table is saved and
+            loaded.
+        worlds: names of worlds, or disturbances as on the command line; every one is a setting.
+        tolerance: build tolerance of the robots, of which each seed draws one.
+
+    Raises:
+        UnknownName, InvalidInput: if a value is invalid, empty or repeated.
+    """
+
+    kind: ClassVar[str] = "experiment"
+    """Name of the experiment in a results folder."""
+    options: ClassVar[Mapping[str, str]] = {
+        "agents": "--agent",
+        "gaits": "--gait",
+        "observations": "--observation",
+        "robots": "--robot",
+        "worlds": "--world",
+    }
+    """Options of the command line, by field; see `option_of`."""
+
+    experiment: ExperimentName
+    seeds: int = 30
+    seed: int = 0
+    agents: tuple[str, ...] = ("q-learning",)
+    gaits: tuple[str | GaitSpec, ...] = tuple(NAMED_GAITS)
+    observations: tuple[Observation, ...] = PAPER_OBSERVATIONS
+    robots: tuple[Robot, ...] = (Robot(),)
+    simulator: SimulatorName = "mujoco"
+    steps: tuple[int, ...] = (TrainingConfig.steps,)
+    settings: SettingValues[tuple[Value, ...]] = field(default_factory=SettingValues)
+    steps_per_episode: tuple[int, ...] = (TrainingConfig.steps_per_episode,)
+    divisions: tuple[int, ...] = (TrainingConfig.divisions,)
+    grid_side_m: tuple[float, ...] = (TrainingConfig.grid_side_m,)
+    blocks: int = 1
+    worlds: tuple[str, ...] = ("flat",)
+    tolerance: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.experiment not in EXPERIMENTS:
+            raise UnknownName("experiment", self.experiment, EXPERIMENTS)
+        declared_fields(TrainingConfig)["tolerance"].check(self.tolerance)
+        for world in self.worlds:
+            if parse_world(world).change_steps:
+                raise InvalidInput(
+                    f"{world}: the worlds of an experiment hold from the start to the end; leave "
+                    "out at and until"
+                )
+        check_whole("seeds", self.seeds, 1, MAX_SEEDS)
+        check_whole("seed", self.seed, 0, None)
+        lists = {name: getattr(self, name) for name in (*_LIST_FIELDS, *GRID)} | dict(self.settings)
+        for name, values in lists.items():
+            if not values:
+                raise InvalidInput(f"{name} must name at least one")
+            if any(value in values[:place] for place, value in enumerate(values)):
+                raise InvalidInput(f"{name} names something twice")
+
+    @classmethod
+    def option_of(cls, field: str) -> str:
+        """Return the option of a field, or of a setting of an agent: `--grid-side-m`."""
+        return cls.options.get(field, f"--{field.replace('_', '-')}")
+
+
+_LIST_FIELDS = ("agents", "gaits", "observations", "robots", "worlds")
+_LEARNERS = (
+    "q-learning",
+    "sarsa-lambda",
+    "dyna-q",
+    "r-max",
+    "posterior-sampling",
+    "linear-model",
+)
+_DISTURBED_DEFAULTS: Mapping[str, Any] = {
+    "gaits": ("left-right-origin", "left-right-vertical"),
+    "observations": ("measured",),
+    "tolerance": 0.03,
+}
+_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
+    "table1": {"steps": (500, 1000), "robots": (robot("stiff"), robot("compliant"))},
+    "figure4": {"steps": (250,), "blocks": FIGURE4_BLOCKS},
+    "sweep": {"observations": ("measured",)},
+    "league": {
+        **_DISTURBED_DEFAULTS,
+        "agents": (*_LEARNERS, "two-step", "informed"),
+        "steps": (250,),
+        "worlds": ("flat", "limp-pair", "slope", "ice"),
+    },
+    "recovery": {
+        **_DISTURBED_DEFAULTS,
+        "agents": ("q-learning", "dyna-q", "linear-model"),
+        "steps": (100,),
+        "worlds": ("limp-pair", "stuck-leg"),
+    },
+}
+_IDEAL_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
+    "league": {"tolerance": 0.0, "worlds": ("flat",)},
+    "recovery": {"tolerance": 0.0, "worlds": ("noise",)},
+}
+"""Defaults that differ in the kinematic simulator, which knows no tolerance and few worlds."""
+_COMMON_FIELDS = ("seeds", "seed", "gaits", "observations", "robots", "simulator")
+_ACCEPTED_FIELDS: Mapping[str, tuple[str, ...]] = {
+    "table1": _COMMON_FIELDS,
+    "figure4": (*_COMMON_FIELDS, "agents"),
+    "sweep": (*_COMMON_FIELDS, "agents", *GRID),
+    "league": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
+    "recovery": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
+}
+
+
+def fields_of(experiment: ExperimentName) -> tuple[str, ...]:
+    """Return the fields that an experiment accepts; a sweep also takes its agents' settings."""
+    return _ACCEPTED_FIELDS[experiment]
+
+
+def default_agents(experiment: ExperimentName) -> list[str]:
+    """Return the agents of an experiment if none are given."""
+    return list(_DEFAULTS[experiment].get("agents", ExperimentConfig.agents))
+
+
+def compares(experiment: str, agent: str) -> bool:
+    """Whether an experiment compares an agent; a recovery compares learners only."""
+    return experiment != "recovery" or learns(agent)
+
+
+def settings_by_name(agents: Iterable[str]) -> Mapping[str, Sequence[DeclaredSetting]]:
+    """Return the settings of some agents by name, each with the declarations of its agents.
+
+    Raises:
+        UnknownName, InvalidInput: if there is no such agent.
+    """
+    declarations: dict[str, list[DeclaredSetting]] = {}
+    for agent in agents:
+        for name, setting in agent_settings(agent).items():
+            declarations.setdefault(name, []).append(setting)
+    return declarations
+
+
+def experiment_config(experiment: str, given: Mapping[str, Any]) -> ExperimentConfig:
+    """Create the config of an experiment from given values and the experiment's defaults.
+
+    Args:
+        experiment: name of the experiment.
+        given: values by attribute of `ExperimentConfig`, and lists of values of the agents'
+            settings by name; None counts as not given.
+
+    Raises:
+        UnknownName: if the experiment or a field does not exist.
+        InvalidInput: if a value is invalid.
+    """
+    if experiment not in EXPERIMENTS:
+        raise UnknownName("experiment", experiment, EXPERIMENTS)
+    specified = {name: value for name, value in given.items() if value is not None}
+    defaults: Mapping[str, Any] = _DEFAULTS[experiment]
+    if specified.get("simulator") == "kinematic":
+        defaults = {**defaults, **_IDEAL_DEFAULTS.get(experiment, {})}
+    usual_agents = defaults.get("agents", ExperimentConfig.agents)
+    declared = settings_by_name(specified.get("agents", usual_agents))
+    valid = [*_ACCEPTED_FIELDS[experiment], *(declared if experiment == "sweep" else ())]
+    for name in specified:
+        if name not in valid:
+            raise UnknownName(f"field of {experiment}", name, valid)
+    for agent in specified.get("agents", usual_agents):
+        if not compares(experiment, agent):
+            raise InvalidInput(
+                f"{agent} does not learn, so it does not recover; greedy is there as a "
+                "reference anyway"
+            )
+    settings = {
+        name: tuple(_normalized(value, own) for value in specified[name])
+        if name in specified
+        else default
+        for name, own in declared.items()
+        for default in [tuple(dict.fromkeys(setting.default for setting in own))]
+        # Agents of different defaults each keep their own.
+        if name in specified or (len(default) == 1 and default[0] is not REQUIRED)
+    }
+    own_fields = {name: value for name, value in specified.items() if name not in declared}
+    return ExperimentConfig(
+        experiment=experiment,
+        **{**defaults, **own_fields},
+        settings=SettingValues(settings),
+    )
+
+
+def _normalized(value: Value, own: Sequence[DeclaredSetting]) -> Value:
+    """Normalise a value by the first declaration that accepts it; else raise the last error."""
+    for setting in own[:-1]:
+        with contextlib.suppress(InvalidInput):
+            return setting.normalized(value)  # type: ignore[no-any-return]
+    return own[-1].normalized(value)  # type: ignore[no-any-return]
+
+
+def as_json(config: ExperimentConfig) -> dict[str, Any]:
+    """Convert a config to plain types, as in API responses and in files."""
+    data: dict[str, Any] = {}
+    for one in fields(config):
+        value = getattr(config, one.name)
+        data |= value if isinstance(value, SettingValues) else {one.name: value}
+    data["robots"] = [as_mapping(one) for one in config.robots]
+    data["gaits"] = [
+        {k: v for k, v in asdict(gait).items() if v is not None}
+        if isinstance(gait, GaitSpec)
+        else gait
+        for gait in config.gaits
+    ]
+    return {k: list(v) if isinstance(v, tuple) else v for k, v in data.items()}
+
+
+def from_json(
+    data: Mapping[str, Any], kind: type[ExperimentConfig] = ExperimentConfig
+) -> ExperimentConfig:
+    """Parse the output of `as_json`; keys that are no field are settings of the agents.
+
+    Args:
+        data: the output of `as_json`.
+        kind: class of the config.
+
+    Raises:
+        InvalidInput: if a value is invalid.
+        KeyError, TypeError, ValueError: if it is not the output of `as_json`.
+    """
+    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
+    values["robots"] = tuple(robot(one) for one in data["robots"])
+    values["gaits"] = tuple(gait_from_json(one) for one in data["gaits"])
+    own = {one.name for one in fields(kind)}
+    settings = {name: values.pop(name) for name in list(values) if name not in own}
+    if single := [name for name, value in settings.items() if not isinstance(value, tuple)]:
+        raise InvalidInput(f"{single[0]} must be a list of values")
+    return kind(**values, settings=SettingValues(settings))

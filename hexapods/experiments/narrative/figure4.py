@@ -1,0 +1,100 @@
+"""Paragraphs about Figure 4, the learning curves."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from hexapods.agents.appearance import title_of
+from hexapods.domain.text import metres
+from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
+from hexapods.experiments.formatting import counted, listed, percent
+from hexapods.experiments.labels import gait_name
+from hexapods.experiments.narrative.gaits import ODD_GAIT_HEADING, explain_odd_gait
+
+Curve = Mapping[str, Any]
+
+
+def describe_seed_spread(cases: Sequence[Case]) -> str | None:
+    """Describe the seeds' spread at the end of a curve, and how often a single curve falls."""
+    curves = [one for case in cases for one in case.curves if one["steps"]]
+    if not curves or len(curves[0]["points_m"][0]) < 2:
+        return None
+    one, at = curves[0], next(c.label for c in cases if curves[0] in c.curves)
+    last, falls = one["points_m"][-1], [_falls(curve) for curve in curves]
+    blocks = sum(of for _, of in falls)
+    return (
+        f"The paper draws one curve a gait. Here every curve is {counted(len(last), 'seed')}: "
+        "the line is the middle of them, the band its interval, the faint lines are the seeds. "
+        f"{gait_name(one['gait'])} with {at}: after {one['steps'][-1]:,} steps the worst seed "
+        f"covers {metres(min(last))}, the best {metres(max(last))}. A single seed's curve goes "
+        f"down from one block to the next in {percent(sum(down for down, _ in falls) / blocks)} of "
+        "cases; who draws one curve draws these dents as well."
+    )
+
+
+def _falls(curve: Curve) -> tuple[int, int]:
+    """Count how often a seed's distance falls from one block to the next, and all such pairs."""
+    pairs = [
+        (before, after)
+        for blocks in zip(curve["points_m"], curve["points_m"][1:], strict=False)
+        for before, after in zip(*blocks, strict=True)
+    ]
+    return sum(after < before for before, after in pairs), max(1, len(pairs))
+
+
+def compare_observations(cases: Sequence[Case]) -> str | None:
+    """Compare the learning curves of the two observations with the shape the paper describes."""
+    descriptions = [_describe_curve(case) for case in cases]
+    sentences = [one for one in descriptions if one]
+    if not sentences:
+        return None
+    return (
+        "The paper does not say whether the robot measures where its feet are, or remembers "
+        f"where it sent them. {' '.join(sentences)} The paper prints no numbers for its Figure 4, "
+        "but says that the curves rise fast at first and flatten before 1,000 steps. Which reading "
+        "does so is among the claims above."
+    )
+
+
+def _describe_curve(case: Case) -> str | None:
+    """Describe the gaits' mean curve at its first, middle and last block, as shares of greedy."""
+    curves = [
+        one
+        for one in case.curves
+        if one["steps"] and one["greedy_m"] and one["agent"] == PAPERS_AGENT
+    ]
+    if not curves:
+        return None
+    steps = curves[0]["steps"]
+    chosen = dict.fromkeys((steps[0], steps[(len(steps) - 1) // 2], steps[-1]))
+    shares = [f"{percent(_mean_share(curves, steps.index(at)))} after {at:,}" for at in chosen]
+    return (
+        f"With {case.label} the curves stand, as a share of greedy and averaged over the gaits, "
+        f"at {listed(shares)} steps."
+    )
+
+
+def _mean_share(curves: Sequence[Curve], block: int) -> float:
+    return sum(float(one["iqm_m"][block] / one["greedy_m"]) for one in curves) / len(curves)
+
+
+def compare_agents(cases: Sequence[Case]) -> str | None:
+    """Compare the final distances of the learning agents; None if there is only one."""
+    sentences = []
+    for case in cases:
+        pools = [one for one in case.pooled if one["relative"]]
+        if len({one["agent"] for one in pools}) > 1:
+            shares = [
+                f"{title_of(one['agent'])} {percent(one['relative']['iqm'])}" for one in pools
+            ]
+            sentences.append(f"With {case.label}: {listed(shares)}.")
+    if not sentences:
+        return None
+    return f"At the end of the curves, as a share of greedy over all gaits. {' '.join(sentences)}"
+
+
+FIGURE4_NARRATIVE: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
+    ("One seed misleads", describe_seed_spread),
+    ("Two readings of the same robot", compare_observations),
+    ("The agents", compare_agents),
+    (ODD_GAIT_HEADING, explain_odd_gait),
+)

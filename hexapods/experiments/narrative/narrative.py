@@ -1,0 +1,69 @@
+"""Assemble the explanatory text of a report from an experiment's summary."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from hexapods.experiments.claims.cases import Case, cases_of
+from hexapods.experiments.formatting import counted, listed
+from hexapods.experiments.narrative.figure4 import FIGURE4_NARRATIVE
+from hexapods.experiments.narrative.sweep import SWEEP_NARRATIVE
+from hexapods.experiments.narrative.table1 import TABLE1_NARRATIVE
+
+Paragraph = Callable[[Sequence[Case]], str | None]
+FEW_SEEDS = 10
+_NARRATIVES: Mapping[str, Sequence[tuple[str, Paragraph]]] = {
+    "table1": TABLE1_NARRATIVE,
+    "figure4": FIGURE4_NARRATIVE,
+    "sweep": SWEEP_NARRATIVE,
+    "league": (),
+    "recovery": (),
+}
+
+
+def narrate(summary: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Return texts with headings, one paragraph per line.
+
+    Texts whose trials are not complete yet are omitted.
+    """
+    cases = cases_of(summary)
+    written = [(heading, write(cases)) for heading, write in _NARRATIVES[summary["experiment"]]]
+    texts = [{"heading": heading, "text": text} for heading, text in written if text]
+    caution = _caution(summary)
+    return [*texts, {"heading": "Uncertainty", "text": caution}] if texts else []
+
+
+def _caution(summary: Mapping[str, Any]) -> str:
+    trials, config = summary["trials"], summary["config"]
+    sentences = [
+        "A number in brackets after a value is its 95 % interval: from other seeds, the value "
+        "would mostly fall in there. Where such an interval leaves a question open, this report "
+        "says “not established” and not what looks likely."
+    ]
+    if summary["experiment"] == "table1":
+        sentences.append(
+            "The intervals know of our seeds only. A printed value is one run, and nobody knows "
+            "which robot, servos and reading made it."
+        )
+    if config["seeds"] < FEW_SEEDS:
+        sentences.append(
+            f"{counted(config['seeds'], 'seed')} a setting is few: the intervals are rough, and "
+            "often too narrow. Thirty are the default."
+        )
+    if config["simulator"] == "kinematic":
+        sentences.append(
+            "These are runs of the kinematic simulator: feet never slip, servos are never soft, "
+            "and all gaits and robots walk alike. What depends on physics needs MuJoCo."
+        )
+    remaining = trials["total"] - trials["done"] - len(trials["set_aside"])
+    missing = [
+        counted(number, one, many)
+        for number, one, many in (
+            (remaining, "trial is missing", "trials are missing"),
+            (trials["failed"], "trial failed", "trials failed"),
+            (len(trials["set_aside"]), "trial was set aside", "trials were set aside"),
+        )
+        if number > 0
+    ]
+    if missing:
+        sentences.append(f"{listed(missing)}; what is said here is of the others.")
+    return " ".join(sentences)

@@ -1,0 +1,353 @@
+"""Plan of an experiment: expands its config to settings and trials, in execution order."""
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import chain, product
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from hexapods.agents.registry import check_problem, learns
+from hexapods.domain.disturbances import SensorNoise
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.kinematics import check_reach
+from hexapods.domain.observation import Observation
+from hexapods.domain.robot import Robot
+from hexapods.domain.settings import SettingValues, Value
+from hexapods.domain.world import parse_world
+from hexapods.experiments.config import DISTURBED, GRID, MAX_TRIALS, ExperimentConfig
+from hexapods.experiments.trial import TrialConfig
+from hexapods.runs.config import (
+    TrainingConfig,
+    WalkingProblem,
+    agent_settings,
+    problem_of,
+    training_config,
+)
+
+Role = Literal["learner", "reference", "timed"]
+"""`learner`: one trial per seed; `reference`: a deterministic look-ahead agent, one trial, or one
+per seed where robots or sensors differ by seed; `timed`: one trial that runs alone, for wall-clock
+times."""
+
+RIVALS = ("greedy", "two-step")
+_GRID_FIELDS = ("divisions", "grid_side_m")
+LEAGUE_STEPS = (25, 50, 100, 150, 250, 500, 1000, 1500, 2000, 3000, 5000, 10_000)
+"""Steps of practice after which the learners of a league are evaluated; and at its end."""
+RECOVERY_STEPS = (0, 1, 25, 50, 100, 150)
+"""Steps after something happened at which the learners of a recovery are evaluated."""
+EARNING_STEPS = 50
+"""Number of steps after each of these whose rewards are added up."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrialSetting:
+    """Everything that determines a trial's result except its seed.
+
+    Attributes:
+        key: unique name in files, tables and on the page.
+        role: purpose in the plan.
+        robot: label of the robot in this experiment.
+        world: the world as the experiment names it; in a recovery it begins after the practice.
+        trial: config of its trials, with seed 0.
+        parameters: values by name of everything that the plan varies except scenario and agent;
+            None for a setting that the agent does not have.
+    """
+
+    key: str
+    role: Role
+    robot: str
+    trial: TrialConfig
+    world: str = "flat"
+    parameters: SettingValues[Value] = field(default_factory=SettingValues)
+
+    @property
+    def training(self) -> TrainingConfig:
+        """Training config of the trials."""
+        return self.trial.training
+
+    @property
+    def practised_steps(self) -> int:
+        """Steps of practice in a block; in a recovery until something happens; 0 without any."""
+        if self.role == "reference":
+            return 0
+        return self.trial.evaluations[0] if self.trial.earning_steps else self.training.steps
+
+    @property
+    def gait(self) -> str:
+        """Name of the gait."""
+        return self.training.resolved_gait.name
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One trial of a plan.
+
+    Attributes:
+        key: key of the setting and number of the seed: `…#12`.
+        setting: its setting.
+        seed_number: counted from 0.
+        seed: of its training.
+    """
+
+    key: str
+    setting: TrialSetting
+    seed_number: int
+    seed: int
+
+    @cached_property
+    def config(self) -> TrialConfig:
+        """Config of the trial; made when it is first read, since it is all checked again."""
+        training = replace(self.setting.training, seed=self.seed)
+        return replace(self.setting.trial, training=training)
+
+
+class Plan:
+    """The settings of an experiment, and their trials."""
+
+    def __init__(self, config: ExperimentConfig, more: Sequence[TrialSetting] = ()) -> None:
+        """Expand the config; nothing is run.
+
+        Args:
+            config: the experiment.
+            more: settings beside those of the config.
+
+        Raises:
+            InvalidInput, UnknownName, Unreachable: if a setting is invalid, or there are too many
+                trials.
+        """
+        self.config = config
+        self.settings: Sequence[TrialSetting] = [*_settings(config), *more]
+        self.total = sum(self.count(setting) for setting in self.settings)
+        if self.total > MAX_TRIALS:
+            raise InvalidInput(
+                f"the grid has {self.total:,} trials, the most is {MAX_TRIALS:,}; choose fewer "
+                "values or fewer seeds"
+            )
+
+    def count(self, setting: TrialSetting) -> int:
+        """Return the number of trials of a setting."""
+        training = setting.training
+        varies = training.tolerance > 0 or training.world.one_of(SensorNoise) is not None
+        return self.config.seeds if setting.role == "learner" or varies else 1
+
+    def trials(self) -> Iterator[Trial]:
+        """Iterate over all trials: references, then learners by seed, then timed trials."""
+        for role in ("reference", "learner", "timed"):
+            numbered = [(i, s) for i, s in enumerate(self.settings) if s.role == role]
+            for seed_number in range(max((self.count(s) for _, s in numbered), default=0)):
+                for index, setting in numbered:
+                    if seed_number < self.count(setting):
+                        yield self._trial(index, seed_number)
+
+    def find(self, key: str) -> Trial | None:
+        """Return the trial with a key; None if there is none."""
+        setting_key, _, number = key.rpartition("#")
+        index = self._indices.get(setting_key)
+        # Longer ones are no number of a seed, and Python refuses to read very long ones.
+        if index is None or not re.fullmatch("0|[1-9][0-9]{0,8}", number):
+            return None
+        has_it = int(number) < self.count(self.settings[index])
+        return self._trial(index, int(number)) if has_it else None
+
+    @cached_property
+    def _indices(self) -> Mapping[str, int]:
+        return {setting.key: index for index, setting in enumerate(self.settings)}
+
+    def _trial(self, index: int, seed_number: int) -> Trial:
+        # Where the seed draws the robot, all agents walk with the same ones.
+        spawned = 0 if self.config.experiment in DISTURBED else index
+        seed = trial_seed(self.config.seed, spawned, seed_number)
+        setting = self.settings[index]
+        return Trial(f"{setting.key}#{seed_number}", setting, seed_number, seed)
+
+
+def trial_seed(seed: int, setting: int, seed_number: int) -> int:
+    """Return the seed of a trial, as by `SeedSequence.spawn` per setting, then per seed number.
+
+    It has 53 bits, so that JSON parsers with float numbers preserve it.
+    """
+    sequence = np.random.SeedSequence(seed, spawn_key=(setting, seed_number))
+    return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(11))
+
+
+def _settings(config: ExperimentConfig) -> list[TrialSetting]:
+    learners, references, timed = [], [], []
+    # Earlier versions stored the settings of the default agent with every experiment.
+    agents = (*config.agents, *RIVALS, TrainingConfig.agent)
+    own = {agent: agent_settings(agent) for agent in agents}
+    for name in config.settings:
+        if not any(name in settings for settings in own.values()):
+            raise UnknownName("setting", name, dict.fromkeys(chain.from_iterable(own.values())))
+    lists = {"steps": config.steps, **config.settings}
+    grid = _combinations({**lists, "steps_per_episode": config.steps_per_episode})
+    reference_grid = _combinations(config.settings)
+    for place in _scenarios(config):
+        references += [
+            _setting(place, agent, 0, values)
+            for agent in _look_ahead_agents(config)
+            for values in dict.fromkeys(_subset(one, own[agent]) for one in reference_grid)
+        ]
+        practices = dict.fromkeys(
+            (agent, _subset(values, (*own[agent], "steps", "steps_per_episode")))
+            for values in grid
+            for agent in config.agents
+            if learns(agent)
+        )
+        in_scenario = [_learner(place, agent, config, values) for agent, values in practices]
+        if config.experiment in DISTURBED and (place.walk.world or place.walk.tolerance):
+            references.append(_nominal(_setting(place, "greedy", 0, SettingValues())))
+        learners += in_scenario
+        if config.experiment == "table1":
+            timed.append(_timed(in_scenario[0]))
+    settings = [*references, *learners, *timed]
+    key, count = Counter(setting.key for setting in settings).most_common(1)[0]
+    if count > 1:
+        raise InvalidInput(f"the setting {key} is there twice; name each value once")
+    return _with_parameters(settings)
+
+
+class _Scenario(NamedTuple):
+    """Scenario in which agents are compared: walking problem and observation mode."""
+
+    walk: WalkingProblem
+    observation: Observation
+    robot: str
+    """Label of the robot."""
+    world: str
+    """Name of the world."""
+
+
+def _scenarios(config: ExperimentConfig) -> Iterator[_Scenario]:
+    for gait, observation, (label, robot), world, divisions, side_m in product(
+        config.gaits,
+        config.observations,
+        _labelled_robots(config),
+        config.worlds,
+        config.divisions,
+        config.grid_side_m,
+    ):
+        walk = WalkingProblem(
+            gait=gait,
+            robot=robot,
+            simulator=config.simulator,
+            divisions=divisions,
+            grid_side_m=side_m,
+            world=parse_world(world),
+            tolerance=config.tolerance,
+        )
+        check_reach(robot, walk.resolved_gait, walk.grid)
+        yield _Scenario(walk, observation, label, world)
+
+
+def _labelled_robots(config: ExperimentConfig) -> list[tuple[str, Robot]]:
+    """Return robots with unique labels: those derived from one preset are numbered."""
+    names = [robot.name for robot in config.robots]
+    return [
+        (name if names.count(name) == 1 else f"{name} {1 + names[:place].count(name)}", robot)
+        for place, (name, robot) in enumerate(zip(names, config.robots, strict=True))
+    ]
+
+
+def _look_ahead_agents(config: ExperimentConfig) -> list[str]:
+    """Return the look-ahead agents; greedy is the reference, and so always included."""
+    if config.experiment == "table1":
+        return list(RIVALS)
+    return ["greedy", *(a for a in config.agents if not learns(a) and a != "greedy")]
+
+
+def _combinations(lists: Mapping[str, Sequence[Any]]) -> list[SettingValues[Value]]:
+    return [
+        SettingValues(dict(zip(lists, values, strict=True))) for values in product(*lists.values())
+    ]
+
+
+def _subset(values: Mapping[str, Any], names: Collection[str]) -> SettingValues[Any]:
+    """Return the subset of values with these names."""
+    return SettingValues({name: value for name, value in values.items() if name in names})
+
+
+def _setting(
+    place: _Scenario, agent: str, blocks: int, values: Mapping[str, Value]
+) -> TrialSetting:
+    training = training_config(
+        **vars(place.walk), observation=place.observation, agent=agent, evaluate_every=0, **values
+    )
+    check_problem(agent, problem_of(training), training.settings)
+    own = {name: one.default for name, one in agent_settings(agent).items()}
+    defaults = {name: getattr(TrainingConfig, name) for name in GRID} | own
+    parts = [training.resolved_gait.name, place.observation, place.robot]
+    if place.world != "flat":
+        parts.append(place.world)
+    parts += _non_default({name: getattr(training, name) for name in _GRID_FIELDS}, defaults)
+    parts.append(agent)
+    if blocks:
+        parts.append(f"{blocks}x{training.steps}" if blocks > 1 else f"{training.steps}")
+    parts += _non_default({k: v for k, v in values.items() if k != "steps"}, defaults)
+    role: Role = "learner" if blocks else "reference"
+    trial = TrialConfig(training=training, blocks=blocks)
+    key = "/".join(parts)
+    return TrialSetting(key=key, role=role, robot=place.robot, trial=trial, world=place.world)
+
+
+def _learner(
+    place: _Scenario, agent: str, config: ExperimentConfig, values: Mapping[str, Value]
+) -> TrialSetting:
+    """Return a setting of an agent that practises, as the experiment evaluates it."""
+    setting = _setting(place, agent, config.blocks, values)
+    training = setting.training
+    if config.experiment == "league":
+        points = (*(step for step in LEAGUE_STEPS if step < training.steps), training.steps)
+        return replace(setting, trial=replace(setting.trial, evaluations=points))
+    if config.experiment == "recovery":
+        happens = training.steps
+        trial = TrialConfig(
+            training=replace(
+                training,
+                steps=happens + RECOVERY_STEPS[-1] + EARNING_STEPS,
+                world=training.world.later(happens),
+            ),
+            evaluations=tuple(happens + step for step in RECOVERY_STEPS),
+            earning_steps=EARNING_STEPS,
+        )
+        return replace(setting, trial=trial)
+    return setting
+
+
+def _nominal(greedy: TrialSetting) -> TrialSetting:
+    """Return greedy's setting with the robot as designed, on flat ground, as its model."""
+    trial = replace(greedy.trial, plans_with="nominal")
+    return replace(greedy, key=f"{greedy.key}/nominal", trial=trial)
+
+
+def _with_parameters(settings: Sequence[TrialSetting]) -> list[TrialSetting]:
+    """Set the parameters of all settings: the same names in the same order."""
+    names = dict.fromkeys(name for one in settings for name in one.training.settings)
+    completed = []
+    for one in settings:
+        training, practises = one.training, one.role != "reference"
+        parameters: dict[str, Value] = {
+            "steps": one.practised_steps,
+            **{name: training.settings.get(name) for name in names},
+            "steps_per_episode": training.steps_per_episode if practises else None,
+            **{name: getattr(training, name) for name in _GRID_FIELDS},
+        }
+        completed.append(replace(one, parameters=SettingValues(parameters)))
+    return completed
+
+
+def _non_default(values: Mapping[str, Value], defaults: Mapping[str, Value]) -> list[str]:
+    """Format the values that differ from the defaults, for a key."""
+    return [
+        f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}"
+        for name, value in values.items()
+        if value != defaults[name]
+    ]
+
+
+def _timed(setting: TrialSetting) -> TrialSetting:
+    trial = replace(setting.trial, rivals=RIVALS)
+    return replace(setting, key=f"{setting.key}/timed", role="timed", trial=trial)

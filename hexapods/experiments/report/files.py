@@ -1,0 +1,50 @@
+"""Write an experiment's report as files: the page, figures, all trials as CSV, and the summary."""
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from hexapods.experiments.config import REPORT, SUMMARY, TRIALS_TABLE, from_json
+from hexapods.experiments.report.drawing import FORMATS, render
+from hexapods.experiments.report.figures import sheets
+from hexapods.experiments.report.page import page
+from hexapods.experiments.report.trials_csv import trials_csv
+from hexapods.experiments.trial import TrialResult
+from hexapods.files import write_atomically
+
+
+def report_files(
+    summary: Mapping[str, Any], results: Mapping[str, TrialResult]
+) -> Iterator[tuple[str, bytes]]:
+    """Yield the relative path and the bytes of each file.
+
+    The same summary and results give the same bytes.
+
+    Args:
+        summary: as by `summarise`.
+        results: the results that were summarised, by trial key.
+    """
+    yield SUMMARY, (json.dumps(summary, allow_nan=False) + "\n").encode()
+    set_aside = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
+    yield TRIALS_TABLE, trials_csv(from_json(summary["config"]), results, set_aside)
+    for kind in FORMATS:
+        # Drawn again for each format: rendering changes a figure's constrained layout slightly.
+        for picture in sheets(summary):
+            yield f"figures/{picture.name}.{kind}", render(picture.figure, kind)
+    yield REPORT, page(summary).encode()
+
+
+def write_report(
+    folder: Path, summary: Mapping[str, Any], results: Mapping[str, TrialResult]
+) -> Path:
+    """Write all files into a folder, each atomically, and return the page's path.
+
+    Raises:
+        OSError: if a file cannot be written.
+    """
+    for name, content in report_files(summary, results):
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, content)
+    return folder / REPORT

@@ -1,0 +1,130 @@
+"""Group an experiment's trial results by setting, with greedy's results as references."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hexapods.experiments.measures import ReferenceDistance, Stratum
+from hexapods.experiments.plan import Plan, TrialSetting
+from hexapods.experiments.statistics import Points, iqm
+from hexapods.experiments.trial import TrialResult
+from hexapods.runs.best_known import best_known_m
+
+_MIN_WALK = 0.5
+"""In half grid sides: a greedy agent that covers less in 50 steps is not used as a reference."""
+
+
+class SettingResults(NamedTuple):
+    """A setting and its results so far, by seed number."""
+
+    setting: TrialSetting
+    results: Mapping[int, TrialResult]
+
+    @property
+    def succeeded(self) -> list[TrialResult]:
+        """The results without a failure, ordered by seed number."""
+        return [self.results[n] for n in sorted(self.results) if not self.results[n].failure]
+
+    @property
+    def conditions(self) -> tuple[Any, ...]:
+        """The conditions under which agents are compared.
+
+        (gait, observation, robot, divisions, grid side, world)
+        """
+        at = self.setting.training
+        return (
+            self.setting.gait,
+            at.observation,
+            self.setting.robot,
+            at.divisions,
+            at.grid_side_m,
+            self.setting.world,
+        )
+
+    @property
+    def parameters(self) -> tuple[Any, ...]:
+        """The training parameters other than agent and conditions."""
+        trial = self.setting.trial
+        return (trial.blocks, trial.plans_with, self.setting.parameters)
+
+    @property
+    def best_known_m(self) -> float | None:
+        """The best known distance in the world as it is in the end [m]; None if not computed."""
+        training = self.setting.training
+        return best_known_m(training, training.world.as_of(training.steps))
+
+    @property
+    def total_m(self) -> Points:
+        """Each seed's distance over 50 steps, after the last block of practice [m]."""
+        return tuple(one.distances_m[-1] for one in self.succeeded if one.distances_m)
+
+    @property
+    def finished_m(self) -> Points:
+        """Each seed's distance at time-out, when the first lane has used its 50 steps [m]."""
+        distances = (one.finished_distance_m for one in self.succeeded)
+        return tuple(metres for metres in distances if metres is not None)
+
+
+def group_by_setting(plan: Plan, results: Mapping[str, TrialResult]) -> list[SettingResults]:
+    """Return every setting of the plan with its results, in the plan's order.
+
+    Results whose key is not in the plan are ignored.
+
+    Args:
+        plan: the experiment's settings.
+        results: by trial key, `<setting key>#<seed number>`.
+    """
+    by_setting: dict[str, dict[int, TrialResult]] = {setting.key: {} for setting in plan.settings}
+    for key, result in results.items():
+        setting, _, number = key.rpartition("#")
+        if setting in by_setting and int(number) < plan.config.seeds:
+            by_setting[setting][int(number)] = result
+    return [SettingResults(setting, by_setting[setting.key]) for setting in plan.settings]
+
+
+def references_by_conditions(settings: Sequence[SettingResults]) -> dict[Any, ReferenceDistance]:
+    """Return the reference distances by `SettingResults.conditions`.
+
+    Greedy's are over all its robots.
+    """
+    return {
+        one.conditions: _reference(one)
+        for one in settings
+        if one.setting.role == "reference"
+        and one.setting.training.agent == "greedy"
+        and one.setting.trial.plans_with is None
+    }
+
+
+def stratum(one: SettingResults, references: Mapping[Any, ReferenceDistance]) -> Stratum:
+    """Return a setting's seeds and its reference as a stratum of the bootstrap."""
+    return Stratum(one.total_m, one.finished_m, references.get(one.conditions, ReferenceDistance()))
+
+
+def _reference(greedy: SettingResults) -> ReferenceDistance:
+    min_walk_m = _MIN_WALK * greedy.setting.training.grid_side_m / 2
+    total, finished = (
+        float(iqm(np.array(points))) if points else 0.0
+        for points in (greedy.total_m, greedy.finished_m)
+    )
+    return ReferenceDistance(
+        total if total > min_walk_m else None,
+        finished if finished > min_walk_m else None,
+        greedy.best_known_m,
+    )
+
+
+def setting_fields(one: SettingResults) -> dict[str, Any]:
+    """Return the fields that identify a setting; search agents have no training parameters."""
+    at = one.setting.training
+    return {
+        "gait": one.setting.gait,
+        "observation": at.observation,
+        "robot": one.setting.robot,
+        "world": one.setting.world,
+        "agent": at.agent,
+        **one.setting.parameters,
+        "blocks": one.setting.trial.blocks,
+        "half_side_m": at.grid_side_m / 2,
+    }

@@ -1,0 +1,218 @@
+"""Statistics over many seeds: interquartile means, bootstrap intervals, probability of improvement.
+
+Shares of seeds have Wilson intervals. The method is that of Agarwal et al., "Deep RL at the edge
+of the statistical precipice" (2021).
+"""
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from scipy import stats
+
+from hexapods.domain.types import FloatArray
+
+Verdict = Literal["yes", "no", "not established"]
+Points = tuple[float, ...]
+"""One number per seed."""
+
+CONFIDENCE = 0.95
+RESAMPLES = 2_000
+MIN_SEEDS = 3
+"""With fewer seeds there is no interval, so that every verdict is "not established"."""
+MIN_RESAMPLED = 5
+"""With fewer seeds a bootstrap interval is shown, but decides nothing: it is much too narrow."""
+_MAX_BATCH_NUMBERS = 4_000_000
+_CACHE_SIZE = 20_000
+_PERCENT = 100.0
+
+
+class Interval(NamedTuple):
+    """A point estimate and its confidence interval; no limits where there are too few seeds."""
+
+    value: float
+    low: float | None = None
+    high: float | None = None
+
+    def __neg__(self) -> "Interval":
+        """Return the interval of the negated value, to test whether it is below a threshold."""
+        low, high = self.low, self.high
+        if low is None or high is None:
+            return Interval(-self.value)
+        return Interval(-self.value, -high, -low)
+
+    def exceeds(self, threshold: float) -> Verdict:
+        """Whether the value is over a threshold: decided only if the interval excludes it."""
+        if self.low is None or self.high is None:
+            return "not established"
+        if self.low > threshold:
+            return "yes"
+        return "no" if self.high < threshold else "not established"
+
+
+def iqm(samples: FloatArray, axis: int = -1) -> FloatArray:
+    """Return the interquartile mean along an axis.
+
+    A quarter of the samples, rounded down, is trimmed at each end; of three samples or fewer none
+    is, so that it is their mean.
+
+    Args:
+        samples: (…, n, …).
+        axis: the axis of the n seeds, which is reduced.
+    """
+    return np.asarray(stats.trim_mean(samples, 0.25, axis=axis), dtype=np.float64)
+
+
+def pooled_iqm(*samples: FloatArray, axis: int = -1) -> FloatArray:
+    """Return the interquartile mean over all strata concatenated along the axis."""
+    return iqm(np.concatenate(samples, axis=axis), axis)
+
+
+@lru_cache(maxsize=_CACHE_SIZE)
+def iqm_interval(strata: tuple[Points, ...], seed: int) -> Interval:
+    """Return the interquartile mean of all points with its stratified bootstrap interval.
+
+    Args:
+        strata: resampled separately; for example the seeds of each gait.
+        seed: seed of the resampling.
+    """
+    return interval(strata, pooled_iqm, seed)
+
+
+def interval(
+    strata: Sequence[Points],
+    statistic: Callable[..., FloatArray],
+    seed: int,
+    confidence: float = CONFIDENCE,
+) -> Interval:
+    """Return a statistic with its stratified bootstrap percentile interval.
+
+    Args:
+        strata: resampled separately.
+        statistic: function of one array (…, n) per stratum and the `axis` of the seeds, to (…).
+        seed: seed of the resampling.
+        confidence: confidence level of the interval.
+
+    Returns:
+        The value without limits if a stratum has fewer than `MIN_SEEDS` points.
+    """
+    arrays = [np.asarray(points, dtype=np.float64) for points in strata]
+    value = float(statistic(*arrays))
+    if min(len(points) for points in strata) < MIN_SEEDS:
+        return Interval(value)
+    confidence_interval = stats.bootstrap(
+        arrays,
+        statistic,
+        n_resamples=RESAMPLES,
+        batch=max(1, _MAX_BATCH_NUMBERS // sum(len(points) for points in strata)),
+        confidence_level=confidence,
+        method="percentile",
+        vectorized=True,
+        rng=np.random.default_rng(seed),
+    ).confidence_interval
+    return Interval(value, float(confidence_interval.low), float(confidence_interval.high))
+
+
+def paired_interval(
+    strata: Sequence[FloatArray], statistic: Callable[[FloatArray], FloatArray], seed: int
+) -> Interval:
+    """Return the bootstrap interval of a function of several interquartile means, paired by seed.
+
+    Args:
+        strata: (k, n) each: k numbers for each of n seeds; the k numbers of a seed are resampled
+            together.
+        statistic: function of the k interquartile means over all seeds, (k, …), to (…).
+        seed: seed of the resampling.
+    """
+
+    def of_seeds(*chosen: FloatArray, axis: int = -1) -> FloatArray:
+        resampled = [
+            numbers[:, seeds.astype(np.int64)]
+            for numbers, seeds in zip(strata, chosen, strict=True)
+        ]
+        return statistic(iqm(np.concatenate(resampled, axis=axis), axis))
+
+    return interval([tuple(map(float, range(one.shape[1]))) for one in strata], of_seeds, seed)
+
+
+@lru_cache(maxsize=_CACHE_SIZE)
+def share(hits: int, of: int, ties: int = 0) -> Interval:
+    """Return a share of seeds with its Wilson interval; a tie counts half.
+
+    Ties count as misses for the lower limit and as hits for the upper limit.
+
+    Args:
+        hits: number of seeds that meet the condition.
+        of: number of seeds.
+        ties: number of seeds exactly at the limit, not included in `hits`.
+    """
+    value = (hits + ties / 2) / of
+    if of < MIN_SEEDS:
+        return Interval(value)
+    return Interval(value, _wilson(hits, of).low, _wilson(hits + ties, of).high)
+
+
+def share_ahead(points: Sequence[float], baseline: float) -> Interval:
+    """Return the probability that a seed exceeds a constant baseline; a tie counts half."""
+    return share(
+        sum(point > baseline for point in points),
+        len(points),
+        sum(point == baseline for point in points),
+    )
+
+
+def share_at_least(points: Sequence[float], limit: float) -> Interval:
+    """Return the share of seeds that reach a limit."""
+    return share(sum(point >= limit for point in points), len(points))
+
+
+@lru_cache(maxsize=_CACHE_SIZE)
+def improvement(
+    a: tuple[Points, ...], b: tuple[Points, ...], seed: int, confidence: float = CONFIDENCE
+) -> Interval:
+    """Return the probability of improvement of `a` over `b`, averaged over strata.
+
+    The probability that a random seed of `a` exceeds a random seed of `b` (Agarwal et al. 2021).
+
+    Args:
+        a: strata of the first agent.
+        b: the same strata of the second agent.
+        seed: seed of the resampling.
+        confidence: confidence level of the interval.
+    """
+
+    def mean_probability(*samples: FloatArray, axis: int = -1) -> FloatArray:
+        pairs = zip(samples[: len(a)], samples[len(a) :], strict=True)
+        probabilities = [_probability(one, other, axis) for one, other in pairs]
+        return np.asarray(np.mean(probabilities, axis=0), dtype=np.float64)
+
+    return interval((*a, *b), mean_probability, seed, confidence)
+
+
+def quantile_of(published: float, points: Sequence[float]) -> float:
+    """Return the share of seeds below a published value; a seed equal to it counts half."""
+    return float(stats.percentileofscore(points, published, kind="mean")) / _PERCENT
+
+
+def bootstrap_exceeds(estimate: Interval, threshold: float, fewest: int) -> Verdict:
+    """Return `Interval.exceeds` for a bootstrap interval, if it has enough seeds to decide.
+
+    Args:
+        estimate: the bootstrap interval.
+        threshold: to compare with.
+        fewest: number of seeds in the smallest stratum; below `MIN_RESAMPLED` nothing is decided.
+    """
+    return estimate.exceeds(threshold) if fewest >= MIN_RESAMPLED else "not established"
+
+
+def _probability(a: FloatArray, b: FloatArray, axis: int) -> FloatArray:
+    """Return P(a > b) + P(a = b)/2 along an axis, by the Mann-Whitney U statistic."""
+    n, m = a.shape[axis], b.shape[axis]
+    ranks = stats.rankdata(np.concatenate([a, b], axis=axis), axis=axis)
+    over = np.take(ranks, range(n), axis=axis).sum(axis=axis) - n * (n + 1) / 2
+    return np.asarray(over / (n * m), dtype=np.float64)
+
+
+def _wilson(hits: int, of: int) -> Any:
+    return stats.binomtest(hits, of).proportion_ci(confidence_level=CONFIDENCE, method="wilson")

@@ -1,0 +1,241 @@
+"""Build an experiment's summary from its trials: the data of the report, the page and the CLI."""
+
+import os
+import platform
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from importlib.metadata import version
+from itertools import combinations
+from typing import Any
+
+from hexapods.experiments.claims import CLAIMS_OF
+from hexapods.experiments.claims.judging import judge
+from hexapods.experiments.config import DISTURBED, ExperimentConfig, as_json
+from hexapods.experiments.measures import (
+    ReferenceDistance,
+    best_known_relative,
+    compare_with_published,
+    learning_curve,
+    measure_against_references,
+    summarise_distances,
+)
+from hexapods.experiments.names import trial_names
+from hexapods.experiments.narrative.narrative import narrate
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.published import published
+from hexapods.experiments.setting_results import (
+    SettingResults,
+    group_by_setting,
+    references_by_conditions,
+    setting_fields,
+    stratum,
+)
+from hexapods.experiments.statistics import bootstrap_exceeds, improvement
+from hexapods.experiments.trial import TrialResult
+from hexapods.experiments.worker import versions
+from hexapods.experiments.worlds import compare_in_worlds
+
+FORMAT = 1
+_DISTANCE_SHARES = ("relative", "relative_finished", "of_best_known")
+"""Measures that are shares of a distance, other than shares of seeds."""
+
+
+def summarise(
+    config: ExperimentConfig,
+    results: Mapping[str, TrialResult],
+    set_aside: Mapping[str, str] | None = None,
+    cost: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """Summarise the trials completed so far; independent of the order of completion.
+
+    Args:
+        config: the experiment.
+        results: results by trial key; trials not completed yet are missing.
+        set_aside: reasons by trial key, of trials without a result.
+        cost: wall_s, compute_s, trials_per_s and workers of the run, if known.
+
+    Returns:
+        Plain types, fit for JSON: `trials` (counts), `settings` (one entry per setting), `pooled`
+        (one per setting over its gaits), `curves` (settings with several blocks), `versus`
+        (pairs of learning agents), `timed` (races timed on this machine), `worlds` (agents in the
+        worlds of a league or recovery), and `claims` and `story` as text. What cannot be computed
+        yet is None, or an empty list.
+    """
+    plan = _plan(config)
+    settings = group_by_setting(plan, results)
+    references = references_by_conditions(settings)
+    walked = [one for one in settings if one.setting.role != "timed"]
+    is_disturbed = config.experiment in DISTURBED
+    summary: dict[str, Any] = {
+        "format": FORMAT,
+        "experiment": config.experiment,
+        "config": as_json(config),
+        "versions": _versions(),
+        "machine": {"platform": platform.platform(), "cores": os.cpu_count()},
+        "trials": _count_trials(plan, settings, set_aside or {}),
+        "cost": None if cost is None else dict(cost),
+        "parameters": list(plan.settings[0].parameters),
+        "settings": [_setting(one, references, config) for one in walked],
+        "pooled": _pooled(walked, references, config),
+        "curves": [
+            _curve(one, references, config.seed) for one in walked if one.setting.trial.blocks > 1
+        ],
+        "versus": [] if is_disturbed else _versus(walked, config.seed),
+        "timed": [_timed(one) for one in settings if one.setting.role == "timed" and one.succeeded],
+        "worlds": compare_in_worlds(walked, config.seed) if is_disturbed else [],
+    }
+    summary["claims"] = judge(summary, CLAIMS_OF[config.experiment])
+    summary["story"] = narrate(summary)
+    return summary
+
+
+@lru_cache(maxsize=8)
+def _plan(config: ExperimentConfig) -> Plan:
+    """Return the experiment's plan, cached: a large grid takes longer to plan than to summarise."""
+    return Plan(config)
+
+
+def _setting(
+    one: SettingResults, references: Mapping[Any, ReferenceDistance], config: ExperimentConfig
+) -> dict[str, Any]:
+    seeds = stratum(one, references)
+    cell = published(one.setting.gait, one.setting.training.agent, one.setting.practised_steps)
+    printed = compare_with_published(cell, seeds.total_m, seeds.finished_m)
+    elapsed = [result.elapsed_s for result in one.succeeded if result.elapsed_s is not None]
+    return {
+        "key": one.setting.key,
+        "role": one.setting.role,
+        **setting_fields(one),
+        "n": len(seeds.total_m),
+        "failed": len(one.results) - len(one.succeeded),
+        "total": summarise_distances(seeds.total_m, config.seed),
+        "finished": summarise_distances(seeds.finished_m, config.seed),
+        "best_known_m": seeds.reference.best_known_m,
+        **measure_against_references([seeds], config.seed),
+        "elapsed_s": elapsed[0] if elapsed and one.setting.role == "reference" else None,
+        "published": printed if config.experiment == "table1" else None,
+    }
+
+
+def _pooled(
+    settings: Sequence[SettingResults],
+    references: Mapping[Any, ReferenceDistance],
+    config: ExperimentConfig,
+) -> list[dict[str, Any]]:
+    """Measure each learner over its gaits, which are the strata of the bootstrap.
+
+    Outside Table 1 also search agents other than greedy: without intervals or shares of seeds,
+    since they have one result per gait, and a gait is not a seed.
+    """
+    entries = []
+    for group in _group_by_gait(one for one in settings if _is_compared(one, config)):
+        strata = [stratum(one, references) for one in group]
+        shared = {k: v for k, v in setting_fields(group[0]).items() if k != "gait"}
+        gaits = [one.setting.gait for one in group]
+        n = sum(len(one.total_m) for one in strata)
+        measured = measure_against_references(strata, config.seed)
+        if group[0].setting.role == "reference":
+            measured = {k: v if k in _DISTANCE_SHARES else None for k, v in measured.items()}
+        known = best_known_relative(strata)
+        entries.append({**shared, "gaits": gaits, "n": n, "best_known_relative": known, **measured})
+    return entries
+
+
+def _is_compared(one: SettingResults, config: ExperimentConfig) -> bool:
+    agent = one.setting.training.agent
+    return one.setting.role == "learner" or (config.experiment != "table1" and agent != "greedy")
+
+
+def _group_by_gait(settings: Iterable[SettingResults]) -> list[list[SettingResults]]:
+    """Group settings that differ only in the gait."""
+    groups: dict[Any, list[SettingResults]] = {}
+    for one in settings:
+        alike = (one.conditions[1:], one.setting.training.agent, one.parameters)
+        groups.setdefault(alike, []).append(one)
+    return list(groups.values())
+
+
+def _curve(
+    one: SettingResults, references: Mapping[Any, ReferenceDistance], seed: int
+) -> dict[str, Any]:
+    reference = references.get(one.conditions, ReferenceDistance())
+    blocks = list(zip(*(result.distances_m for result in one.succeeded), strict=True))
+    block = one.setting.training.steps
+    points = learning_curve(blocks, block, reference, seed)
+    return {"key": one.setting.key, **setting_fields(one), **points}
+
+
+def _versus(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any]]:
+    """Compare each pair of learning agents by probability of improvement.
+
+    Agents are compared under the same conditions with the same values of what both of them have.
+    """
+    groups: dict[Any, list[SettingResults]] = {}
+    for one in settings:
+        if one.setting.role == "learner" and one.total_m:
+            groups.setdefault((one.conditions, one.setting.trial.blocks), []).append(one)
+    entries = []
+    for a, b in (pair for group in groups.values() for pair in combinations(group, 2)):
+        if not _are_comparable(a, b):
+            continue
+        probability = improvement((a.total_m,), (b.total_m,), seed)
+        theirs = setting_fields(b)
+        # Of a setting that one of them does not have, the other's value.
+        shared = {k: theirs[k] if v is None else v for k, v in setting_fields(a).items()}
+        del shared["agent"]
+        agents = {"a": a.setting.training.agent, "b": b.setting.training.agent}
+        fewest = min(len(a.total_m), len(b.total_m))
+        entries.append(
+            {
+                **shared,
+                **agents,
+                "probability": probability.value,
+                "low": probability.low,
+                "high": probability.high,
+                "verdict": bootstrap_exceeds(probability, 0.5, fewest),
+            }
+        )
+    return entries
+
+
+def _are_comparable(a: SettingResults, b: SettingResults) -> bool:
+    if a.setting.training.agent == b.setting.training.agent:
+        return False
+    pairs = [(value, b.setting.parameters[name]) for name, value in a.setting.parameters.items()]
+    return all(x == y for x, y in pairs if x is not None and y is not None)
+
+
+def _timed(one: SettingResults) -> dict[str, Any]:
+    lanes = [dict(lane) for lane in one.succeeded[0].wall or ()]
+    fields = setting_fields(one)
+    return {**{k: fields[k] for k in ("gait", "observation", "robot")}, "lanes": lanes}
+
+
+def _count_trials(
+    plan: Plan, settings: Sequence[SettingResults], set_aside: Mapping[str, str]
+) -> dict[str, Any]:
+    failed = {
+        f"{one.setting.key}#{number}": result.failure
+        for one in settings
+        for number, result in sorted(one.results.items())
+        if result.failure
+    }
+
+    def reasons(by_trial: Mapping[str, str]) -> list[dict[str, str]]:
+        names = trial_names(plan, by_trial)
+        return [
+            {"key": key, "label": names[key], "reason": reason} for key, reason in by_trial.items()
+        ]
+
+    return {
+        "done": sum(len(one.results) for one in settings),
+        "total": plan.total,
+        "failed": len(failed),
+        "failures": reasons(failed),
+        "set_aside": reasons(dict(sorted(set_aside.items()))),
+    }
+
+
+@lru_cache(maxsize=1)
+def _versions() -> dict[str, str]:
+    return {**versions(), "scipy": version("scipy"), "matplotlib": version("matplotlib")}

@@ -1,0 +1,87 @@
+"""The task that runs on a worker of the cluster: a batch of trials, by the same software.
+
+A trial's result depends on the versions of the software, so a worker with others is refused.
+"""
+
+import platform
+import time
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from typing import NamedTuple
+
+from hexapods import __version__
+from hexapods.domain.errors import HexapodError
+from hexapods.experiments.trial import TrialConfig, TrialResult, run_trial
+
+
+class VersionMismatch(HexapodError):
+    """A worker that joined later has other versions, and would compute other results."""
+
+
+class Attempt(NamedTuple):
+    """One attempt at a trial on a worker: its result, or the reason that there is none.
+
+    Attributes:
+        result: None if the trial raised.
+        reason: the error in a sentence; None if there is a result.
+        compute_s: time that the worker computed.
+    """
+
+    result: TrialResult | None
+    reason: str | None
+    compute_s: float
+
+
+def run_batch(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> list[Attempt]:
+    """Run a batch of trials on a worker, one after the other.
+
+    Args:
+        configs: the trials.
+        expected: versions of the submitting process, as by `versions`.
+
+    Raises:
+        VersionMismatch: if this worker has other versions than were expected.
+    """
+    differs = difference(expected, versions())
+    if differs is not None:
+        raise VersionMismatch(f"a worker that joined would compute other results: it has {differs}")
+    return [_timed(config) for config in configs]
+
+
+def _timed(config: TrialConfig) -> Attempt:
+    began_s = time.perf_counter()
+    result, reason = None, None
+    try:
+        result = run_trial(config)
+    except HexapodError as error:
+        reason = str(error)
+    # User-supplied agents are untrusted code: they may raise anything, and call `sys.exit`.
+    except (Exception, SystemExit) as error:
+        reason = f"something in it broke ({type(error).__name__}: {error})"
+    return Attempt(result, reason, time.perf_counter() - began_s)
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of the product, Python, NumPy and MuJoCo in this process."""
+    return {
+        "racing-hexapods": __version__,
+        "python": platform.python_version(),
+        "numpy": version("numpy"),
+        "mujoco": version("mujoco-core"),
+    }
+
+
+def difference(here: Mapping[str, str], there: Mapping[str, str]) -> str | None:
+    """Describe how the versions of two processes differ; None if results are comparable.
+
+    Python's patch version is ignored.
+    """
+    names = [name for name in here if _comparable(here, name) != _comparable(there, name)]
+    if not names:
+        return None
+    return ", ".join(f"{name} {there.get(name, 'none')} instead of {here[name]}" for name in names)
+
+
+def _comparable(installed: Mapping[str, str], name: str) -> str | None:
+    value = installed.get(name)
+    return value.rpartition(".")[0] if name == "python" and value else value

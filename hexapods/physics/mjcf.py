@@ -1,0 +1,135 @@
+"""Build a MuJoCo model from a `Robot`: a torso with a copy of one leg at each mount."""
+
+from functools import lru_cache
+
+import mujoco
+import numpy as np
+
+from hexapods.assets import models_dir
+from hexapods.domain.disturbances import Payload
+from hexapods.domain.kinematics import JOINT_LIMITS_RAD
+from hexapods.domain.robot import Robot
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.physics.conditions import apply_conditions
+
+LINKS = ("coxa", "femur", "tibia")
+VISIBLE_GROUP = 1
+"""The group of the visual geoms."""
+_UNPAINTED = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
+"""Substrings of the names of geoms that are not painted in the agent's colour."""
+
+
+@lru_cache(maxsize=32)
+def compile_visual_model(robot: Robot) -> mujoco.MjModel:
+    """Compile the model of a robot as it is drawn, upright over the origin; cached, read-only.
+
+    Naming scheme: body, joint and actuator `leg1_femur`, geom `leg1_foot`.
+    """
+    return robot_spec(robot).compile()
+
+
+def compile_model(
+    robot: Robot, conditions: World = UNDISTURBED, forward_deg: float = 90.0
+) -> mujoco.MjModel:
+    """Compile the model that is simulated, without geoms that are only drawn; cached, read-only.
+
+    Models of one robot have states of one layout, whatever its conditions.
+
+    Args:
+        robot: the robot.
+        conditions: what holds all the time, a result of `World.as_of`.
+        forward_deg: azimuth of the gait's forward direction in the body frame, for a payload.
+    """
+    is_loaded = conditions.one_of(Payload) is not None
+    return _compile_model(robot, conditions, forward_deg if is_loaded else 90.0)
+
+
+@lru_cache(maxsize=64)
+def _compile_model(robot: Robot, conditions: World, forward_deg: float) -> mujoco.MjModel:
+    spec = robot_spec(robot)
+    for geom in spec.geoms:
+        if geom.contype == 0 and geom.conaffinity == 0:  # those that are only drawn
+            spec.delete(geom)
+    apply_conditions(spec, robot, conditions, forward_deg)
+    return spec.compile()
+
+
+def robot_spec(robot: Robot) -> mujoco.MjSpec:
+    """Build the robot as an editable model specification."""
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "torso.xml"))
+    spec.option.timestep = robot.dt_s
+    torso = spec.body("torso")
+    torso.pos = [0, 0, robot.body_height_m + robot.foot_radius_m]
+    _shape_torso(spec, robot)
+    for number, mount in enumerate(robot.legs, start=1):
+        azimuth = np.deg2rad(mount.azimuth_deg)
+        frame = torso.add_frame(
+            pos=[mount.radius_m * np.cos(azimuth), mount.radius_m * np.sin(azimuth), 0],
+            quat=[np.cos(azimuth / 2), 0, 0, np.sin(azimuth / 2)],
+        )
+        spec.attach(_leg_spec(robot), prefix=f"leg{number}_", frame=frame)
+    return spec
+
+
+def is_painted(geom_name: str) -> bool:
+    """Return whether a visual geom is painted in the agent's colour."""
+    return not any(part in geom_name for part in _UNPAINTED)
+
+
+def _shape_torso(spec: mujoco.MjSpec, robot: Robot) -> None:
+    """Scale every geom of the torso file to the robot's radius and half-height."""
+    drawn = spec.geom("torso")
+    wide = robot.torso_radius_m / drawn.size[0]
+    high = robot.torso_half_height_m / drawn.size[1]
+    for geom in spec.body("torso").geoms:
+        if geom.type == mujoco.mjtGeom.mjGEOM_ELLIPSOID:
+            geom.size = geom.size * [wide, wide, high]
+        else:
+            geom.size = geom.size * [wide, high, 1]
+        geom.pos = geom.pos * [wide, wide, high]
+    spec.geom("torso").mass = robot.torso_kg
+    _set_friction(spec.geom("torso"), robot)
+
+
+def _leg_spec(robot: Robot) -> mujoco.MjSpec:
+    """Build a leg with this robot's lengths, masses, servos and friction."""
+    spec = mujoco.MjSpec.from_file(str(models_dir() / "leg.xml"))
+    ends = {"coxa": "femur", "femur": "tibia", "tibia": "foot"}
+    for link in LINKS:
+        length: float = getattr(robot, f"{link}_m")
+        end = spec.body(ends[link])
+        _stretch(spec.body(link), length / end.pos[0])
+        end.pos = [length, 0, 0]
+        spec.geom(link).mass = getattr(robot, f"{link}_kg")
+        _set_friction(spec.geom(link), robot)
+        _set_servo(spec, link, robot)
+    foot = spec.geom("foot")
+    foot.mass, foot.size = robot.foot_kg, [robot.foot_radius_m, 0, 0]
+    _set_friction(foot, robot)
+    return spec
+
+
+def _set_friction(geom: mujoco.MjsGeom, robot: Robot) -> None:
+    geom.friction = [robot.friction, *geom.friction[1:]]
+
+
+def _stretch(body: mujoco.MjsBody, factor: float) -> None:
+    """Scale a link's geoms along its x axis; their thickness does not change."""
+    for geom in body.geoms:
+        geom.pos = geom.pos * [factor, 1, 1]
+        if np.isfinite(geom.fromto[0]):
+            geom.fromto = geom.fromto * [factor, 1, 1, factor, 1, 1]
+
+
+def _set_servo(spec: mujoco.MjSpec, link: str, robot: Robot) -> None:
+    joint, servo = spec.joint(link), spec.actuator(link)
+    joint.armature, joint.range = robot.joint_armature, JOINT_LIMITS_RAD[link]
+    joint.damping = np.array([robot.joint_damping, 0, 0])[: np.size(joint.damping)]
+    servo.gainprm[0] = robot.servo_kp
+    servo.biasprm[1:3] = -robot.servo_kp, -robot.servo_kv
+    servo.forcerange = [-robot.servo_torque_nm, robot.servo_torque_nm]
+
+
+def joint_index(leg: int, link: str) -> int:
+    """Return the index of a joint among all joints and servos; legs count from 1."""
+    return (leg - 1) * len(LINKS) + LINKS.index(link)

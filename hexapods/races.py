@@ -1,0 +1,265 @@
+"""Races: lanes side by side, ranked under three clocks, saved and read again.
+
+`race` runs the loop of `hexapods.runs.racing`, which the dashboard runs too: the same arguments and
+seed give the same walks, to the last bit; only the measured times of decisions differ.
+"""
+
+import html
+import io
+import json
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+
+from hexapods.agents.registry import AgentClass, needs_practice
+from hexapods.arguments import WALK, agent_name, check_names, plain_values, read_walk
+from hexapods.assembly import build_walkers
+from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.domain.observation import Observation
+from hexapods.domain.world import check_ends
+from hexapods.files import write_atomically
+from hexapods.runs.best_known import best_known_in_race_m
+from hexapods.runs.clocks import Clock, check_clock
+from hexapods.runs.config import RACE_STEPS, agent_settings
+from hexapods.runs.config_json import as_json, config_from_json
+from hexapods.runs.lane import LaneConfig, PlanningModel, lane_config, observation_of
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.race_file import race_arrays, race_recording
+from hexapods.runs.racing import record_race
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.results import lane_details, race_result
+from hexapods.runs.tables import read_arrays
+from hexapods.trainings import Table, Training, read_table
+
+CONFIG = "config"
+"""Array of a saved race with its config as JSON."""
+_LANE_ARGUMENTS = ("table", "observation", "keep_learning", "plans_with")
+
+
+class Lane(NamedTuple):
+    """A lane of a race, as `lane` returns it."""
+
+    config: LaneConfig
+    training: Training | None
+
+
+class Standing(NamedTuple):
+    """A lane at the end of a race."""
+
+    rank: int | None
+    """By the distance at time-out; None if the race has none."""
+    lane: int
+    """Number of the lane, from 0 on."""
+    agent: str
+    finished_distance_m: float | None
+    """At time-out, when the first lane has used all its steps [m]."""
+    total_distance_m: float | None
+    """After all steps [m]; None if it has failed."""
+    elapsed_s: float
+    """Time that it took by the clock [s]."""
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Race:
+    """A finished race, as `race` and `load` return it.
+
+    Attributes:
+        config: all that decides its result.
+        recording: the steps of each lane.
+        result: what each lane reached, as in answers of the dashboard.
+    """
+
+    config: RaceConfig
+    recording: Sequence[LaneRecording]
+    result: Mapping[str, Any]
+
+    @property
+    def standings(self) -> tuple[Standing, ...]:
+        """The lanes by rank under the paper's clock; `pandas.DataFrame(race.standings)` is one."""
+        return self.standings_under("paper")
+
+    def standings_under(self, clock: Clock) -> tuple[Standing, ...]:
+        """Return the lanes by rank under a clock.
+
+        Args:
+            clock: `paper`, `wall` or `free`; see `hexapods.runs.clocks`.
+
+        Raises:
+            UnknownName: if there is no such clock.
+        """
+        check_clock(clock)
+        rows = [
+            Standing(
+                lane["clocks"][clock]["rank"],
+                number,
+                lane["agent"],
+                lane["clocks"][clock]["finished_distance_m"],
+                lane["total_distance_m"],
+                lane["clocks"][clock]["elapsed_s"],
+            )
+            for number, lane in enumerate(self.result["lanes"])
+        ]
+        return tuple(sorted(rows, key=lambda row: (row.rank or len(rows), row.lane)))
+
+    @property
+    def best_known_m(self) -> float | None:
+        """The farthest walk known of this robot, gait and world [m]; None if none is."""
+        return best_known_in_race_m(self.config)
+
+    def save(self, path: str | Path) -> Path:
+        """Write config and recording to an `.npz` file, which `load` reads.
+
+        Returns:
+            the path.
+
+        Raises:
+            OSError: if the file cannot be written.
+        """
+        arrays = race_arrays(self.recording) | {CONFIG: np.array(json.dumps(as_json(self.config)))}
+        buffer, target = io.BytesIO(), Path(path)
+        np.savez(buffer, **arrays)  # type: ignore[arg-type]
+        write_atomically(target, buffer.getvalue())
+        return target
+
+    def __repr__(self) -> str:
+        ranking = ", ".join(
+            f"{one.agent} {_metres(one.finished_distance_m) or 'without rank'}"
+            for one in self.standings
+        )
+        return f"<Race over {self.config.steps:,} steps: {ranking}>"
+
+    def _repr_html_(self) -> str:
+        head = ("rank", "agent", "at time-out", "total")
+        rows = [
+            (one.rank, one.agent, _metres(one.finished_distance_m), _metres(one.total_distance_m))
+            for one in self.standings
+        ]
+        cells = "".join(f"<th>{name}</th>" for name in head)
+        body = "".join(
+            "<tr>" + "".join(f"<td>{html.escape(str(value))}</td>" for value in row) + "</tr>"
+            for row in rows
+        )
+        return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def lane(
+    agent: str | AgentClass | Training,
+    *,
+    table: Table | None = None,
+    observation: Observation | None = None,
+    keep_learning: bool | None = None,
+    plans_with: PlanningModel | None = None,
+    **settings: Any,
+) -> Lane:
+    """Return a lane for `race`.
+
+    Args:
+        agent: a training, or an agent's name or class.
+        table: what the agent has learned, unless `agent` is a training.
+        observation: how it reads its state; with a table as in the practice, else `measured`.
+        keep_learning: whether it learns from each step of the race; None for its default.
+        plans_with: model that a search plans with; see `LaneConfig`.
+        settings: the agent's settings; none with a table, which has those of its practice.
+
+    Raises:
+        UnknownName, InvalidInput: if an argument is not valid; the message names what is.
+    """
+    if isinstance(agent, Training):
+        table, agent = agent, agent.config.agent
+    trained, name = None if table is None else read_table(table), agent_name(agent)
+    if trained is not None and trained.config.agent != name:
+        raise InvalidInput(f"the table was learned by {trained.config.agent}, not by {name}")
+    check_names(f"a {name} lane", settings, (*_LANE_ARGUMENTS, *agent_settings(name)))
+    of_training = None if trained is None else trained.config.observation
+    config = lane_config(
+        name,
+        observation=observation_of(observation, of_training),
+        keep_learning=keep_learning,
+        plans_with=plans_with,
+        has_training=trained is not None,
+        **plain_values(settings),
+    )
+    if needs_practice(name) and trained is None and not config.keep_learning:
+        raise InvalidInput(
+            f"{name} races with what it has learned: give the lane its training, or "
+            "keep_learning=True"
+        )
+    return Lane(config, trained)
+
+
+def race(
+    lanes: Iterable[Lane | Training | str | AgentClass],
+    *,
+    steps: int = RACE_STEPS,
+    seed: int = 0,
+    on_step: Callable[[], object] | None = None,
+    **given: Any,
+) -> Race:
+    """Race one to six agents (paper §5), and record every step.
+
+    Args:
+        lanes: agents by name or class, trainings, or what `lane` returns.
+        steps: number of steps of each lane.
+        seed: seed of all random generators.
+        on_step: called after each step of a lane.
+        given: the walking problem, as in `hexapods.train`; what is not given is that of the first
+            training in the race, except for world and tolerance, or the default.
+
+    Raises:
+        UnknownName, InvalidInput: if an argument is not valid; the message names what is.
+        TableMismatch: if a training is of another walking problem.
+    """
+    check_names("a race", given, ("steps", "seed", *WALK))
+    if isinstance(lanes, str | Lane | Training) or not isinstance(lanes, Iterable):
+        raise InvalidInput(f'lanes is a list, such as [training, "greedy"], not {lanes!r}')
+    numbers = plain_values({"steps": steps, "seed": seed})
+    built = [one if isinstance(one, Lane) else lane(one) for one in lanes]
+    like = next((one.training.config for one in built if one.training is not None), None)
+    config = RaceConfig(
+        **read_walk(plain_values(given), like),
+        lanes=tuple(one.config for one in built),
+        **numbers,
+    )
+    check_ends(config.world.disturbances, config.steps)
+    tables = [None if one.training is None else one.training.table for one in built]
+    recording: Sequence[LaneRecording] = ()
+    for grown in record_race(build_walkers(config, tables), config, time.perf_counter):
+        recording = grown
+        if on_step is not None:
+            on_step()
+    return finished_race(config, recording)
+
+
+def finished_race(config: RaceConfig, recording: Sequence[LaneRecording]) -> Race:
+    """Return a race that was recorded, with its result."""
+    result = race_result(recording, config.steps)
+    for own, details in zip(result["lanes"], lane_details(recording, config), strict=True):
+        own.update(details)
+    return Race(config, recording, result)
+
+
+def race_from_bytes(data: bytes, name: str) -> Race:
+    """Decode the file of a race that `Race.save` has written.
+
+    Args:
+        data: its content.
+        name: its name, for error messages.
+
+    Raises:
+        DamagedFile: if it is none.
+    """
+    try:
+        arrays = read_arrays(data)
+        config = config_from_json(json.loads(str(arrays.pop(CONFIG))))
+        recording = race_recording(arrays)
+        return finished_race(cast(RaceConfig, config), recording)
+    except Exception as error:  # zipfile and NumPy document no complete list of exceptions
+        raise DamagedFile(f"{name} is not a race that was saved: {error}") from error
+
+
+def _metres(value: float | None) -> str:
+    return "" if value is None else f"{value:.2f} m"

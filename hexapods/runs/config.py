@@ -1,0 +1,291 @@
+"""Walking problems and configs of trainings: complete, validated and immutable.
+
+Fields that a user may choose are declared as settings (`hexapods.domain.settings`).
+"""
+
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Annotated, Any, Literal, get_args
+
+from annotated_types import Ge, Le
+
+from hexapods.agents import registry
+from hexapods.agents.protocol import Problem
+from hexapods.domain import disturbances
+from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
+from hexapods.domain.gait import Gait, GaitSpec, resolve
+from hexapods.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
+from hexapods.domain.observation import Observation, check_observation
+from hexapods.domain.robot import Robot
+from hexapods.domain.settings import (
+    DeclaredSetting,
+    Setting,
+    SettingValues,
+    Value,
+    complete,
+    declared_fields,
+)
+from hexapods.domain.tolerance import MAX_TOLERANCE, build_tolerance
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.runs.seeding import BUILDING, generator
+
+_log = logging.getLogger(__name__)
+SimulatorName = Literal["mujoco", "kinematic"]
+SIMULATORS: tuple[SimulatorName, ...] = get_args(SimulatorName)
+MAX_STEPS = disturbances.MAX_STEP
+RACE_STEPS = 50
+"""Default number of steps of a race, and number of steps of an evaluation (paper §5)."""
+
+Divisions = Annotated[
+    int,
+    Ge(MIN_DIVISIONS),
+    Le(MAX_DIVISIONS),
+    Setting(
+        title="Grid divisions",
+        phrase="{}\u00a0divisions",
+        help="Points along each side of the foot grid: more choices, more to learn.",
+        examples=(2, 3),
+    ),
+]
+GridSide = Annotated[
+    float,
+    Ge(MIN_SIDE_M),
+    Le(MAX_SIDE_M),
+    Setting(
+        title="Grid side",
+        phrase="grid\u00a0{}\u00a0m",
+        unit="m",
+        help="Side of the square in which each foot may be put; every leg must reach all of it.",
+        examples=(0.03, 0.04),
+    ),
+]
+Tolerance = Annotated[
+    float,
+    Ge(0.0),
+    Le(MAX_TOLERANCE),
+    Setting(
+        title="Build tolerance",
+        phrase="tolerance\u00a0{}",
+        help="How far the robot that the seed draws differs from its design, as a share.",
+        examples=(0.03,),
+    ),
+]
+Seed = Annotated[
+    int,
+    Ge(0),
+    Setting(
+        title="Seed",
+        help="Everything that is random follows from this number: the same seed, the same run.",
+    ),
+]
+_StepCount = Annotated[int, Ge(1), Le(MAX_STEPS)]
+PracticeSteps = Annotated[
+    _StepCount,
+    Setting(
+        title="Practice",
+        phrase="{}\u00a0steps",
+        unit="steps",
+        help="How many steps it practises; the paper uses 500 and 1000.",
+        examples=(500, 1000),
+    ),
+]
+StepsPerEpisode = Annotated[
+    _StepCount,
+    Setting(
+        title="Steps per episode",
+        phrase="{}\u00a0steps\u00a0per\u00a0episode",
+        help="The share of random steps falls after every so many steps.",
+        examples=(25, 50),
+    ),
+]
+EvaluateEvery = Annotated[
+    int,
+    Ge(0),
+    Le(MAX_STEPS),
+    Setting(
+        title="Evaluate every",
+        unit="steps",
+        help="Evaluates the policy after every so many steps; 0: never.",
+    ),
+]
+PaceFactor = Annotated[float, Ge(0.01), Le(1000)]
+Pace = Annotated[
+    Literal["max"] | PaceFactor,
+    Setting(
+        title="Pace of practice",
+        unit="times real time",
+        help="How fast it practises: max, or a number of times real time.",
+        live=True,
+    ),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class WalkingProblem:
+    """Walking problem: a robot, its gait and foot grid, and the simulator.
+
+    Attributes:
+        gait: a named gait, or a gait given by its leg pairs.
+        robot: geometry and actuators.
+        simulator: `mujoco` (physics) or `kinematic` (ideal, no slip).
+        divisions: points along each side of the foot grid.
+        grid_side_m: side of the foot grid [m].
+        world: what happens to the robot and the ground, by step.
+        tolerance: how far the robot that the run's seed draws differs from `robot`, as a share.
+
+    Raises:
+        UnknownName: if the gait or the simulator is unknown.
+        InvalidInput: if a value is out of its limits, or gait or world do not fit the robot.
+    """
+
+    gait: str | GaitSpec
+    robot: Robot = field(default_factory=Robot)
+    simulator: SimulatorName = "mujoco"
+    divisions: Divisions = FootGrid.divisions
+    grid_side_m: GridSide = FootGrid.side_m
+    world: World = UNDISTURBED
+    tolerance: Tolerance = 0.0
+
+    def __post_init__(self) -> None:
+        if self.simulator not in SIMULATORS:
+            raise UnknownName("simulator", self.simulator, SIMULATORS)
+        own = declared_fields(type(self))  # type: ignore[arg-type]  # of a class, not of an instance
+        for setting in own.values():
+            setting.check(getattr(self, setting.name))
+        resolve(self.gait, self.robot.azimuths_deg)
+        FootGrid(self.grid_side_m, self.divisions)
+        if self.tolerance and self.simulator == "kinematic":
+            raise InvalidInput(
+                "the kinematic simulator knows no build tolerance; choose the simulator mujoco, or "
+                "tolerance 0"
+            )
+        self.world.check(self.robot, self.simulator, getattr(self, "steps", None))
+
+    @property
+    def grid(self) -> FootGrid:
+        """The foot grid of this config."""
+        return FootGrid(self.grid_side_m, self.divisions)
+
+    @property
+    def resolved_gait(self) -> Gait:
+        """The gait with its leg pairs for this robot."""
+        return resolve(self.gait, self.robot.azimuths_deg)
+
+    @property
+    def built_robot(self) -> Robot:
+        """The robot as it was built: drawn by the run's seed, the same for all who race with it.
+
+        A walking problem without a seed is that of the robot as designed.
+        """
+        seed: int | None = getattr(self, "seed", None)
+        if seed is None or not self.tolerance:
+            return self.robot
+        return build_tolerance(self.robot, self.tolerance, generator(seed, BUILDING))
+
+
+def problem_of(walk: WalkingProblem) -> Problem:
+    """Return the size and geometry of a walking problem, as agents know it."""
+    gait = walk.resolved_gait
+    return Problem(gait.pairs, walk.grid.cells, gait.azimuths_deg)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrainingConfig(WalkingProblem):
+    """Config of a training. The defaults are the paper's; `training_config` adds agent settings.
+
+    Attributes:
+        steps: number of learning steps.
+        seed: seed of all random generators of the run.
+        observation: observation mode, `measured`, `commanded` or `planned`.
+        settings: the agent's settings by name; the agent's default applies to a missing one.
+        steps_per_episode: number of steps for which ε is constant.
+        evaluate_every: steps between two evaluations; 0 for none.
+        pace: `max`, or a multiple of real time.
+        agent: a registered name or `my.module:Agent`.
+    """
+
+    steps: PracticeSteps = 500
+    seed: Seed = 0
+    observation: Observation = "measured"
+    settings: SettingValues[Value] = field(default_factory=SettingValues)
+    steps_per_episode: StepsPerEpisode = 50
+    evaluate_every: EvaluateEvery = 50
+    pace: Pace = "max"
+    agent: str = "q-learning"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_observation(self.observation)
+
+
+TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
+"""Names of the fields of a training; all other names are settings of its agent."""
+
+
+_RESERVED = """
+a agents b beats_greedy beats_greedy_total best_known_m best_known_relative blocks branch_from
+changes continue_from distances_m disturb disturbance disturbances elapsed_s experiment failed
+finished from gaits greedy_m h half_side_m help high high_m iqm_m json keep_learning key lanes low
+low_m mean_m n name observations of_best_known out plans_with plans_with_by_default points_m
+practice probability published reaches_greedy relative relative_finished retry robots role run
+scheduler seeds start step table tls_ca tls_cert tls_key total training training_id verdict walk
+walkers workers worlds
+"""
+RESERVED = frozenset(_RESERVED.split())
+"""Names that mean something else beside the settings in requests, answers, files or commands."""
+
+
+def agent_settings(agent: str) -> Mapping[str, DeclaredSetting]:
+    """The settings that an agent's constructor declares, without fields of a training.
+
+    Raises:
+        UnknownName, InvalidInput: if there is no such agent, or a setting's name is reserved.
+    """
+    found = registry.settings_of(registry.find(agent))
+    for name in found:
+        if name in RESERVED or name.startswith(("_", "model_")):
+            raise InvalidInput(
+                f"agent {agent} declares a setting named {name!r}, which means something else in "
+                "requests and files; rename the parameter"
+            )
+    return {name: one for name, one in found.items() if name not in TRAINING_FIELDS}
+
+
+def usable_agents() -> tuple[str, ...]:
+    """The registered agents; one whose settings cannot be offered is left out, and logged."""
+    usable = []
+    for agent in registry.registered():
+        try:
+            agent_settings(agent), changeable_settings(agent)
+        except (HexapodError, TypeError, ValueError) as error:
+            _log.warning("agent %s is left out: %s", agent, error)
+        else:
+            usable.append(agent)
+    return tuple(usable)
+
+
+def changeable_settings(agent: str) -> Mapping[str, DeclaredSetting]:
+    """Return the settings of a training that may change while it runs.
+
+    Raises:
+        UnknownName, InvalidInput: if there is no such agent.
+    """
+    own = {name: one for name, one in declared_fields(TrainingConfig).items() if one.about.live}
+    return own | dict(registry.live_settings_of(registry.find(agent)))
+
+
+def training_config(agent: str = TrainingConfig.agent, **given: Any) -> TrainingConfig:
+    """Create the config of a training, with its agent's settings validated and completed.
+
+    Args:
+        agent: a registered name or `my.module:Agent`.
+        given: fields of `TrainingConfig`, and the agent's settings by name.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
+    """
+    own = {name: value for name, value in given.items() if name in TRAINING_FIELDS}
+    settings = {name: value for name, value in given.items() if name not in TRAINING_FIELDS}
+    config = TrainingConfig(agent=agent, **own)
+    return replace(config, settings=complete(agent_settings(agent), settings, agent))

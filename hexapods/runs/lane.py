@@ -1,0 +1,193 @@
+"""Lanes of races: their configs, with checks against their agents."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Annotated, Any, Literal
+
+from hexapods.agents import registry
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.observation import Observation, check_observation
+from hexapods.domain.settings import Setting, SettingValues, Value, complete, declared_fields
+from hexapods.runs.config import WalkingProblem, agent_settings
+
+PlanningModel = Literal["world", "start", "nominal"]
+"""Model that a search plans with: `world` is the world as it is in each step, `start` as it was at
+the start, `nominal` the robot as it was designed, on flat ground."""
+PLANNING_MODEL_TITLES: Mapping[PlanningModel, str] = {
+    "world": "true model",
+    "start": "model of the start",
+    "nominal": "nominal model",
+}
+PlansWith = Annotated[
+    PlanningModel,
+    Setting(
+        title="Plans with",
+        help="Model that a search plans with. The true model is the world as it is in each step; "
+        "the model of the start (default), the world as it was then; the nominal model, the robot "
+        "as it was designed, on flat ground.",
+        choice_titles=tuple(PLANNING_MODEL_TITLES.values()),
+    ),
+]
+LaneObservation = Annotated[
+    Observation,
+    Setting(
+        title="Observation",
+        help="How the agent reads its state; with a training as in the training.",
+        choice_titles=("feet measured", "commands remembered", "feet as planned"),
+    ),
+]
+KeepLearning = Annotated[
+    bool,
+    Setting(
+        title="Keeps learning",
+        help="Whether it learns from each step of the race too; without practice it begins there.",
+    ),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LaneConfig:
+    """Config of one lane of a race. `lane_config` adds the agent's defaults.
+
+    Attributes:
+        agent: a registered name or `my.module:Agent`.
+        observation: observation mode; for a trained agent that of its table.
+        keep_learning: whether the agent learns from each step of the race.
+        plans_with: model that a search plans with; None means `start`, since later disturbances are
+            not announced. `plans_with()` resolves it.
+        settings: the agent's settings by name; none for a trained agent, which has those of its
+            training.
+    """
+
+    agent: str
+    observation: LaneObservation = "measured"
+    keep_learning: KeepLearning = False
+    plans_with: PlansWith | None = None
+    settings: SettingValues[Value] = field(default_factory=SettingValues)
+
+    def __post_init__(self) -> None:
+        check_observation(self.observation)
+        for setting in declared_fields(LaneConfig).values():
+            setting.check(getattr(self, setting.name))
+
+
+_LANE_FIELDS = frozenset(one.name for one in fields(LaneConfig)) - {"settings"}
+
+
+def observation_of(
+    given: Observation | None,
+    of_training: Observation | None,
+    default: Observation = LaneConfig.observation,
+) -> Observation:
+    """Return the observation mode of a lane.
+
+    Args:
+        given: what is asked for the lane; None if nothing is.
+        of_training: the mode in which its agent has practised; None without a training.
+        default: the mode of a lane without a training for which nothing is asked.
+
+    Raises:
+        InvalidInput: if what is asked contradicts the training.
+    """
+    if of_training is None:
+        return default if given is None else given
+    if given not in (None, of_training):
+        raise InvalidInput(
+            f"observation must be {of_training}, in which its training was learned, not {given}; "
+            "leave it out, or choose another training"
+        )
+    return of_training
+
+
+def lane_config(
+    agent: str,
+    *,
+    observation: Observation = LaneConfig.observation,
+    keep_learning: bool | None = None,
+    plans_with: str | None = None,
+    has_training: bool = False,
+    **settings: Any,
+) -> LaneConfig:
+    """Create the config of a lane, with its agent's settings validated and completed.
+
+    Args:
+        agent: a registered name or `my.module:Agent`.
+        observation: observation mode.
+        keep_learning: whether the agent learns in the race; None for the agent's default.
+        plans_with: what a searcher knows; see `LaneConfig`.
+        has_training: whether the agent races with what it learned in a training.
+        settings: the agent's settings by name.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
+    """
+    if keep_learning is None:
+        keep_learning = registry.keeps_learning(agent)
+    lane = LaneConfig(
+        agent=agent,
+        observation=observation,
+        keep_learning=keep_learning,
+        plans_with=plans_with,  # type: ignore[arg-type]  # it is checked
+        settings=SettingValues(settings),
+    )
+    check_lane(lane, has_training)
+    if has_training:
+        return lane
+    return replace(lane, settings=complete(agent_settings(agent), settings, agent))
+
+
+def plans_with(lane: LaneConfig, walk: WalkingProblem) -> PlanningModel | None:
+    """Return what a lane's search knows in a race; None if its agent does not search.
+
+    What is left out in the lane, the start, is called `world` where nothing changes after it, and
+    `nominal` where nothing held at it. No agent is imported: of one that is not loaded, as when its
+    package was removed, it is what the lane says.
+    """
+    if lane.plans_with is not None or not registry.is_loaded(lane.agent):
+        return lane.plans_with
+    try:
+        if not registry.searches(lane.agent):
+            return None
+    except InvalidInput:
+        return None  # what has this name now is no agent
+    if not walk.world.change_steps:
+        return "world"
+    return "start" if walk.world.at_start or walk.tolerance else "nominal"
+
+
+def check_lane(lane: LaneConfig, has_training: bool) -> None:
+    """Check a lane against its agent, which is imported.
+
+    Raises:
+        UnknownName, InvalidInput: if the agent does not exist, does not learn but should, or does
+            not have these settings.
+    """
+    if lane.keep_learning and not registry.learns(lane.agent):
+        raise InvalidInput(
+            f"{lane.agent} does not learn, so it cannot keep learning; leave out keep_learning"
+        )
+    if lane.plans_with is not None and not registry.searches(lane.agent):
+        raise InvalidInput(f"{lane.agent} plans with no simulator; leave out plans_with")
+    if has_training and lane.settings:
+        raise InvalidInput(
+            "a lane with training takes its settings from there; leave out "
+            + ", ".join(lane.settings)
+        )
+    if not has_training:
+        complete(agent_settings(lane.agent), lane.settings, lane.agent)
+
+
+def lane_as_json(lane: LaneConfig) -> dict[str, Any]:
+    """Convert a lane to plain types; its settings become flat fields."""
+    return {name: getattr(lane, name) for name in sorted(_LANE_FIELDS)} | dict(lane.settings)
+
+
+def lane_from_json(data: Mapping[str, Any]) -> LaneConfig:
+    """Parse the output of `lane_as_json`; the agent is not imported.
+
+    Raises:
+        InvalidInput: if a value is invalid.
+    """
+    own = {name: value for name, value in data.items() if name in _LANE_FIELDS}
+    settings = {name: value for name, value in data.items() if name not in _LANE_FIELDS}
+    return LaneConfig(**own, settings=SettingValues(settings))

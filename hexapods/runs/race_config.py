@@ -1,0 +1,69 @@
+"""Configs of races: complete, validated and immutable."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, NamedTuple
+
+from annotated_types import Ge, Le
+
+from hexapods.domain.checks import check_whole
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.settings import Setting
+from hexapods.runs.config import RACE_STEPS, Seed, WalkingProblem
+from hexapods.runs.lane import LaneConfig
+
+MAX_LANES = 6
+MAX_ID = 64
+"""Maximum length of a run's id."""
+MAX_RACE_STEPS = 300_000
+"""Maximum of steps, summed over a race's lanes: every step is recorded, in about 3 kB."""
+
+RaceSteps = Annotated[
+    int,
+    Ge(1),
+    Le(MAX_RACE_STEPS),
+    Setting(title="Steps of the race", help="How many steps each robot has in the race."),
+]
+
+
+class Branch(NamedTuple):
+    """The moment of another race at which a race branches off; until then both are the same."""
+
+    race_id: str
+    step: int
+    """Number of steps that they share."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RaceConfig(WalkingProblem):
+    """Config of a race of one to six lanes, 50 steps each by default.
+
+    Attributes:
+        lanes: in order.
+        steps: of each lane.
+        seed: seed of all random generators of the run.
+        branch_from: the race whose first steps this one repeats, if any.
+
+    Raises:
+        InvalidInput: if there are no or too many lanes, or too many steps in all.
+    """
+
+    lanes: tuple[LaneConfig, ...]
+    steps: RaceSteps = RACE_STEPS
+    seed: Seed = 0
+    branch_from: Branch | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.branch_from is not None:
+            race_id: Any = self.branch_from.race_id  # it may be from a file
+            step = self.branch_from.step
+            if not isinstance(race_id, str) or not race_id.isalnum() or len(race_id) > MAX_ID:
+                raise InvalidInput(f"branch_from.race_id must be the id of a race, not {race_id!r}")
+            check_whole("branch_from.step", step, 0, self.steps - 1)
+        if not 1 <= len(self.lanes) <= MAX_LANES:
+            raise InvalidInput(f"a race has 1 to {MAX_LANES} lanes, not {len(self.lanes)}")
+        if self.steps * len(self.lanes) > MAX_RACE_STEPS:
+            raise InvalidInput(
+                f"a race records every step, so steps times lanes must be at most "
+                f"{MAX_RACE_STEPS:,}, not {self.steps * len(self.lanes):,}"
+            )

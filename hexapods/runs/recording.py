@@ -1,0 +1,265 @@
+"""Recordings: joint positions over time, observations and actions, for live view and replay.
+
+A recording is append-only. The live view shows its tail; a replay shows it from the start. Of a
+race only the figures of the steps (`step_figures`) stay in memory; what else there is of its older
+steps is in files, and read when it is asked for.
+"""
+
+from bisect import bisect_right
+from collections import deque
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from operator import attrgetter
+from typing import Any, Protocol, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hexapods.domain.simulator import Motion
+from hexapods.domain.types import Action, Cells, FloatArray
+from hexapods.runs.records import ActionValues, Evaluated, LaneStep, StepTaken
+from hexapods.runs.step_figures import GrowingArray, Rows, no_figures, row_of
+
+Arrays = dict[str, NDArray[Any]]
+_STEP_OVERHEAD_BYTES = 1000
+"""Approximate size of a step in memory besides its motion."""
+
+
+class StoredSteps(Protocol):
+    """Consecutive steps of a lane that can be read."""
+
+    @property
+    def first(self) -> int:
+        """Number of the lane's steps before the first of them."""
+
+    def step(self, index: int) -> LaneStep:
+        """Return the step of an index of the lane, from 0 on.
+
+        Raises:
+            HexapodError: if it cannot be read (any more).
+        """
+
+
+class LaneSteps(Sequence[LaneStep]):
+    """The steps of a lane: of all their figures, of the newest all, and the rest in files.
+
+    One thread appends, others read without a lock.
+    """
+
+    def __init__(self, steps: Iterable[LaneStep] = ()) -> None:
+        """Take the first steps."""
+        self._figures = GrowingArray(no_figures())
+        self._stored: list[StoredSteps] = []
+        self._newest: tuple[int, list[LaneStep]] = (0, [])
+        """The number of stored steps, and those that follow them."""
+        for step in steps:
+            self.append(step)
+
+    @classmethod
+    def read(cls, figures: Rows, stored: Iterable[StoredSteps]) -> "LaneSteps":
+        """Return steps that are all stored, in order; `figures` has a row of each."""
+        steps = cls()
+        steps._figures = GrowingArray(figures)
+        steps._stored, steps._newest = list(stored), (len(figures), [])
+        return steps
+
+    def append(self, step: LaneStep) -> None:
+        """Append a step."""
+        if not len(self._figures):
+            self._figures = GrowingArray(no_figures(len(step.observation)))
+        self._newest[1].append(step)
+        # The figures count, so last.
+        self._figures.extend([row_of(step, self._figures.rows)])
+
+    def store(self, stored: StoredSteps, count: int) -> None:
+        """Forget the oldest steps in memory, of which `count` are stored now."""
+        first, newest = self._newest
+        self._stored.append(stored)
+        self._newest = first + count, newest[count:]
+
+    @property
+    def stored(self) -> int:
+        """Number of steps that are stored."""
+        return self._newest[0]
+
+    @property
+    def figures(self) -> Rows:
+        """Figures of all steps so far, a row each; see `hexapods.runs.step_figures`."""
+        return self._figures.rows
+
+    def choices(self, newest: int) -> list[tuple[Cells, Action]]:
+        """Return what was observed and done in the newest steps, at most so many, in order."""
+        rows = self.figures[-newest:]
+        observed, done = rows["observation"].tolist(), rows["action"].tolist()
+        return [(tuple(o), Action(*a)) for o, a in zip(observed, done, strict=True)]
+
+    def so_far(self) -> "LaneSteps":
+        """Return the steps so far, to which none will be added."""
+        steps = LaneSteps()
+        # The figures first: the others have at least as many steps.
+        steps._figures = GrowingArray(self.figures)
+        steps._newest, steps._stored = self._newest, self._stored
+        return steps
+
+    def __len__(self) -> int:
+        """Number of steps so far."""
+        return len(self._figures)
+
+    @overload
+    def __getitem__(self, index: int) -> LaneStep: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[LaneStep]: ...
+
+    def __getitem__(self, index: int | slice) -> LaneStep | list[LaneStep]:
+        """Return a step, or several; raises as `StoredSteps.step`."""
+        if isinstance(index, slice):
+            return [self[number] for number in range(*index.indices(len(self)))]
+        number = index + len(self) if index < 0 else index
+        if not 0 <= number < len(self):
+            raise IndexError(index)
+        first, newest = self._newest
+        if number >= first:
+            return newest[number - first]
+        place = bisect_right(self._stored, number, key=attrgetter("first")) - 1
+        return self._stored[place].step(number)
+
+
+class LaneRecording:
+    """Recording of one lane of a race.
+
+    Attributes:
+        agent: name of the lane's agent.
+        rest_qpos: pose on the start line, (7 + joints,): position [m], quaternion, angles [rad].
+        steps: steps taken so far.
+        failure: reason if the lane failed.
+    """
+
+    def __init__(
+        self,
+        agent: str,
+        rest_qpos: NDArray[np.float32],
+        steps: "LaneSteps | Iterable[LaneStep]" = (),
+        failure: str | None = None,
+    ) -> None:
+        self.agent, self.rest_qpos, self.failure = agent, rest_qpos, failure
+        self.steps = steps if isinstance(steps, LaneSteps) else LaneSteps(steps)
+
+    def so_far(self) -> "LaneRecording":
+        """Return the recording so far, which does not grow."""
+        return LaneRecording(self.agent, self.rest_qpos, self.steps.so_far(), self.failure)
+
+    def start_qpos(self, step: int) -> NDArray[np.float32]:
+        """Return the pose at the start of a step, (7 + joints,); steps are counted from 0 here."""
+        if step == 0:
+            return self.rest_qpos
+        last: NDArray[np.float32] = self.steps[step - 1].motion.qpos[-1]
+        return last
+
+    @property
+    def distance_m(self) -> float:
+        """Distance covered so far [m]."""
+        figures = self.steps.figures
+        return float(figures[-1]["distance_m"]) if len(figures) else 0.0
+
+    @property
+    def size(self) -> int:
+        """Approximate size in memory [bytes]."""
+        newest = self.steps[self.steps.stored :]
+        held = sum(_size_of(step.motion, step.action_values) for step in newest)
+        return self.steps.figures.nbytes + held
+
+
+FIRST_STEPS, NEWEST_STEPS = 20, 500
+
+
+@dataclass
+class PracticeRecording:
+    """Recording of a training: its first and its newest steps (ring buffer), and all evaluations.
+
+    One thread appends, others read; the properties return copies, so no lock is needed.
+
+    Attributes:
+        rest_qpos: pose at the start, (7 + joints,).
+    """
+
+    rest_qpos: NDArray[np.float32]
+    _first: list[StepTaken] = field(default_factory=list)
+    _newest: deque[StepTaken] = field(default_factory=lambda: deque(maxlen=NEWEST_STEPS))
+    _evaluations: list[Evaluated] = field(default_factory=list)
+
+    def add(self, record: StepTaken | Evaluated) -> None:
+        """Append a step or an evaluation."""
+        if isinstance(record, Evaluated):
+            self._evaluations.append(record)
+        elif len(self._first) < FIRST_STEPS:
+            self._first.append(record)
+        else:
+            self._newest.append(record)
+
+    @property
+    def steps(self) -> list[StepTaken]:
+        """The stored steps, in order; there may be a gap after the first `FIRST_STEPS`."""
+        return [*self._first, *list(self._newest)]
+
+    @property
+    def evaluations(self) -> list[Evaluated]:
+        """All evaluations so far, in order."""
+        return list(self._evaluations)
+
+    def forget_motions(self, before: int) -> None:
+        """Drop the motions of the first evaluations, which are stored, but for the newest motion.
+
+        Args:
+            before: number of those evaluations.
+        """
+        newest = max((n for n, one in enumerate(self._evaluations) if one.motion), default=-1)
+        for number, one in enumerate(self._evaluations[: min(before, newest)]):
+            if one.motion is not None:
+                self._evaluations[number] = replace(one, motion=None)
+
+    def without_evaluation_motions(self) -> "PracticeRecording":
+        """Return a copy that knows of its evaluations only what they reached.
+
+        It takes a fraction of the memory: an evaluation has the motion of 50 steps.
+        """
+        evaluations = [replace(one, motion=None) for one in self.evaluations]
+        return PracticeRecording(self.rest_qpos, self._first[:], self._newest.copy(), evaluations)
+
+    @property
+    def size(self) -> int:
+        """Approximate size in memory [bytes]."""
+        steps = sum(_size_of(step.motion, step.action_values) for step in self.steps)
+        return steps + sum(_size_of(one.motion) for one in self.evaluations)
+
+
+def _size_of(motion: Motion | None, action_values: ActionValues | None = None) -> int:
+    values = (action_values.values, action_values.visits) if action_values else ()
+    arrays: tuple[NDArray[Any] | None, ...] = (*(motion or ()), *values)
+    return _STEP_OVERHEAD_BYTES + sum(array.nbytes for array in arrays if array is not None)
+
+
+def pose_at(start: NDArray[np.float32], motion: Motion, time_s: float) -> FloatArray:
+    """Interpolate the pose at a time within a motion.
+
+    Linear in position and angles; the quaternion is interpolated linearly and normalised (nlerp).
+
+    Args:
+        start: pose at the start of the motion, (7 + joints,).
+        motion: the motion.
+        time_s: time since its start [s], clamped to its duration.
+
+    Returns:
+        the pose, (7 + joints,).
+    """
+    times = np.concatenate(([0.0], motion.time_s))
+    upper = min(int(np.searchsorted(times, time_s, side="left")), len(times) - 1)
+    if upper == 0:
+        return start.astype(float)
+    lower = upper - 1
+    before = start if lower == 0 else motion.qpos[lower - 1]
+    share = (time_s - times[lower]) / (times[upper] - times[lower])
+    blend = before + min(max(share, 0.0), 1.0) * (motion.qpos[upper - 1] - before)
+    blend[3:7] /= np.sqrt((blend[3:7] * blend[3:7]).sum())
+    pose: FloatArray = blend.astype(float)
+    return pose

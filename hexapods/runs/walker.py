@@ -1,0 +1,287 @@
+"""Walker: a simulator, its current state and an agent, as driven by both loops."""
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any, cast
+
+import numpy as np
+
+from hexapods.agents.protocol import Agent, Node, Transition, Valuing
+from hexapods.domain.disturbances import SensorNoise
+from hexapods.domain.errors import IllegalAction
+from hexapods.domain.observation import (
+    Observation,
+    legal_actions,
+    measured_offsets,
+    observe,
+    planned_offsets,
+)
+from hexapods.domain.simulator import Simulator, Step, WalkState
+from hexapods.domain.types import Action, Cells, FloatArray
+from hexapods.runs.records import ActionValues
+
+_MAX_BATCH = 1024
+"""Transitions simulated at once: the servo targets of one take some 10 kB, and no interruption is
+heeded meanwhile, for half a second or so in MuJoCo."""
+
+
+class Interrupted(BaseException):
+    """Raised to abandon a decision; no `Exception`, so that no agent takes it for a failure."""
+
+
+class FutureNode:
+    """Node of a search tree: a simulated future state, with lazily computed properties."""
+
+    def __init__(
+        self,
+        expand: "SimulatorExpand",
+        state: WalkState,
+        observed: "Sensors | None" = None,
+        legal: Sequence[Action] = (),
+    ) -> None:
+        """Create a node.
+
+        Args:
+            expand: simulates from it.
+            state: its state.
+            observed: of the root, what the robot's sensors say.
+            legal: of the root, its legal actions.
+        """
+        self.state, self._expand = state, expand
+        if observed is not None:
+            self.legal, self.offsets_m = legal, observed.offsets_m
+
+    @cached_property
+    def legal(self) -> Sequence[Action]:
+        """The legal actions in this state, by the walker's observation mode."""
+        return self._expand.legal(self.state)
+
+    @cached_property
+    def offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Measured offset (x, y) of each pair's leader from home [m]."""
+        return self._expand.offsets_m(self.state)
+
+
+class Sensors:
+    """The robot's sensors: observations of its current state, each read at most once per state.
+
+    Attributes:
+        error_m: errors of the measured offsets in this state, the same for all that is read from
+            it, (pairs, 2) [m]; None where sensors are exact.
+    """
+
+    def __init__(
+        self,
+        simulator: Simulator[Any],
+        noise: Callable[[int], np.random.Generator] | None = None,
+    ) -> None:
+        """Create the sensors of a robot at rest.
+
+        Args:
+            simulator: simulates the robot.
+            noise: makes the generator of the errors of measurement after so many steps, where
+                sensors are noisy; None for no errors.
+        """
+        self._simulator, self._noise = simulator, noise
+        self.at(simulator.rest())
+
+    def at(self, state: WalkState) -> None:
+        """Set the current state of the robot."""
+        self._state = state
+        self._read: dict[Observation, Cells] = {}
+        self.error_m = self._error()
+
+    def _error(self) -> FloatArray | None:
+        steps = self._state.steps
+        noise = self._simulator.world.as_of(steps).one_of(SensorNoise)
+        if noise is None or self._noise is None:
+            return None
+        return self._noise(steps).normal(0, noise.sd_m, (len(self._simulator.gait.pairs), 2))
+
+    @property
+    def offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Measured offset (x, y) of each pair's leader from home, with errors [m]."""
+        return measured_offsets(self._simulator, self._state, self.error_m)
+
+    def __call__(self, how: Observation) -> Cells:
+        """Return the cells that an agent observes in the current state, one per pair."""
+        if how not in self._read:
+            self._read[how] = observe(self._simulator, self._state, how, self.error_m)
+        return self._read[how]
+
+    @property
+    def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
+        """Each pair's offset (x, y) from home by dead reckoning."""
+        return planned_offsets(self._state)
+
+
+class SimulatorExpand:
+    """Implements the `Expand` protocol by simulation, and counts simulated transitions.
+
+    A search begins in the state that the robot's sensors tell: where they are noisy, the feet of
+    the root stand where they are measured. All of a search holds under the conditions of the step
+    that is about to be taken: nothing that is to come is foreseen.
+
+    Attributes:
+        transitions: number of transitions simulated so far.
+        here: root node, the current state of the robot.
+        interrupt: called before each batch; may raise `Interrupted`.
+    """
+
+    def __init__(self, simulator: Simulator[Any], observation: Observation) -> None:
+        self._simulator, self._observation = simulator, observation
+        self.transitions = 0
+        self.interrupt: Callable[[], None] = lambda: None
+        self.here = FutureNode(self, simulator.rest())
+
+    def __call__(
+        self, nodes: Sequence[Node], actions: Sequence[Action]
+    ) -> tuple[Sequence[Node], FloatArray]:
+        """Simulate one action from each node, in one batch.
+
+        Args:
+            nodes: n nodes.
+            actions: one action for each.
+
+        Returns:
+            the resulting nodes, and the rewards [m], (n,).
+        """
+        states = [cast(FutureNode, node).state for node in nodes]
+        ends: list[FutureNode] = []
+        rewards: list[FloatArray] = []
+        for first in range(0, len(states), _MAX_BATCH):
+            self.interrupt()
+            part = slice(first, first + _MAX_BATCH)
+            expansion = self._simulator.expand(
+                states[part], actions[part], as_of=self.here.state.steps
+            )
+            ends += [FutureNode(self, state) for state in expansion.states]
+            rewards.append(expansion.rewards_m)
+        self.transitions += len(actions)
+        return ends, np.concatenate(rewards) if rewards else np.empty(0)
+
+    def at(self, state: WalkState, observed: Sensors, legal: Sequence[Action]) -> None:
+        """Set the current state of the robot, of which the root of the search is an estimate.
+
+        Args:
+            state: the true state.
+            observed: what the robot's sensors say.
+            legal: the legal actions.
+        """
+        if observed.error_m is not None:
+            state = self._simulator.estimate(state, observed.error_m)
+        self.here = FutureNode(self, state, observed, legal)
+
+    def offsets_m(self, state: WalkState) -> Sequence[tuple[float, float]]:
+        """Return where the feet are measured in a state, per pair [m]."""
+        return self._simulator.pair_offsets(state)
+
+    def legal(self, state: WalkState) -> Sequence[Action]:
+        """Return the legal actions in a state."""
+        observed = observe(self._simulator, state, self._observation)
+        return legal_actions(observed, len(self._simulator.grid))
+
+
+class Walker:
+    """A simulated robot, its current state, and the agent that controls it.
+
+    Attributes:
+        simulator: simulates steps.
+        agent: chooses actions.
+        observation: observation mode.
+        keeps_learning: whether the agent learns in a race.
+        state: current state of the simulation.
+        observed: current observation, the cell of each leg pair.
+        legal: legal actions in the current state.
+    """
+
+    def __init__(
+        self,
+        simulator: Simulator[Any],
+        agent: Agent,
+        observation: Observation,
+        expand: SimulatorExpand | None = None,
+        sensors: Sensors | None = None,
+    ) -> None:
+        self.simulator, self.agent, self.observation = simulator, agent, observation
+        self.keeps_learning = False
+        self._expand, self._sensors = expand, sensors or Sensors(simulator)
+        self.set_state(simulator.rest())
+
+    def set_state(self, state: WalkState) -> None:
+        """Set the current state, and update the observation and the legal actions."""
+        self.state = state
+        self._sensors.at(state)
+        self.observed: Cells = self._sensors(self.observation)
+        self.legal = legal_actions(self.observed, len(self.simulator.grid))
+        if self._expand:
+            self._expand.at(state, self._sensors, self.legal)
+
+    @property
+    def measured(self) -> Cells:
+        """The measured cells in the current state, whatever the observation mode is."""
+        return self._sensors("measured")
+
+    @property
+    def transitions(self) -> int:
+        """Number of transitions that the agent has simulated so far."""
+        return self._expand.transitions if self._expand else 0
+
+    def interrupt_by(self, interrupt: Callable[[], None]) -> None:
+        """Let a function interrupt the agent's search, by raising `Interrupted`."""
+        if self._expand:
+            self._expand.interrupt = interrupt
+
+    def decide(self) -> Action:
+        """Return the action that the agent chooses in the current state.
+
+        Raises:
+            IllegalAction: if it is not legal.
+        """
+        return self.legal_action(self.agent.act(self.observed, self.legal))
+
+    def legal_action(self, chosen: Sequence[int]) -> Action:
+        """Return an action given as (pair, cell) after checking that it is legal.
+
+        Raises:
+            IllegalAction: if it is not legal in the current state.
+        """
+        try:
+            return self.legal[self.legal.index(Action(*chosen))]
+        except (TypeError, ValueError) as error:
+            raise IllegalAction(
+                f"{type(self.agent).__name__} chose {chosen!r}, which is not a legal action here; "
+                "choose one of the (pair, cell) in legal"
+            ) from error
+
+    def carry_out(self, action: Action, record: bool = False, effort: bool = False) -> Step[Any]:
+        """Simulate an action as `Simulator.step`; its result becomes the current state."""
+        step = self.simulator.step(self.state, action, record, effort)
+        self.set_state(step.state)
+        return step
+
+    def learn(self, observation: Cells, action: Action, reward_m: float) -> Action | None:
+        """Let the agent learn from the step that was just carried out.
+
+        Args:
+            observation: observation before the step.
+            action: the step's action.
+            reward_m: its reward [m].
+
+        Returns:
+            the action that an on-policy agent has chosen to take next; None for other agents.
+
+        Raises:
+            IllegalAction: if that action is not legal.
+        """
+        next_action = self.decide() if getattr(self.agent, "is_on_policy", False) else None
+        self.agent.learn(
+            Transition(observation, action, reward_m, self.observed, self.legal, next_action)
+        )
+        return next_action
+
+    def action_values(self) -> ActionValues | None:
+        """Return the action values of the current state; None if the agent has none."""
+        if not isinstance(self.agent, Valuing):
+            return None
+        return ActionValues(self.agent.values(self.observed), self.agent.visits(self.observed))

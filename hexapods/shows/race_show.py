@@ -1,0 +1,317 @@
+"""Playback of a race under one of three clocks, with a photo finish; it may still be computed."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from hexapods.domain.types import FloatArray
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.runs.clocks import Clock
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.results import time_out_s
+from hexapods.shows.race_lane import RaceLane
+from hexapods.shows.scene_spec import rest_pose
+from hexapods.shows.show import Mark, RunLabel
+from hexapods.shows.stage_frame import LaneFrame, Phase, SceneSpec, StageFrame
+
+SPEED, LAST_LANE_SPEED = 2.0, 8.0
+PHOTO_FINISH_S = 3.0
+BUFFER_S = 0.5
+"""Playback buffer [s of real time]: near the newest step, playback of a live race slows down."""
+_SNAP_S = 0.002
+
+
+class Original(NamedTuple):
+    """The race from which the shown one branched off.
+
+    Attributes:
+        step: number of steps that they share.
+        world: its world.
+        lanes: its recording, which may grow.
+    """
+
+    step: int
+    world: World
+    lanes: Sequence[LaneRecording]
+
+
+class RaceShow:
+    """Plays a race's recording while it grows, never beyond what every lane has computed.
+
+    Args:
+        spec: the scene.
+        steps: number of steps of each lane.
+        clock: see `hexapods.runs.clocks`.
+        recording: returns the lanes' recordings so far, None before there are any.
+        world: the world in which the robots walk.
+        original: the race from which this one branched off, if it is known.
+    """
+
+    def __init__(
+        self,
+        spec: SceneSpec,
+        steps: int,
+        clock: Clock,
+        recording: Callable[[], Sequence[LaneRecording] | None],
+        *,
+        world: World = UNDISTURBED,
+        original: Original | None = None,
+    ) -> None:
+        self.spec, self.steps, self.clock = spec, steps, clock
+        self.ends_at_time_out = False
+        """Whether playback ends with the photo finish, where the ranking is settled."""
+        self._recording, self._world = recording, world
+        self._lanes: list[RaceLane] = []
+        self._source: Sequence[LaneRecording] | None = None
+        """The recordings that are played."""
+        self._is_final = False
+        """Whether they are those of the run since it has ended."""
+        self._branch_step = 0
+        self._original_lanes: list[RaceLane] = []
+        if original is not None and len(original.lanes) == len(spec.lane_specs):
+            self._branch_step = original.step
+            self._original_lanes = self._playing(original.lanes, original.world)
+        self._time_s = 0.0
+        self._freeze_left_s = 0.0
+        self._run_ended = self._waiting = False
+        self._rate = SPEED
+
+    @property
+    def time_s(self) -> float:
+        """Playback position in race time [s]."""
+        return self._time_s
+
+    @property
+    def ended(self) -> bool:
+        """Whether all lanes have reached their end, or time-out if playback ends there."""
+        return self._freeze_left_s == 0 and (self._is_at_end or self._ends_here)
+
+    @property
+    def duration_s(self) -> float | None:
+        """Race time at which the last lane ends [s]; None while one is still computed."""
+        return self._end_s if self._lanes and self._all_complete else None
+
+    @property
+    def first_finish_s(self) -> float | None:
+        """Race time of the time-out [s]; None until it is known, see `finish_s`."""
+        return time_out_s(
+            [lane.end_s for lane in self._lanes],
+            [lane.all_recorded for lane in self._lanes],
+            [lane.recording.failure is not None for lane in self._lanes],
+        )
+
+    @property
+    def recorded(self) -> tuple[tuple[float, float], ...]:
+        """Intervals of race time that can be shown [s]."""
+        return ((0.0, self._horizon_s),) if self._lanes else ()
+
+    @property
+    def step_ends_s(self) -> list[FloatArray]:
+        """For each lane the race times at which its steps end [s]."""
+        return [lane.step_ends_s for lane in self._lanes]
+
+    def marks(self) -> list[Mark]:
+        """Return what happened, in order of time, as far as all lanes are computed."""
+        found = [] if self.first_finish_s is None else [Mark("time-out", self.first_finish_s)]
+        changes = self._world.change_steps
+        for number, lane in enumerate(self._lanes):
+            ends = lane.step_ends_s
+            found += [
+                Mark("disturbance", float(ends[step - 1]), number, step)
+                for step in changes
+                if step <= len(ends)
+            ]
+            if lane.crossing_s is not None:
+                found.append(Mark("crossing", lane.crossing_s, number))
+            if lane.fell_at_step is not None and lane.fell_at_step < len(ends):
+                fell = lane.fell_at_step
+                found.append(Mark("fall", float(ends[fell]), number, fell))
+        in_view = [mark for mark in found if mark.time_s <= self._horizon_s]
+        return sorted(in_view, key=lambda mark: mark.time_s)
+
+    def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
+        """Advance the playback position; see `Show.advance`."""
+        self._run_ended = run_ended
+        self._update_lanes()
+        self._rate = self._automatic_speed if speed is None else speed
+        if self._freeze_left_s > 0:
+            self._freeze_left_s = max(0.0, self._freeze_left_s - elapsed_s)
+            return
+        if self._ends_here:
+            return
+        limit = self._horizon_s
+        # Of a race that is resumed less is computed than was shown.
+        self._time_s = min(self._time_s, limit)
+        self._waiting = not self._all_complete and self._slow_down_near(limit)
+        target, first = self._time_s + elapsed_s * self._rate, self.first_finish_s
+        if elapsed_s and limit - target < _SNAP_S:
+            target = limit
+        if first is not None and self._time_s < first <= target:
+            self._freeze_left_s = PHOTO_FINISH_S
+            target = first
+        self._time_s = min(target, limit)
+
+    def _slow_down_near(self, limit: float) -> bool:
+        """Reduce the playback rate near the newest step of a live race (buffer control).
+
+        Without it playback would stop and start at each step.
+
+        Returns:
+            Whether the buffer is nearly empty, so that playback practically waits.
+        """
+        full_rate, self._rate = self._rate, min(self._rate, (limit - self._time_s) / BUFFER_S)
+        return self._rate < full_rate / 4
+
+    def seek(self, time_s: float) -> None:
+        """Set the playback position to a race time [s], at most to where all lanes are computed."""
+        self._update_lanes()
+        self._freeze_left_s = 0.0
+        self._time_s = min(max(time_s, 0.0), self._horizon_s)
+
+    def seek_end(self) -> None:
+        """Set the playback position to where the show ends: time-out, or the last step."""
+        first = self.first_finish_s
+        self.seek(math.inf if first is None or not self.ends_at_time_out else first)
+
+    def retime(self, clock: Clock) -> None:
+        """Change the clock and keep the leading lane at the same moment of its walk."""
+        self._update_lanes()
+        at_end, first = self._is_at_end, self.first_finish_s
+        at_finish = first is not None and self._time_s == first
+        leader = max(self._lanes, key=lambda lane: lane.moment_at(self._time_s), default=None)
+        moment = leader.moment_at(self._time_s) if leader else None
+        self.clock = clock
+        for lane in (*self._lanes, *self._original_lanes):
+            lane.retime(self.clock)
+        first = self.first_finish_s
+        if at_end:
+            self._time_s = self._end_s
+        elif at_finish and first is not None:
+            self._time_s, self._freeze_left_s = first, PHOTO_FINISH_S
+        elif leader and moment:
+            self._time_s = min(leader.time_of(moment), self._horizon_s)
+
+    def frame(self, run_label: RunLabel) -> StageFrame:
+        """Return the frame at the playback position."""
+        lanes = tuple(lane.view(self._time_s, self._complete(lane)) for lane in self._lanes)
+        at_start = self._world.as_of(0)
+        at_rest = LaneFrame(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
+        lanes = lanes or (at_rest,) * len(self.spec.lane_specs)
+        return StageFrame(
+            spec=self.spec,
+            run_id=run_label.run_id,
+            phase=self._phase,
+            label=self._label(run_label, lanes),
+            lanes=self._with_ranks(lanes),
+            ghost_lanes=tuple(map(self._original, range(len(self._original_lanes)))),
+            time_s=self._time_s,
+            duration_s=self.duration_s,
+            computed_s=self._horizon_s,
+            time_out_s=self.first_finish_s,
+            ended=self.ended,
+            shown_speed=0.0 if self._freeze_left_s else self._rate,
+            playing=run_label.playing,
+            clock=self.clock,
+            replay=run_label.replay,
+        )
+
+    def _label(self, run_label: RunLabel, lanes: tuple[LaneFrame, ...]) -> str:
+        """Return the run's name with the progress of the lanes that still walk."""
+        step = max(lane.step for lane in lanes)
+        walking = [n for n, lane in enumerate(lanes) if not (lane.done or lane.halted)]
+        if step == 0:
+            return run_label.name
+        if len(walking) in (0, len(lanes)):
+            halted = [lane.step for lane in lanes if lane.halted and not walking]
+            return run_label.at_step(min(halted, default=step), self.steps, halted=bool(halted))
+        if len(walking) > 1:
+            return f"{run_label.name}, {len(walking)} robots still walk"
+        last = walking[0]
+        lane_name = self.spec.lane_specs[last].name
+        return f"{run_label.name}, {lane_name} at step {lanes[last].step} of {self.steps}"
+
+    @property
+    def _phase(self) -> Phase:
+        if not self._lanes:
+            return "start-line"
+        if self._freeze_left_s or self._ends_here:
+            return "photo-finish"
+        if self.ended:
+            return "finished"
+        return "waiting" if self._waiting else "race"
+
+    @property
+    def _automatic_speed(self) -> float:
+        first = self.first_finish_s
+        under_way = sum(
+            not self._complete(lane) or self._time_s < lane.end_s for lane in self._lanes
+        )
+        alone = len(self._lanes) > 1 and under_way == 1
+        past_first = first is not None and self._time_s >= first
+        return LAST_LANE_SPEED if alone and past_first else SPEED
+
+    @property
+    def _all_complete(self) -> bool:
+        # Without lanes: a race that ended before it recorded anything is complete.
+        return all(map(self._complete, self._lanes)) if self._lanes else self._run_ended
+
+    @property
+    def _is_at_end(self) -> bool:
+        return self._all_complete and self._time_s >= self._end_s
+
+    @property
+    def _ends_here(self) -> bool:
+        """Whether playback is at time-out and does not go on."""
+        if not self.ends_at_time_out or self._freeze_left_s or self._is_at_end:
+            return False
+        return self._time_s > 0 and self._time_s == self.first_finish_s
+
+    @property
+    def _end_s(self) -> float:
+        return max((lane.end_s for lane in self._lanes), default=0.0)
+
+    @property
+    def _horizon_s(self) -> float:
+        """Race time up to which every lane is computed [s]."""
+        computing = [lane.end_s for lane in self._lanes if not self._complete(lane)]
+        return min(computing, default=self._end_s)
+
+    def _complete(self, lane: RaceLane) -> bool:
+        return self._run_ended or lane.is_over
+
+    def _update_lanes(self) -> None:
+        """Extend the lanes by newly recorded steps; a race that is resumed is recorded anew."""
+        if not self._is_final:
+            recorded = self._recording()
+            if not recorded or len(recorded) != len(self.spec.lane_specs):
+                return
+            if recorded is not self._source:
+                self._source, self._lanes = recorded, self._playing(recorded, self._world)
+                self._time_s = min(self._time_s, self._horizon_s)
+        self._is_final = self._run_ended
+        for lane in self._lanes:
+            lane.update()
+        for lane in self._original_lanes:
+            lane.update()
+
+    def _playing(self, lanes: Sequence[LaneRecording], world: World) -> list[RaceLane]:
+        robot = self.spec.robot
+        return [RaceLane(lane, self.steps, self.clock, robot, world) for lane in lanes]
+
+    def _original(self, number: int) -> LaneFrame | None:
+        """Return a lane in the original race; None before the races part."""
+        if number >= len(self._lanes):
+            return None
+        if self._lanes[number].moment_at(self._time_s).step < self._branch_step:
+            return None
+        return self._original_lanes[number].view(self._time_s, complete=True)
+
+    def _with_ranks(self, lanes: tuple[LaneFrame, ...]) -> tuple[LaneFrame, ...]:
+        """Rank the lanes by distance now; after time-out by distance at that time."""
+        first = self.first_finish_s
+        distances = [lane.distance_m for lane in lanes]
+        if first is not None and self._time_s >= first:
+            distances = [lane.distance_at(first) for lane in self._lanes]
+        ranks = [1 + sum(other > own + 1e-9 for other in distances) for own in distances]
+        return tuple(replace(lane, rank=rank) for lane, rank in zip(lanes, ranks, strict=True))

@@ -1,0 +1,111 @@
+"""Replays: a show that can be at any moment of its run, in segments of frames.
+
+As in adaptive streaming (HLS, DASH) a run's time is divided into segments of `SEGMENT_FRAMES`
+frames. At level 0 they follow each other 30 times a second of the run's time, at each level above
+half as often, at each level below twice as often: a page takes the level at which it draws about 30
+pictures a second at its own speed.
+"""
+
+import math
+import threading
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from hexapods.domain.errors import HexapodError
+from hexapods.shows.practice_show import PracticeShow
+from hexapods.shows.race_show import RaceShow
+from hexapods.shows.show import RunLabel
+from hexapods.shows.stage_frame import StageFrame
+
+FRAMES_PER_S = 30.0
+SEGMENT_FRAMES = 64
+LOWEST_LEVEL, HIGHEST_LEVEL = -3, 7
+"""From 240 frames a second of the run's time to one in 4.3 s."""
+SCENES_PER_S = 5.0
+"""Rate at which pages receive the figures of a moment beside its picture."""
+
+
+class NoSuchSegment(HexapodError):
+    """A segment is past the end of what is recorded."""
+
+
+class Replay:
+    """A run that can be looked at in any moment. Thread-safe.
+
+    Args:
+        show: playback of the run.
+        label: what its frames say of it.
+        ghost: another run of the same kind, complete, whose lanes are shown as ghosts, each at the
+            same time of its own; in the end they stand still.
+        is_complete: whether the run will record no more.
+    """
+
+    def __init__(
+        self,
+        show: RaceShow | PracticeShow,
+        label: RunLabel,
+        ghost: "Replay | None" = None,
+        *,
+        is_complete: bool = True,
+    ) -> None:
+        self.show, self.label, self.ghost, self.is_complete = show, label, ghost, is_complete
+        self._lock = threading.Lock()
+        self._spec = replace(show.spec, ghosts=ghost.show.spec) if ghost else show.spec
+
+    @property
+    def recorded(self) -> tuple[tuple[float, float], ...]:
+        """Intervals of the run's time that can be shown [s]; none before it has recorded any."""
+        with self._lock:
+            self.show.advance(0.0, 1.0, run_ended=self.is_complete)
+            return self.show.recorded
+
+    def plan(self) -> dict[str, Any]:
+        """Return the recorded intervals, the steps and the marks of the run, in plain types."""
+        with self._lock:
+            show = self.show
+            return {
+                "run_id": self.label.run_id,
+                "ghost_id": self.ghost.label.run_id if self.ghost else None,
+                "kind": self.show.spec.kind,
+                "clock": show.clock if isinstance(show, RaceShow) else None,
+                "complete": self.is_complete,
+                "duration_s": show.duration_s,
+                "recorded_s": [list(interval) for interval in show.recorded],
+                "step_ends_s": [
+                    [round(t, 5) for t in np.asarray(ends).tolist()] for ends in show.step_ends_s
+                ],
+                "marks": [mark._asdict() for mark in show.marks()],
+                "frame_s": 1 / FRAMES_PER_S,
+                "segment_frames": SEGMENT_FRAMES,
+                "lowest_level": LOWEST_LEVEL,
+                "highest_level": HIGHEST_LEVEL,
+            }
+
+    def segment_times_s(self, level: int, number: int) -> list[float]:
+        """Return the times of a segment's frames that are recorded; the end of the run is the last.
+
+        Raises:
+            NoSuchSegment: if the segment is past the end.
+        """
+        interval_s, end_s = 2.0**level / FRAMES_PER_S, self.recorded[-1][1]
+        first = number * SEGMENT_FRAMES
+        if first * interval_s > end_s:
+            last = math.floor(end_s / interval_s / SEGMENT_FRAMES)
+            raise NoSuchSegment(
+                f"the recording ends at {end_s:.2f} s: at level {level} its last segment is {last}"
+            )
+        times_s = [(first + n) * interval_s for n in range(SEGMENT_FRAMES)]
+        recorded = [time_s for time_s in times_s if time_s <= end_s]
+        if len(recorded) < SEGMENT_FRAMES and self.is_complete:
+            recorded.append(end_s)
+        return recorded
+
+    def frame_at(self, time_s: float) -> StageFrame:
+        """Return the frame at a time [s], or at the nearest that is recorded."""
+        with self._lock:
+            self.show.seek(time_s)
+            frame = self.show.frame(self.label)
+        ghosts = self.ghost.frame_at(frame.time_s).lanes if self.ghost else frame.ghost_lanes
+        return replace(frame, spec=self._spec, ghost_lanes=ghosts, shown_speed=1.0)

@@ -1,0 +1,125 @@
+"""Interface of playbacks on the stage (`Show`), and the playback of the idle stage."""
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, Protocol
+
+from hexapods.runs.clocks import Clock
+from hexapods.shows.scene_spec import idle_scene, rest_pose
+from hexapods.shows.stage_frame import LaneFrame, SceneSpec, StageFrame
+
+TIME_LAPSE = "time-lapse"
+MIN_SPEED, MAX_SPEED = 0.25, 64
+"""Speeds that a user may choose, times real time."""
+
+
+@dataclass(frozen=True)
+class RunLabel:
+    """Fields of a frame that the stage knows and the show does not."""
+
+    run_id: str | None
+    name: str
+    playing: bool = True
+    replay: bool = False
+    outcome: str = "stopped"
+    """How the run ended, if before its last step: `stopped`, `failed` or `interrupted`."""
+
+    def at_step(self, step: int, steps: int, *, halted: bool) -> str:
+        """Return the run's name with its progress: "Race 3, stopped at step 26 of 50"."""
+        return f"{self.name}, {f'{self.outcome} at ' if halted else ''}step {step} of {steps}"
+
+
+MarkKind = Literal["time-out", "crossing", "fall", "disturbance", "evaluation"]
+
+
+class Mark(NamedTuple):
+    """Something that happened in a run, as a point on its timeline.
+
+    Attributes:
+        kind: what it is.
+        time_s: when it happened, in the run's own time [s].
+        lane: in which lane, from 0; None if it concerns all.
+        step: the step that begins with it, or the one in which a robot fell, counted from 0; None
+            if it belongs to no step.
+        distance_m: what an evaluation reached.
+    """
+
+    kind: MarkKind
+    time_s: float
+    lane: int | None = None
+    step: int | None = None
+    distance_m: float | None = None
+
+
+class Show(Protocol):
+    """Playback of one run, or of none. Not thread-safe: the stage holds a lock around calls."""
+
+    spec: SceneSpec
+    ends_at_time_out: bool
+    """Whether the show of a race ends with its photo finish; without effect on others."""
+
+    @property
+    def time_s(self) -> float:
+        """Playback position in the run's own time [s]."""
+
+    @property
+    def ended(self) -> bool:
+        """Whether playback has reached the end of a run that will record no more."""
+
+    def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
+        """Advance the playback position.
+
+        Args:
+            elapsed_s: real time since the last call [s]; 0 while playback is paused.
+            speed: times real time; None for the show's automatic speed.
+            run_ended: whether the run will record no more.
+        """
+
+    def seek(self, time_s: float) -> None:
+        """Set the playback position to a time [s], or to the nearest that is recorded."""
+
+    def seek_end(self) -> None:
+        """Set the playback position to the end of the show."""
+
+    def retime(self, clock: Clock) -> None:
+        """Change the clock and keep the corresponding playback position."""
+
+    def frame(self, run_label: RunLabel) -> StageFrame:
+        """Return the frame at the playback position."""
+
+
+class IdleShow:
+    """Show of an idle stage: robots stand still on the start line."""
+
+    time_s = 0.0
+    ended = True
+    ends_at_time_out = True
+
+    def __init__(self) -> None:
+        self.spec = idle_scene()
+        self._lanes = tuple(
+            LaneFrame(rest_pose(self.spec), 0, 0, 0.0) for _ in self.spec.lane_specs
+        )
+
+    def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
+        """Do nothing: the show has no duration."""
+
+    def seek(self, time_s: float) -> None:
+        """Do nothing: the show has no duration."""
+
+    def seek_end(self) -> None:
+        """Do nothing: the show has no duration."""
+
+    def retime(self, clock: Clock) -> None:
+        """Do nothing: the show has no duration."""
+
+    def frame(self, run_label: RunLabel) -> StageFrame:
+        """Return the frame, which is always the same but for `playing`."""
+        return StageFrame(
+            self.spec,
+            None,
+            "start-line",
+            run_label.name,
+            self._lanes,
+            playing=run_label.playing,
+            ended=True,
+        )

@@ -1,0 +1,45 @@
+// What a spectator can do on their own page, while the stage goes on for all.
+import { downloads } from "../files.js";
+import { tryOwnSettings } from "../form.js";
+import { scrollToTop, stepsAreOpen } from "../page.js";
+import { closeReplay, openReplay, ownRunId } from "../replay.js";
+import { clock, shownRun } from "../on-stage.js";
+import { isActive } from "../selectors.js";
+import { scene } from "../store.js";
+import { html, Icon } from "./elements.js";
+
+export function OwnChoices() {
+  const run = shownRun.value;
+  const canReplay = run?.kind !== "experiment" && Boolean(run?.progress?.done);
+  const explain = () => {
+    stepsAreOpen.value = true;
+    const panel = document.getElementById("steps-title")?.closest("section");
+    if (panel) scrollToTop(panel);
+  };
+  return html`
+    <div class="own-choices">
+      ${ownRunId.value !== null && html`
+        <button class="secondary compact" onClick=${closeReplay}>Back to the stage</button>
+      `}
+      ${ownRunId.value === null && canReplay && html`
+        <button class="secondary compact" onClick=${() => replay(run)}
+          title="Play, seek and go step by step on this page only"><${Icon} name="replay" />Replay it here</button>
+      `}
+      ${canReplay && html`<button class="secondary compact" onClick=${explain}>Step by step</button>`}
+      <button class="secondary compact" onClick=${tryOwnSettings}>Try other settings</button>
+    </div>
+    ${canReplay && !isActive(run) && html`<${Files} run=${run} />`}
+    <p class="dim">Your camera follows a robot with <b>Follow</b> below the picture, or with its number’s key.</p>
+  `;
+}
+
+const replay = (run) => openReplay(run.id, { time_s: scene.value?.time_s ?? 0, clock: clock.value });
+
+const Files = ({ run }) => html`
+  <details class="more">
+    <summary>Download it</summary>
+    <div class="own-choices">
+      ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download>${label}</a>`)}
+    </div>
+  </details>
+`;

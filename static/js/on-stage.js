@@ -1,0 +1,336 @@
+// What is on stage, what is computed, and whose time is shown. The stage, the board, the charts, the form, the chips
+// and the title follow from these values, so that they speak of one run and one moment. The phases are those of the
+// server's state machine (app/stage/state_machine.py); a page that plays a replay of its own has them for its replay.
+import { computed } from "@preact/signals";
+import { conditionsAt, conditionsInWords, disturbancesOf } from "./disturbances.js";
+import { form } from "./form.js";
+import { count, duration, sentence, whole } from "./format.js";
+import { formRobot, isSame } from "./robots.js";
+import {
+  hasTable, isActive, isKnown, isOperator, ownRuns, runOf, stageableRuns, trainingIds,
+} from "./selectors.js";
+import { learns } from "./settings.js";
+import { commonStage, connection, isLockedOut, ownStage, scene, stage } from "./store.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { FormValues, Run, Scene, State } from "./types.js" */
+
+// ---- what is on stage
+
+/** The run on stage; null if there is none, or it is not known (yet). */
+export const shownRun = computed(() => runOf(stage.value?.run_id));
+
+/** The scene, if it is of the run on stage: the events of both come one after the other. */
+const sceneOnStage = computed(() => {
+  const now = scene.value;
+  return now && stage.value && now.run_id === stage.value.run_id ? now : null;
+});
+
+/** The phase of the stage; "empty" before the first snapshot too. */
+export const phase = computed(() => stage.value?.phase ?? "empty");
+
+/** How a run ended that did not take all its steps, as a word that begins a sentence. */
+const EARLY_ENDS = /** @type {Partial<Record<State, string>>} */ ({
+  stopped: "Stopped", failed: "Failed", interrupted: "Interrupted",
+});
+
+/** "Stopped", "Failed" or "Interrupted"; null of a run that goes on or has finished. @param {Run | null} run */
+export const earlyEnd = (run) => (run ? EARLY_ENDS[run.state] ?? null : null);
+
+/** Whether the stage plays: one that shows the end of its run does not. */
+export const isPlaying = computed(() => stage.value !== null && stage.value.playing && !stage.value.ended);
+
+/** Kind of the picture: live of a run that goes on, else a replay. */
+export const playbackName = computed(() => (isActive(shownRun.value) ? "picture" : "replay"));
+
+/** Whether this page may play and seek: the common stage is the operators', a replay of its own is anybody's. */
+export const canPlay = computed(() => isOperator.value || ownStage.value !== null);
+
+/** The clock under which the stage times the race. */
+export const clock = computed(() => stage.value?.clock ?? scene.value?.clock ?? "paper");
+
+// ---- the runs that the panels are about
+
+/**
+ * Whether the stage will show a race next, or another training of the race before.
+ * @param {Run} race
+ */
+export const isToCome = (race) => {
+  const next = stage.value?.next_run_id;
+  return isKnown(next) && [race.id, ...trainingIds(race)].includes(next);
+};
+
+/** The race of the scoreboard and the race chart: the one on stage, or the one that follows the training there. */
+export const raceInView = computed(() => {
+  const shown = shownRun.value;
+  if (shown?.kind !== "training") return shown?.kind === "race" ? shown : null;
+  const races = stageableRuns.value.filter((run) => run.kind === "race");
+  const isItsRace = (/** @type {Run} */ race) => isActive(race) && trainingIds(race).includes(shown.id);
+  return races.find(isToCome) ?? races.find(isItsRace) ?? null;
+});
+
+/** The race from which the one in view branches off. */
+export const originalRace = computed(() => runOf(raceInView.value?.config.branch_from?.race_id));
+
+/** The training of the learning curve: the one on stage, or whose table the race there uses. */
+export const trainingInView = computed(() => {
+  if (shownRun.value?.kind === "training") return shownRun.value;
+  const [id] = trainingIds(raceInView.value);
+  return runOf(id);
+});
+
+// ---- what is computed
+
+/**
+ * A run that was requested, and the run that computes now: its training, as long as it waits for one.
+ * @param {Run} requested
+ * @returns {{ requested: Run, current: Run }}
+ */
+const workOf = (requested) => {
+  const training = requested.kind === "race" ? trainingIds(requested).map(runOf).find(isActive) : null;
+  return { requested, current: training ?? requested };
+};
+
+/** This tab's newest run that is not done. */
+export const myWork = computed(() => {
+  const run = ownRuns.value.map(runOf).find(isActive);
+  return run ? workOf(run) : null;
+});
+
+/** The work that Pause and Stop act on: this tab's, else the one on stage, else any. */
+export const work = computed(() => {
+  if (myWork.value) return myWork.value;
+  const candidates = isActive(shownRun.value) ? [raceInView.value, shownRun.value] : stageableRuns.value;
+  const run = candidates.find(isActive);
+  return run ? workOf(run) : null;
+});
+
+/** The training whose rates can be changed now. */
+export const liveTraining = computed(() => {
+  const run = work.value?.current;
+  return run?.kind === "training" && (run.state === "running" || run.state === "paused") ? run : null;
+});
+
+/** This tab's run, while the stage shows another one. */
+export const offStage = computed(() => {
+  const { requested, current } = myWork.value ?? {};
+  const onStage = commonStage.value?.run_id;
+  if (!requested || !current || !onStage) return null;
+  const isOwn = [requested.id, current.id, ...trainingIds(requested)].includes(onStage);
+  return isOwn || commonStage.value?.next_run_id === requested.id ? null : current;
+});
+
+/** Whether a run can be resumed that ended before its last step. @param {Run | null | undefined} run */
+const isResumable = (run) => (run?.state === "interrupted" || run?.state === "failed") && run.can_resume;
+
+/**
+ * The run on stage, if it can be resumed; of a training the interrupted race that needs it, which resumes both.
+ */
+export const resumableOnStage = computed(() => {
+  const shown = shownRun.value;
+  if (work.value || !shown || !isResumable(shown)) return null;
+  const needsIt = (/** @type {Run} */ run) => isResumable(run) && trainingIds(run).includes(shown.id);
+  return stageableRuns.value.find(needsIt) ?? shown;
+});
+
+/** When a run was last at work. @param {Run} run */
+const lastActivity = ({ ended_at, created_at }) => ended_at ?? created_at;
+
+/** The run that was last at work, if it was interrupted and is not on stage. */
+export const interruptedRun = computed(() => {
+  const [last] = stageableRuns.value.toSorted((a, b) => lastActivity(b).localeCompare(lastActivity(a)));
+  if (work.value || last?.state !== "interrupted") return null;
+  return last === shownRun.value || last === resumableOnStage.value ? null : last;
+});
+
+// ---- Q-tables of these runs, and of this tab's, that can be used with the form's settings
+
+const WALK_FIELDS = ["divisions", "grid_side_m", "observation", "simulator"];
+
+/**
+ * Whether a training's table can be used with the form's settings.
+ * @param {Run} training
+ * @param {FormValues} values
+ */
+const fits = (training, values) =>
+  hasTable(training) &&
+  isSame(training.config.gait, values.gait) &&
+  isSame(formRobot(training.config.robot), formRobot(values.robot)) &&
+  WALK_FIELDS.every((field) => [undefined, values[field]].includes(training.config[field]));
+
+/** The trainings whose tables fit the form: those on stage first, then this tab's. */
+const fittingTrainings = computed(() => {
+  const known = [raceInView.value, shownRun.value, ...ownRuns.value.map(runOf)];
+  const trainings = known.flatMap((run) => (run?.kind === "race" ? trainingIds(run).map(runOf) : [run]));
+  return trainings.filter(isKnown).filter((run) => fits(run, form.value));
+});
+
+/** @param {string} agent */
+const tableOf = (agent) => fittingTrainings.value.find(({ config }) => config.agent === agent) ?? null;
+
+/** The newest training of the chosen learner whose table fits the form. */
+export const matchingTable = computed(() => tableOf(form.value.agent));
+
+/** Learner → id of its newest training that fits; null if a learner of the lanes has none. */
+export const laneTables = computed(() => {
+  const tables = form.value.lanes.filter(learns).map((agent) => [agent, tableOf(agent)?.id]);
+  const isComplete = tables.length > 0 && tables.every(([, id]) => id);
+  return isComplete ? /** @type {Record<string, string>} */ (Object.fromEntries(tables)) : null;
+});
+
+/** Whether the race in view was run with those tables, so that it can be run "again". */
+export const isRaceRun = computed(() => {
+  const race = raceInView.value;
+  const ids = trainingIds(race);
+  return race?.state === "finished" && Object.values(laneTables.value ?? { none: "" }).every((id) => ids.includes(id));
+});
+
+// ---- the moment that is shown, and how far the computation is ahead of it
+
+/** The scene, if it shows the race in view. */
+export const raceScene = computed(() => {
+  const now = sceneOnStage.value;
+  return now?.kind === "race" && now.run_id === raceInView.value?.id ? now : null;
+});
+
+/** Whether a race's show ended with its photo finish while lanes still walk, so that somebody may keep watching. */
+export const isDecided = computed(() => raceScene.value?.phase === "photo-finish");
+
+/** The present step of the first lane that still walks, counted from 1; null if none does. */
+export const stepShown = computed(() => {
+  const walking = (raceScene.value?.lanes ?? []).filter(({ done, halted }) => !done && !halted);
+  return walking.length ? Math.max(1, ...walking.map(({ step }) => step)) : null;
+});
+
+/** Steps of all lanes that the picture has shown, as a run's progress counts them; null while it shows another run. */
+const stepsShown = computed(() =>
+  sceneOnStage.value ? sceneOnStage.value.lanes.reduce((sum, { step }) => sum + step, 0) : null,
+);
+
+/** Conditions in the step that is shown, of the run on stage, in words. */
+export const conditionsShown = computed(() => {
+  const run = shownRun.value;
+  if (!run || run.kind === "experiment" || !sceneOnStage.value) return [];
+  const step = Math.max(1, ...sceneOnStage.value.lanes.map((lane) => lane.step));
+  return conditionsInWords(conditionsAt(disturbancesOf(run), step - 1, run.config.robot));
+});
+
+/** The race whose replay is held: paused, or at its end. */
+export const heldRace = computed(() => {
+  const race = raceInView.value;
+  const isHeld = stage.value !== null && (!stage.value.playing || stage.value.ended);
+  return race?.state === "finished" && raceScene.value && isHeld && !work.value ? race : null;
+});
+
+/** The picture may be so many steps behind before that is told. */
+const MAX_LAG_STEPS = 2;
+
+/**
+ * What a change of a live setting acts on, where the picture could make a reader think otherwise: a training that is
+ * computed, whose next step is `step` while the picture shows `shown`; or one that is computed to its end already.
+ * @type {Signal<{ step: number, shown: number | null } | "computed" | null>}
+ */
+export const steering = computed(() => {
+  const run = liveTraining.value;
+  const isShown = sceneOnStage.value !== null && shownRun.value?.id === run?.id;
+  if (run) {
+    const { done } = run.progress;
+    const shown = isShown ? stepsShown.value : null;
+    return isShown && done - (shown ?? 0) <= MAX_LAG_STEPS ? null : { step: done + 1, shown };
+  }
+  const isBehind = shownRun.value?.kind === "training" && phase.value === "showing";
+  return isBehind && stage.value?.origin === "started" ? "computed" : null;
+});
+
+// ---- progress of the running work, or of what plays
+
+/** Run and start → when this page first saw it, for an estimate. @type {Map<string, {at: number, done: number}>} */
+const firstSeen = new Map();
+
+/** @param {Run} run */
+function secondsLeft(run) {
+  if (Number.isFinite(run.eta_s)) return run.eta_s ?? null;
+  const { done, total } = run.progress;
+  const now = performance.now() / 1000;
+  const key = `${run.id} ${run.started_at}`;
+  const first = firstSeen.get(key) ?? { at: now, done };
+  firstSeen.set(key, first);
+  return done > first.done ? ((total - done) * (now - first.at)) / (done - first.done) : null;
+}
+
+/** @type {Record<string, string>} */
+const VERBS = { training: "Practising", race: "Simulating the race" };
+
+/**
+ * Progress as a bar: `share` is computed, and `shown` of it is in the picture, where the picture is of that run.
+ * @typedef {{ label: string, left: string, share: number, shown: number | null }} Progress
+ */
+
+/** Progress of the work, else of what plays; null while there is neither. @type {Signal<Progress | null>} */
+export const progress = computed(() => (work.value ? ofWork(work.value) : ofPlayback(sceneOnStage.value)));
+
+/** @param {{ requested: Run, current: Run }} work @returns {Progress} */
+function ofWork({ requested, current }) {
+  const { done, total } = current.progress;
+  const share = total ? done / total : 0;
+  const seen = shownRun.value?.id === current.id ? stepsShown.value : null;
+  const shown = seen === null || !total ? null : Math.min(seen, done) / total;
+  const then = requested === current ? "" : ", then the race";
+  if (current.state === "queued") return { label: `Waiting in the queue${then}`, left: "", share: 0, shown: null };
+  const steps = `${whole(done)} of ${count(total, "step")}`;
+  if (current.state === "paused") return { label: `Paused at ${steps}${then}`, left: "", share, shown };
+  const seconds = secondsLeft(current);
+  const left = seconds === null ? "" : `${duration(seconds)} left`;
+  const verb = VERBS[current.kind] ?? "Running";
+  if (seen === null) return { label: `${verb}, ${steps}${then}${notShown(current)}`, left, share, shown };
+  const isBehind = done - seen > MAX_LAG_STEPS;
+  const label = isBehind ? `${verb}: ${whole(seen)} shown ▸ ${steps} computed${then}` : `${verb}, ${steps}${then}`;
+  return { label, left, share, shown };
+}
+
+/** @param {Run} run */
+function notShown(run) {
+  if (!stage.value?.run_id || stage.value.run_id === run.id) return "";
+  return isToCome(run) ? ", shown next" : ", not on stage";
+}
+
+/** @param {Scene | null} now @returns {Progress | null} */
+function ofPlayback(now) {
+  if (!now || now.kind === "idle" || !now.duration_s || phase.value === "ended") return null;
+  if (["waiting", "start-line"].includes(now.phase)) return null;
+  const end = (stage.value?.end_at_time_out ? now.time_out_s : null) ?? now.duration_s;
+  const last = Math.min(now.computed_s, Math.max(end, now.time_s));
+  const rest = Math.max(0, last - now.time_s) / (now.shown_speed || 1);
+  const isTimeLapse = now.kind === "training" && stage.value?.speed === "time-lapse";
+  const isPaused = stage.value?.playing === false;
+  return {
+    label: isPaused ? `The ${playbackName.value} is paused` : showing(now),
+    left: isPaused || isTimeLapse ? "" : `${duration(rest)} left`,
+    share: now.computed_s / now.duration_s,
+    shown: now.time_s / now.duration_s,
+  };
+}
+
+/** @param {Scene} now */
+function showing(now) {
+  if (stage.value?.origin !== "started") return `Replaying the ${now.kind}`;
+  return `Showing the ${now.kind}, which is computed${earlyEnd(shownRun.value) ? " as far as it came" : " to its end"}`;
+}
+
+// ---- the title of the window
+
+const PRODUCT = "Racing Hexapods";
+/** @type {Record<string, string>} */
+const VIEW_TITLES = { experiments: "Experiments", runs: "Runs", compare: "Compare runs" };
+
+/**
+ * The window's title: the connection if it is lost, the view, or what the stage shows.
+ * @param {string} view
+ * @param {string | null} headline of the race that is shown
+ */
+export function windowTitle(view, headline) {
+  const parts = [VIEW_TITLES[view] ?? (phase.value === "empty" ? null : headline ?? sceneOnStage.value?.label ?? null)];
+  if (isLockedOut.value) parts.splice(0, 1, "No access");
+  else if (connection.value === "reconnecting") parts.unshift("Reconnecting");
+  return [...parts, PRODUCT].filter(Boolean).map((part) => sentence(/** @type {string} */ (part))).join(" · ");
+}

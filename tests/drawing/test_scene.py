@@ -1,0 +1,237 @@
+"""The stage drawn in a real viser, checked by the scene graph that a client receives."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.viewer.update_cost import measure_stage_update
+from hexapods.domain.disturbances import Lost
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.robot import Robot, ring
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.drawing.robot_mesh import RobotMesh
+from hexapods.drawing.scene import StageScene
+from hexapods.drawing.viser_internals.server import InProcessViser
+from hexapods.runs.clocks import FINISH_LINE_M
+from hexapods.runs.config import training_config
+from hexapods.shows.scene_spec import idle_scene, rest_pose, training_scene
+from hexapods.shows.stage_frame import ActionValuesView, Ghost, LaneFrame, SceneSpec
+from tests.viewer.drawing import GAIT, frame_at_rest, race_of, scene_nodes
+
+
+def action_values(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> ActionValuesView:
+    values = np.linspace(-0.01, 0.06, 3 * len(spec.grid)).reshape(3, -1)
+    values[range(3), current] = np.nan
+    return ActionValuesView(values, np.ones_like(values), current, None, -0.01, 0.06)
+
+
+def test_number_of_robot_nodes_does_not_depend_on_the_lanes(
+    server: InProcessViser,
+) -> None:
+    StageScene(server).draw(frame_at_rest(race_of(3)))
+    three = {name for name in scene_nodes(server) if "/robots/" in name}
+
+    StageScene(server).draw(frame_at_rest(race_of(6)))
+    six = {name for name in scene_nodes(server) if "/robots/" in name}
+
+    assert three == six
+    assert len(three) < 12
+
+
+@pytest.mark.parametrize("legs", [4, 6, 8])
+def test_robot_with_any_number_of_legs_follows_its_pose(legs: int) -> None:
+    robot = Robot(legs=ring(legs))
+    mesh = RobotMesh(robot)
+    pose = mesh.default_qpos.copy()
+    pose[:3] = 0.3, 0.4, 0.1
+
+    positions, rotations = mesh.body_poses(pose)
+
+    assert sum(len(part.links) for part in mesh.parts) < 2 + 1 + 6 * legs
+    links = np.unique(np.concatenate([part.links for part in mesh.parts]))
+    assert len(links) == 1 + 3 * legs, "torso, and coxa, femur and tibia of every leg"
+    assert positions[links[0]] == pytest.approx([0.3, 0.4, 0.1])
+    assert np.linalg.norm(rotations[links], axis=1) == pytest.approx(np.ones(len(links)))
+    for part in mesh.parts:
+        assert np.isfinite(part.shape.vertices).all()
+        assert part.shape.faces.max() < len(part.shape.vertices)
+
+
+def test_lanes_are_side_by_side_with_their_labels(server: InProcessViser) -> None:
+    spec = race_of(3)
+    scene = StageScene(server)
+    scene.draw(frame_at_rest(spec))
+    xs = [(scene.follow_position(view) or (np.nan,))[0] for view in ("1", "2", "3")]
+
+    assert np.diff(xs) == pytest.approx([xs[2], xs[2]])
+    assert xs[0] == -xs[2]
+    assert xs[2] > 2 * spec.robot.home_radius_m, "they cannot touch"
+    assert scene.follow_position("4") is None
+    labels = [m["text"] for n, m in scene_nodes(server).items() if n.endswith("/label")]
+    assert labels == [f"{lane_spec.name}\n0.00\u00a0m, step 3" for lane_spec in spec.lane_specs]
+
+
+def test_start_and_finish_lines_are_labelled_and_coloured(server: InProcessViser) -> None:
+    StageScene(server).draw(frame_at_rest(race_of(1)))
+    nodes = scene_nodes(server)
+    labels = {m["text"] for n, m in nodes.items() if n.endswith("/word")}
+
+    assert labels == {"Start", "Finish"}
+    red, green = nodes["/world/run/track/finish"], nodes["/world/run/track/start"]
+    assert np.argmax(red["color"]) == 0
+    assert np.argmax(green["color"]) == 1
+    # The middle legs of a robot on a line end on it: the words stand out of the track.
+    assert nodes["/world/run/track/start/word"]["position"][1] < -0.1
+    assert nodes["/world/run/track/finish/word"]["position"][1] > 0.1
+
+
+def test_follow_point_of_the_leader_moves_smoothly(server: InProcessViser) -> None:
+    spec, scene = race_of(2), StageScene(server)
+    ahead = rest_pose(spec).copy()
+    ahead[1] = 0.4
+    first = frame_at_rest(spec)
+    moved = replace(first, lanes=(first.lanes[0], LaneFrame(ahead, 9, 50, 0.4)))
+
+    scene.draw(first, now=0.0)
+    assert scene.follow_position("leader") == (0.0, 0.0, 0.0)
+    ys = []
+    for number in range(1, 60):
+        scene.draw(moved, now=number / 30)
+        ys.append((scene.follow_position("leader") or (0, np.nan, 0))[1])
+
+    assert ys == sorted(ys), "smoothly"
+    assert ys[0] < 0.1
+    assert ys[-1] == pytest.approx(0.4, abs=0.01)
+
+
+def test_unchanged_frame_sends_no_messages(server: InProcessViser) -> None:
+    scene, frame = StageScene(server), frame_at_rest(race_of(3))
+    serializer = server.get_scene_serializer()
+    assert scene.draw(frame, now=0.0)
+    once = len(serializer._messages)
+
+    assert not scene.draw(replace(frame, time_s=5.0), now=1.0)
+    assert len(serializer._messages) == once
+
+
+def test_change_of_scene_removes_all_old_nodes(server: InProcessViser) -> None:
+    scene = StageScene(server)
+    practice = training_scene(training_config(gait=GAIT, divisions=3))
+    ghosts = (Ghost(50, 0.1), Ghost(100, 0.3))
+
+    def show_all() -> None:
+        scene.draw(frame_at_rest(idle_scene()))
+        scene.draw(replace(frame_at_rest(practice), ghosts=ghosts))
+        scene.draw(replace(frame_at_rest(race_of(3)), phase="photo-finish"))
+        scene.draw(frame_at_rest(race_of(6, Robot(legs=ring(8)))))
+        scene.draw(frame_at_rest(race_of(2)))
+
+    show_all()
+    nodes = scene_nodes(server)
+    for _ in range(3):
+        show_all()
+
+    assert scene_nodes(server).keys() == nodes.keys()
+    assert len(nodes) < 40
+
+
+def test_cells_are_coloured_by_value_but_for_the_current_one(
+    server: InProcessViser,
+) -> None:
+    spec, scene = race_of(1), StageScene(server)
+    lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))
+    scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
+    fills = scene_nodes(server)["/world/run/lane0/grid/others/fills"]
+    colors = fills["batched_colors"].reshape(6, 4, 3)
+
+    leader, partner = spec.gait.pairs[2]
+    assert (colors[leader - 1] == colors[partner - 1]).all(), "a pair is of one mind"
+    best, present = colors[leader - 1, 3], colors[leader - 1, 1]
+    assert best[0] > 120
+    assert best[2] < 40
+    assert present.max() < 20
+
+
+def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProcessViser) -> None:
+    spec, scene = race_of(1), StageScene(server)
+    known = action_values(spec)
+    known.visits[2, 3:] = 0
+    lane = replace(frame_at_rest(spec).lanes[0], action_values=known)
+    scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
+    fills = scene_nodes(server)["/world/run/lane0/grid/others/fills"]
+    colors = fills["batched_colors"].reshape(6, 4, 3).astype(int)
+
+    leader = spec.gait.pairs[2][0] - 1
+    is_grey = np.ptp(colors[leader], axis=1) < 20
+    assert is_grey.tolist() == [False, True, True, True], "the present cell, and two of three"
+
+
+def test_a_lost_leg_has_no_cells_until_it_is_repaired(server: InProcessViser) -> None:
+    spec, scene = race_of(1), StageScene(server)
+
+    def sizes(world: World) -> list[bool]:
+        lane = replace(
+            frame_at_rest(spec).lanes[0], action_values=action_values(spec), conditions=world
+        )
+        scene.draw(replace(frame_at_rest(spec), lanes=(lane,)))
+        scales = scene_nodes(server)["/world/run/lane0/grid/others/fills"]["batched_scales"]
+        shown = np.ones(24) if scales is None else np.asarray(scales)
+        return [bool(leg.all()) for leg in np.split(shown, 6)]
+
+    assert sizes(UNDISTURBED) == [True] * 6
+    assert sizes(World((Lost(legs=(2, 5)),))) == [True, False, True, True, False, True]
+    assert sizes(UNDISTURBED) == [True] * 6
+
+
+@pytest.mark.parametrize("divisions", [2, 3, 8])
+def test_grids_of_all_sizes_can_be_drawn(server: InProcessViser, divisions: int) -> None:
+    spec = replace(race_of(1), grid=FootGrid(0.04, divisions))
+    lane = replace(frame_at_rest(spec).lanes[0], action_values=action_values(spec))
+
+    StageScene(server).draw(replace(frame_at_rest(spec), lanes=(lane,)))
+
+    assert sum(name.endswith("/fills") for name in scene_nodes(server)) == 2
+
+
+def test_photo_finish_shows_distances_and_is_removed(server: InProcessViser) -> None:
+    spec, scene = race_of(2), StageScene(server)
+    far = replace(frame_at_rest(spec).lanes[0], distance_m=0.375, rank=1)
+    frame = replace(frame_at_rest(spec), lanes=(far, replace(far, distance_m=-0.01, rank=2)))
+
+    scene.draw(replace(frame, phase="photo-finish"))
+    texts = [m["text"] for n, m in scene_nodes(server).items() if "/photo/far" in n]
+    assert texts == ["1.  0.38\u00a0m", "2.  −0.01\u00a0m"]
+
+    scene.draw(frame)
+    assert not [name for name in scene_nodes(server) if "/photo" in name]
+
+
+def test_photo_finish_is_redrawn_under_another_clock(server: InProcessViser) -> None:
+    scene, frame = StageScene(server), frame_at_rest(race_of(3))
+    scene.draw(replace(frame, phase="photo-finish"))
+    retimed = tuple(replace(lane, distance_m=0.25, rank=2) for lane in frame.lanes)
+    scene.draw(replace(frame, phase="photo-finish", lanes=retimed))
+
+    texts = [m["text"] for n, m in scene_nodes(server).items() if "/photo/far" in n]
+    assert texts == ["2.  0.25\u00a0m"] * 3
+
+
+def test_a_flag_at_the_finish_line_shows_who_crossed_it(server: InProcessViser) -> None:
+    spec, scene = race_of(1), StageScene(server)
+    frame = frame_at_rest(spec)
+    scene.draw(frame)
+    scene.draw(replace(frame, lanes=(replace(frame.lanes[0], done=True),)))
+    assert not scene_nodes(server)["/world/run/lane0/flag"]["visible"], "time-out is no crossing"
+
+    scene.draw(replace(frame, lanes=(replace(frame.lanes[0], crossed=True),)))
+    shown = scene_nodes(server)["/world/run/lane0/flag"]
+    assert shown["visible"]
+    assert shown["position"][1] == pytest.approx(FINISH_LINE_M)
+
+
+def test_update_of_three_walking_robots_is_small() -> None:
+    elapsed_ms, size = measure_stage_update(updates=30)
+
+    assert elapsed_ms > 0
+    assert 500 < size <= 4096

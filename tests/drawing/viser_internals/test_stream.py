@@ -1,0 +1,60 @@
+"""Encoding and decoding of viser's wire format, byte for byte."""
+
+import pytest
+
+from hexapods.drawing.viser_internals import stream
+from hexapods.drawing.viser_internals.server import InProcessViser
+from tests.viewer.serving import Reader, Robots, array, has_message
+
+
+@pytest.fixture
+def replay(viser_server: InProcessViser, robots: Robots) -> list[stream.Frame]:
+    """Return the frames that viser sends to a new client."""
+    robots.move_to(3)
+    with Reader(viser_server) as reader:
+        return reader.frames_until(has_message("ReplayDoneMessage"))
+
+
+def test_frames_of_viser_are_parsed(replay: list[stream.Frame]) -> None:
+    values = [array(frame, Robots.NAME, "batched_positions") for frame in replay]
+
+    assert values[-1] is not None
+    assert values[-1].tolist() == [3] * 12
+
+
+def test_pack_reproduces_the_bytes_of_viser(replay: list[stream.Frame]) -> None:
+    for frame in replay:
+        packed = stream.pack(frame.messages, frame.buffers, frame.timestamp_s)
+
+        assert packed.raw == frame.raw
+        assert stream.parse(packed.raw) == frame
+
+
+def test_without_blocked_keeps_all_other_messages(replay: list[stream.Frame]) -> None:
+    frame = next(frame for frame in replay if has_message("BatchedMeshesMessage")(frame))
+    script = frame.with_messages({"type": "RunJavascriptMessage", "source": "1"})
+
+    remaining = stream.parse(script.without_blocked().raw)
+
+    assert frame.without_blocked() is frame
+    assert remaining.messages == frame.messages
+    assert remaining.buffers == frame.buffers
+    assert remaining.timestamp_s == frame.timestamp_s
+
+
+def test_remap_buffers_copies_messages_with_their_arrays() -> None:
+    one, two, three = (memoryview(bytes([n] * n)) for n in (1, 2, 3))
+    message = {"props": {"a": {"__binary_index": 2, "dtype": "<u1"}, "b": [1, None]}}
+    target = [one]
+
+    moved = stream.remap_buffers(message, [one, two, three], target)
+
+    assert moved == {"props": {"a": {"__binary_index": 1, "dtype": "<u1"}, "b": [1, None]}}
+    assert target == [one, three]
+    assert message["props"]["a"] == {"__binary_index": 2, "dtype": "<u1"}
+
+
+@pytest.mark.parametrize("length", [0, 15, 16, 40, -1])
+def test_truncated_frame_is_rejected(replay: list[stream.Frame], length: int) -> None:
+    with pytest.raises(ValueError, match="not a frame"):
+        stream.parse(replay[0].raw[:length])

@@ -1,0 +1,89 @@
+"""People read the names of settings and trials; their keys are in machine-readable files only."""
+
+from typing import Any
+
+import pytest
+
+from hexapods.experiments.labels import world_name
+from hexapods.experiments.names import setting_names, trial_names
+from hexapods.experiments.plan import Plan
+from hexapods.experiments.report.page import page
+from hexapods.experiments.summary import summarise
+from tests.experiments.sample_experiments import around, config, sample_results
+
+GAITS = ("left-right-origin", "left-right-vertical")
+SAMPLES: list[tuple[str, dict[str, Any]]] = [
+    ("table1", {}),
+    ("sweep", {"alpha": (0.3, 0.6)}),
+    ("league", {"agents": ("q-learning", "beam"), "worlds": ("flat", "noise")}),
+]
+
+
+def sample(experiment: str, given: dict[str, Any]) -> dict[str, Any]:
+    """Summarise an experiment of which trials failed and were set aside."""
+    tried = config(experiment, seeds=3, gaits=GAITS, **given)
+    results = sample_results(tried, lambda one: around(0.3, 0.1 if "0.6" in one.key else 0.02))
+    if experiment == "league":
+        for trial in Plan(tried).trials():
+            walks = (0.3,) * max(1, len(trial.config.evaluations))
+            results[trial.key] = results[trial.key].__class__(distances_m=walks)
+    *_, last = Plan(tried).trials()
+    results.pop(last.key)
+    return summarise(tried, results, {last.key: "it killed its worker"})
+
+
+@pytest.mark.parametrize(("experiment", "given"), SAMPLES, ids=[name for name, _ in SAMPLES])
+def test_no_key_is_in_what_people_read(experiment: str, given: dict[str, Any]) -> None:
+    summary = sample(experiment, given)
+    told = page(summary) + "".join(one["text"] for one in summary["story"])
+    named = told.replace(summary_command(told), "")
+    for words in ("/measured", "left-right-origin", "q-learning", "alpha"):
+        assert words not in named
+    assert "Q-learning" in named
+
+
+def summary_command(html: str) -> str:
+    """Return the command that repeats the experiment, in which names are meant to be typed."""
+    return html.partition('<code class="command">')[2].partition("</code>")[0]
+
+
+def test_the_setting_of_a_sweep_that_spreads_most_is_told_in_words() -> None:
+    told = {one["heading"]: one["text"] for one in sample(*SAMPLES[1])["story"]}
+    assert told["One seed misleads"].startswith(
+        "The setting that spreads most is Q-learning, α\u00a00.6, Left-right, "
+    )
+
+
+@pytest.mark.parametrize(("experiment", "given"), SAMPLES, ids=[name for name, _ in SAMPLES])
+def test_each_setting_and_trial_has_a_name_of_its_own(
+    experiment: str, given: dict[str, Any]
+) -> None:
+    plan = Plan(config(experiment, seeds=3, gaits=GAITS, **given))
+    keys = [trial.key for trial in plan.trials()]
+    names = trial_names(plan, keys)
+    assert len(set(names.values())) == len(keys)
+    assert trial_names(plan, ["left-right-origin/gone#1"]) == {
+        "left-right-origin/gone#1": "left-right-origin/gone#1"
+    }
+    summary = sample(experiment, given)
+    models = {one["key"]: one["plans_with"] for one in summary["worlds"]}
+    settings = summary["settings"]
+    assert len(set(setting_names(settings, summary["parameters"], models).values())) == len(
+        settings
+    )
+
+
+@pytest.mark.parametrize(
+    ("world", "name"),
+    [
+        ("ice", "Ice"),
+        ("limp:legs=1,4", "Limp legs (legs 1, 4)"),
+        (
+            "slope:degrees=4+weak:legs=2:torque_share=0.5",
+            "Slope (slope 4.0) and Weak servos (legs 2; share of torque 0.5)",
+        ),
+        ("a world of a later version", "a world of a later version"),
+    ],
+)
+def test_a_world_without_a_name_is_told_by_what_happens_in_it(world: str, name: str) -> None:
+    assert world_name(world) == name

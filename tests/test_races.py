@@ -1,0 +1,81 @@
+"""`hx.race` and `hx.lane`: the race loop in one call."""
+
+from typing import Any
+
+import pytest
+
+import hexapods as hx
+from hexapods.domain.errors import TableMismatch
+
+QUICK: dict[str, Any] = {"simulator": "kinematic", "steps": 20}
+
+
+@pytest.fixture(scope="module")
+def training() -> hx.Training:
+    return hx.train(gait="left-right-vertical", steps=100, simulator="kinematic")
+
+
+def test_the_race_is_that_of_its_training(training: hx.Training) -> None:
+    race = hx.race([training, "greedy", hx.lane("look-ahead", depth=1)], steps=20)
+    assert (race.config.gait, race.config.simulator) == ("left-right-vertical", "kinematic")
+    assert [one.agent for one in race.config.lanes] == ["q-learning", "greedy", "look-ahead"]
+    ranks = [one.rank for one in race.standings]
+    assert ranks == sorted(ranks)  # type: ignore[type-var]
+    assert {one.lane for one in race.standings} == {0, 1, 2}
+    assert all(len(lane.steps) == 20 for lane in race.recording)
+    assert race.standings_under("wall") != race.standings
+    assert repr(race).startswith("<Race over 20 steps: ")
+    assert "<td>greedy</td>" in race._repr_html_()
+
+
+def test_it_is_the_same_again(training: hx.Training) -> None:
+    lanes: list[Any] = [training, hx.lane("sarsa", keep_learning=True), hx.RandomWalk]
+    one, other = (hx.race(lanes, seed=5, **QUICK) for _ in range(2))
+    assert [s.total_distance_m for s in one.standings] == [
+        s.total_distance_m for s in other.standings
+    ]
+
+
+def test_the_world_is_not_that_of_the_practice() -> None:
+    noisy = hx.train(world="noise", **QUICK)
+    assert not hx.race([noisy], steps=2).config.world
+    assert hx.race([noisy], world="noise", steps=2).config.world
+
+
+def test_steps_are_told() -> None:
+    told: list[None] = []
+    hx.race(["greedy", "wave"], on_step=lambda: told.append(None), **QUICK)
+    assert len(told) == 40
+
+
+def test_a_race_in_which_all_fail_has_no_ranking() -> None:
+    race = hx.race(["tests.own_agents:Clumsy", "tests.own_agents:Clumsy"], **QUICK)
+    assert [one.rank for one in race.standings] == [None, None]
+    assert "without rank" in repr(race)
+
+
+@pytest.mark.parametrize(
+    ("lanes", "given", "reason"),
+    [
+        ("greedy", {}, r"lanes is a list, such as \[training, .*, not 'greedy'"),
+        (None, {}, r"lanes is a list, .*, not None"),
+        (["greedy"], {"alpha": 0.1}, "unknown argument of a race 'alpha'; choose one of: steps"),
+        (["q-learning"], {}, "give the lane its training, or keep_learning=True"),
+        ([], {}, "1 to 6 lanes"),
+        (["greedy"], {"gait": "moonwalk"}, "unknown gait 'moonwalk'"),
+    ],
+)
+def test_invalid_arguments_are_refused(lanes: Any, given: dict[str, Any], reason: str) -> None:
+    with pytest.raises(hx.HexapodError, match=reason):
+        hx.race(lanes, **{**QUICK, **given})
+
+
+def test_invalid_lanes_are_refused(training: hx.Training) -> None:
+    with pytest.raises(hx.UnknownName, match=r"argument of a look-ahead lane 'dept'; .*depth"):
+        hx.lane("look-ahead", dept=2)
+    with pytest.raises(hx.InvalidInput, match="learned by q-learning, not by sarsa"):
+        hx.lane("sarsa", table=training)
+    with pytest.raises(hx.InvalidInput, match="observation must be measured"):
+        hx.lane(training, observation="commanded")
+    with pytest.raises(TableMismatch, match="gait"):
+        hx.race([training], gait="front-back-origin", **QUICK)

@@ -1,0 +1,89 @@
+"""Turns of what-ifs: one at a time, operators first, and nobody waits who has left."""
+
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+
+from app.storage.errors import Busy
+from app.what_if.turns import MAX_WAITING, Turns
+from tests.jobs.waiting import wait_until
+from tests.timeouts import LONG_S
+
+
+def nothing() -> None:
+    pass
+
+
+def started(work: Callable[[], None]) -> threading.Thread:
+    thread = threading.Thread(target=work)
+    thread.start()
+    return thread
+
+
+def test_operators_go_first_and_others_in_order() -> None:
+    turns, order = Turns(), []
+
+    def ask(name: str) -> Callable[[], None]:
+        def wait_and_note() -> None:
+            with turns.turn(name.startswith("operator"), nothing):
+                order.append(name)
+
+        return wait_and_note
+
+    with turns.turn(True, nothing):
+        threads = []
+        for name in ("spectator 1", "spectator 2", "operator 1", "operator 2"):
+            threads.append(started(ask(name)))
+            wait_until(lambda: len(turns._waiting) == len(threads))
+    for thread in threads:
+        thread.join(LONG_S)
+    assert order == ["operator 1", "operator 2", "spectator 1", "spectator 2"]
+
+
+def test_an_operator_ends_the_turn_of_a_spectator() -> None:
+    turns, done = Turns(), []
+
+    def ask() -> None:
+        with turns.turn(True, nothing):
+            done.append("operator")
+
+    def until_ended(check: Callable[[], None]) -> None:
+        deadline_s = time.monotonic() + LONG_S
+        while time.monotonic() < deadline_s:
+            check()
+            time.sleep(0.01)
+
+    with turns.turn(False, nothing) as check:
+        check()
+        thread = started(ask)
+        with pytest.raises(Busy, match="the operator asked"):
+            until_ended(check)
+    thread.join(LONG_S)
+    assert done == ["operator"]
+
+
+def test_who_has_left_or_finds_too_many_waits_no_more() -> None:
+    turns, has_left, left = Turns(), threading.Event(), []
+
+    def check() -> None:
+        if has_left.is_set():
+            raise Busy("left", 1)
+
+    def ask() -> None:
+        with pytest.raises(Busy, match="left"), turns.turn(False, check):
+            raise AssertionError
+        left.append(1)
+
+    with turns.turn(False, nothing):
+        threads = [started(ask) for _ in range(MAX_WAITING)]
+        wait_until(lambda: len(turns._waiting) == MAX_WAITING)
+        with pytest.raises(Busy, match="are waiting"), turns.turn(False, nothing):
+            raise AssertionError
+        has_left.set()
+        for thread in threads:
+            thread.join(LONG_S)
+    assert len(left) == MAX_WAITING
+    with turns.turn(False, nothing):
+        assert turns._waiting == []
