@@ -278,12 +278,18 @@ export const stepsAreOpen = signal(false);
 const SETTLED_MS = 3000;
 const BY_HAND = ["wheel", "touchmove", "keydown", "pointerdown"];
 
+/** Ends what keeps the element that was scrolled to last in view. */
+let stopKeeping = () => {};
+
 /**
- * Scroll an element to the top, and keep it there while what is above it loads and grows, until somebody scrolls.
- * @param {HTMLElement} element
+ * Scroll to an element, and keep it in view while what is above it loads and grows, until somebody scrolls or another
+ * one is scrolled to.
+ * @param {Element} element
+ * @param {ScrollLogicalPosition} block where in the window
  */
-export function scrollToTop(element) {
-  const scroll = () => element.scrollIntoView({ block: "start", behavior: "instant" });
+export function keepInView(element, block) {
+  stopKeeping();
+  const scroll = () => element.scrollIntoView({ block, behavior: "instant" });
   const watcher = new ResizeObserver(scroll);
   watcher.observe(document.body);
   const stop = () => {
@@ -292,4 +298,6 @@ export function scrollToTop(element) {
   };
   BY_HAND.forEach((type) => addEventListener(type, stop, { passive: true }));
   setTimeout(stop, SETTLED_MS);
+  stopKeeping = stop;
+  scroll();
 }

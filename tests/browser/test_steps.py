@@ -153,6 +153,10 @@ def test_a_state_is_shown_in_the_scene_and_found_from_it(
     expect(note).to_contain_text("Clicked in the scene: legs 3+6 to front right.")
     expect(panel.get_by_test_id("heat-read")).to_contain_text("Legs 3+6 to front right: ")
     expect(grid).to_be_in_viewport()
+    # It stays in view while the rest of the page loads, which the panel's opening had scrolled to.
+    page.evaluate("document.querySelector('main').append(document.createElement('hr'))")
+    page.wait_for_timeout(200)
+    expect(grid).to_be_in_viewport()
 
 
 def test_lanes_of_a_race_are_explained(dashboard: Dashboard, shared_server: Serving) -> None:

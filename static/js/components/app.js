@@ -3,8 +3,8 @@ import { effect } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
 import {
-  clickedCell, closeLesson, helpIsOpen, isNarrow, isPresenting, leavePresenter, lesson, nextTheme, openLesson,
-  place, present, scrollToTop, setShortcuts, shortcuts, stepsAreOpen, theme, view,
+  clickedCell, closeLesson, helpIsOpen, isNarrow, isPresenting, keepInView, leavePresenter, lesson, nextTheme,
+  openLesson, place, present, setShortcuts, shortcuts, stepsAreOpen, theme, view,
 } from "../page.js";
 import { announcement } from "../headline.js";
 import { ownRunId, stepReplay } from "../replay.js";
@@ -107,7 +107,7 @@ function StepsPanel() {
   useEffect(() => effect(() => {
     if (!clickedCell.value) return;
     stepsAreOpen.value = true;
-    if (panel.current) scrollToTop(panel.current);
+    if (panel.current) keepInView(panel.current, "start");
   }), []);
   return html`
     <section class="panel steps" aria-labelledby="steps-title" ref=${panel}>

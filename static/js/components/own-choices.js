@@ -1,7 +1,7 @@
 // What a spectator can do on their own page, while the stage goes on for all.
 import { downloads } from "../files.js";
 import { tryOwnSettings } from "../form.js";
-import { scrollToTop, stepsAreOpen } from "../page.js";
+import { keepInView, stepsAreOpen } from "../page.js";
 import { closeReplay, openReplay, ownRunId } from "../replay.js";
 import { clock, shownRun } from "../on-stage.js";
 import { isActive } from "../selectors.js";
@@ -14,7 +14,7 @@ export function OwnChoices() {
   const explain = () => {
     stepsAreOpen.value = true;
     const panel = document.getElementById("steps-title")?.closest("section");
-    if (panel) scrollToTop(panel);
+    if (panel) keepInView(panel, "start");
   };
   return html`
     <div class="own-choices">

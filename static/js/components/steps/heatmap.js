@@ -5,7 +5,7 @@ import {
   cellInWords, cellKind, columnOf, fineMillimetres, moveOf, stateCells, stateIndex, triedMoves, valueRange,
 } from "../../steps.js";
 import { percentage, sentence, whole } from "../../format.js";
-import { theme } from "../../page.js";
+import { keepInView, theme } from "../../page.js";
 import { html } from "../elements.js";
 import { ChosenStateNote } from "./chosen-state.js";
 
@@ -97,7 +97,8 @@ function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, 
   useLayoutEffect(() => {
     if (heldRow === null) return;
     scrollTo(scroller.current, heldRow);
-    if (chosen?.from === "scene") scroller.current?.closest(".heat")?.scrollIntoView({ block: "nearest" });
+    const heatmap = scroller.current?.closest(".heat");
+    if (chosen?.from === "scene" && heatmap) keepInView(heatmap, "nearest");
   }, [heldRow, held?.column, chosen?.from]);
   const onKeyDown = (event) => {
     if (event.key === "Enter") onChoose(place);
