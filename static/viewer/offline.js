@@ -1,5 +1,5 @@
 // viser's client without a server: it is told that it is connected to an empty scene, which js/offline/player.js draws.
-// Dispatches `hexapods:connected` when it is. Assumptions about the client are listed in hexapods/drawing/viser_internals.
+// Dispatches `hexapods:connected` when it is. Assumptions about the client: hexapods/drawing/viser_internals.
 (() => {
   "use strict";
 
