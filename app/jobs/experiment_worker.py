@@ -17,6 +17,7 @@ from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import SUMMARY
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.progress import Progress
+from hexapods.experiments.result import ClaimVerdict, ExperimentResult, TrialCounts
 from hexapods.experiments.trial import TrialResult
 
 BATCHES_PER_S = 5
@@ -181,12 +182,19 @@ class _SentProgress(Progress):
         for name, data in report_files(self._summary, self.results):
             self._send_file(name, data)
 
-    def result(self) -> dict[str, Any]:
+    def result(self) -> ExperimentResult:
         """Return the run's result, short enough for lists of runs."""
-        trials = {name: self._summary["trials"][name] for name in ("done", "total", "failed")}
-        trials["set_aside"] = len(self.set_aside)
-        claims = [{n: claim[n] for n in ("id", "verdict")} for claim in self._summary["claims"]]
-        return {"trials": trials, "claims": claims, "files": self._files}
+        counts, claims = self._summary["trials"], self._summary["claims"]
+        return ExperimentResult(
+            trials=TrialCounts(
+                done=counts["done"],
+                total=counts["total"],
+                failed=counts["failed"],
+                set_aside=len(self.set_aside),
+            ),
+            claims=tuple(ClaimVerdict(id=one["id"], verdict=one["verdict"]) for one in claims),
+            files=tuple(self._files),
+        )
 
     def _send_due(self) -> None:
         now_s = time.monotonic()

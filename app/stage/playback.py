@@ -20,6 +20,7 @@ from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording, PracticeRecording
+from hexapods.runs.results import TrainingResult
 from hexapods.shows.practice_show import PracticeShow
 from hexapods.shows.race_show import Original, RaceShow
 from hexapods.shows.replay import Replay
@@ -73,7 +74,7 @@ def show_of(
         pace,
         lambda: recordings.training(run.id),
         world=world,
-        fell_at_step=(run.result or {}).get("fell_at_step"),
+        fell_at_step=run.result.fell_at_step if isinstance(run.result, TrainingResult) else None,
     )
 
 

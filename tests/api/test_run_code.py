@@ -1,16 +1,17 @@
 """A run as code: its commands and its Python program, executed, make the same run."""
 
-import ast
 import contextlib
 import io
 import json
 import shlex
+from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import hexapods.runs.results
 from app.api.run_code import MAX_CONTINUED, run_code
 from app.storage.run import Run
 from tests.api.calls import Api, refused
@@ -47,7 +48,7 @@ def results_of_program(text: str, folder: Path) -> list[dict[str, Any]]:
     out = io.StringIO()
     with contextlib.chdir(folder), contextlib.redirect_stdout(out):
         exec(compile(text, "the program", "exec"), {"__name__": "__main__"})
-    return [ast.literal_eval(line) for line in out.getvalue().splitlines()]
+    return [asdict(eval(line, vars(hexapods.runs.results))) for line in out.getvalue().splitlines()]
 
 
 def distances(result: dict[str, Any]) -> list[float]:

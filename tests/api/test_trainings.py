@@ -2,6 +2,7 @@
 
 import csv
 import io
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ def train_directly(**fields: Any) -> dict[str, Any]:
     learner = build_learner(config)
     for _ in train(learner, config):
         pass
-    return finish_training(learner, config)
+    return asdict(finish_training(learner, config))
 
 
 def test_training_needs_only_a_gait(api: Api) -> None:
@@ -179,7 +180,8 @@ def test_training_with_live_changes_is_reproducible(api: Api) -> None:
                 learner.walker.agent.tune(alpha=change["alpha"])  # type: ignore[attr-defined]
         if learner.step == now["progress"]["done"]:
             break
-    assert finish_training(learner, config, measure_reference=False) == now["result"]
+    result = finish_training(learner, config, measure_reference=False)
+    assert asdict(result) == now["result"]
 
 
 def test_list_is_paginated_newest_first(api: Api, trained: dict[str, Any]) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -37,7 +38,7 @@ def test_train_equals_a_direct_call(tmp_path: Path) -> None:
     learner = build_learner(config)
     for _ in train(learner, config):
         pass
-    assert printed["result"] == finish_training(learner, config)
+    assert printed["result"] == asdict(finish_training(learner, config))
     assert [point["step"] for point in printed["curve"]] == [50, 60]
 
 

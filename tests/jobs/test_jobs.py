@@ -24,6 +24,7 @@ from app.storage.stored_tables import load_table
 from hexapods.domain.errors import InvalidInput
 from hexapods.runs.config import WalkingProblem, training_config
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
+from tests.storage.ended_runs import result_of_race, training_result
 from tests.storage.stores import of_type
 from tests.timeouts import LONG_S
 
@@ -138,8 +139,7 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunSto
     assert changed.changes == ({"step": 1, "gamma": 0.5},)
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.done, stopped.error) == ("stopped", 1, None)
-    assert stopped.result is not None
-    assert stopped.result["greedy_distance_m"] is None
+    assert training_result(stopped).greedy_distance_m is None
 
 
 def test_stop_interrupts_a_long_decision(jobs: Jobs, store: RunStore) -> None:
@@ -150,8 +150,7 @@ def test_stop_interrupts_a_long_decision(jobs: Jobs, store: RunStore) -> None:
     stopped = jobs.stop(race.id)
 
     assert (stopped.state, stopped.error) == ("stopped", None)
-    assert stopped.result is not None
-    assert [lane["steps"] for lane in stopped.result["lanes"]] == [1, 0]
+    assert [lane.steps for lane in result_of_race(stopped).lanes] == [1, 0]
 
 
 def test_race_whose_agent_does_not_let_itself_be_stopped_is_ended(
@@ -167,8 +166,7 @@ def test_race_whose_agent_does_not_let_itself_be_stopped_is_ended(
     assert stopped.error == (
         "It did not answer when it was to stop, so it was ended after 0 s; what was done is kept."
     )
-    assert stopped.result is not None
-    assert [lane["steps"] for lane in stopped.result["lanes"]] == [1, 0]
+    assert [lane.steps for lane in result_of_race(stopped).lanes] == [1, 0]
 
 
 def test_stop_keeps_what_was_learned_although_the_last_evaluation_takes_too_long(
@@ -310,9 +308,7 @@ def test_race_result_reports_a_shared_machine(store: RunStore) -> None:
         other = jobs.train(endless())
         wait_for_progress(store, other)
         shared = wait_until_ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
-        assert alone.result is not None
-        assert shared.result is not None
-        assert (alone.result["shared_machine"], shared.result["shared_machine"]) == (False, True)
+        assert [result_of_race(run).shared_machine for run in (alone, shared)] == [False, True]
     finally:
         jobs.close()
 
