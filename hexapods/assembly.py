@@ -157,7 +157,7 @@ def rebuild_lane(
     """
     lane = config.lanes[number]
     rng, sensors = generator(config.seed, RACING, number), LoggedSensors(config, lane.observation)
-    offered = _offered_in(config, lane) if table is None else table.meta["config"]
+    offered = _offered_in(config, lane) if table is None else _offered_with(table)
     agent = _agent_without_robot(
         *(config, lane.agent),
         rng=rng,
@@ -212,7 +212,7 @@ def build_walkers(
             offered = _offered_in(config, lane)
         else:
             check_fits(table, config, lane.observation)
-            offered = table.meta["config"]
+            offered = _offered_with(table)
         walker = _walker(
             simulator,
             lane.agent,
@@ -258,6 +258,12 @@ def _offered_by(config: TrainingConfig) -> dict[str, Any]:
         **{name: value for name, value in vars(config).items() if name not in _NOT_OFFERED},
         **settings,
     }
+
+
+def _offered_with(table: Checkpoint) -> Mapping[str, Any]:
+    """Return what the training of a table has offered to its agent."""
+    config = table.meta["config"]
+    return {**config, **config["settings"]}
 
 
 def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:

@@ -160,7 +160,7 @@ def train(
             simulator, grid and observation are those of its practice unless they are given, and the
             settings the agent's defaults.
         changes: while it practises: mappings with the number of steps after which they happen,
-            `step`, and values of the agent's live settings, or a `disturbance`.
+            `step`, and values of the agent's live `settings` by name, or a `disturbance`.
         on_record: called with each record of the loop.
         given: fields of `TrainingConfig`: the walking problem's (`gait`, a name or a `Gait`;
             `robot`, a preset's name, a mapping or a `Robot`; `simulator`, `divisions`,
@@ -302,12 +302,11 @@ class _Practice:
     def _change(self) -> None:
         while self._changes and self._changes[0]["step"] <= self.learner.step:
             values = self._changes.pop(0)
-            del values["step"]
             if "disturbance" in values:
-                self.learner.disturb(values.pop("disturbance"), self.config)
-            if values:
+                self.learner.disturb(values["disturbance"], self.config)
+            if values["settings"]:
                 # `_read_changes` has looked for settings that are live.
-                cast(Tunable, self.learner.walker.agent).tune(**values)
+                cast(Tunable, self.learner.walker.agent).tune(**values["settings"])
 
 
 def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dict[str, Any]]:
@@ -317,18 +316,26 @@ def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dic
     for change in changes:
         if not isinstance(change, Mapping) or "step" not in change:
             raise InvalidInput(
-                f'a change is a mapping such as {{"step": 20, "alpha": 0.1}}, not {change!r}'
+                'a change is a mapping such as {"step": 20, "settings": {"alpha": 0.1}}, not '
+                f"{change!r}"
             )
         values = plain_values(change)
-        if not live and set(values) - {"step", "disturbance"}:
+        check_names("a change", values, ("step", "settings", "disturbance"))
+        settings = values.setdefault("settings", {})
+        if not isinstance(settings, Mapping):
+            raise InvalidInput(
+                f'settings of a change are such as {{"alpha": 0.1}}, not {settings!r}'
+            )
+        if settings and not live:
             raise InvalidInput(f"{config.agent} has no settings that change in practice")
-        check_names(f"a change of {config.agent}", values, ("step", "disturbance", *live))
+        check_names(f"a change of {config.agent}", settings, live)
         check_whole(
             "step of a change", values["step"], read[-1]["step"] if read else 0, config.steps
         )
         if "disturbance" in values:
             values["disturbance"] = read_disturbance(values["disturbance"])
-        read.append({k: live[k].normalized(v) if k in live else v for k, v in values.items()})
+        values["settings"] = {k: live[k].normalized(v) for k, v in settings.items()}
+        read.append(values)
     return read
 
 

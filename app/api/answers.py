@@ -85,11 +85,11 @@ class WalkView(Answer):
     disturbances: list[DisturbanceView]
 
 
-class TrainingConfigView(WalkView):
-    """Config of a training; the settings of its agent are further members, by name."""
+Settings = Annotated[dict[str, Value], Field(description="settings of the agent, by name")]
 
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
+
+class TrainingConfigView(WalkView):
+    """Config of a training."""
 
     steps: int
     seed: int
@@ -98,17 +98,15 @@ class TrainingConfigView(WalkView):
     evaluate_every: int
     pace: float | Literal["max"]
     agent: str
+    settings: Settings
     continue_from: str | None
 
 
 class LaneView(Answer):
     """A lane of a race, with the id of the training whose Q-table it uses.
 
-    The settings of an agent without training are further members, by name.
+    The settings of an agent with training are those of the training.
     """
-
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
 
     agent: str
     keep_learning: bool
@@ -118,6 +116,7 @@ class LaneView(Answer):
     ]
     plans_with_by_default: Annotated[bool, Field(description="whether `plans_with` was left out")]
     observation: Observation
+    settings: Settings
     training_id: str | None
 
 
@@ -140,9 +139,6 @@ class RaceConfigView(WalkView):
 class ExperimentConfigView(Answer):
     """Config of an experiment; each element of the lists' Cartesian product is a setting."""
 
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, list[Value]]
-
     experiment: ExperimentName
     seeds: int
     seed: int
@@ -152,6 +148,9 @@ class ExperimentConfigView(Answer):
     robots: list[RobotView]
     simulator: SimulatorName
     steps: list[int]
+    settings: Annotated[
+        dict[str, list[Value]], Field(description="values of the agents' settings, by name")
+    ]
     steps_per_episode: list[int]
     divisions: list[int]
     grid_side_m: list[float]
@@ -185,13 +184,12 @@ class RunView(Answer):
     ended_at: datetime | None
 
 
-class Change(BaseModel):
-    """A change of live settings: their new values by name, and the step after which it applies."""
-
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
+class Change(Answer):
+    """A change while it ran, and the step after which it applies; what stayed is left out."""
 
     step: Count
+    pace: float | Literal["max"] | None = None
+    settings: Settings = Field(default_factory=dict)
     disturbance: DisturbanceView | None = None
 
 
@@ -322,12 +320,10 @@ class EstimateView(Answer):
     seconds: Annotated[float, Field(ge=0)]
 
 
-class WhatIfHalf(BaseModel):
+class WhatIfHalf(Answer):
     """Result of 30 seeds with these settings: their distances [m] and interquartile mean."""
 
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
-
+    settings: Settings
     steps_per_episode: int
     distances_m: list[float]
     walkers: Annotated[float, Field(ge=0, le=1)]

@@ -110,6 +110,7 @@ VALID: Mapping[str, str] = {
     "fps": f"a whole number of frames per second from 1 to {MAX_FPS}",
     "playback_speed": f"a number from {MIN_SPEED} to {MAX_SPEED}, times the run's own time",
     "part": "practice, or evaluation for the newest one; of a training",
+    "settings": "an object with the agent's settings, by name",
     "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
     "format": "a format that the description of the route names",
 }

@@ -41,8 +41,10 @@ from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import check_lane
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
 from hexapods.runs.results import RaceResult
+from hexapods.runs.version_1 import nested_change, nested_config
 
-FORMAT = 1
+FORMAT = 2
+"""Format of `run.json`; 1, of versions before 0.2, is read too."""
 MAX_JSON_BYTES = 64_000_000
 _MAX_PART_BYTES = 256_000  # of a config or a result
 _MAX_RUN_BYTES = 8_000_000  # of all but the curve
@@ -51,8 +53,8 @@ _MAX_CHANGES = 10_000
 changes that wait for acknowledgement at the same time may pass it by some."""
 
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
-_Change = float | int | str | bool | dict[Name, float | int | str | list[int]]
-"""A new value of a setting, or a disturbance."""
+_Change = float | int | str | bool | dict[Name, float | int | str | bool | list[int]]
+"""The step, a new pace, new values of settings, or a disturbance."""
 
 
 class _EndedRun(UntrustedInput, frozen=True):
@@ -133,10 +135,10 @@ def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run
         if len(data) > MAX_JSON_BYTES:
             raise ValueError("it is too long")
         head = msgspec.json.decode(data, type=_Head)
-        if head.format != FORMAT:
+        if head.format not in (1, FORMAT):
             raise DamagedFile(
                 f"{label} has format {head.format}, of version {head.version[:40]!r}; this version "
-                f"({__version__}) reads {FORMAT}"
+                f"({__version__}) reads 1 and {FORMAT}"
             )
         # Of all that is in it only the curve may be long.
         curve_json = bytes(msgspec.json.decode(data, type=_OnlyCurve).curve)
@@ -144,7 +146,7 @@ def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run
             raise ValueError("it is too long")
         rest = data.replace(curve_json, b"[]", 1)
         check_json(rest)
-        run = _run(msgspec.json.decode(rest, type=_File).run, agents)
+        run = _run(msgspec.json.decode(rest, type=_File).run, agents, is_first=head.format == 1)
         curve = read_curve(curve_json)
         _check(run, curve)
     except DamagedFile:
@@ -156,8 +158,12 @@ def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run
     return run, curve
 
 
-def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
-    config = run_config_from_json(fields.kind, _decode(fields.config, dict[str, Any]))
+def _run(fields: _EndedRun, agents: Collection[str], *, is_first: bool) -> Run:
+    """Check a run; `is_first`: it is of the first format, with settings beside other fields."""
+    given, changes = _decode(fields.config, dict[str, Any]), fields.changes
+    if is_first:
+        given, changes = nested_config(given), [nested_change(one) for one in changes]
+    config = run_config_from_json(fields.kind, given)
     if not isinstance(config, CONFIGS[fields.kind]) or fields.done > fields.total:
         raise ValueError("its kind, its config and its progress do not fit together")
     # Before `plan_of`, which imports the agents of an experiment.
@@ -176,7 +182,7 @@ def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
     values |= {
         "config": config,
         "result": result,
-        "changes": tuple(fields.changes),
+        "changes": tuple(changes),
         "lane_training_ids": lanes,
     }
     return Run(**values)

@@ -9,6 +9,7 @@ from typing import Any, Literal, NamedTuple, get_args
 import msgspec
 from pydantic import TypeAdapter, ValidationError
 
+from app.storage.json_text import finite
 from hexapods.domain.disturbances import disturbance
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.experiments import config as experiments
@@ -220,11 +221,13 @@ def result_as_json(result: Result | None) -> dict[str, Any] | None:
 def result_from_json(kind: Kind, fields: Any) -> Result:
     """Parse a result that `result_as_json` wrote; fields of later versions are ignored.
 
+    NaN, which earlier versions stored, is what was not measured.
+
     Raises:
         ValueError: if it lacks a field, or a value is out of its limits.
     """
     try:
-        result: Result = _RESULTS[kind].validate_python(fields, extra="ignore")
+        result: Result = _RESULTS[kind].validate_python(finite(fields), extra="ignore")
     except ValidationError as error:
         raise ValueError(_first_error(error)) from None
     return result

@@ -80,7 +80,7 @@ class WhatIf:
         Returns:
             `seeds`, `greedy_m`, `chosen` and `default` with `distances_m`, `walkers` (the share
             of seeds with at least half of greedy's distance), `iqm_m` (interquartile mean), the
-            agent's settings and `steps_per_episode`; `compute_s`.
+            agent's `settings` and `steps_per_episode`; `compute_s`.
 
         Raises:
             InvalidInput, UnknownName, Unreachable: if the training is invalid, or takes too long.
@@ -226,7 +226,7 @@ def _summarize(
 ) -> dict[str, Any]:
     walkers = sum(distance >= greedy_m / 2 for distance in distances_m)
     return {
-        **config.settings,
+        "settings": dict(config.settings),
         "steps_per_episode": config.steps_per_episode,
         "distances_m": list(distances_m),
         "walkers": walkers / len(distances_m),

@@ -239,7 +239,8 @@ export const startRace = (body) => start("races", body);
 export const startExperiment = (body) => start("experiments", body);
 
 /** @type {(id: string, changes: Rates) => Promise<Run>} */
-export const tuneTraining = (id, changes) => call("PATCH", pathOf({ kind: "training", id }), changes);
+export const tuneTraining = (id, { pace, ...settings }) =>
+  call("PATCH", pathOf({ kind: "training", id }), { ...(pace === undefined ? {} : { pace }), settings });
 
 /** @type {(id: string, disturbance: object) => Promise<Disturbance>} */
 export const disturbTraining = (id, disturbance) =>

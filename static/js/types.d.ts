@@ -132,7 +132,10 @@ export interface Options {
   clocks: Described[];
   experiments: ExperimentKind[];
   defaults: {
-    training: { agent: string; robot: string; simulator: string; [field: string]: FormValue };
+    training: {
+      agent: string; robot: string; simulator: string; settings: Record<string, SettingValue>;
+      [field: string]: FormValue | Record<string, SettingValue>;
+    };
     race: { steps: number; lanes: { agent: string }[] };
     what_if: { seeds: number };
   };
@@ -206,8 +209,9 @@ export interface LaneConfig {
   plans_with?: string | null;
   /** Whether nobody asked for it. */
   plans_with_by_default?: boolean;
-  /** A setting of the agent, if the lane has no training. */
-  [setting: string]: any;
+  observation?: string;
+  /** Of the agent, if the lane has no training. */
+  settings?: Record<string, any>;
 }
 
 /** Trainings, races and experiments have different fields; those of all three stand here. */
@@ -224,6 +228,8 @@ export interface RunConfig {
   steps_per_episode: number;
   evaluate_every: number;
   pace: number | "max";
+  /** Of the agent, by name; of an experiment, the lists of their values. */
+  settings: Record<string, any>;
   continue_from?: string | null;
   /** Runs of earlier versions have none. */
   disturbances?: Disturbance[];
@@ -235,8 +241,7 @@ export interface RunConfig {
   gaits: string[];
   observations: string[];
   robots: Exclude<RobotConfig, string>[];
-  /** A setting of the training's agent. */
-  [setting: string]: any;
+  [field: string]: any;
 }
 
 export interface ClockResult {
@@ -311,7 +316,8 @@ export interface Annotations {
 export interface Change {
   step: number;
   disturbance?: Disturbance | null;
-  [setting: string]: any;
+  pace?: number | "max" | null;
+  settings?: Record<string, SettingValue>;
 }
 
 /** A run that the server cannot read. It can be deleted. */

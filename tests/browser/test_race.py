@@ -177,7 +177,9 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
 
     def changes() -> dict[str, float]:
         [training] = dashboard.get("/api/v1/trainings")["items"]
-        return {k: v for change in training["changes"] for k, v in change.items() if v is not None}
+        return {
+            k: v for change in training["changes"] for k, v in change.get("settings", {}).items()
+        }
 
     dashboard.eventually(
         lambda: (changes().get("alpha"), changes().get("epsilon")) == (0.5, 0.25), "the new rates"

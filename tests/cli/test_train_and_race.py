@@ -112,7 +112,7 @@ def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
     race = ("race", *QUICK, "--steps", "5", *(part for lane in lanes for part in ("--lane", lane)))
     printed = output(*race, folder=folder)
     settings = [
-        (one.get("depth"), one["keep_learning"], one.get("alpha"))
+        (one["settings"].get("depth"), one["keep_learning"], one["settings"].get("alpha"))
         for one in printed["config"]["lanes"]
     ]
     assert settings == [(2, False, None), (None, True, None), (None, True, 0.5)]

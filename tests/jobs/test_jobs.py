@@ -119,8 +119,8 @@ def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: RunSto
     start = TrainingStart(training_config(**vars(mujoco), steps=1_000_000, evaluate_every=0))
     run = jobs.train(start)
     wait_for_progress(store, run)
-    changed = jobs.change(run.id, {"alpha": 0.2})
-    assert changed.changes[0]["alpha"] == 0.2
+    changed = jobs.change(run.id, {"settings": {"alpha": 0.2}})
+    assert changed.changes[0]["settings"]["alpha"] == 0.2
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.error) == ("stopped", None)
     assert stopped.result is not None
@@ -135,8 +135,8 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunSto
     wait_for_progress(store, run)
     time.sleep(0.5)
     assert jobs.pause(run.id).state == "paused"
-    changed = jobs.change(run.id, {"gamma": 0.5})
-    assert changed.changes == ({"step": 1, "gamma": 0.5},)
+    changed = jobs.change(run.id, {"settings": {"gamma": 0.5}})
+    assert changed.changes == ({"step": 1, "settings": {"gamma": 0.5}},)
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.done, stopped.error) == ("stopped", 1, None)
     assert training_result(stopped).greedy_distance_m is None
@@ -208,10 +208,10 @@ def test_number_of_live_changes_is_limited(
     monkeypatch.setattr("app.jobs.jobs.MAX_CHANGES", 2)
     run = jobs.train(endless())
     wait_for_progress(store, run)
-    jobs.change(run.id, {"alpha": 0.5})
+    jobs.change(run.id, {"settings": {"alpha": 0.5}})
     jobs.change(run.id, {"pace": 10})
     with pytest.raises(Conflict, match="was changed 2 times, which is the most"):
-        jobs.change(run.id, {"alpha": 0.6})
+        jobs.change(run.id, {"settings": {"alpha": 0.6}})
     assert len(store.get(run.id).changes) == 2
     jobs.stop(run.id)
 

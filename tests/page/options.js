@@ -77,16 +77,16 @@ const WORLDS = [
 ];
 
 const TRAINING = {
-  agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured", alpha: 0.3, gamma: 0.9,
-  epsilon_start: 1, epsilon_end: 0, steps_per_episode: 50, evaluate_every: 50, robot: "stiff", simulator: "mujoco",
+  agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured",
+  settings: { alpha: 0.3, gamma: 0.9, epsilon_start: 1, epsilon_end: 0 }, steps_per_episode: 50, evaluate_every: 50,
+  robot: "stiff", simulator: "mujoco",
   divisions: 2, grid_side_m: 0.04, tolerance: 0, disturbances: [],
 };
 
 const GRID = ["steps", "alpha", "gamma", "epsilon_start", "epsilon_end", "trace", "kind"];
 const EXPERIMENT = {
   name: "", seeds: 30, seed: 0, gaits: ["tripod", "wave"], observations: ["measured"], robots: ["stiff"],
-  simulator: "mujoco", agents: ["learner"], steps: [500], alpha: [0.3], gamma: [0.9], epsilon_start: [1],
-  epsilon_end: [0], steps_per_episode: [50], divisions: [2], grid_side_m: [0.04],
+  simulator: "mujoco", agents: ["learner"], steps: [500], steps_per_episode: [50], divisions: [2], grid_side_m: [0.04],
 };
 const COMMON = ["seeds", "seed", "gaits", "observations", "robots", "simulator"];
 

@@ -36,7 +36,7 @@ EXPERIMENT = {
     "simulator": "kinematic",
     "gaits": "left-right-origin",
     "steps": 40,
-    "alpha": [0.1, 0.5],
+    "settings": {"alpha": [0.1, 0.5]},
     "workers": 2,
 }
 RACE = {**BODY, "steps": 5, "lanes": [{"agent": "greedy"}, {"agent": "two-step"}]}

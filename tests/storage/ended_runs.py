@@ -51,7 +51,7 @@ def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps
     recordings.finish(run_id)
     store.put_artifact(run_id, TABLE, to_bytes(snapshot(learner, config)))
     result = finish_training(learner, config)
-    changes = ({"step": 3, "alpha": 0.25}, {"step": 9, "pace": "max"})
+    changes = ({"step": 3, "settings": {"alpha": 0.25}}, {"step": 9, "pace": "max"})
     return store.change(run_id, {"queued"}, "finished", done=steps, result=result, changes=changes)
 
 

@@ -72,19 +72,28 @@ def test_counts_are_by_state(store: RunStore) -> None:
 @pytest.mark.parametrize(
     ("damage", "reason"),
     [
-        ({"result": TrainingResult(distance_m=math.nan)}, "its result cannot be read: distance_m"),
+        ({"result": TrainingResult(distance_m=1e9)}, "its result cannot be read: distance_m"),
         ({"greedy_distance_m": math.inf}, "its greedy_distance_m has NaN or an infinity"),
-        ({"changes": ({"step": 1, "alpha": math.nan},)}, "its changes has NaN or an infinity"),
+        (
+            {"changes": ({"step": 1, "settings": {"alpha": math.nan}},)},
+            "its changes has NaN or an infinity",
+        ),
     ],
 )
-def test_run_with_nan_or_an_infinity_is_damaged(
+def test_run_with_an_impossible_number_is_damaged(
     store: RunStore, damage: dict[str, Any], reason: str
 ) -> None:
-    """They cannot be written as JSON."""
+    """JSON has no NaN."""
     store.create(training("a", **damage))
     found = store.find("a")
     assert isinstance(found, DamagedRun)
     assert reason in found.damaged
+
+
+def test_nan_in_a_result_is_what_was_not_measured(store: RunStore) -> None:
+    """Earlier versions stored it."""
+    store.create(training("a", result=TrainingResult(distance_m=math.nan)))
+    assert store.get("a").result == TrainingResult(distance_m=None)
 
 
 def test_nan_in_a_curve_is_preserved(store: RunStore) -> None:

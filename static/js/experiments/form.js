@@ -16,8 +16,10 @@ import { options, served } from "../store.js";
 /** Every kind of experiment, robots by the names of their presets. @type {{ value: ExperimentKind[] }} */
 export const experiments = computed(() =>
   (options.value?.experiments ?? []).map((kind) => {
-    const robots = kind.defaults.robots.map((robot) => presetOf(robot) ?? "");
-    return { ...kind, defaults: { ...kind.defaults, name: "", robots } };
+    // The settings have the defaults of the agents that are chosen.
+    const { settings: _, ...defaults } = kind.defaults;
+    const robots = defaults.robots.map((robot) => presetOf(robot) ?? "");
+    return { ...kind, defaults: { ...defaults, name: "", robots } };
   }),
 );
 
@@ -262,12 +264,19 @@ export function enter(field, text) {
   else typed.value = { ...typed.value, [field]: text };
 }
 
-/** The request's body. @returns {Record<string, ExperimentValue>} */
+/** The request's body. @returns {Record<string, unknown>} */
 export function requestBody() {
   const own = Object.entries(overrides.value).filter(([field]) => takesField(field));
-  const { name = "", ...others } = Object.fromEntries(own);
+  const fields = Object.fromEntries(own.filter(([field]) => !(field in everySetting.value)));
+  const settings = Object.fromEntries(own.filter(([field]) => field in everySetting.value));
+  const { name = "", ...others } = fields;
   const trimmed = String(name).trim();
-  return { experiment: chosenExperiment.value.name, ...others, ...(trimmed ? { name: trimmed } : {}) };
+  return {
+    experiment: chosenExperiment.value.name,
+    ...others,
+    ...(Object.keys(settings).length ? { settings } : {}),
+    ...(trimmed ? { name: trimmed } : {}),
+  };
 }
 
 /** @type {(value: ExperimentValue, separator: string) => string} */

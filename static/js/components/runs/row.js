@@ -83,7 +83,7 @@ function ofTraining(run) {
   return [
     state === "finished" ? total : `${whole(progress.done)} of ${total}`,
     config.continue_from ? "continues an earlier one" : `seed ${config.seed}`,
-    ...ratesInWords(config.agent, config), ...changesInWords(config.agent, rateChanges(run)),
+    ...ratesInWords(config.agent, config.settings), ...changesInWords(config.agent, rateChanges(run)),
     observationTitle(config.observation),
   ];
 }
