@@ -299,9 +299,9 @@ export async function getReplayFrames(id, address, query) {
   return (await request("GET", path)).arrayBuffer();
 }
 
-/** Render a video of a run, which takes up to minutes. @type {(id: string, playback_speed: number) => Promise<Blob>} */
-export const getVideo = async (id, playback_speed) =>
-  (await request("POST", `runs/${encodeURIComponent(id)}/video?playback_speed=${playback_speed}`)).blob();
+/** Have an export of a run computed, in up to minutes. @type {(id: string, address: string) => Promise<Blob>} */
+export const postExport = async (id, address) =>
+  (await request("POST", `runs/${encodeURIComponent(id)}/${address}`)).blob();
 
 /**
  * The gait of a race, or of a part of a training; from a moment of robot time on, or all that is analysed at once.

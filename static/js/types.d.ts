@@ -120,6 +120,15 @@ export interface ExperimentKind extends Described {
   agents: string[];
 }
 
+/** A type of file that a recorded walk can be exported as. */
+export interface ExportOption {
+  title: string;
+  address: string;
+  method: "GET" | "POST";
+  ending: string;
+  install: string | null;
+}
+
 export interface Options {
   version: string;
   gaits: Gait[];
@@ -143,7 +152,7 @@ export interface Options {
   limits: Record<string, [number | null, number | null]>;
   help: Record<string, string>;
   /** Extras of the package that the server lacks, each with the command that installs it. */
-  missing_extras: Record<string, string>;
+  exports: ExportOption[];
 }
 
 // ---- the forms

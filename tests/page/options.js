@@ -173,10 +173,16 @@ export const OPTIONS = {
     ...TRACER, ...LEARNER,
   },
   limits: { seeds: [1, null], seed: [0, null], what_if_steps: [1, 2000], lanes: [1, 6], name: [0, 20], tag: [1, 9],
-    tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120], video_s: [0, 30],
+    tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120],
     import_bytes: [1, 2 ** 20] },
   help: { alpha: "Learning rate." },
-  missing_extras: {},
+  exports: [
+    { title: "Joints (CSV)", address: "joints?format=csv", method: "GET", ending: "csv", install: null },
+    { title: "Joints (Parquet)", address: "joints?format=parquet", method: "GET", ending: "parquet",
+      install: "pip install p" },
+    { title: "Page", address: "page", method: "GET", ending: "html", install: null },
+    { title: "Film", address: "film?format=mp4", method: "POST", ending: "mp4", install: null },
+  ],
 };
 
 let number = 0;

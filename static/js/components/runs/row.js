@@ -4,7 +4,7 @@ import { attempt, copySettings, deleteRun, isShown, pending, resumeRun, runAgain
 import { changesInWords, rateChanges } from "../../changes.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
-import { archiveAddress, downloads, saveVideo } from "../../files.js";
+import { archiveAddress, downloads, notInstalled, rendered, saveExport } from "../../files.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
@@ -142,7 +142,10 @@ function Menu({ run }) {
       <div class="menu-body">
         <${Downloads} run=${run} />
         ${isOperator.value && run.kind !== "experiment" && !isActive(run) && run.progress.done > 0 && html`
-          <${VideoButton} run=${run} />
+          ${rendered().map((file) => html`<${RenderButton} key=${file.title} run=${run} file=${file} />`)}
+          ${notInstalled().map(([install, titles]) => html`
+            <p class="dim">${listed(titles)}: not installed on the server; <code>${install}</code> adds it.</p>
+          `)}
         `}
         ${isOperator.value && run.kind !== "experiment" && html`
           <a href="#" onClick=${() => copySettings(run)}>Use its settings</a>
@@ -164,24 +167,17 @@ function Menu({ run }) {
   `;
 }
 
-/** Have a video rendered; the menu says so until it is there, or why there is none stands in the row. */
-function VideoButton({ run }) {
-  const install = served().missing_extras.video;
-  return install
-    ? html`<p class="dim">Video (MP4): not installed on the server; <code>${install}</code> adds it.</p>`
-    : html`<${RenderButton} run=${run} />`;
-}
-
-function RenderButton({ run }) {
+/** Have a file computed; the menu says so until it is there, or why there is none stands in the row. */
+function RenderButton({ run, file }) {
   const [isRendering, setRendering] = useState(false);
   const onClick = async () => {
     setRendering(true);
-    await attempt(run.id, () => saveVideo(run));
+    await attempt(run.id, () => saveExport(run, file));
     setRendering(false);
   };
   return html`
     <button disabled=${pending.value[run.id]} onClick=${onClick} aria-live="polite">
-      ${isRendering ? "Rendering a video…" : "Video (MP4)"}
+      ${isRendering ? `${file.title}: being rendered…` : file.title}
     </button>
   `;
 }
