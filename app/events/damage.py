@@ -1,7 +1,10 @@
 """List and count the stored runs that cannot be read."""
 
-import threading
-import time
+from collections.abc import Callable
+from threading import Condition
+from typing import Any
+
+from cachetools import TTLCache, cached
 
 from app.storage.database.store import RunStore
 from app.storage.run import DamagedRun
@@ -26,24 +29,10 @@ def damaged_runs(store: RunStore) -> list[DamagedRun]:
             return damaged
 
 
-class DamageCount:
-    """Number of damaged runs of a store, cached for five minutes. Thread-safe.
+def damage_count(store: RunStore) -> Callable[[], int]:
+    """Return a function that returns the number of damaged runs, cached for five minutes.
 
     Counting reads every run, which is too slow for each request of the metrics.
     """
-
-    def __init__(self, store: RunStore) -> None:
-        self._store, self._lock = store, threading.Lock()
-        self._count, self._counted_s = 0, -float("inf")
-
-    def __call__(self) -> int:
-        """Return the cached number, counting again if it is too old.
-
-        Raises:
-            StorageFailed: if the store cannot be read.
-        """
-        with self._lock:
-            if time.monotonic() - self._counted_s > _CACHE_S:
-                self._count = len(damaged_runs(self._store))
-                self._counted_s = time.monotonic()
-            return self._count
+    cache: TTLCache[Any, int] = TTLCache(maxsize=1, ttl=_CACHE_S)
+    return cached(cache, condition=Condition())(lambda: len(damaged_runs(store)))
