@@ -1,8 +1,6 @@
 """An experiment in its worker process: runs the remaining trials, sends results and summaries."""
 
-import importlib
 import json
-import logging
 import os
 import queue
 import threading
@@ -47,7 +45,7 @@ def experiment(
         if not control.draining:
             break
         if control.paused:
-            # The cluster is shut down during a pause, since it takes memory.
+            # The workers have ended during a pause, since they take memory.
             progress.summarise()
     if not control.exiting:
         progress.report()
@@ -111,15 +109,11 @@ class _SentProgress(Progress):
         self._files: list[str] = []
 
     def run_remaining(self, may_continue: Callable[[], bool]) -> None:
-        """Run the remaining trials on a cluster.
+        """Run the remaining trials on worker processes.
 
         Args:
             may_continue: polled between trials; False ends the run.
         """
-        # It would log each start and end of a cluster, and the tasks that a pause drops.
-        importlib.import_module("distributed")
-        for name in ("distributed", "distributed.scheduler"):
-            logging.getLogger(name).setLevel(logging.CRITICAL)
 
         def send_and_check() -> bool:
             self._send_due()
