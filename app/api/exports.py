@@ -13,7 +13,8 @@ from app.api.formats import attachment, negotiated
 from app.api.runs import RunPath
 from app.exports.stored_walks import source_of
 from app.storage.errors import Conflict
-from hexapods.exports.export_format import Execution, ExportFormat, FileType, TooLong
+from hexapods.domain.errors import TooLong
+from hexapods.exports.export_format import Execution, ExportFormat, FileType
 from hexapods.exports.options import ExportOptions
 from hexapods.exports.registry import EXPORTS
 

@@ -113,6 +113,14 @@ def find(name: str) -> AgentClass:
         raise InvalidInput(
             f"agent {name!r}: {module_name} has no {class_name}; its classes: {offers}"
         )
+    if (
+        agent is TabularLearner
+        or inspect.isabstract(agent)
+        or getattr(agent, "_is_protocol", False)
+    ):
+        raise InvalidInput(
+            f"agent {name!r} is there to be derived from: give the name or class of a complete one"
+        )
     missing = [method for method in ("act", "learn", "state", "load") if not hasattr(agent, method)]
     if missing:
         raise InvalidInput(f"agent {name!r} lacks {', '.join(missing)} of the agent protocol")

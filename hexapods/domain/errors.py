@@ -49,5 +49,9 @@ class IllegalAction(HexapodError):
     """An agent chose an action that is illegal in the current state."""
 
 
+class TooLong(HexapodError):
+    """A run is too long for a type of file."""
+
+
 class Diverged(HexapodError):
     """The physics simulation diverged to non-finite numbers."""

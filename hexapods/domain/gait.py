@@ -6,6 +6,7 @@ an orientation of the robot and a symmetry that pairs its legs; the pattern over
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import index
 from typing import Literal, get_args
 
 from hexapods.domain.errors import InvalidInput, UnknownName
@@ -15,6 +16,8 @@ Pair = tuple[int, int]
 """(leader, partner), legs counted from 1: the leader goes to (x, y), its partner to (−x, y)."""
 
 _SAME_DIRECTION_DEG = 1e-6
+_PAIRS = "[[1, 4], [2, 5], [3, 6]]"
+"""An example of pairs, for error messages."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class GaitSpec:
         pairs: the explicit pairs.
 
     Raises:
-        InvalidInput: if both or neither of symmetry and pairs are given.
+        InvalidInput: if both or neither of symmetry and pairs are given, or a leg is no number.
         UnknownName: if the symmetry is unknown.
     """
 
@@ -43,6 +46,35 @@ class GaitSpec:
             raise InvalidInput("a gait needs either symmetry (origin or vertical) or pairs")
         if self.symmetry is not None and self.symmetry not in get_args(Symmetry):
             raise UnknownName("symmetry", self.symmetry, get_args(Symmetry))
+        for name in ("right_leg", "left_leg"):
+            object.__setattr__(self, name, _leg_number(name, getattr(self, name)))
+        if self.pairs is not None:
+            object.__setattr__(self, "pairs", _pairs_of_legs(self.pairs))
+
+
+def _leg_number(name: str, leg: object) -> int:
+    """Return a leg's number, of NumPy too, as an `int`.
+
+    Raises:
+        InvalidInput: if it is no whole number.
+    """
+    try:
+        if not isinstance(leg, bool):
+            return index(leg)  # type: ignore[arg-type]  # what it refuses is refused here
+    except TypeError:
+        pass
+    raise InvalidInput(f"{name} must be the number of a leg, a whole number from 1, not {leg!r}")
+
+
+def _pairs_of_legs(pairs: object) -> tuple[Pair, ...]:
+    try:
+        read = [(first, second) for first, second in pairs]  # type: ignore[attr-defined]
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(f"a gait's pairs must look like {_PAIRS}, not {pairs!r}") from error
+    return tuple(
+        (_leg_number("a leg of pairs", first), _leg_number("a leg of pairs", second))
+        for first, second in read
+    )
 
 
 NAMED_GAITS: dict[str, GaitSpec] = {

@@ -8,6 +8,8 @@ from typing import Any
 from hexapods.domain.errors import InvalidInput, UnknownName
 
 MIN_LEGS, MAX_LEGS = 4, 12
+_NO_NUMBERS = ("name", "legs")
+"""Fields of a robot that are not a number."""
 
 
 @dataclass(frozen=True)
@@ -77,9 +79,15 @@ class Robot:
     """Time step of the physics; with 0.008 s results begin to drift."""
 
     def __post_init__(self) -> None:
-        for name, value in vars(self).items():
-            if isinstance(value, float) and not (math.isfinite(value) and value > 0):
+        numbers = {name: value for name, value in vars(self).items() if name not in _NO_NUMBERS}
+        for name, value in numbers.items():
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise InvalidInput(f"robot.{name} must be a number, not {value!r}")
+            if not (math.isfinite(value) and value > 0):
                 raise InvalidInput(f"robot.{name} must be positive and finite, not {value}")
+        legs: Any = self.legs  # as a user gave them
+        if not isinstance(legs, tuple) or not all(isinstance(leg, LegMount) for leg in legs):
+            raise InvalidInput(f"robot.legs must be a tuple of LegMount, not {legs!r}")
         if len(self.legs) % 2 or not MIN_LEGS <= len(self.legs) <= MAX_LEGS:
             raise InvalidInput(
                 f"a robot has an even number of legs, {MIN_LEGS} to {MAX_LEGS}, not "
@@ -167,7 +175,7 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
             raise InvalidInput(f"robot.{name} must not be null; leave it out for the preset's")
     base = _preset(given.pop("preset", "stiff"))
     legs = _legs(given, base)
-    numbers = {f.name for f in fields(Robot)} - {"name", "legs"}
+    numbers = {f.name for f in fields(Robot)}.difference(_NO_NUMBERS)
     for name, number in given.items():
         if name not in numbers:
             valid = ["preset", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]

@@ -58,6 +58,14 @@ class World:
     disturbances: tuple[Disturbance, ...] = ()
 
     def __post_init__(self) -> None:
+        given: Any = self.disturbances  # as a user gave them
+        if not isinstance(given, list | tuple) or not all(
+            isinstance(d, Disturbance) for d in given
+        ):
+            raise InvalidInput(
+                f"a World is made of disturbances, as World([Limp(legs=[1])]), not of {given!r}"
+            )
+        object.__setattr__(self, "disturbances", tuple(given))
         for number, one in enumerate(self.disturbances):
             for other in self.disturbances[:number]:
                 _check_compatible(other, one)

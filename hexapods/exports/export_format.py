@@ -6,17 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import DeclaredSetting, declared_fields
 from hexapods.exports.extras import install_command, is_installed
 from hexapods.exports.options import ExportOptions
 from hexapods.exports.recorded_walks import RecordedWalks
 from hexapods.runs.clocks import Clock
-
-
-class TooLong(HexapodError):
-    """A run is too long for a file type."""
-
 
 Load = Literal["stream", "encode", "render"]
 """What an export costs a server.

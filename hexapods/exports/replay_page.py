@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from hexapods import assets
+from hexapods.domain.errors import TooLong
 from hexapods.drawing.viser_internals.client import OFFLINE_SCRIPTS, content_policy, patched_page
-from hexapods.exports.export_format import TooLong
 from hexapods.runs.recording import FIRST_STEPS, NEWEST_STEPS
 from hexapods.shows.replay import HIGHEST_LEVEL
 

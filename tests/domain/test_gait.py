@@ -1,5 +1,8 @@
 """The paper's gaits, and gaits specified by the user."""
 
+from typing import Any
+
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -172,3 +175,24 @@ def test_a_specification_has_either_a_symmetry_or_pairs() -> None:
         GaitSpec(1, 2, "origin", ((1, 4), (2, 5), (3, 6)))
     with pytest.raises(UnknownName, match=r"diagonal.*origin, vertical"):
         GaitSpec(1, 2, "diagonal")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("leg", [1.0, "1", None, True, [1]])
+def test_a_leg_is_a_whole_number(leg: Any) -> None:
+    for legs in ((leg, 2, "origin"), (1, leg, "origin"), (1, 2, None, ((leg, 4), (2, 5), (3, 6)))):
+        with pytest.raises(InvalidInput, match="number of a leg, a whole number from 1, not"):
+            GaitSpec(*legs)
+
+
+@pytest.mark.parametrize("pairs", [3, "14", [1, 4], [[1, 4, 2]]])
+def test_pairs_are_pairs(pairs: Any) -> None:
+    with pytest.raises(InvalidInput, match=r"must look like \[\[1, 4\], "):
+        GaitSpec(1, 2, pairs=pairs)
+
+
+def test_numbers_of_legs_may_be_those_of_numpy_and_pairs_lists() -> None:
+    pairs: Any = np.array([[1, 4], [2, 5], [3, 6]])
+    leg: Any = np.int64(1)
+    gait = GaitSpec(leg, 2, pairs=pairs)
+    assert gait == GaitSpec(1, 2, pairs=((1, 4), (2, 5), (3, 6)))
+    assert type(gait.right_leg) is int

@@ -173,3 +173,17 @@ def test_a_phase_lasts_at_least_two_substeps() -> None:
 def test_a_ring_has_an_even_number_of_legs() -> None:
     with pytest.raises(InvalidInput, match="even number of legs"):
         ring(5)
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ({"femur_m": "x"}, "robot.femur_m must be a number, not 'x'"),
+        ({"femur_m": True}, "robot.femur_m must be a number, not True"),
+        ({"femur_m": -1}, "robot.femur_m must be positive"),
+        ({"legs": 3}, "robot.legs must be a tuple of LegMount, not 3"),
+    ],
+)
+def test_a_robot_is_built_of_numbers(given: Any, reason: str) -> None:
+    with pytest.raises(InvalidInput, match=reason):
+        Robot(**given)

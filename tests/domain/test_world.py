@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -208,3 +209,10 @@ def test_later_world_begins_and_ends_later() -> None:
     early = parse_world("limp:legs=1:at=3:until=5+slope:degrees=4")
     assert early.later(10) == parse_world("limp:legs=1:at=13:until=15+slope:degrees=4:at=10")
     assert early.later(10).as_of(9) == UNDISTURBED
+
+
+@pytest.mark.parametrize("given", ["ice", ("ice",), 3, Limp(legs=(1,))])
+def test_a_world_is_made_of_disturbances(given: Any) -> None:
+    with pytest.raises(InvalidInput, match="made of disturbances, as World"):
+        World(given)
+    assert World([Limp(legs=(1,))]) == World((Limp(legs=(1,)),))  # type: ignore[arg-type]

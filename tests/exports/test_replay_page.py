@@ -12,9 +12,9 @@ from app.jobs.stopping import Stopping
 from app.stage.playback import Replays
 from app.storage.errors import Busy, Conflict
 from app.viewer.replay_frames import ReplayFrames
+from hexapods.domain.errors import TooLong
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.scene import SCENE_ROOT
-from hexapods.exports.export_format import TooLong
 from hexapods.exports.replay_page import (
     MAX_BYTES,
     MAX_SEGMENTS,
