@@ -32,9 +32,11 @@ if not TYPE_CHECKING:  # else every name would pass for one of its names
         Raises:
             AttributeError: if there is no such name; the message names the functions.
         """
-        if name.startswith("_"):
+        if name.startswith("_") and name != "__all__":  # which `import *` and `help` ask for
             raise AttributeError(f"module 'hexapods' has no attribute {name!r}")
         public = importlib.import_module("hexapods.public")
+        if name == "__all__":
+            return public.__all__
         if name not in public.__all__:
             functions = ", ".join(one for one in public.__all__ if one.islower())
             raise AttributeError(f"hexapods has no {name!r}; its functions: {functions}")
@@ -42,7 +44,8 @@ if not TYPE_CHECKING:  # else every name would pass for one of its names
         return value
 
     def __dir__() -> list[str]:
-        return sorted([*globals(), *importlib.import_module("hexapods.public").__all__])
+        """Return the public names, and no modules that are loaded."""
+        return ["__version__", *importlib.import_module("hexapods.public").__all__]
 
 
 class _GymnasiumFinder(MetaPathFinder):

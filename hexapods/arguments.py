@@ -1,25 +1,56 @@
 """Arguments of the public functions: what a person may write for an agent, a robot or a world."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
-from typing import Any
+from typing import Any, NoReturn, TypedDict
 
 import numpy as np
 
 from hexapods.agents import registry
 from hexapods.agents.registry import AgentClass
-from hexapods.domain.disturbances import Disturbance, disturbance, parse_disturbance
+from hexapods.domain.disturbances import Disturbance, as_text, disturbance, parse_disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import GaitSpec
+from hexapods.domain.gait import NAMED_GAITS, GaitSpec
 from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.runs.config import WalkingProblem
-from hexapods.runs.config_json import gait_from_json
 
 GAIT = "left-right-origin"
 """The gait where none is given: the first of the paper's."""
 WALK = tuple(one.name for one in fields(WalkingProblem))
 """Names of the arguments that describe a walking problem."""
+GaitLike = str | Mapping[str, Any] | GaitSpec
+"""A gait: its name, a mapping with `right_leg`, `left_leg` and `symmetry` or `pairs`, or itself."""
+RobotLike = str | Mapping[str, Any] | Robot
+"""A robot: a preset's name, a mapping with what differs from a preset, or itself."""
+WorldLike = str | Iterable[Disturbance | Mapping[str, Any] | str] | World
+"""A world: its name, disturbances (each a text, a mapping or itself), or itself."""
+
+
+class _NotGiven:
+    """Default of an argument whose value follows from others, such as from a table."""
+
+    def __repr__(self) -> str:
+        return "<default>"
+
+
+NOT_GIVEN: Any = _NotGiven()
+
+
+class NoMore(TypedDict):
+    """Keyword arguments of a function that takes no others; it names the valid ones."""
+
+
+def given_of(arguments: Mapping[str, Any], names: Iterable[str], rest: str) -> dict[str, Any]:
+    """Return the arguments that a caller has given.
+
+    Args:
+        arguments: all of a function, as `locals()` at its beginning.
+        names: of the arguments that count.
+        rest: name of its `**` argument, whose content is added.
+    """
+    given = {name: arguments[name] for name in names if arguments[name] is not NOT_GIVEN}
+    return {**given, **arguments[rest]}
 
 
 def agent_name(agent: str | AgentClass) -> str:
@@ -39,6 +70,11 @@ def agent_name(agent: str | AgentClass) -> str:
         raise InvalidInput(f"an agent is given by its name or its class, not as {agent!r}")
     known = (name for name, its_class in registry.registered().items() if its_class is agent)
     name = next(known, f"{agent.__module__}:{agent.__qualname__}")
+    if "." in agent.__qualname__:
+        raise InvalidInput(
+            f"{agent.__qualname__} is defined inside of something else, where other processes do "
+            "not find it; define the agent's class at the top level of a module"
+        )
     if registry.find(name) is not agent:
         raise InvalidInput(f"{agent!r} is not what {name} imports; define it in a module")
     return name
@@ -60,25 +96,24 @@ def read_walk(given: Mapping[str, Any], like: WalkingProblem | None = None) -> d
         inherited = [name for name in WALK if name not in ("world", "tolerance")]
         walk = {name: getattr(like, name) for name in inherited}
     walk |= given
-    if isinstance(walk["gait"], Mapping):
-        walk["gait"] = read_gait(walk["gait"])
+    walk["gait"] = read_gait(walk["gait"])
     if "robot" in walk:
-        if not isinstance(walk["robot"], str | Mapping | Robot):
-            raise InvalidInput(
-                f"robot is {' or '.join(PRESETS)}, a mapping or a Robot, not {walk['robot']!r}"
-            )
-        walk["robot"] = robot(walk["robot"])
+        walk["robot"] = read_robot(walk["robot"])
     if "world" in walk:
         walk["world"] = read_world(walk["world"])
     return walk
 
 
-def read_gait(given: Mapping[str, Any]) -> str | GaitSpec:
-    """Return a gait that is given by its legs.
+def read_gait(given: GaitLike) -> str | GaitSpec:
+    """Return a gait; of one that is given by its legs, its specification.
 
     Raises:
         InvalidInput: if it is none.
     """
+    if isinstance(given, str | GaitSpec):
+        return given
+    if not isinstance(given, Mapping):
+        _refuse("gait", f"one of {', '.join(NAMED_GAITS)}, a mapping or a Gait", given)
     if set(given) - {one.name for one in fields(GaitSpec)} or not {"right_leg", "left_leg"} <= {
         *given
     }:
@@ -86,23 +121,61 @@ def read_gait(given: Mapping[str, Any]) -> str | GaitSpec:
             "a gait needs right_leg and left_leg, and either symmetry or pairs; "
             f"not {', '.join(map(str, sorted(given))) or 'nothing'}"
         )
-    try:
-        return gait_from_json(given)
-    except (TypeError, ValueError) as error:
-        raise InvalidInput("a gait's pairs must look like [[1, 4], [2, 5], [3, 6]]") from error
+    return GaitSpec(**given)
+
+
+def read_robot(given: RobotLike) -> Robot:
+    """Return a robot.
+
+    Raises:
+        UnknownName, InvalidInput: if it is none.
+    """
+    if not isinstance(given, str | Mapping | Robot):
+        _refuse("robot", f"{' or '.join(PRESETS)}, a mapping or a Robot", given)
+    return robot(given)
+
+
+def _refuse(name: str, valid: str, given: object) -> NoReturn:
+    raise InvalidInput(f"{name} is {valid}, not {given!r}")
 
 
 def plain(value: Any) -> Any:
-    """Return a scalar of NumPy, such as those of `arange`, as Python's own; all else unchanged."""
-    return value.item() if isinstance(value, np.generic) else value
+    """Return what is NumPy's in a value, such as numbers of `arange`, as Python's own."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {name: plain(one) for name, one in value.items()}
+    if type(value) in (list, tuple):
+        return type(value)(map(plain, value))
+    return value
 
 
 def plain_values(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return arguments with scalars of NumPy as Python's own."""
+    """Return arguments with what is NumPy's in them as Python's own."""
     return {name: plain(value) for name, value in given.items()}
 
 
-def read_world(given: World | str | Iterable[Disturbance | Mapping[str, Any] | str]) -> World:
+def values_of(given: object) -> tuple[Any, ...]:
+    """Return the values of an argument of which several may be given, or one as it is."""
+    values = plain(given)
+    if isinstance(values, Sequence) and not isinstance(values, str):
+        return tuple(map(plain, values))
+    return (values,)
+
+
+def check_callable(name: str, given: object) -> None:
+    """Check an argument that is called back, if it is given.
+
+    Raises:
+        InvalidInput: if it is no function.
+    """
+    if given is not None and not callable(given):
+        raise InvalidInput(f"{name} is a function that is called, not {given!r}")
+
+
+def read_world(given: WorldLike) -> World:
     """Return a world: of a name such as `ice`, of a text or mappings, or the world itself.
 
     Raises:
@@ -111,9 +184,7 @@ def read_world(given: World | str | Iterable[Disturbance | Mapping[str, Any] | s
     if isinstance(given, World):
         return given
     if isinstance(given, Mapping) or not isinstance(given, Iterable):
-        raise InvalidInput(
-            f"world is one of {', '.join(WORLDS)}, a list of disturbances or a World, not {given!r}"
-        )
+        _refuse("world", f"one of {', '.join(WORLDS)}, a list of disturbances or a World", given)
     return (
         parse_world(given) if isinstance(given, str) else World(tuple(map(read_disturbance, given)))
     )
@@ -128,6 +199,11 @@ def read_disturbance(given: object) -> Disturbance:
     if isinstance(given, Disturbance):
         return given
     if isinstance(given, str):
+        if given in WORLDS:
+            made_of = ", ".join(f'"{as_text(one)}"' for one in WORLDS[given].world.disturbances)
+            raise InvalidInput(
+                f'{given} is a world and no disturbance: write world="{given}", or [{made_of}]'
+            )
         return parse_disturbance(given)
     if not isinstance(given, Mapping):
         raise InvalidInput(

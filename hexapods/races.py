@@ -7,36 +7,51 @@ seed give the same walks, to the last bit; only the measured times of decisions 
 import html
 import io
 import json
+import os
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 
 from hexapods.agents.registry import AgentClass, needs_practice
-from hexapods.arguments import WALK, agent_name, check_names, plain_values, read_walk
+from hexapods.arguments import (
+    NOT_GIVEN,
+    WALK,
+    GaitLike,
+    NoMore,
+    RobotLike,
+    WorldLike,
+    check_callable,
+    check_names,
+    given_of,
+    plain_values,
+    read_walk,
+)
 from hexapods.assembly import build_walkers
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
 from hexapods.domain.world import check_ends
-from hexapods.files import write_atomically
+from hexapods.files import path_of, write_atomically
 from hexapods.runs.best_known import best_known_in_race_m
 from hexapods.runs.clocks import Clock, check_clock
-from hexapods.runs.config import RACE_STEPS, agent_settings
+from hexapods.runs.config import RACE_STEPS, SimulatorName, agent_settings
 from hexapods.runs.config_json import as_json, config_from_json
 from hexapods.runs.lane import LaneConfig, PlanningModel, lane_config, observation_of
 from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.race_file import race_arrays, race_recording
+from hexapods.runs.race_file import race_arrays, race_recording, recording_sha256
 from hexapods.runs.racing import record_race
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import RaceResult, race_result
-from hexapods.runs.tables import read_arrays
-from hexapods.trainings import Table, Training, read_table
+from hexapods.runs.tables import digest_of, read_arrays
+from hexapods.trainings import Table, Training, learned_by
 
 CONFIG = "config"
 """Array of a saved race with its config as JSON."""
+_DIGEST = "digest"
 _LANE_ARGUMENTS = ("table", "observation", "keep_learning", "plans_with")
 
 
@@ -110,18 +125,24 @@ class Race:
         """The farthest walk known of this robot, gait and world [m]; None if none is."""
         return best_known_in_race_m(self.config)
 
-    def save(self, path: str | Path) -> Path:
+    @cached_property
+    def recording_sha256(self) -> str:
+        """Hash of all steps without the times of decisions: the same wherever the race repeats."""
+        return recording_sha256(self.recording)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
         """Write config and recording to an `.npz` file, which `load` reads.
 
         Returns:
             the path.
 
         Raises:
+            InvalidInput: if it is no path.
             OSError: if the file cannot be written.
         """
         arrays = race_arrays(self.recording) | {CONFIG: np.array(json.dumps(as_json(self.config)))}
-        buffer, target = io.BytesIO(), Path(path)
-        np.savez(buffer, **arrays)  # type: ignore[arg-type]
+        buffer, target = io.BytesIO(), path_of(path, "a file")
+        np.savez(buffer, **arrays, **{_DIGEST: np.array(digest_of(arrays))})  # type: ignore[arg-type]
         write_atomically(target, buffer.getvalue())
         return target
 
@@ -167,12 +188,9 @@ def lane(
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
+        TableMismatch: if the table was learned by another agent.
     """
-    if isinstance(agent, Training):
-        table, agent = agent, agent.config.agent
-    trained, name = None if table is None else read_table(table), agent_name(agent)
-    if trained is not None and trained.config.agent != name:
-        raise InvalidInput(f"the table was learned by {trained.config.agent}, not by {name}")
+    name, trained = learned_by(agent, table)
     check_names(f"a {name} lane", settings, (*_LANE_ARGUMENTS, *agent_settings(name)))
     of_training = None if trained is None else trained.config.observation
     config = lane_config(
@@ -197,7 +215,14 @@ def race(
     steps: int = RACE_STEPS,
     seed: int = 0,
     on_step: Callable[[], object] | None = None,
-    **given: Any,
+    gait: GaitLike = NOT_GIVEN,
+    robot: RobotLike = NOT_GIVEN,
+    simulator: SimulatorName = NOT_GIVEN,
+    divisions: int = NOT_GIVEN,
+    grid_side_m: float = NOT_GIVEN,
+    world: WorldLike = NOT_GIVEN,
+    tolerance: float = NOT_GIVEN,
+    **unknown: Unpack[NoMore],
 ) -> Race:
     """Race one to six agents (paper §5), and record every step.
 
@@ -206,14 +231,23 @@ def race(
         steps: number of steps of each lane.
         seed: seed of all random generators.
         on_step: called after each step of a lane.
-        given: the walking problem, as in `hexapods.train`; what is not given is that of the first
-            training in the race, except for world and tolerance, or the default.
+        gait: as in `train`, and so are all below; what is not given is that of the
+            first training in the race, or the default.
+        robot: geometry and actuators.
+        simulator: `mujoco` or `kinematic`.
+        divisions: points along each side of the foot grid.
+        grid_side_m: side of the foot grid [m].
+        world: what happens to the robot and the ground; never that of a training.
+        tolerance: how far the robot that the seed draws differs from its design, as a share;
+            never that of a training.
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TableMismatch: if a training is of another walking problem.
     """
+    given = given_of(locals(), WALK, "unknown")
     check_names("a race", given, ("steps", "seed", *WALK))
+    check_callable("on_step", on_step)
     if isinstance(lanes, str | Lane | Training) or not isinstance(lanes, Iterable):
         raise InvalidInput(f'lanes is a list, such as [training, "greedy"], not {lanes!r}')
     numbers = plain_values({"steps": steps, "seed": seed})
@@ -246,9 +280,14 @@ def race_from_bytes(data: bytes, name: str) -> Race:
     """
     try:
         arrays = read_arrays(data)
+        digest = arrays.pop(_DIGEST, None)  # earlier versions wrote none
+        if digest is not None and str(digest) != digest_of(arrays):
+            raise DamagedFile(f"{name} is damaged: its contents do not match its checksum")
         config = cast(RaceConfig, config_from_json(json.loads(str(arrays.pop(CONFIG)))))
         recording = race_recording(arrays)
         return Race(config, recording, race_result(recording, config))
+    except DamagedFile:
+        raise
     except Exception as error:  # zipfile and NumPy document no complete list of exceptions
         raise DamagedFile(f"{name} is not a race that was saved: {error}") from error
 

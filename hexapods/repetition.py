@@ -1,26 +1,55 @@
 """Experiments: the same trainings over many seeds, with intervals in place of single runs."""
 
 import html
-from collections.abc import Callable, Mapping
+import os
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, Union
 
-from hexapods.arguments import agent_name, plain
+from numpy.typing import NDArray
+
+from hexapods.agents.registry import AgentClass
+from hexapods.arguments import (
+    NOT_GIVEN,
+    GaitLike,
+    RobotLike,
+    agent_name,
+    check_callable,
+    given_of,
+    plain,
+    read_gait,
+    read_robot,
+    values_of,
+)
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.robot import robot
+from hexapods.domain.observation import Observation
 from hexapods.experiments.cluster import ClusterSpec
-from hexapods.experiments.config import ExperimentConfig, experiment_config
+from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.folder import open_results
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.trial import TrialResult
+from hexapods.files import path_of
 from hexapods.machine import cores
-from hexapods.runs.config_json import gait_from_json
+from hexapods.runs.config import SimulatorName
 
 if TYPE_CHECKING:
     from hexapods.experiments.report.drawing import Picture
+
+
+_FIELDS = tuple(
+    one.name
+    for one in fields(ExperimentConfig)
+    if one.name not in ("experiment", "settings", "blocks")
+)
+_SINGLE = ("seeds", "seed", "simulator", "tolerance")
+"""Fields that have one value; all others, and settings of agents, have several, or one."""
+
+
+T = TypeVar("T")
+OneOrMore = Union[T, Sequence[T], NDArray[Any]]  # noqa: UP007  # mypy takes no alias of `T | …`
 
 
 class SettingResult(NamedTuple):
@@ -71,18 +100,19 @@ class Experiment:
 
         return sheets(self.summary)
 
-    def save_report(self, folder: str | Path) -> Path:
+    def save_report(self, folder: str | os.PathLike[str]) -> Path:
         """Write the report: its page, figures, all trials as CSV, and the summary.
 
         Returns:
             the path of the page.
 
         Raises:
+            InvalidInput: if the folder is no path.
             OSError: if a file cannot be written.
         """
         from hexapods.experiments.report.files import write_report  # noqa: PLC0415  # Matplotlib
 
-        return write_report(Path(folder), self.summary, self.trials)
+        return write_report(path_of(folder, "a folder"), self.summary, self.trials)
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -94,12 +124,25 @@ class Experiment:
 
 
 def experiment(
-    name: str,
+    name: ExperimentName,
     *,
-    folder: str | Path | None = None,
+    folder: str | os.PathLike[str] | None = None,
     workers: int | None = None,
     on_trial: Callable[[Outcome], object] | None = None,
-    **given: Any,
+    seeds: int = NOT_GIVEN,
+    seed: int = NOT_GIVEN,
+    agents: OneOrMore[str | AgentClass] = NOT_GIVEN,
+    gaits: OneOrMore[GaitLike] = NOT_GIVEN,
+    observations: OneOrMore[Observation] = NOT_GIVEN,
+    robots: OneOrMore[RobotLike] = NOT_GIVEN,
+    simulator: SimulatorName = NOT_GIVEN,
+    steps: OneOrMore[int] = NOT_GIVEN,
+    steps_per_episode: OneOrMore[int] = NOT_GIVEN,
+    divisions: OneOrMore[int] = NOT_GIVEN,
+    grid_side_m: OneOrMore[float] = NOT_GIVEN,
+    worlds: OneOrMore[str] = NOT_GIVEN,
+    tolerance: float = NOT_GIVEN,
+    **settings: Any,
 ) -> Experiment:
     """Repeat trainings over many seeds, on all cores, and summarise them with intervals.
 
@@ -112,19 +155,39 @@ def experiment(
             arguments, the experiment goes on where it ended. None keeps nothing.
         workers: number of processes; None for one per core.
         on_trial: called with each trial's outcome.
-        given: fields of `ExperimentConfig` and, in a sweep, lists of values of the agents'
-            settings.
+        seeds: number of seeds for each setting of an agent that learns, 30.
+        seed: root seed, from which the seeds of all trials follow.
+        agents: names or classes; every combination of what has several values is a setting.
+        gaits: as `gait` in `train`.
+        observations: how the state is read.
+        robots: as `robot` in `train`.
+        simulator: `mujoco` (default) or `kinematic`.
+        steps: numbers of steps of practice.
+        steps_per_episode: numbers of steps for which ε is constant, in a sweep.
+        divisions: points along each side of the foot grid, in a sweep.
+        grid_side_m: sides of the foot grid [m], in a sweep.
+        worlds: names, or disturbances as on the command line, `limp:legs=1,4`; in a league or
+            a recovery.
+        tolerance: build tolerance of the robots, likewise.
+        settings: of the agents, in a sweep: `alpha=[0.1, 0.3]`.
+
+    What may have several values is a list, or one value as it is: `steps=500`.
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         ClusterLost: if the processes cannot be started, or are lost.
+        NotKept: if a result cannot be written to the folder.
     """
+    given = given_of(locals(), _FIELDS, "settings")
     from hexapods.experiments.summary import summarise  # noqa: PLC0415  # SciPy takes a second
 
+    check_callable("on_trial", on_trial)
     config = experiment_config(name, _read(given))
     spec = ClusterSpec(workers=workers)
     kept: AbstractContextManager[Progress] = (
-        nullcontext(Progress(config)) if folder is None else open_results(Path(folder), config)
+        nullcontext(Progress(config))
+        if folder is None
+        else open_results(path_of(folder, "a folder"), config)
     )
     with kept as progress:
         with closing(progress.run(progress.remaining(), spec, lambda: True)) as outcomes:
@@ -138,21 +201,24 @@ def experiment(
 
 def _read(given: Mapping[str, Any]) -> dict[str, Any]:
     """Return fields of an experiment's config: lists as tuples, names in place of classes."""
+    for name, value in given.items():
+        if value is None:
+            raise InvalidInput(f"{name} must not be None; leave it out for its default")
     values = {
-        name: tuple(map(plain, value)) if isinstance(value, list | tuple) else plain(value)
-        for name, value in given.items()
+        name: plain(value) if name in _SINGLE else values_of(value) for name, value in given.items()
     }
-    for name in ("agents", "robots", "gaits", "worlds", "observations"):
-        if isinstance(values.get(name), str):
-            raise InvalidInput(f"{name} is a list, such as [{values[name]!r}]")
-    if "agents" in values:
-        values["agents"] = tuple(map(agent_name, values["agents"]))
-    if "robots" in values:
-        values["robots"] = tuple(map(robot, values["robots"]))
-    if "gaits" in values:
-        gaits = values["gaits"]
-        values["gaits"] = tuple(gait_from_json(g) if isinstance(g, Mapping) else g for g in gaits)
+    readers = {"agents": agent_name, "robots": read_robot, "gaits": read_gait, "worlds": _world}
+    for name in readers.keys() & values.keys():
+        values[name] = tuple(map(readers[name], values[name]))
     return values
+
+
+def _world(given: object) -> str:
+    if not isinstance(given, str):
+        raise InvalidInput(
+            f'a world of an experiment is a text such as "ice" or "limp:legs=1,4", not {given!r}'
+        )
+    return given
 
 
 def _interval(one: SettingResult) -> str:

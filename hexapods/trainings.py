@@ -1,52 +1,25 @@
-"""Trainings: practise, go on, evaluate, save.
-
-`train` and `iter_train` run the loop of `hexapods.runs.training`, which the dashboard runs too: the
-same arguments and seed give the same action values, to the last bit.
-"""
+"""Trainings that are finished: evaluate, save, read again, and let the agent act."""
 
 import html
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, fields
+import os
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, Union, cast
+from typing import Any, NamedTuple, Union
 
-from hexapods.agents.protocol import Agent, Tunable
-from hexapods.agents.registry import AgentClass, needs_practice
-from hexapods.arguments import (
-    WALK,
-    agent_name,
-    check_names,
-    plain_values,
-    read_disturbance,
-    read_walk,
-)
-from hexapods.assembly import build_learner, finish_training
-from hexapods.domain.checks import check_whole
-from hexapods.domain.errors import DamagedFile, InvalidInput
-from hexapods.domain.world import check_ends
-from hexapods.files import write_atomically
-from hexapods.runs import training
-from hexapods.runs.config import (
-    TrainingConfig,
-    agent_settings,
-    changeable_settings,
-    training_config,
-)
+from hexapods.agents.protocol import Agent
+from hexapods.agents.registry import AgentClass
+from hexapods.arguments import agent_name
+from hexapods.assembly import build_learner
+from hexapods.domain.errors import DamagedFile, InvalidInput, TableMismatch
+from hexapods.files import path_of, write_atomically
+from hexapods.runs.config import TrainingConfig
 from hexapods.runs.config_json import config_from_json
-from hexapods.runs.records import Evaluated, TrainingRecord
 from hexapods.runs.results import TrainingResult
-from hexapods.runs.tables import Checkpoint, check_fits, from_bytes, load_agent, snapshot, to_bytes
+from hexapods.runs.tables import Checkpoint, from_bytes, load_agent, to_bytes
 
-_FIELDS = tuple(
-    one.name
-    for one in fields(TrainingConfig)
-    # Practice here is as fast as it can be; settings are arguments of their own.
-    if one.name not in (*WALK, "agent", "pace", "settings")
-)
-Table = Union["Training", str, Path]
+Table = Union["Training", str, os.PathLike[str]]
 """What was learned: a training, or the path of its file."""
-OnRecord = Callable[[TrainingRecord], object]
 
 
 class CurvePoint(NamedTuple):
@@ -114,16 +87,17 @@ class Training:
             meta |= {"curve": [list(one) for one in self.curve], "result": asdict(self.result)}
         return to_bytes(Checkpoint(meta, self.table.arrays))
 
-    def save(self, path: str | Path) -> Path:
+    def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the table to an `.npz` file, which `load`, the dashboard and the command line read.
 
         Returns:
             the path.
 
         Raises:
+            InvalidInput: if it is no path.
             OSError: if the file cannot be written.
         """
-        target = Path(path)
+        target = path_of(path, "a file")
         write_atomically(target, self.to_bytes())
         return target
 
@@ -143,97 +117,34 @@ class Training:
         return f"<table>{cells}</table>"
 
 
-def train(
-    agent: str | AgentClass | None = None,
-    *,
-    table: Table | None = None,
-    changes: Iterable[Mapping[str, Any]] = (),
-    on_record: OnRecord | None = None,
-    **given: Any,
-) -> Training:
-    """Train an agent to walk (paper, Algorithm 1), and evaluate what it learned.
-
-    Args:
-        agent: its registered name, such as `q-learning`, `my.module:Agent`, or its class; by
-            default that of `table`, or Q-learning.
-        table: what it begins with; then its generator goes on where the table's ended. Gait, robot,
-            simulator, grid and observation are those of its practice unless they are given, and the
-            settings the agent's defaults.
-        changes: while it practises: mappings with the number of steps after which they happen,
-            `step`, and values of the agent's live `settings` by name, or a `disturbance`.
-        on_record: called with each record of the loop.
-        given: fields of `TrainingConfig`: the walking problem's (`gait`, a name or a `Gait`;
-            `robot`, a preset's name, a mapping or a `Robot`; `simulator`, `divisions`,
-            `grid_side_m`, `tolerance`; `world`, a name, disturbances or a `World`), `steps`,
-            `seed`, `observation`, `steps_per_episode`, `evaluate_every`, and the agent's settings.
-
-    Raises:
-        UnknownName, InvalidInput: if an argument is not valid; the message names what is.
-        TableMismatch: if the table is of another walking problem or agent.
-        Diverged: if the physics diverges.
-    """
-    practice = _Practice(agent, table, changes, given)
-    curve = []
-    for record in practice.records(is_recorded=False):
-        if isinstance(record, Evaluated):
-            curve.append(CurvePoint(record.step, record.distance_m, record.epsilon))
-        if on_record is not None:
-            on_record(record)
-    learner, config = practice.learner, practice.config
-    result = finish_training(learner, config)
-    return Training(config, snapshot(learner, config), tuple(curve), result)
-
-
-def iter_train(
-    agent: str | AgentClass | None = None,
-    *,
-    table: Table | None = None,
-    changes: Iterable[Mapping[str, Any]] = (),
-    record: bool = False,
-    **given: Any,
-) -> Iterator[TrainingRecord]:
-    """Train an agent, and yield a record of each step, episode and evaluation as it happens.
-
-    With `record`, steps and evaluations have their motion, and steps the action values; all else is
-    as in `train`.
-
-    Raises:
-        UnknownName, InvalidInput, TableMismatch: at the call, as `train`.
-        Diverged: if the physics diverges.
-    """
-    return _Practice(agent, table, changes, given).records(record)
-
-
-def evaluate(
-    agent: str | AgentClass | Training, *, table: Table | None = None, **given: Any
-) -> float:
-    """Return how far an agent walks in 50 steps from rest, without exploring or learning [m].
+def learned_by(
+    agent: str | AgentClass | Training, table: Table | None
+) -> tuple[str, Training | None]:
+    """Return the name of an agent, and what it has learned, if anything.
 
     Args:
         agent: a training, or an agent's name or class.
         table: what the agent has learned, unless `agent` is a training.
-        given: as in `train`; what is not given is as in the training, except for the world. Like
-            the evaluations of a training it walks in the world as it is after the practice, which
-            does not change meanwhile.
 
     Raises:
-        UnknownName, InvalidInput, TableMismatch, Diverged: as `train`.
+        UnknownName, InvalidInput: if an argument is not valid, or both are a training.
+        TableMismatch: if the table was learned by another agent.
     """
     if isinstance(agent, Training):
-        table, agent = agent, agent.config.agent
+        if table is not None:
+            raise InvalidInput(
+                "a training comes with what it has learned: leave out table, or give the agent by "
+                f"its name, {agent.config.agent!r}, with the table"
+            )
+        return agent.config.agent, agent
+    name = agent_name(agent)
     trained = None if table is None else read_table(table)
-    if trained is None and needs_practice(agent_name(agent)):
-        raise InvalidInput(f"{agent_name(agent)} walks with what it has learned: give its training")
-    if trained is not None:
-        like = {"steps": trained.config.steps, "tolerance": trained.config.tolerance}
-        given = {**_own_settings(trained.config), **like, **given}
-    config = _config(agent, trained, given)
-    learner = build_learner(config)
-    if trained is not None:
-        check_fits(trained.table, config, config.observation)
-        load_agent(learner.walker.agent, trained.table)
-        learner.step = trained.table.meta["step"]
-    return training.evaluate(learner, config, epsilon=0.0).distance_m
+    if trained is not None and trained.config.agent != name:
+        raise TableMismatch(
+            f"the table was learned by {trained.config.agent}, not by {name}; choose a table of "
+            "the same agent"
+        )
+    return name, trained
 
 
 def read_table(table: Table) -> Training:
@@ -245,10 +156,10 @@ def read_table(table: Table) -> Training:
     """
     if isinstance(table, Training):
         return table
-    if not isinstance(table, str | Path):
+    if not isinstance(table, str | os.PathLike):
         raise InvalidInput(f"a table is a training or the path of its file, not {table!r}")
     try:
-        data = Path(table).read_bytes()
+        data = path_of(table, "a table").read_bytes()
     except OSError as error:
         raise InvalidInput(f"cannot read the table {table}: {error.strerror}") from error
     return training_from_bytes(data, str(table))
@@ -275,94 +186,6 @@ def training_from_bytes(data: bytes, name: str) -> Training:
     if not isinstance(config, TrainingConfig):
         raise DamagedFile(f"{name} is not that of a training")
     return Training(config, checkpoint, curve, result)
-
-
-class _Practice:
-    """A training that is under way: its learner, and the changes that are to come."""
-
-    def __init__(
-        self,
-        agent: str | AgentClass | None,
-        table: Table | None,
-        changes: Iterable[Mapping[str, Any]],
-        given: Mapping[str, Any],
-    ) -> None:
-        trained = None if table is None else read_table(table)
-        self.config = _config(agent, trained, given)
-        check_ends(self.config.world.disturbances, self.config.steps)
-        self._changes = _read_changes(changes, self.config)
-        self.learner = build_learner(self.config, None if trained is None else trained.table)
-
-    def records(self, is_recorded: bool) -> Iterator[TrainingRecord]:
-        self._change()
-        for record in training.train(self.learner, self.config, is_recorded):
-            self._change()
-            yield record
-
-    def _change(self) -> None:
-        while self._changes and self._changes[0]["step"] <= self.learner.step:
-            values = self._changes.pop(0)
-            if "disturbance" in values:
-                self.learner.disturb(values["disturbance"], self.config)
-            if values["settings"]:
-                # `_read_changes` has looked for settings that are live.
-                cast(Tunable, self.learner.walker.agent).tune(**values["settings"])
-
-
-def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dict[str, Any]]:
-    """Return changes that happen while a training runs, checked."""
-    live = {k: v for k, v in changeable_settings(config.agent).items() if k != "pace"}
-    read: list[dict[str, Any]] = []
-    for change in changes:
-        if not isinstance(change, Mapping) or "step" not in change:
-            raise InvalidInput(
-                'a change is a mapping such as {"step": 20, "settings": {"alpha": 0.1}}, not '
-                f"{change!r}"
-            )
-        values = plain_values(change)
-        check_names("a change", values, ("step", "settings", "disturbance"))
-        settings = values.setdefault("settings", {})
-        if not isinstance(settings, Mapping):
-            raise InvalidInput(
-                f'settings of a change are such as {{"alpha": 0.1}}, not {settings!r}'
-            )
-        if settings and not live:
-            raise InvalidInput(f"{config.agent} has no settings that change in practice")
-        check_names(f"a change of {config.agent}", settings, live)
-        check_whole(
-            "step of a change", values["step"], read[-1]["step"] if read else 0, config.steps
-        )
-        if "disturbance" in values:
-            values["disturbance"] = read_disturbance(values["disturbance"])
-        values["settings"] = {k: live[k].normalized(v) for k, v in settings.items()}
-        read.append(values)
-    return read
-
-
-def _config(
-    agent: str | AgentClass | None, trained: Training | None, given: Mapping[str, Any]
-) -> TrainingConfig:
-    """Return the config of a training; what is not given is the table's, or the default."""
-    if agent is None:
-        name = TrainingConfig.agent if trained is None else trained.config.agent
-    else:
-        name = agent_name(agent)
-    settings = agent_settings(name)
-    check_names("a training", given, (*WALK, *_FIELDS, *settings))
-    given = plain_values(given)
-    walk = {key: value for key, value in given.items() if key in WALK}
-    rest: dict[str, Any] = {key: value for key, value in given.items() if key not in WALK}
-    like = None
-    if trained is not None:
-        like = trained.config
-        rest = {"observation": like.observation, "seed": like.seed, **rest}
-    return training_config(name, **read_walk(walk, like), **rest)
-
-
-def _own_settings(config: TrainingConfig) -> dict[str, Any]:
-    """Return the settings of a training's agent; earlier versions stored those of others too."""
-    declared = agent_settings(config.agent)
-    return {name: value for name, value in config.settings.items() if name in declared}
 
 
 def _metres(value: float | None) -> str:

@@ -1,13 +1,15 @@
 """View a race in 3D, in a browser or a notebook, by a page that needs no server."""
 
 import html
-import tempfile
+import os
 import webbrowser
 from dataclasses import dataclass
 from pathlib import Path
 
+import platformdirs
+
 from hexapods.domain.errors import InvalidInput
-from hexapods.files import write_atomically
+from hexapods.files import path_of, write_atomically
 from hexapods.races import Race, race
 from hexapods.runs.clocks import Clock, check_clock
 from hexapods.shows.race_show import RaceShow
@@ -29,27 +31,32 @@ class View:
     title: str
     page: str
 
-    def save(self, path: str | Path) -> Path:
+    def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the page to a file.
 
         Returns:
             the path.
 
         Raises:
+            InvalidInput: if it is no path.
             OSError: if the file cannot be written.
         """
-        target = Path(path)
+        target = path_of(path, "a file")
         write_atomically(target, self.page.encode())
         return target
 
     def open(self) -> Path:
-        """Open the page in a browser, from a file for temporary files.
+        """Open the page in a browser, from a file that the next one replaces.
 
         Returns:
-            the path of the file.
+            the path of the file, in the folder for caches of this user.
+
+        Raises:
+            OSError: if the file cannot be written.
         """
-        folder = Path(tempfile.mkdtemp(prefix="hexapods-"))
-        path = self.save(folder / "race.html")
+        # It must be there for as long as the browser may load it again: longer than this process.
+        folder = platformdirs.user_cache_path("racing-hexapods", False, ensure_exists=True)
+        path = self.save(folder / "view.html")
         webbrowser.open(path.as_uri())
         return path
 
@@ -70,7 +77,7 @@ def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "pa
         clock: times the race: `paper`, `wall` or `free`.
 
     Raises:
-        UnknownName: if there is no such clock.
+        UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TooLong: if the race does not fit into a page.
     """
     # Only here: viser takes longer to import than all else.
@@ -78,6 +85,8 @@ def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "pa
     from hexapods.exports.replay_page import replay_page  # noqa: PLC0415
 
     check_clock(clock)
+    if title is not None and not isinstance(title, str):
+        raise InvalidInput(f"title is a text, not {title!r}")
     if not isinstance(shown, Race | Training):
         raise InvalidInput(f"what can be viewed is a race or a training, not {shown!r}")
     shown_race = race([shown]) if isinstance(shown, Training) else shown

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import hexapods as hx
-from hexapods.arguments import read_walk
+from hexapods.arguments import plain_values, read_walk
 from hexapods.assembly import build_learner, finish_training
 from hexapods.domain.disturbances import Limp
 from hexapods.domain.errors import TableMismatch
@@ -69,6 +69,24 @@ def test_records_come_as_they_happen() -> None:
     assert [point.distance_m for point in done.curve] == evaluations
 
 
+def test_what_was_learned_is_there_at_any_moment() -> None:
+    practice, whole = (
+        hx.iter_train(evaluate_every=20, **QUICK),
+        hx.train(evaluate_every=20, **QUICK),
+    )
+    for record in practice:
+        if isinstance(record, StepTaken) and record.step == 30:
+            break
+    half = practice.training
+    assert (half.table.meta["step"], [point.step for point in half.curve]) == (30, [20])
+    assert hx.evaluate(half) == half.distance_m
+    assert "30 of 60 steps" in repr(practice)
+    list(practice)
+    assert practice.training.result == whole.result
+    assert practice.training.curve == whole.curve
+    assert half.q_table_sha256 != whole.q_table_sha256
+
+
 def test_a_mistake_is_told_at_the_call_and_not_at_the_first_record() -> None:
     with pytest.raises(hx.UnknownName):
         hx.iter_train("q-lerning")
@@ -104,13 +122,20 @@ def test_changes_happen_while_it_practises() -> None:
         ("q-learning", [{"step": 1, "pace": 2}], "unknown argument of a change .*'pace'"),
         ("q-learning", [{"step": 1, "settings": {"alpha": 3}}], "alpha"),
         ("q-learning", [{"step": 61, "settings": {"alpha": 0.1}}], "from 0 to 60, not 61"),
-        (
+        ("q-learning", [{"step": 9}, {"step": 2, "settings": {"alpha": 0.2}}], "from 9 to 60"),
             "q-learning",
             [{"step": 9, "settings": {"alpha": 0.1}}, {"step": 2, "settings": {"alpha": 0.2}}],
             "from 9 to 60",
         ),
         ("q-learning", [{"settings": {"alpha": 0.1}}], 'a mapping such as {"step": 20'),
         ("wave", [{"step": 1, "settings": {"alpha": 0.1}}], "wave has no settings that change"),
+        (
+            "q-learning",
+            None,
+            r'changes is a list, such as \[{"step": 20, "settings": {"alpha": 0.1}}\], not None',
+        ),
+        ("q-learning", {"step": 1, "settings": {"alpha": 0.1}}, "changes is a list"),
+        ("q-learning", [{"step": 1, "disturbance": "ice"}], r'ice is a world and no .*"friction:'),
         ("wave", [{"step": 1, "disturbance": 3}], "a disturbance is such as .*, not 3"),
     ],
 )
@@ -122,6 +147,12 @@ def test_invalid_changes_are_refused(agent: str, changes: Any, reason: str) -> N
 def test_numbers_may_be_those_of_numpy() -> None:
     given: dict[str, Any] = {"seed": np.arange(4)[3], "alpha": np.float64(0.2)}
     assert hx.train(**QUICK, **given).config == hx.train(**QUICK, seed=3, alpha=0.2).config
+    gait = {"right_leg": np.int64(1), "left_leg": 2, "pairs": np.array([[1, 4], [2, 5], [3, 6]])}
+    nested = hx.train(gait=gait, robot={"n_legs": np.int64(6)}, **QUICK)
+    assert nested.config.gait == hx.Gait(1, 2, pairs=((1, 4), (2, 5), (3, 6)))
+    assert nested.to_bytes()
+    world = [{"kind": "limp", "legs": np.array([1, 4])}]
+    assert read_walk(plain_values({"world": world}))["world"] == hx.World((Limp(legs=(1, 4)),))
 
 
 def test_an_evaluation_is_that_of_the_training() -> None:
@@ -134,6 +165,37 @@ def test_an_evaluation_is_that_of_the_training() -> None:
     with pytest.raises(hx.InvalidInput, match="q-learning walks with what it has learned"):
         hx.evaluate("q-learning")
     assert hx.evaluate("greedy", simulator="kinematic") == done.greedy_distance_m
+
+
+@pytest.mark.parametrize(
+    ("agent", "other"),
+    [("double-q", "q-learning"), ("q-learning", "double-q"), ("linear-model", "q-learning")],
+)
+def test_a_table_of_another_agent_is_refused(agent: str, other: str) -> None:
+    table = hx.train(other, **QUICK)
+    for use in (hx.train, hx.evaluate, hx.lane):
+        with pytest.raises(TableMismatch, match=f"learned by {other}, not by {agent}"):
+            use(agent, table=table)
+
+
+def test_a_training_comes_with_what_it_has_learned() -> None:
+    one, other = hx.train(**QUICK), hx.train("sarsa", **QUICK)
+    with pytest.raises(hx.InvalidInput, match=r"leave out table, .* by its name, 'q-learning'"):
+        hx.evaluate(one, table=other)
+
+
+def test_an_agent_is_found_by_other_processes() -> None:
+    class Local(hx.QLearning):
+        pass
+
+    for agent, reason in (
+        (Local, "define the agent's class at the top level of a module"),
+        (hx.Agent, "is there to be derived from"),
+        (hx.TabularLearner, "is there to be derived from"),
+        ("hexapods.agents.protocol:Agent", "is there to be derived from"),
+    ):
+        with pytest.raises(hx.InvalidInput, match=reason):
+            hx.train(agent, **QUICK)
 
 
 def test_its_agent_does_what_it_learned() -> None:
@@ -158,6 +220,11 @@ def test_it_shows_itself() -> None:
         ({"agent": dict}, "lacks act"),
         ({"alpha": 2}, "alpha"),
         ({"world": "swamp"}, "unknown world 'swamp'"),
+        ({"world": ["ice"]}, r'ice is a world .*: write world="ice", or \["friction:value=0.1'),
+        ({"on_record": 3}, "on_record is a function that is called, not 3"),
+        ({"gait": 3}, "gait is one of left-right-origin, .* a mapping or a Gait, not 3"),
+        ({"gait": {"right_leg": 1.5, "left_leg": 2, "symmetry": "origin"}}, "whole .* not 1.5"),
+        ({"table": "a\0"}, "a table is given by its path"),
         ({"world": None}, "world is one of flat, .*, a list of disturbances or a World, not None"),
         ({"world": {"kind": "limp", "legs": [1]}}, "a list of disturbances"),
         ({"robot": 3}, "robot is stiff or .* a mapping or a Robot, not 3"),

@@ -1,9 +1,14 @@
 """`import hexapods as hx`: its names, what importing it costs, and what it never imports."""
 
+import inspect
 import pickle
+import pydoc
 import subprocess
 import sys
+from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +16,11 @@ import pytest
 import hexapods as hx
 from hexapods import public
 from hexapods.agents.registry import OURS
+from hexapods.domain.disturbances import KINDS
+from hexapods.experiments.config import ExperimentConfig
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
 
 
 def printed(program: str, folder: Path) -> str:
@@ -85,6 +95,71 @@ def test_every_agent_is_there_by_its_class() -> None:
     assert set(public.__all__) <= set(dir(hx))
 
 
+def test_only_the_public_names_are_seen() -> None:
+    assert dir(hx) == sorted(["__version__", *public.__all__])
+    imported: dict[str, Any] = {}
+    exec("from hexapods import *", imported)
+    assert imported.keys() - {"__builtins__"} == set(public.__all__)
+
+
+def test_errors_and_records_and_disturbances_are_there() -> None:
+    errors = {name for name in dir(hx) if _is_class(name, hx.HexapodError)}
+    assert errors > {"TableMismatch", "Diverged", "ClusterLost", "TooLong", "NotKept"}
+    assert {name for name in dir(hx) if _is_class(name, hx.Disturbance)} == {
+        "Disturbance",
+        *(kind.__name__ for kind in KINDS.values()),
+    }
+    steps = hx.iter_train(steps=1, simulator="kinematic")
+    assert {type(one) for one in steps} <= {getattr(hx, name) for name in dir(hx)}
+
+
+def _is_class(name: str, base: type) -> bool:
+    value = getattr(hx, name)
+    return isinstance(value, type) and issubclass(value, base)
+
+
+def test_help_describes_the_public_names_and_nothing_else() -> None:
+    text = pydoc.plain(pydoc.render_doc(hx))
+    assert "train(agent" in text
+    assert "_GymnasiumFinder" not in text
+
+
+@pytest.mark.parametrize(
+    ("function", "config", "without"),
+    [
+        (hx.train, TrainingConfig, {"agent", "pace", "settings"}),
+        (hx.iter_train, TrainingConfig, {"agent", "pace", "settings"}),
+        (hx.evaluate, TrainingConfig, {"agent", "pace", "settings"}),
+        (hx.race, RaceConfig, {"lanes", "branch_from"}),
+        (hx.lane, LaneConfig, {"agent", "settings"}),
+        (hx.experiment, ExperimentConfig, {"experiment", "settings", "blocks"}),
+    ],
+)
+def test_signatures_have_all_fields_of_the_configs(
+    function: Callable[..., object], config: Any, without: set[str]
+) -> None:
+    signature = inspect.signature(function)
+    named = {name for name, one in signature.parameters.items() if one.kind is one.KEYWORD_ONLY}
+    own = {
+        *("table", "changes", "on_record", "record", "on_step"),
+        *("folder", "workers", "on_trial"),
+    }
+    assert named - own == {one.name for one in fields(config)} - without
+
+
+def test_type_checkers_know_the_arguments() -> None:
+    # mypy, which reads this file, reports an ignore that is not needed.
+    for call in (
+        lambda: hx.train(steps="5"),  # type: ignore[arg-type]
+        lambda: hx.evaluate("greedy", divisions="2"),  # type: ignore[arg-type]
+        lambda: hx.race(["greedy"], alhpa=0.1),  # type: ignore[call-arg]
+        lambda: hx.experiment("sweep", seeds=[3]),  # type: ignore[arg-type]
+        lambda: hx.iter_train(world=3, alpha=0.1),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(hx.InvalidInput):
+            call()
+
+
 def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
     training = hx.train(steps=40, simulator="kinematic", evaluate_every=20)
     loaded = hx.load(training.save(tmp_path / "q.npz"))
@@ -98,6 +173,27 @@ def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
     again = hx.load(race.save(tmp_path / "race.npz"))
     assert isinstance(again, hx.Race)
     assert (again.config, again.standings) == (race.config, race.standings)
+    assert again.recording_sha256 == race.recording_sha256
+
+
+def test_a_race_that_was_changed_is_refused(tmp_path: Path) -> None:
+    path = hx.race(["greedy"], steps=2, simulator="kinematic").save(tmp_path / "race.npz")
+    with np.load(path) as file:
+        arrays = {**file, "lane0.scalars": file["lane0.scalars"] + 1}
+    np.savez(path, **arrays)
+    with pytest.raises(hx.DamagedFile, match="do not match its checksum"):
+        hx.load(path)
+    del arrays["digest"]  # as earlier versions wrote it
+    np.savez(path, **arrays)
+    assert isinstance(hx.load(path), hx.Race)
+
+
+@pytest.mark.parametrize("path", [3, "", "a\0", b"q.npz", None])
+def test_what_is_no_path_is_refused(path: Any) -> None:
+    race = hx.race(["greedy"], steps=1, simulator="kinematic")
+    for use in (hx.load, race.save, hx.View("", "").save):
+        with pytest.raises(hx.InvalidInput, match=r"given by its path, a text or a Path, not by"):
+            use(path)
 
 
 @pytest.mark.parametrize(

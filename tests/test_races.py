@@ -36,6 +36,16 @@ def test_it_is_the_same_again(training: hx.Training) -> None:
     ]
 
 
+def test_its_hash_is_of_all_that_repeats(training: hx.Training) -> None:
+    lanes: list[Any] = [training, hx.lane("look-ahead", depth=1), hx.lane("linear-model")]
+    one, other = (hx.race(lanes, seed=5, **QUICK) for _ in range(2))
+    assert one.result != other.result  # the times of decisions
+    assert one.recording_sha256 == other.recording_sha256
+    for change in ({"seed": 6}, {"robot": {"femur_m": 0.081}}, {"steps": 19}):
+        changed = hx.race(lanes, **{**QUICK, "seed": 5, **change})
+        assert changed.recording_sha256 != one.recording_sha256
+
+
 def test_the_world_is_not_that_of_the_practice() -> None:
     noisy = hx.train(world="noise", **QUICK)
     assert not hx.race([noisy], steps=2).config.world
@@ -62,6 +72,7 @@ def test_a_race_in_which_all_fail_has_no_ranking() -> None:
         (["greedy"], {"alpha": 0.1}, "unknown argument of a race 'alpha'; choose one of: steps"),
         (["q-learning"], {}, "give the lane its training, or keep_learning=True"),
         ([], {}, "1 to 6 lanes"),
+        (["greedy"], {"on_step": 3}, "on_step is a function that is called, not 3"),
         (["greedy"], {"gait": "moonwalk"}, "unknown gait 'moonwalk'"),
     ],
 )
@@ -73,8 +84,11 @@ def test_invalid_arguments_are_refused(lanes: Any, given: dict[str, Any], reason
 def test_invalid_lanes_are_refused(training: hx.Training) -> None:
     with pytest.raises(hx.UnknownName, match=r"argument of a look-ahead lane 'dept'; .*depth"):
         hx.lane("look-ahead", dept=2)
-    with pytest.raises(hx.InvalidInput, match="learned by q-learning, not by sarsa"):
+    with pytest.raises(TableMismatch, match="learned by q-learning, not by sarsa"):
         hx.lane("sarsa", table=training)
+    for table in (training, 3):
+        with pytest.raises(hx.InvalidInput, match="leave out table, or give the agent by its name"):
+            hx.lane(training, table=table)  # type: ignore[arg-type]
     with pytest.raises(hx.InvalidInput, match="observation must be measured"):
         hx.lane(training, observation="commanded")
     with pytest.raises(TableMismatch, match="gait"):

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import hexapods as hx
@@ -36,10 +37,49 @@ def test_each_setting_has_its_mean_and_goes_on_where_it_ended(tmp_path: Path) ->
     assert "Greedy" in done._repr_html_()
 
 
+def test_one_value_is_a_list_of_one() -> None:
+    one = hx.experiment(
+        "sweep",
+        simulator="kinematic",
+        seeds=1,
+        workers=1,
+        agents=hx.QLearning,
+        gaits={"right_leg": 1, "left_leg": 2, "symmetry": "origin"},
+        robots={"femur_m": 0.081},
+        observations="measured",
+        steps=np.arange(5, 7),
+        alpha=0.3,
+    )
+    assert one.config.agents == ("q-learning",)
+    assert one.config.gaits == (hx.Gait(1, 2, "origin"),)
+    assert one.config.steps == (5, 6)
+    assert [robot.femur_m for robot in one.config.robots] == [0.081]
+    assert one.config.settings["alpha"] == (0.3,)
+    assert len(one.trials) == 3
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ({"gaits": 3}, "gait is one of left-right-origin, .* a mapping or a Gait, not 3"),
+        ({"gaits": [["left-right-origin"]]}, r"a Gait, not \['left"),
+        ({"robots": [3]}, "robot is stiff or .* a mapping or a Robot, not 3"),
+        ({"agents": [3]}, "by its name or its class, not as 3"),
+        ({"seeds": None}, "seeds must not be None; leave it out for its default"),
+        ({"alpha": None}, "alpha must not be None"),
+        ({"steps": ["a"]}, "steps must be a whole number .*, not 'a'"),
+        ({"folder": 3}, "a folder is given by its path, .* not by 3"),
+        ({"on_trial": 3}, "on_trial is a function"),
+        ({"worlds": 3}, 'a text such as "ice" or "limp:legs=1,4", not 3'),
+    ],
+)
+def test_what_is_no_list_of_these_is_refused(given: dict[str, Any], reason: str) -> None:
+    with pytest.raises(hx.InvalidInput, match=reason):
+        hx.experiment("sweep", **{**SWEEP, **given})
+
+
 def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(hx.UnknownName, match="unknown experiment 'swep'; choose one of: table1"):
-        hx.experiment("swep")
-    with pytest.raises(hx.InvalidInput, match=r"agents is a list, such as \['q-learning'\]"):
-        hx.experiment("sweep", agents="q-learning")
+        hx.experiment("swep")  # type: ignore[arg-type]
     with pytest.raises(hx.UnknownName, match="unknown field of sweep 'gait'"):
         hx.experiment("sweep", gait=["left-right-origin"])

@@ -23,6 +23,25 @@ def test_a_training_walks_alone() -> None:
     assert hx.view(training).title == "Q-learning: 50 steps"
 
 
+def test_a_browser_opens_a_file_that_the_next_replaces(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[str] = []
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path))
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    paths = [hx.View(title, f"<p>{title}").open() for title in ("one", "two")]
+    assert paths[0] == paths[1]
+    assert opened == [path.as_uri() for path in paths]
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == paths[:1]
+    assert paths[0].read_text("utf-8") == "<p>two"
+
+
+def test_a_title_is_a_text() -> None:
+    with pytest.raises(hx.InvalidInput, match="title is a text, not 3"):
+        hx.view(hx.race(["wave"], steps=2, simulator="kinematic"), title=3)  # type: ignore[arg-type]
+
+
 def test_an_unknown_clock_is_refused() -> None:
     with pytest.raises(hx.UnknownName, match="paper, wall, free"):
         hx.view(hx.race(["wave"], steps=2, simulator="kinematic"), clock="sun")  # type: ignore[arg-type]

@@ -76,8 +76,10 @@ def run(options: argparse.Namespace) -> int:
             "config": as_json(done.config),
             "result": result_as_json(done.result),
             "gait": _gaits(done),
+            "best_known_m": done.best_known_m,
+            "recording_sha256": done.recording_sha256,
         }
-        print(json.dumps({**shown, "best_known_m": done.best_known_m}))
+        print(json.dumps(shown))
     else:
         show_lanes(done, options.clock)
     return 0

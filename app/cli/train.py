@@ -16,10 +16,11 @@ from app.cli.terminal import progress
 from app.storage.run import result_as_json
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
+from hexapods.practice import train
 from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.config_json import as_json
 from hexapods.runs.records import Evaluated, StepTaken, TrainingRecord
-from hexapods.trainings import Training, read_table, train
+from hexapods.trainings import Training, read_table
 
 _SETTINGS = tuple(
     name

@@ -126,9 +126,10 @@ def continue_from(agent: Agent, rng: np.random.Generator, checkpoint: Checkpoint
         DamagedFile: if the generator's state is missing or invalid.
     """
     if isinstance(agent, Tabular):
-        agent.continue_from(agent_state(checkpoint))
+        # Without a copy: it is as large as the table, and an agent copies what it keeps.
+        _load(agent, checkpoint, agent.continue_from, agent_state(checkpoint))
     else:
-        _load(agent, checkpoint, getattr(agent, "continue_from", agent.load))
+        load_agent(agent, checkpoint, getattr(agent, "continue_from", None))
     try:
         seeding.load(rng, checkpoint.meta["rng"])
     except (KeyError, TypeError, ValueError) as error:
@@ -140,19 +141,29 @@ def agent_state(checkpoint: Checkpoint) -> Arrays:
     return checkpoint.part(_AGENT)
 
 
-def load_agent(agent: Agent, checkpoint: Checkpoint) -> None:
+def load_agent(
+    agent: Agent, checkpoint: Checkpoint, load: Callable[[Arrays], None] | None = None
+) -> None:
     """Load a copy of the agent's state in a checkpoint into an agent of the same class.
+
+    Args:
+        agent: the agent.
+        checkpoint: the checkpoint.
+        load: its method that takes the state; `load` by default.
 
     Raises:
         TableMismatch: if the checkpoint is of another agent.
     """
-    _load(agent, checkpoint, agent.load)
+    # A copy, which the agent may change: others race with the same checkpoint.
+    state = {name: array.copy() for name, array in agent_state(checkpoint).items()}
+    _load(agent, checkpoint, load or agent.load, state)
 
 
-def _load(agent: Agent, checkpoint: Checkpoint, load: Callable[[Arrays], None]) -> None:
+def _load(
+    agent: Agent, checkpoint: Checkpoint, load: Callable[[Arrays], None], state: Arrays
+) -> None:
     try:
-        # A copy, which the agent may change: others race with the same checkpoint.
-        load({name: array.copy() for name, array in agent_state(checkpoint).items()})
+        load(state)
     except (IndexError, KeyError, TypeError, ValueError) as error:
         raise TableMismatch(
             f"{type(agent).__name__} cannot load what {checkpoint.meta['agent']} has learned; "
@@ -226,7 +237,7 @@ def to_bytes(checkpoint: Checkpoint) -> bytes:
     meta = json.dumps(dict(checkpoint.meta))
     members = {**checkpoint.arrays, "meta": np.array(meta)}
     buffer = io.BytesIO()
-    np.savez(buffer, **members, digest=np.array(_digest(members)))  # type: ignore[arg-type]
+    np.savez(buffer, **members, digest=np.array(digest_of(members)))  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
@@ -244,7 +255,7 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
     try:
         members = read_arrays(data)
         digest = str(members.pop("digest"))
-        is_intact = digest == _digest(members)
+        is_intact = digest == digest_of(members)
         meta = read_meta(str(members.pop("meta")))
         is_supported = meta["format"] == FORMAT
     except Exception as error:  # zipfile and NumPy document no complete list of exceptions
@@ -289,7 +300,8 @@ def read_arrays(data: bytes) -> Arrays:
         return {name: file[name] for name in file.files}
 
 
-def _digest(members: Arrays) -> str:
+def digest_of(members: Arrays) -> str:
+    """Return the SHA-256 of the arrays of a file, with their names, types and shapes."""
     digest = hashlib.sha256()
     for key in sorted(members):
         array = np.ascontiguousarray(members[key])

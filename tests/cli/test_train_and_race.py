@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import hexapods as hx
 from hexapods.assembly import build_learner, finish_training
 from hexapods.runs.best_known import best_known_m
 from hexapods.runs.config import WalkingProblem, training_config
@@ -40,6 +41,15 @@ def test_train_equals_a_direct_call(tmp_path: Path) -> None:
         pass
     assert printed["result"] == asdict(finish_training(learner, config))
     assert [point["step"] for point in printed["curve"]] == [50, 60]
+
+
+def test_a_race_equals_a_direct_call(tmp_path: Path) -> None:
+    lanes = ("--lane", "greedy", "--lane", "random-walk")
+    printed = output("race", *QUICK, *lanes, "--seed", "3", folder=tmp_path, run=in_process)
+    config = printed["config"]
+    given = {"gait": config["gait"], "simulator": config["simulator"], "steps": config["steps"]}
+    race = hx.race(["greedy", "random-walk"], seed=3, **given)
+    assert printed["recording_sha256"] == race.recording_sha256
 
 
 def test_train_and_race_print_the_best_known_distance_where_it_is_known(

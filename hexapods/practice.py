@@ -1,0 +1,312 @@
+"""The verbs of trainings: `train`, `iter_train` and `evaluate`."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields
+from typing import Any, cast
+
+from hexapods.agents.protocol import Tunable
+from hexapods.agents.registry import AgentClass, needs_practice
+from hexapods.arguments import (
+    NOT_GIVEN,
+    WALK,
+    GaitLike,
+    RobotLike,
+    WorldLike,
+    agent_name,
+    check_callable,
+    check_names,
+    given_of,
+    plain_values,
+    read_disturbance,
+    read_walk,
+)
+from hexapods.assembly import build_learner, finish_training
+from hexapods.domain.checks import check_whole
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.observation import Observation
+from hexapods.domain.world import check_ends
+from hexapods.runs import training
+from hexapods.runs.config import (
+    SimulatorName,
+    TrainingConfig,
+    agent_settings,
+    changeable_settings,
+    training_config,
+)
+from hexapods.runs.records import Evaluated, TrainingRecord
+from hexapods.runs.tables import check_fits, load_agent, snapshot
+from hexapods.trainings import CurvePoint, Table, Training, learned_by, read_table
+
+FIELDS = tuple(
+    one.name
+    for one in fields(TrainingConfig)
+    # Practice here is as fast as it can be; agent and settings are arguments of their own.
+    if one.name not in ("agent", "pace", "settings")
+)
+"""Names of the arguments that are fields of a training."""
+OnRecord = Callable[[TrainingRecord], object]
+
+
+def train(
+    agent: str | AgentClass | None = None,
+    *,
+    table: Table | None = None,
+    changes: Iterable[Mapping[str, Any]] = (),
+    on_record: OnRecord | None = None,
+    gait: GaitLike = NOT_GIVEN,
+    robot: RobotLike = NOT_GIVEN,
+    simulator: SimulatorName = NOT_GIVEN,
+    divisions: int = NOT_GIVEN,
+    grid_side_m: float = NOT_GIVEN,
+    world: WorldLike = NOT_GIVEN,
+    tolerance: float = NOT_GIVEN,
+    steps: int = NOT_GIVEN,
+    seed: int = NOT_GIVEN,
+    observation: Observation = NOT_GIVEN,
+    steps_per_episode: int = NOT_GIVEN,
+    evaluate_every: int = NOT_GIVEN,
+    **settings: Any,
+) -> Training:
+    """Train an agent to walk (paper, Algorithm 1), and evaluate what it learned.
+
+    Args:
+        agent: its registered name, such as `q-learning`, `my.module:Agent`, or its class; by
+            default that of `table`, or Q-learning.
+        table: what it begins with; then its generator goes on where the table's ended. Gait, robot,
+            simulator, grid and observation are those of its practice unless they are given, and the
+            settings the agent's defaults.
+        changes: while it practises: mappings with the number of steps after which they happen,
+            `step`, and values of the agent's live `settings` by name, or a `disturbance`.
+        on_record: called with each record of the loop.
+        gait: a name, such as `left-right-origin` (default), or a `Gait` or its fields.
+        robot: a preset's name, `stiff` (default), `compliant` or `slippery`, or a `Robot`, or what
+            differs from a preset.
+        simulator: `mujoco` (default), or `kinematic`: ideal, without slip.
+        divisions: points along each side of the foot grid, 2.
+        grid_side_m: side of the foot grid, 0.04 [m].
+        world: a name, such as `ice`, a list of disturbances, or a `World`; by default flat ground.
+        tolerance: how far the robot that the seed draws differs from its design, as a share.
+        steps: number of steps of practice, 500.
+        seed: of all random generators, 0.
+        observation: how the state is read: `measured` (default), `commanded` or `planned`.
+        steps_per_episode: number of steps for which ε is constant, 50.
+        evaluate_every: steps between two evaluations, 50; 0 for none.
+        settings: those that the agent's constructor declares, such as `alpha`.
+
+    Raises:
+        UnknownName, InvalidInput: if an argument is not valid; the message names what is.
+        TableMismatch: if the table is of another walking problem or agent.
+        Diverged: if the physics diverges.
+    """
+    check_callable("on_record", on_record)
+    practice = Practice(agent, table, changes, given_of(locals(), FIELDS, "settings"))
+    for record in practice:
+        if on_record is not None:
+            on_record(record)
+    return practice.training
+
+
+def iter_train(
+    agent: str | AgentClass | None = None,
+    *,
+    table: Table | None = None,
+    changes: Iterable[Mapping[str, Any]] = (),
+    record: bool = False,
+    gait: GaitLike = NOT_GIVEN,
+    robot: RobotLike = NOT_GIVEN,
+    simulator: SimulatorName = NOT_GIVEN,
+    divisions: int = NOT_GIVEN,
+    grid_side_m: float = NOT_GIVEN,
+    world: WorldLike = NOT_GIVEN,
+    tolerance: float = NOT_GIVEN,
+    steps: int = NOT_GIVEN,
+    seed: int = NOT_GIVEN,
+    observation: Observation = NOT_GIVEN,
+    steps_per_episode: int = NOT_GIVEN,
+    evaluate_every: int = NOT_GIVEN,
+    **settings: Any,
+) -> "Practice":
+    """Train an agent, and yield a record of each step, episode and evaluation as it happens.
+
+    With `record`, steps and evaluations have their motion, and steps the action values; all else is
+    as in `train`.
+
+    Returns:
+        an iterator over the records, whose `training` is what was learned.
+
+    Raises:
+        UnknownName, InvalidInput, TableMismatch: at the call, as `train`.
+        Diverged: if the physics diverges.
+    """
+    return Practice(agent, table, changes, given_of(locals(), FIELDS, "settings"), record)
+
+
+def evaluate(
+    agent: str | AgentClass | Training,
+    *,
+    table: Table | None = None,
+    gait: GaitLike = NOT_GIVEN,
+    robot: RobotLike = NOT_GIVEN,
+    simulator: SimulatorName = NOT_GIVEN,
+    divisions: int = NOT_GIVEN,
+    grid_side_m: float = NOT_GIVEN,
+    world: WorldLike = NOT_GIVEN,
+    tolerance: float = NOT_GIVEN,
+    steps: int = NOT_GIVEN,
+    seed: int = NOT_GIVEN,
+    observation: Observation = NOT_GIVEN,
+    steps_per_episode: int = NOT_GIVEN,
+    evaluate_every: int = NOT_GIVEN,
+    **settings: Any,
+) -> float:
+    """Return how far an agent walks in 50 steps from rest, without exploring or learning [m].
+
+    Like the evaluations of a training it walks in the world as it is after the practice, which does
+    not change meanwhile.
+
+    Args:
+        agent: a training, or an agent's name or class.
+        table: what the agent has learned, unless `agent` is a training.
+        gait: as in `train`, and so are all below; what is not given is as in the
+            training.
+        robot: geometry and actuators.
+        simulator: `mujoco` or `kinematic`.
+        divisions: points along each side of the foot grid.
+        grid_side_m: side of the foot grid [m].
+        world: what happens to the robot and the ground; by default undisturbed.
+        tolerance: how far the robot that the seed draws differs from its design, as a share.
+        steps: number of steps of the practice.
+        seed: of all random generators.
+        observation: how the state is read.
+        steps_per_episode: number of steps for which ε is constant.
+        evaluate_every: steps between two evaluations.
+        settings: of the agent.
+
+    Raises:
+        UnknownName, InvalidInput: if an argument is not valid; the message names what is.
+        TableMismatch: if the table is of another walking problem or agent.
+        Diverged: if the physics diverges.
+    """
+    given = given_of(locals(), FIELDS, "settings")
+    name, trained = learned_by(agent, table)
+    if trained is None and needs_practice(name):
+        raise InvalidInput(f"{name} walks with what it has learned: give its training")
+    if trained is not None:
+        like = {"steps": trained.config.steps, "tolerance": trained.config.tolerance}
+        given = {**_own_settings(trained.config), **like, **given}
+    config = _config(name, trained, given)
+    learner = build_learner(config)
+    if trained is not None:
+        check_fits(trained.table, config, config.observation)
+        load_agent(learner.walker.agent, trained.table)
+        learner.step = trained.table.meta["step"]
+    return training.evaluate(learner, config, epsilon=0.0).distance_m
+
+
+class Practice(Iterator[TrainingRecord]):
+    """A training that is under way, as `iter_train` returns it: an iterator over its records.
+
+    Attributes:
+        config: all that decides its result.
+    """
+
+    def __init__(
+        self,
+        agent: str | AgentClass | None,
+        table: Table | None,
+        changes: Iterable[Mapping[str, Any]],
+        given: Mapping[str, Any],
+        record: bool = False,
+    ) -> None:
+        """Build the learner; `given` has fields of the config and the agent's settings."""
+        if agent is None:
+            trained = None if table is None else read_table(table)
+            name = TrainingConfig.agent if trained is None else trained.config.agent
+        else:
+            name, trained = learned_by(agent_name(agent), table)
+        self.config = _config(name, trained, given)
+        check_ends(self.config.world.disturbances, self.config.steps)
+        self._changes = _read_changes(changes, self.config)
+        self._learner = build_learner(self.config, None if trained is None else trained.table)
+        self._records = training.train(self._learner, self.config, record)
+        self._curve: list[CurvePoint] = []
+        self._change()
+
+    @property
+    def training(self) -> Training:
+        """What was learned so far; at the end it is what `train` returns.
+
+        Before the end its reference distance is known only if it was measured already.
+        """
+        learner, config = self._learner, self.config
+        result = finish_training(learner, config, measure_reference=learner.step == config.steps)
+        return Training(config, snapshot(learner, config), tuple(self._curve), result)
+
+    def __next__(self) -> TrainingRecord:
+        record = next(self._records)
+        if isinstance(record, Evaluated):
+            self._curve.append(CurvePoint(record.step, record.distance_m, record.epsilon))
+        self._change()
+        return record
+
+    def _change(self) -> None:
+        while self._changes and self._changes[0]["step"] <= self._learner.step:
+            values = self._changes.pop(0)
+            if "disturbance" in values:
+                self._learner.disturb(values["disturbance"], self.config)
+            if values["settings"]:
+                # `_read_changes` has looked for settings that are live.
+                cast(Tunable, self._learner.walker.agent).tune(**values["settings"])
+
+    def __repr__(self) -> str:
+        config, step = self.config, self._learner.step
+        return f"<Practice of {config.agent}: {step:,} of {config.steps:,} steps>"
+
+
+_CHANGE = '{"step": 20, "settings": {"alpha": 0.1}}'
+
+
+def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dict[str, Any]]:
+    """Return changes that happen while a training runs, checked."""
+    if isinstance(changes, str | Mapping) or not isinstance(changes, Iterable):
+        raise InvalidInput(f"changes is a list, such as [{_CHANGE}], not {changes!r}")
+    live = {k: v for k, v in changeable_settings(config.agent).items() if k != "pace"}
+    read: list[dict[str, Any]] = []
+    for change in changes:
+        if not isinstance(change, Mapping) or "step" not in change:
+            raise InvalidInput(f"a change is a mapping such as {_CHANGE}, not {change!r}")
+        values = plain_values(change)
+        check_names("a change", values, ("step", "settings", "disturbance"))
+        settings = values.setdefault("settings", {})
+        if not isinstance(settings, Mapping):
+            raise InvalidInput(f"settings of a change are a mapping, as in {_CHANGE}")
+        if settings and not live:
+            raise InvalidInput(f"{config.agent} has no settings that change in practice")
+        check_names(f"a change of {config.agent}", settings, live)
+        check_whole(
+            "step of a change", values["step"], read[-1]["step"] if read else 0, config.steps
+        )
+        if "disturbance" in values:
+            values["disturbance"] = read_disturbance(values["disturbance"])
+        values["settings"] = {k: live[k].normalized(v) for k, v in plain_values(settings).items()}
+        read.append(values)
+    return read
+
+
+def _config(name: str, trained: Training | None, given: Mapping[str, Any]) -> TrainingConfig:
+    """Return the config of a training; what is not given is the table's, or the default."""
+    check_names("a training", given, (*FIELDS, *agent_settings(name)))
+    given = plain_values(given)
+    walk = {key: value for key, value in given.items() if key in WALK}
+    rest: dict[str, Any] = {key: value for key, value in given.items() if key not in WALK}
+    like = None
+    if trained is not None:
+        like = trained.config
+        rest = {"observation": like.observation, "seed": like.seed, **rest}
+    return training_config(name, **read_walk(walk, like), **rest)
+
+
+def _own_settings(config: TrainingConfig) -> dict[str, Any]:
+    """Return the settings of a training's agent; earlier versions stored those of others too."""
+    declared = agent_settings(config.agent)
+    return {name: value for name, value in config.settings.items() if name in declared}
