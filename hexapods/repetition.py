@@ -1,7 +1,10 @@
 """Experiments: the same trainings over many seeds, with intervals in place of single runs."""
 
+import ast
 import html
+import inspect
 import os
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass, field, fields
@@ -147,7 +150,7 @@ def experiment(
     """Repeat trainings over many seeds, on all cores, and summarise them with intervals.
 
     Its trials run in processes, which import the calling program again: in a program call it under
-    `if __name__ == "__main__":`.
+    `if __name__ == "__main__":`, and define agents in a module. A notebook needs neither.
 
     Args:
         name: `table1`, `figure4`, `sweep`, `league` or `recovery`; see `ExperimentConfig`.
@@ -182,6 +185,7 @@ def experiment(
     from hexapods.experiments.summary import summarise  # noqa: PLC0415  # SciPy takes a second
 
     check_callable("on_trial", on_trial)
+    _check_main_module()
     config = experiment_config(name, _read(given))
     spec = ClusterSpec(workers=workers)
     kept: AbstractContextManager[Progress] = (
@@ -197,6 +201,33 @@ def experiment(
         trials, set_aside = progress.planned()
         cost = progress.cost(workers or cores())
     return Experiment(config, trials, summarise(config, trials, set_aside, cost))
+
+
+def _check_main_module() -> None:
+    """Check that a program which calls this is not one that its processes would run again.
+
+    Raises:
+        InvalidInput: if it has no `if __name__ == "__main__":`.
+    """
+    main = sys.modules["__main__"]
+    frame, is_running = inspect.currentframe(), False
+    while frame is not None and not is_running:
+        is_running = frame.f_globals is vars(main) and frame.f_code.co_name == "<module>"
+        is_running = is_running and not frame.f_code.co_filename.startswith("<")  # of `python -i`
+        frame = frame.f_back
+    path = getattr(main, "__file__", None)
+    if not is_running or path is None:
+        return
+    try:
+        program = ast.parse(Path(path).read_bytes())
+    except (OSError, SyntaxError, ValueError):  # not a source file
+        return
+    tests = (ast.unparse(node.test) for node in ast.walk(program) if isinstance(node, ast.If))
+    if not any("__name__" in test for test in tests):
+        raise InvalidInput(
+            f"the processes of an experiment import {Path(path).name} again, which would begin it "
+            'again: put the lines that call it under if __name__ == "__main__":'
+        )
 
 
 def _read(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -123,10 +123,6 @@ def test_changes_happen_while_it_practises() -> None:
         ("q-learning", [{"step": 1, "settings": {"alpha": 3}}], "alpha"),
         ("q-learning", [{"step": 61, "settings": {"alpha": 0.1}}], "from 0 to 60, not 61"),
         ("q-learning", [{"step": 9}, {"step": 2, "settings": {"alpha": 0.2}}], "from 9 to 60"),
-            "q-learning",
-            [{"step": 9, "settings": {"alpha": 0.1}}, {"step": 2, "settings": {"alpha": 0.2}}],
-            "from 9 to 60",
-        ),
         ("q-learning", [{"settings": {"alpha": 0.1}}], 'a mapping such as {"step": 20'),
         ("wave", [{"step": 1, "settings": {"alpha": 0.1}}], "wave has no settings that change"),
         (

@@ -1,5 +1,7 @@
 """`hx.experiment`: many seeds in one call."""
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +78,25 @@ def test_one_value_is_a_list_of_one() -> None:
 def test_what_is_no_list_of_these_is_refused(given: dict[str, Any], reason: str) -> None:
     with pytest.raises(hx.InvalidInput, match=reason):
         hx.experiment("sweep", **{**SWEEP, **given})
+
+
+@pytest.mark.parametrize("guard", ["", 'if __name__ == "__main__":'])
+def test_a_program_that_would_begin_again_in_each_process_is_told_so(
+    tmp_path: Path, guard: str
+) -> None:
+    program = tmp_path / "program.py"
+    call = "print(len(hx.experiment('sweep', gaits='left-right-origin', steps=5, **given).trials))"
+    given = "given = {'simulator': 'kinematic', 'seeds': 1, 'workers': 1}"
+    program.write_text(f"import hexapods as hx\n{given}\n{guard or 'if True:'}\n    {call}\n")
+    done = subprocess.run(
+        [sys.executable, program.name], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    if guard:
+        assert done.stdout == "2\n", done.stderr
+    else:
+        told = "import program.py again, which would begin it again: put the lines that call it"
+        assert told in done.stderr.splitlines()[-1]
+        assert "distributed" not in done.stderr
 
 
 def test_invalid_arguments_are_refused() -> None:
