@@ -310,7 +310,9 @@ export const annotate = (run, changes) =>
  * @param {Run} run
  */
 export function copySettings(run) {
-  const { robot, agent, disturbances = [], ...config } = run.kind === "race" ? configOfRace(run) : configAtEnd(run);
+  /** @type {Walk & { [field: string]: unknown }} */
+  const copied = run.kind === "race" ? configOfRace(run) : configAtEnd(run);
+  const { robot, agent, disturbances = [], ...config } = copied;
   if (agent && learns(agent)) chooseLearner(agent);
   const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
   const known = Object.keys({
@@ -333,7 +335,9 @@ const settingsOfLane = ({ agent, ...lane }) => {
  */
 const asAsked = (lane) => lane.plans_with_by_default ? { ...lane, plans_with: null } : lane;
 
-/** @type {(race: Run) => Omit<Partial<RunConfig>, "lanes"> & { lanes: string[] }} */
+/** What the form takes over. @typedef {Partial<Pick<RunConfig, "robot" | "agent" | "disturbances">>} Walk */
+
+/** @type {(race: Run) => Walk & { lanes: string[], [field: string]: unknown }} */
 function configOfRace({ config: { lanes, steps, ...walk } }) {
   const trainings = lanes.map((lane) => {
     const run = runs.value.get(lane.training_id ?? "");

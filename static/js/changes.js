@@ -13,7 +13,8 @@ const UNLEARNED = "pace";
 const BURST_SHARE = 0.02;
 
 /** Changed settings, without disturbances. @type {(change: Change) => [string, SettingValue][]} */
-const ratesOf = ({ step: _step, disturbance: _disturbance, ...values }) => Object.entries(values);
+const ratesOf = ({ step: _step, disturbance: _disturbance, ...values }) =>
+  Object.entries(/** @type {Rates} */ (values));
 
 /**
  * Values that were changed while a run ran, as they hold at its end.

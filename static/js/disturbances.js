@@ -335,7 +335,7 @@ export function parseText(text) {
     return { mistake: `${kind.title}: give ${listed(missing.map(([, { title }]) => title.toLowerCase()))}` };
   }
   for (const [own, field] of Object.entries(kind.fields).filter(([, { ranges }]) => ranges)) {
-    const mistake = mistakeIn(found[own], fieldBeside(field, found), field.is_whole);
+    const mistake = mistakeIn(/** @type {number} */ (found[own]), fieldBeside(field, found), field.is_whole);
     if (mistake) return { mistake: `${kind.title}, ${field.title.toLowerCase()}: ${mistake}` };
   }
   return { value: found };

@@ -78,8 +78,8 @@ const WORLDS = [
 
 const TRAINING = {
   agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured", alpha: 0.3, gamma: 0.9,
-  epsilon_start: 1, epsilon_end: 0, steps_per_episode: 50, evaluate_every: 50, robot: "stiff", simulator: "mujoco",
-  divisions: 2, grid_side_m: 0.04, tolerance: 0, disturbances: [],
+  epsilon_start: 1, epsilon_end: 0, steps_per_episode: 50, evaluate_every: 50, robot: "stiff",
+  simulator: /** @type {const} */ ("mujoco"), divisions: 2, grid_side_m: 0.04, tolerance: 0, disturbances: [],
 };
 
 const GRID = ["steps", "alpha", "gamma", "epsilon_start", "epsilon_end", "trace", "kind"];
@@ -124,9 +124,9 @@ export const OPTIONS = {
   ],
   worlds: WORLDS,
   disturbances: KINDS,
-  simulators: [{ name: "mujoco", description: "" }, { name: "kinematic", description: "" }],
-  observations: [{ name: "measured", description: "" }, { name: "commanded", description: "" }],
-  clocks: [{ name: "paper", description: "" }, { name: "wall", description: "" }, { name: "free", description: "" }],
+  simulators: [described("mujoco", "MuJoCo physics"), described("kinematic", "ideal (no slip)")],
+  observations: [described("measured"), described("commanded")],
+  clocks: [described("paper", "paper clock"), described("wall", "real clock"), described("free", "no clock")],
   experiments: [
     {
       ...described("table1", "Table 1"), fields: COMMON, grid: [], defaults: { ...EXPERIMENT, steps: [500, 1000] },
@@ -149,7 +149,7 @@ export const OPTIONS = {
   ],
   defaults: {
     training: { ...TRAINING, pace: "max" },
-    race: { steps: 50, lanes: [{ agent: "learner" }, { agent: "greedy" }] },
+    race: { steps: 50, seed: 0, lanes: [{ agent: "learner" }, { agent: "greedy" }] },
     what_if: { seeds: 30 },
   },
   settings: {
@@ -188,11 +188,11 @@ let number = 0;
  */
 export function makeRun(changes) {
   number += 1;
-  return /** @type {Run} */ ({
+  return /** @type {Run} */ (/** @type {unknown} */ ({
     id: `run-${String(number).padStart(4, "0")}`, kind: "training", name: null, state: "finished",
     config: /** @type {any} */ ({ ...TRAINING, pace: "max" }),
     progress: { done: 0, total: 500 }, can_resume: false,
     created_at: new Date(Date.UTC(2030, 0, 1) + 1000 * number).toISOString(),
     ...changes,
-  });
+  }));
 }

@@ -34,7 +34,7 @@ test("the form begins with the server's defaults and nothing else", () => {
 test("the address follows the form, and is clean again when the form is", () => {
   setField("alpha", 0.7);
   assert.match(location.search, /alpha=0.7/);
-  setField("alpha", OPTIONS.defaults.training.alpha);
+  setField("alpha", OPTIONS.settings.alpha.default);
   assert.equal(location.search, "");
 });
 

@@ -16,8 +16,8 @@ import { options, served } from "../store.js";
 /** Every kind of experiment, robots by the names of their presets. @type {{ value: ExperimentKind[] }} */
 export const experiments = computed(() =>
   (options.value?.experiments ?? []).map((kind) => {
-    const robots = kind.defaults.robots.map((robot) => presetOf(robot) ?? "");
-    return { ...kind, defaults: { ...kind.defaults, name: "", robots } };
+    const { robots, ...defaults } = /** @type {ExperimentValues} */ (kind.defaults);
+    return { ...kind, defaults: { ...defaults, name: "", robots: robots.map((robot) => presetOf(robot) ?? "") } };
   }),
 );
 
