@@ -72,7 +72,6 @@ browser: $(DEV_STAMP)
 test-page: check-page-types ## Check the page's JavaScript: linter, types, unit tests
 	$(BIN)/node node_modules/eslint/bin/eslint.js .
 	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.json
-	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.logic.json
 	$(BIN)/node --import ./tests/page/browser.js --test --test-reporter=dot "tests/page/test-*.js"
 
 # The types of what the page reads, from the models that describe what the server sends.

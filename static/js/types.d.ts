@@ -7,6 +7,9 @@ export type {
   AgentOption as Agent,
   BeliefView as Belief,
   Change,
+  ClaimView,
+  Curve as ScoredCurve,
+  CurveOfSetting,
   CurveView as Curve,
   DamagedRunView as DamagedRun,
   Described,
@@ -18,12 +21,16 @@ export type {
   ExperimentView as Experiment,
   ExplanationView as Explanation,
   FieldOption,
+  Finding,
   GaitFiguresView as GaitFigures,
   GaitLaneView as GaitLane,
   GaitOption as Gait,
   GaitView as GaitAnalysis,
+  Interval95 as Interval,
   LaneResult,
+  NarrativeSection,
   OptionsView as Options,
+  PooledView,
   RaceView as Race,
   ReplayMark,
   ReplayView as ReplayPlan,
@@ -39,10 +46,14 @@ export type {
   TimelineLane,
   TrainingView as Training,
   TrialRow as Trial,
+  Until,
   ValueUpdateView as ValueUpdate,
+  VersusView,
+  WallLane,
   WhatIfHalf,
   WhatIfView as WhatIfAnswer,
   WorldOption as World,
+  WorldView,
 } from "./api-types.js";
 
 // ---- runs: the page lists all kinds together, and asks `kind` before it reads what only one kind has
@@ -100,6 +111,15 @@ export interface Page<Item> {
 export type RobotConfig = string | { preset?: string; name?: string; [part: string]: unknown };
 /** The name of a gait, or its parts. */
 export type GaitConfig = string | Partial<Api.GaitParts>;
+
+// ---- events of elements, as their handlers read them
+
+export interface Changed {
+  target: HTMLInputElement;
+}
+export interface Toggled {
+  target: HTMLDetailsElement;
+}
 
 // ---- the forms
 
