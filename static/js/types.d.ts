@@ -17,8 +17,6 @@ export type {
   DisturbanceOption as DisturbanceKind,
   Evaluation,
   EventBodies,
-  ExperimentConfigView as ExperimentConfig,
-  ExperimentView as Experiment,
   ExplanationView as Explanation,
   FieldOption,
   Finding,
@@ -31,7 +29,6 @@ export type {
   NarrativeSection,
   OptionsView as Options,
   PooledView,
-  RaceView as Race,
   ReplayMark,
   ReplayView as ReplayPlan,
   RobotOption as Robot,
@@ -42,9 +39,7 @@ export type {
   SpectatorsView as Spectators,
   SummaryView as Summary,
   TableView as StateTable,
-  TermView as RuleTerm,
   TimelineLane,
-  TrainingView as Training,
   TrialRow as Trial,
   Until,
   ValueUpdateView as ValueUpdate,
@@ -52,7 +47,6 @@ export type {
   WallLane,
   WhatIfHalf,
   WhatIfView as WhatIfAnswer,
-  WorldOption as World,
   WorldView,
 } from "./api-types.js";
 
@@ -102,10 +96,7 @@ export type Place = Pick<
 /** Values of the pace and of live settings by name. */
 export type Rates = Record<string, SettingValue>;
 
-export interface Page<Item> {
-  items: Item[];
-  next_cursor: string | null;
-}
+export type Page<Item> = Omit<Api.RunPage, "items"> & { items: Item[] };
 
 /** The name of a preset, or an object with a preset and what differs from it. */
 export type RobotConfig = string | { preset?: string; name?: string; [part: string]: unknown };
