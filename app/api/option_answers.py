@@ -137,6 +137,11 @@ class DisturbanceOption(Described):
     nothing: float | str | None = Field(
         description="the size at which nothing happens: a number, or the robot's part that has it"
     )
+    lasts: bool = Field(description="whether it holds until another of the same thing")
+    identified_by: list[str] = Field(
+        description="fields that tell, beside the kind, what it changes; each leg is one thing"
+    )
+    part: list[str] = Field(description="part of a leg to which it happens; empty for all of it")
     simulators: list[str]
 
 

@@ -282,6 +282,9 @@ def _disturbances() -> list[dict[str, Any]]:
             "fields": _fields_of(kind),
             "size": kind.size,
             "nothing": kind.nothing,
+            "lasts": kind.lasts,
+            "identified_by": kind.identified_by,
+            "part": kind.part,
             "simulators": [one for one in _SIMULATORS if is_simulated(name, one)],
         }
         for name, kind in disturbances.KINDS.items()

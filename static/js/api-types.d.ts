@@ -407,6 +407,18 @@ export interface DisturbanceOption {
    * the size at which nothing happens: a number, or the robot's part that has it
    */
   nothing: number | string | null;
+  /**
+   * whether it holds until another of the same thing
+   */
+  lasts: boolean;
+  /**
+   * fields that tell, beside the kind, what it changes; each leg is one thing
+   */
+  identified_by: string[];
+  /**
+   * part of a leg to which it happens; empty for all of it
+   */
+  part: string[];
   simulators: string[];
 }
 /**

@@ -42,10 +42,10 @@ const DIRECTION = field("Direction", { minimum: -180, maximum: 180, unit: "°", 
 const NUMBER = { minimum: 0, is_required: true };
 /** @type {(name: string, title: string, fields: object, more?: object) => any} */
 const kind = (name, title, fields, more = {}) =>
-  ({ ...described(name, title), fields: { ...fields, ...STEP_FIELDS }, size: null, nothing: 0, simulators: ["mujoco"],
-    ...more });
+  ({ ...described(name, title), fields: { ...fields, ...STEP_FIELDS }, size: null, nothing: 0, lasts: true,
+    identified_by: [], part: [], simulators: ["mujoco"], ...more });
 const KINDS = [
-  kind("limp", "Limp legs", { legs: LEGS }),
+  kind("limp", "Limp legs", { legs: LEGS }, { identified_by: ["legs"], part: ["power"] }),
   kind("stuck", "Stuck joint", {
     leg: field("Leg", { minimum: 1, maximum: 12, is_whole: true, is_required: true }),
     joint: field("Joint", { is_number: false, choices: ["coxa", "femur"], is_required: true }),
@@ -53,20 +53,24 @@ const KINDS = [
       minimum: -1.5, maximum: 1.5, unit: "rad", is_required: true,
       ranges: { field: "joint", ranges: { coxa: [-1.2, 1.2], femur: [-1.5, 1.5] } },
     }),
-  }),
-  kind("lost", "Lost legs", { legs: LEGS }),
+  }, { identified_by: ["leg", "joint"] }),
+  kind("lost", "Lost legs", { legs: LEGS }, { identified_by: ["legs"] }),
   kind("weak", "Weak servos", {
     legs: LEGS, torque_share: field("Share of torque", { ...NUMBER, maximum: 1 }),
-  }, { size: "torque_share", nothing: 1 }),
-  kind("repair", "Repaired legs", { legs: LEGS }),
+  }, { size: "torque_share", nothing: 1, identified_by: ["legs"], part: ["power"] }),
+  kind("repair", "Repaired legs", { legs: LEGS }, { identified_by: ["legs"] }),
   kind("slope", "Slope", {
     degrees: field("Slope", { ...NUMBER, maximum: 30, unit: "°" }), direction_deg: DIRECTION,
   }, { size: "degrees" }),
   kind("friction", "Friction", { value: field("Friction", { minimum: 0.01, maximum: 5, is_required: true }) },
     { size: "value", nothing: "friction" }),
+  kind("patch", "Patch", {
+    from_m: field("From", { ...NUMBER, unit: "m" }), to_m: field("To", { ...NUMBER, unit: "m" }),
+    friction: field("Friction", NUMBER),
+  }, { size: "friction", nothing: null, identified_by: ["from_m", "to_m"] }),
   kind("push", "Push", {
     impulse_ns: field("Impulse", { ...NUMBER, maximum: 20, unit: "N·s" }), direction_deg: DIRECTION,
-  }, { size: "impulse_ns" }),
+  }, { size: "impulse_ns", lasts: false }),
   kind("sensor-noise", "Sensor noise", {
     sd_m: field("Standard deviation", { ...NUMBER, maximum: 0.05, unit: "m" }),
   }, { size: "sd_m", simulators: ["mujoco", "kinematic"] }),

@@ -118,7 +118,7 @@ const PRESS_WORDS = { [PUSH]: "Push it", patch: "Lay it" };
  * Whether it waits for its button: a push, and what has no size at which nothing happens.
  * @param {DisturbanceKind} one
  */
-const isPressed = ({ name, nothing }) => name === PUSH || nothing === null;
+const isPressed = ({ lasts, nothing }) => !lasts || nothing === null;
 
 /**
  * The values of a kind as they hold, with what is being changed. A change takes effect when the slider, or its key,
