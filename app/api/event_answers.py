@@ -68,7 +68,7 @@ class NextAction(Answer):
     cell: Count
 
 
-class ActionValuesView(Answer):
+class SceneActionValues(Answer):
     """Action values of a learner in its present state."""
 
     agent: str
@@ -105,7 +105,7 @@ class SceneView(Answer):
     lanes: list[SceneLane]
     ghosts: list[GhostView]
     ghost_lanes: list[GhostLane]
-    action_values: ActionValuesView | None
+    action_values: SceneActionValues | None
 
 
 class SnapshotView(Answer):

@@ -10,35 +10,6 @@ export interface ActionValue {
   visits: number;
 }
 /**
- * Action values of a learner in its present state.
- */
-export interface ActionValuesView {
-  agent: string;
-  lane: number;
-  pairs: [number, number][];
-  cell_names: string[];
-  cells_m: [number, number][];
-  /**
-   * by leg pair and cell; null where the foot already stands
-   */
-  values_m: (number | null)[][];
-  visits: (number | null)[][];
-  /**
-   * the cell of each leg pair
-   */
-  current: number[];
-  next: NextAction | null;
-  low: number;
-  high: number;
-}
-/**
- * An action: the leg pair, and the cell to which it moves.
- */
-export interface NextAction {
-  pair: number;
-  cell: number;
-}
-/**
  * An agent, with its constructor's settings and those that can change during a training.
  */
 export interface AgentOption {
@@ -857,7 +828,7 @@ export interface SceneView {
   lanes: SceneLane[];
   ghosts: GhostView[];
   ghost_lanes: GhostLane[];
-  action_values: ActionValuesView | null;
+  action_values: SceneActionValues | null;
 }
 /**
  * A lane at the moment that the stage shows; `halted` if its run ended before it was done.
@@ -898,6 +869,35 @@ export interface GhostLane {
   distance_m: number;
   lane: number;
   name: string;
+}
+/**
+ * Action values of a learner in its present state.
+ */
+export interface SceneActionValues {
+  agent: string;
+  lane: number;
+  pairs: [number, number][];
+  cell_names: string[];
+  cells_m: [number, number][];
+  /**
+   * by leg pair and cell; null where the foot already stands
+   */
+  values_m: (number | null)[][];
+  visits: (number | null)[][];
+  /**
+   * the cell of each leg pair
+   */
+  current: number[];
+  next: NextAction | null;
+  low: number;
+  high: number;
+}
+/**
+ * An action: the leg pair, and the cell to which it moves.
+ */
+export interface NextAction {
+  pair: number;
+  cell: number;
 }
 /**
  * Distances [m] of greedy and of the best known walk on the robot of a training.

@@ -3,7 +3,6 @@
 import type * as Api from "./api-types.js";
 
 export type {
-  ActionValuesView as ActionValues,
   AgentOption as Agent,
   BeliefView as Belief,
   Change,
@@ -32,6 +31,7 @@ export type {
   ReplayMark,
   ReplayView as ReplayPlan,
   RobotOption as Robot,
+  SceneActionValues as ActionValues,
   SceneLane,
   SceneView as Scene,
   SettingOption,
