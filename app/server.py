@@ -49,7 +49,7 @@ from app.api.wellformed import WellFormed
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
-from app.exports.video_renderer import VideoRenderer
+from app.exports.file_renderer import FileRenderer
 from app.jobs.fork_server import start_fork_server
 from app.jobs.jobs import Jobs
 from app.jobs.process_pool import ProcessPool
@@ -134,8 +134,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         ready=lambda: _unready_reason(jobs, store),
         recorded_stream=viewer.recorded_stream,
         replays=replays,
-        replay_page=replays.page,
-        videos=VideoRenderer(check=stopping.check),
+        renderer=FileRenderer(check=stopping.check),
         what_if=WhatIf(ProcessPool()),
         explanations=Explanations(store, recordings, stopping),
         estimates=Estimates(ProcessPool(count=1), jobs.cores, stopping),
@@ -219,7 +218,7 @@ async def _end_long_requests(app: FastAPI) -> None:
     services: Services = app.state.services
     services.stopping.set()
     app.state.work_slots.close()
-    for user in (services.what_if, services.estimates, services.videos):
+    for user in (services.what_if, services.estimates, services.renderer):
         await asyncio.to_thread(user.close)
 
 

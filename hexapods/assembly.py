@@ -22,6 +22,7 @@ from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings
 from hexapods.runs.lane import LaneConfig, check_lane
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.rebuilding import LoggedSensors, RebuiltLearner
+from hexapods.runs.results import TrainingResult
 from hexapods.runs.seeding import EVALUATION, LEARNING, RACING, SENSING, generator
 from hexapods.runs.tables import Checkpoint, check_fits, continue_from, load_agent
 from hexapods.runs.training import Learner, evaluate, measure_baseline
@@ -156,7 +157,7 @@ def rebuild_lane(
     """
     lane = config.lanes[number]
     rng, sensors = generator(config.seed, RACING, number), LoggedSensors(config, lane.observation)
-    offered = _offered_in(config, lane) if table is None else table.meta["config"]
+    offered = _offered_in(config, lane) if table is None else _offered_with(table)
     agent = _agent_without_robot(
         *(config, lane.agent),
         rng=rng,
@@ -211,7 +212,7 @@ def build_walkers(
             offered = _offered_in(config, lane)
         else:
             check_fits(table, config, lane.observation)
-            offered = table.meta["config"]
+            offered = _offered_with(table)
         walker = _walker(
             simulator,
             lane.agent,
@@ -259,6 +260,12 @@ def _offered_by(config: TrainingConfig) -> dict[str, Any]:
     }
 
 
+def _offered_with(table: Checkpoint) -> Mapping[str, Any]:
+    """Return what the training of a table has offered to its agent."""
+    config = table.meta["config"]
+    return {**config, **config["settings"]}
+
+
 def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
     """Return what a race offers to the agent of a lane without a table.
 
@@ -281,7 +288,7 @@ def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
 
 def finish_training(
     learner: Learner, config: TrainingConfig, measure_reference: bool = True
-) -> dict[str, Any]:
+) -> TrainingResult:
     """Return the result of a training: an evaluation, its references, the hash of the Q-table.
 
     Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
@@ -292,13 +299,13 @@ def finish_training(
     if measure_reference and not is_measured:
         measure_baseline(learner, config, conditions)
     agent, is_known = learner.walker.agent, is_measured or measure_reference
-    return {
-        "distance_m": distance,
-        "greedy_distance_m": learner.greedy_distance_m if is_known else None,
-        "best_known_m": best_known_m(config, conditions),
-        "q_table_sha256": agent.table.sha256() if isinstance(agent, Tabular) else None,
-        "fell_at_step": learner.fell_at_step,
-    }
+    return TrainingResult(
+        distance_m=distance,
+        greedy_distance_m=learner.greedy_distance_m if is_known else None,
+        best_known_m=best_known_m(config, conditions),
+        q_table_sha256=agent.table.sha256() if isinstance(agent, Tabular) else None,
+        fell_at_step=learner.fell_at_step,
+    )
 
 
 def _walker(

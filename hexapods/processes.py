@@ -5,7 +5,10 @@ import multiprocessing
 import os
 import signal
 import sys
+import threading
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 STALLED_S = 8.0
@@ -57,6 +60,44 @@ def die_with_parent() -> None:
     """Let the kernel kill this process when the thread that started it ends; Linux only."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def end_with_parent() -> None:
+    """Let this worker of a pool end when the process that uses the pool does, however that ends."""
+    die_with_parent()
+
+    def watch() -> None:
+        # PR_SET_PDEATHSIG misses a process that died before the call, and is of Linux.
+        parent = multiprocessing.parent_process()
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def worker_processes(pool: ProcessPoolExecutor) -> list[BaseProcess]:
+    """Return the processes of a pool that run."""
+    # Private, since a pool offers no way to kill its processes before Python 3.14.
+    found: list[BaseProcess] = list((pool._processes or {}).values())  # noqa: SLF001
+    return [process for process in found if process.is_alive()]
+
+
+def kill_workers(pool: ProcessPoolExecutor) -> None:
+    """Kill the processes of a pool (SIGKILL), and those of their groups."""
+    for process in worker_processes(pool):
+        if process.pid is not None:
+            kill_group(process.pid)
+        process.kill()  # it may have no group of its own
+
+
+def memory_used_bytes(pid: int) -> int:
+    """Return the resident memory of a process; Linux only, else 0."""
+    try:
+        pages = int(Path(f"/proc/{pid}/statm").read_bytes().split()[1])
+    except OSError:  # it has exited, or this is not Linux
+        return 0
+    return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 def return_freed_memory() -> None:

@@ -8,7 +8,7 @@ import html
 import io
 import json
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, cast
@@ -31,7 +31,7 @@ from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.race_file import race_arrays, race_recording
 from hexapods.runs.racing import record_race
 from hexapods.runs.recording import LaneRecording
-from hexapods.runs.results import lane_details, race_result
+from hexapods.runs.results import RaceResult, race_result
 from hexapods.runs.tables import read_arrays
 from hexapods.trainings import Table, Training, read_table
 
@@ -75,7 +75,7 @@ class Race:
 
     config: RaceConfig
     recording: Sequence[LaneRecording]
-    result: Mapping[str, Any]
+    result: RaceResult
 
     @property
     def standings(self) -> tuple[Standing, ...]:
@@ -94,14 +94,14 @@ class Race:
         check_clock(clock)
         rows = [
             Standing(
-                lane["clocks"][clock]["rank"],
+                lane.clocks.under(clock).rank,
                 number,
-                lane["agent"],
-                lane["clocks"][clock]["finished_distance_m"],
-                lane["total_distance_m"],
-                lane["clocks"][clock]["elapsed_s"],
+                lane.agent,
+                lane.clocks.under(clock).finished_distance_m,
+                lane.total_distance_m,
+                lane.clocks.under(clock).elapsed_s,
             )
-            for number, lane in enumerate(self.result["lanes"])
+            for number, lane in enumerate(self.result.lanes)
         ]
         return tuple(sorted(rows, key=lambda row: (row.rank or len(rows), row.lane)))
 
@@ -231,15 +231,7 @@ def race(
         recording = grown
         if on_step is not None:
             on_step()
-    return finished_race(config, recording)
-
-
-def finished_race(config: RaceConfig, recording: Sequence[LaneRecording]) -> Race:
-    """Return a race that was recorded, with its result."""
-    result = race_result(recording, config.steps)
-    for own, details in zip(result["lanes"], lane_details(recording, config), strict=True):
-        own.update(details)
-    return Race(config, recording, result)
+    return Race(config, recording, race_result(recording, config))
 
 
 def race_from_bytes(data: bytes, name: str) -> Race:
@@ -254,9 +246,9 @@ def race_from_bytes(data: bytes, name: str) -> Race:
     """
     try:
         arrays = read_arrays(data)
-        config = config_from_json(json.loads(str(arrays.pop(CONFIG))))
+        config = cast(RaceConfig, config_from_json(json.loads(str(arrays.pop(CONFIG)))))
         recording = race_recording(arrays)
-        return finished_race(cast(RaceConfig, config), recording)
+        return Race(config, recording, race_result(recording, config))
     except Exception as error:  # zipfile and NumPy document no complete list of exceptions
         raise DamagedFile(f"{name} is not a race that was saved: {error}") from error
 

@@ -14,9 +14,9 @@ from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.folder import open_results
-from hexapods.experiments.own_cluster import cores
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.trial import TrialResult
+from hexapods.machine import cores
 from hexapods.runs.config_json import gait_from_json
 
 if TYPE_CHECKING:

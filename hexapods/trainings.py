@@ -6,7 +6,7 @@ same arguments and seed give the same action values, to the last bit.
 
 import html
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, Union, cast
@@ -35,6 +35,7 @@ from hexapods.runs.config import (
 )
 from hexapods.runs.config_json import config_from_json
 from hexapods.runs.records import Evaluated, TrainingRecord
+from hexapods.runs.results import TrainingResult
 from hexapods.runs.tables import Checkpoint, check_fits, from_bytes, load_agent, snapshot, to_bytes
 
 _FIELDS = tuple(
@@ -66,29 +67,34 @@ class Training:
         table: what it learned, with its generator: a checkpoint.
         curve: its evaluations, in order; `pandas.DataFrame(training.curve)` takes them. None are
             known of a file that the dashboard wrote.
-        result: distance, references and hash of the Q-table, as in answers of the dashboard; empty
+        result: distance, references and hash of the Q-table, as in answers of the dashboard; None
             of such a file.
     """
 
     config: TrainingConfig
     table: Checkpoint
     curve: tuple[CurvePoint, ...] = ()
-    result: Mapping[str, Any] = field(default_factory=dict)
+    result: TrainingResult | None = None
 
     @property
     def distance_m(self) -> float | None:
         """Distance in 50 steps from rest, after the practice [m]; None if it is not known."""
-        return self.result.get("distance_m")
+        return None if self.result is None else self.result.distance_m
 
     @property
     def greedy_distance_m(self) -> float | None:
         """Distance of the one-step look-ahead agent in as many steps [m]; None if not known."""
-        return self.result.get("greedy_distance_m")
+        return None if self.result is None else self.result.greedy_distance_m
+
+    @property
+    def best_known_m(self) -> float | None:
+        """Distance of the farthest walk known of this problem [m]; None if none is."""
+        return None if self.result is None else self.result.best_known_m
 
     @property
     def q_table_sha256(self) -> str | None:
         """Hash of the Q-table; None for an agent without one, or if it is not known."""
-        return self.result.get("q_table_sha256")
+        return None if self.result is None else self.result.q_table_sha256
 
     @cached_property
     def agent(self) -> Agent:
@@ -103,8 +109,9 @@ class Training:
 
     def to_bytes(self) -> bytes:
         """Return the content of the `.npz` file that `save` writes."""
-        more = {"curve": [list(point) for point in self.curve], "result": dict(self.result)}
-        meta = {**self.table.meta, **(more if self.result else {})}
+        meta = dict(self.table.meta)
+        if self.result is not None:
+            meta |= {"curve": [list(one) for one in self.curve], "result": asdict(self.result)}
         return to_bytes(Checkpoint(meta, self.table.arrays))
 
     def save(self, path: str | Path) -> Path:
@@ -130,7 +137,7 @@ class Training:
             "steps of practice": f"{self.table.meta['step']:,}",
             "distance in 50 steps": _metres(self.distance_m),
             "one-step look-ahead": _metres(self.greedy_distance_m),
-            "best known walk": _metres(self.result.get("best_known_m")),
+            "best known walk": _metres(self.best_known_m),
         }
         cells = "".join(f"<tr><th>{k}</th><td>{html.escape(v)}</td></tr>" for k, v in rows.items())
         return f"<table>{cells}</table>"
@@ -153,7 +160,7 @@ def train(
             simulator, grid and observation are those of its practice unless they are given, and the
             settings the agent's defaults.
         changes: while it practises: mappings with the number of steps after which they happen,
-            `step`, and values of the agent's live settings, or a `disturbance`.
+            `step`, and values of the agent's live `settings` by name, or a `disturbance`.
         on_record: called with each record of the loop.
         given: fields of `TrainingConfig`: the walking problem's (`gait`, a name or a `Gait`;
             `robot`, a preset's name, a mapping or a `Robot`; `simulator`, `divisions`,
@@ -261,7 +268,8 @@ def training_from_bytes(data: bytes, name: str) -> Training:
     try:
         config = config_from_json(checkpoint.meta["config"])
         curve = tuple(CurvePoint(*point) for point in checkpoint.meta.get("curve", ()))
-        result = dict(checkpoint.meta.get("result", {}))
+        fields = checkpoint.meta.get("result")
+        result = None if fields is None else TrainingResult(**fields)
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFile(f"{name} does not say how it was learned: {error}") from error
     if not isinstance(config, TrainingConfig):
@@ -294,12 +302,11 @@ class _Practice:
     def _change(self) -> None:
         while self._changes and self._changes[0]["step"] <= self.learner.step:
             values = self._changes.pop(0)
-            del values["step"]
             if "disturbance" in values:
-                self.learner.disturb(values.pop("disturbance"), self.config)
-            if values:
+                self.learner.disturb(values["disturbance"], self.config)
+            if values["settings"]:
                 # `_read_changes` has looked for settings that are live.
-                cast(Tunable, self.learner.walker.agent).tune(**values)
+                cast(Tunable, self.learner.walker.agent).tune(**values["settings"])
 
 
 def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dict[str, Any]]:
@@ -309,18 +316,26 @@ def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dic
     for change in changes:
         if not isinstance(change, Mapping) or "step" not in change:
             raise InvalidInput(
-                f'a change is a mapping such as {{"step": 20, "alpha": 0.1}}, not {change!r}'
+                'a change is a mapping such as {"step": 20, "settings": {"alpha": 0.1}}, not '
+                f"{change!r}"
             )
         values = plain_values(change)
-        if not live and set(values) - {"step", "disturbance"}:
+        check_names("a change", values, ("step", "settings", "disturbance"))
+        settings = values.setdefault("settings", {})
+        if not isinstance(settings, Mapping):
+            raise InvalidInput(
+                f'settings of a change are such as {{"alpha": 0.1}}, not {settings!r}'
+            )
+        if settings and not live:
             raise InvalidInput(f"{config.agent} has no settings that change in practice")
-        check_names(f"a change of {config.agent}", values, ("step", "disturbance", *live))
+        check_names(f"a change of {config.agent}", settings, live)
         check_whole(
             "step of a change", values["step"], read[-1]["step"] if read else 0, config.steps
         )
         if "disturbance" in values:
             values["disturbance"] = read_disturbance(values["disturbance"])
-        read.append({k: live[k].normalized(v) if k in live else v for k, v in values.items()})
+        values["settings"] = {k: live[k].normalized(v) for k, v in settings.items()}
+        read.append(values)
     return read
 
 

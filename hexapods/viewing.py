@@ -75,7 +75,7 @@ def view(shown: Race | Training, *, title: str | None = None, clock: Clock = "pa
     """
     # Only here: viser takes longer to import than all else.
     from hexapods.drawing.replay_encoding import encode_frames, encode_scene  # noqa: PLC0415
-    from hexapods.drawing.replay_page import replay_page  # noqa: PLC0415
+    from hexapods.exports.replay_page import replay_page  # noqa: PLC0415
 
     check_clock(clock)
     if not isinstance(shown, Race | Training):

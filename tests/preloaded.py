@@ -7,7 +7,7 @@ from app.cli import without_garbage_collection
 
 _IMPORTED_LATE = (
     "anyio._backends._asyncio",
-    "hexapods.experiments.cluster_nodes",
+    "hexapods.experiments.cluster",
     "hexapods.experiments.report.files",
     "hexapods.experiments.summary",
     "app.jobs.experiment_worker",

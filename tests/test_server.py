@@ -98,7 +98,7 @@ def test_pause_and_live_changes_are_published(serve: Callable[..., Served]) -> N
     path = f"/api/v1/trainings/{run['id']}"
     events = server.events(f"?run_id={run['id']}")
     next(events)
-    server.client.patch(path, json={"alpha": 0.1})
+    server.client.patch(path, json={"settings": {"alpha": 0.1}})
     server.client.post(f"{path}/pause")
     names: list[str] = []
     for name, data, _ in events:

@@ -88,7 +88,10 @@ def test_it_goes_on_from_a_table(tmp_path: Path) -> None:
 
 def test_changes_happen_while_it_practises() -> None:
     noise = {"kind": "sensor-noise", "sd_m": 0.01}
-    changes: list[dict[str, Any]] = [{"step": 20, "alpha": 0.1}, {"step": 30, "disturbance": noise}]
+    changes: list[dict[str, Any]] = [
+        {"step": 20, "settings": {"alpha": 0.1}},
+        {"step": 30, "disturbance": noise},
+    ]
     disturbed = hx.train(changes=changes, **QUICK)
     assert disturbed.table.meta["disturbances"][0]["at_step"] == 31
     assert disturbed.q_table_sha256 != hx.train(changes=changes[:1], **QUICK).q_table_sha256
@@ -99,11 +102,15 @@ def test_changes_happen_while_it_practises() -> None:
     [
         ("q-learning", [{"step": 1, "alhpa": 0.1}], "unknown argument of a change .*'alhpa'"),
         ("q-learning", [{"step": 1, "pace": 2}], "unknown argument of a change .*'pace'"),
-        ("q-learning", [{"step": 1, "alpha": 3}], "alpha"),
-        ("q-learning", [{"step": 61, "alpha": 0.1}], "from 0 to 60, not 61"),
-        ("q-learning", [{"step": 9, "alpha": 0.1}, {"step": 2, "alpha": 0.2}], "from 9 to 60"),
-        ("q-learning", [{"alpha": 0.1}], 'a mapping such as {"step": 20'),
-        ("wave", [{"step": 1, "alpha": 0.1}], "wave has no settings that change"),
+        ("q-learning", [{"step": 1, "settings": {"alpha": 3}}], "alpha"),
+        ("q-learning", [{"step": 61, "settings": {"alpha": 0.1}}], "from 0 to 60, not 61"),
+        (
+            "q-learning",
+            [{"step": 9, "settings": {"alpha": 0.1}}, {"step": 2, "settings": {"alpha": 0.2}}],
+            "from 9 to 60",
+        ),
+        ("q-learning", [{"settings": {"alpha": 0.1}}], 'a mapping such as {"step": 20'),
+        ("wave", [{"step": 1, "settings": {"alpha": 0.1}}], "wave has no settings that change"),
         ("wave", [{"step": 1, "disturbance": 3}], "a disturbance is such as .*, not 3"),
     ],
 )

@@ -9,7 +9,7 @@ from pydantic_core import core_schema
 
 from app.api.descriptions import VALID
 from app.api.experiment_body import ExperimentBody, one_or_more
-from app.api.fields import Declared, TaggedUnion
+from app.api.fields import Declared, SettingsBody, TaggedUnion
 from app.api.schemas import (
     BranchBody,
     ChangeBody,
@@ -17,7 +17,6 @@ from app.api.schemas import (
     PracticeBody,
     RaceBody,
     TrainingBody,
-    one_given,
 )
 from hexapods.agents.registry import learns
 from hexapods.domain.settings import REQUIRED, DeclaredSetting
@@ -89,7 +88,15 @@ def _practice_body(agent: str) -> type[PracticeBody]:
         name: (_field([one]), ... if one.default is REQUIRED else one.default)
         for name, one in agent_settings(agent).items()
     }
-    return create_model(f"{_camel_case(agent)}Practice", __base__=PracticeBody, **fields)
+    settings = _settings_body(f"{_camel_case(agent)}Settings", fields)
+    return create_model(f"{_camel_case(agent)}Practice", __base__=PracticeBody, settings=settings)
+
+
+def _settings_body(name: str, fields: Mapping[str, Any]) -> tuple[type[SettingsBody], Any]:
+    """Return the type and the default of a body's `settings`: required if one of them is."""
+    model = create_model(name, __base__=SettingsBody, __doc__=SettingsBody.__doc__, **fields)
+    is_required = any(default is ... for _, default in fields.values())
+    return model, ... if is_required else Field(default_factory=model)
 
 
 def _training_body(agent: str, practice: type[PracticeBody]) -> type[TrainingBody]:
@@ -111,13 +118,14 @@ def _lane_body(agent: str, practice: type[PracticeBody]) -> type[LaneBody]:
         name: (_field([one]), None if one.default is REQUIRED else one.default)
         for name, one in agent_settings(agent).items()
     }
+    name = f"{_camel_case(agent)}LaneSettings"
     return create_model(
         f"{_camel_case(agent)}Lane",
         __base__=LaneBody,
         __doc__=LaneBody.__doc__,
         agent=(_literal(agent), ...),
+        settings=_settings_body(name, settings),
         **(training if learns(agent) else {}),
-        **settings,
     )
 
 
@@ -142,8 +150,8 @@ def _experiment_body(agents: Sequence[str]) -> type[ExperimentBody]:
         name: (one_or_more(_field(declared)), None)
         for name, declared in settings_by_name(agents).items()
     }
-    doc = ExperimentBody.__doc__
-    return create_model("ExperimentBody", __base__=ExperimentBody, __doc__=doc, **fields)
+    doc, settings = ExperimentBody.__doc__, _settings_body("SettingLists", fields)
+    return create_model("ExperimentBody", __base__=ExperimentBody, __doc__=doc, settings=settings)
 
 
 def _change_body(agents: Sequence[str]) -> type[ChangeBody]:
@@ -151,12 +159,10 @@ def _change_body(agents: Sequence[str]) -> type[ChangeBody]:
     for agent in agents:
         for name, setting in changeable_settings(agent).items():
             declared.setdefault(name, []).append(setting)
-    fields: dict[str, Any] = {name: (_field(one) | None, None) for name, one in declared.items()}
-    model: type[ChangeBody] = create_model(
-        "ChangeBody", __base__=ChangeBody, __doc__=ChangeBody.__doc__, **fields
-    )
-    model.model_config["json_schema_extra"] = one_given(fields)
-    return model
+    del declared["pace"]  # a field of its own
+    fields: dict[str, Any] = {name: (_field(one), None) for name, one in declared.items()}
+    doc, settings = ChangeBody.__doc__, _settings_body("LiveSettings", fields)
+    return create_model("ChangeBody", __base__=ChangeBody, __doc__=doc, settings=settings)
 
 
 def _field(declared: Sequence[DeclaredSetting]) -> Any:

@@ -18,9 +18,11 @@ from hexapods.domain.observation import Observation
 from hexapods.domain.robot import PRESETS
 from hexapods.domain.settings import Value
 from hexapods.experiments.config import ExperimentName
+from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import SimulatorName
 from hexapods.runs.lane import PlanningModel
+from hexapods.runs.results import RaceResult, TrainingResult
 
 Preset = Annotated[str, Field(json_schema_extra={"enum": list(PRESETS)})]
 Count = Annotated[int, Field(ge=0)]
@@ -83,11 +85,11 @@ class WalkView(Answer):
     disturbances: list[DisturbanceView]
 
 
-class TrainingConfigView(WalkView):
-    """Config of a training; the settings of its agent are further members, by name."""
+Settings = Annotated[dict[str, Value], Field(description="settings of the agent, by name")]
 
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
+
+class TrainingConfigView(WalkView):
+    """Config of a training."""
 
     steps: int
     seed: int
@@ -96,17 +98,15 @@ class TrainingConfigView(WalkView):
     evaluate_every: int
     pace: float | Literal["max"]
     agent: str
+    settings: Settings
     continue_from: str | None
 
 
 class LaneView(Answer):
     """A lane of a race, with the id of the training whose Q-table it uses.
 
-    The settings of an agent without training are further members, by name.
+    The settings of an agent with training are those of the training.
     """
-
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
 
     agent: str
     keep_learning: bool
@@ -116,6 +116,7 @@ class LaneView(Answer):
     ]
     plans_with_by_default: Annotated[bool, Field(description="whether `plans_with` was left out")]
     observation: Observation
+    settings: Settings
     training_id: str | None
 
 
@@ -138,9 +139,6 @@ class RaceConfigView(WalkView):
 class ExperimentConfigView(Answer):
     """Config of an experiment; each element of the lists' Cartesian product is a setting."""
 
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, list[Value]]
-
     experiment: ExperimentName
     seeds: int
     seed: int
@@ -150,6 +148,9 @@ class ExperimentConfigView(Answer):
     robots: list[RobotView]
     simulator: SimulatorName
     steps: list[int]
+    settings: Annotated[
+        dict[str, list[Value]], Field(description="values of the agents' settings, by name")
+    ]
     steps_per_episode: list[int]
     divisions: list[int]
     grid_side_m: list[float]
@@ -183,27 +184,12 @@ class RunView(Answer):
     ended_at: datetime | None
 
 
-class TrainingResult(Answer):
-    """Final distance [m] of the agent and of the greedy reference, and the Q-table's hash.
-
-    Both walked in the world as it was at the end. `fell_at_step` is the first step of practice,
-    counted from 0, in which the robot fell.
-    """
-
-    distance_m: float | None
-    greedy_distance_m: float | None
-    best_known_m: float | None = None
-    q_table_sha256: str | None
-    fell_at_step: Count | None = None
-
-
-class Change(BaseModel):
-    """A change of live settings: their new values by name, and the step after which it applies."""
-
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
+class Change(Answer):
+    """A change while it ran, and the step after which it applies; what stayed is left out."""
 
     step: Count
+    pace: float | Literal["max"] | None = None
+    settings: Settings = Field(default_factory=dict)
     disturbance: DisturbanceView | None = None
 
 
@@ -217,55 +203,6 @@ class TrainingView(RunView):
     changes: list[Change]
 
 
-class FiguresUnderClock(Answer):
-    """Figures of a lane under one clock; lanes are ranked by the distance at time-out.
-
-    Without a time-out, as of a race that was stopped before, there are no ranks.
-    """
-
-    finished_distance_m: float | None
-    elapsed_s: float
-    crossed_s: float | None
-    rank: Annotated[int, Field(ge=1)] | None
-
-
-class LaneFigures(Answer):
-    """Figures of a lane under each clock."""
-
-    paper: FiguresUnderClock
-    wall: FiguresUnderClock
-    free: FiguresUnderClock
-
-
-class LaneResult(Answer):
-    """Result of a lane; `trained_robot` is set if its table was learned on another robot.
-
-    `plans_with` is what its search knew, null if it does not search.
-
-    `fell_at_step` is counted from 0, null if it did not fall; `heading_deg` is 0 along the track.
-    """
-
-    agent: str
-    training_id: str | None
-    trained_robot: RobotView | None
-    steps: Count
-    total_distance_m: float | None
-    failure: str | None
-    decision_s: float
-    simulated_transitions: Count
-    clocks: LaneFigures
-    plans_with: PlanningModel | None = None
-    fell_at_step: Count | None = None
-    heading_deg: float | None = None
-
-
-class RaceResult(Answer):
-    """Result of a race, by lane."""
-
-    lanes: list[LaneResult]
-    shared_machine: bool
-
-
 class RaceView(RunView):
     """A race. `best_known_m` is null where it was not computed, or something happens in between."""
 
@@ -274,31 +211,6 @@ class RaceView(RunView):
     result: RaceResult | None
     best_known_m: float | None
     waiting_for: list[str]
-
-
-class TrialCounts(Answer):
-    """Number of trials by outcome."""
-
-    done: Count
-    total: Count
-    failed: Count
-    set_aside: Count
-
-
-class Verdict(Answer):
-    """Verdict on one of the paper's claims."""
-
-    id: str
-    verdict: Literal["holds", "does not hold", "not established", "depends"]
-
-
-class ExperimentResult(Answer):
-    """Result of an experiment; `files` are those of its report."""
-
-    trials: TrialCounts
-    claims: list[Verdict]
-    files: list[str]
-    shared_machine: bool
 
 
 class ExperimentView(RunView):
@@ -408,12 +320,10 @@ class EstimateView(Answer):
     seconds: Annotated[float, Field(ge=0)]
 
 
-class WhatIfHalf(BaseModel):
+class WhatIfHalf(Answer):
     """Result of 30 seeds with these settings: their distances [m] and interquartile mean."""
 
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
-
+    settings: Settings
     steps_per_episode: int
     distances_m: list[float]
     walkers: Annotated[float, Field(ge=0, le=1)]

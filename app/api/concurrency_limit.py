@@ -16,7 +16,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.auth import PUBLIC_PATHS, Role
 from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
-from app.api.rate_limit import is_encoding, is_spectators_what_if, too_many
+from app.api.rate_limit import export_load, is_encoding, is_spectators_what_if, too_many
 from app.limits.addresses import client_of
 from app.limits.connections import set_client
 from app.limits.fair_semaphore import FairSemaphore, NotAdmitted
@@ -66,7 +66,7 @@ _RETRY_S = 5
 _EVENT_STREAM = "text/event-stream"
 _READ_METHODS = ("GET", "HEAD")
 _OF_A_RUN = re.compile(r"/api/v1/(runs|trainings|races|experiments)/[^/]+/.+")
-_DOWNLOAD = re.compile(r"/api/v1/.*/(export|trajectory|recording|files/.*)")
+_DOWNLOAD = re.compile(r"/api/v1/.*/(export|recording|files/.*)")
 T = TypeVar("T")
 
 
@@ -103,7 +103,7 @@ def work_of(scope: Scope) -> Work:
         return "encoding"
     if scope["method"] not in _READ_METHODS:
         return "other"
-    if _DOWNLOAD.fullmatch(scope["path"]) is not None:
+    if export_load(scope) == "stream" or _DOWNLOAD.fullmatch(scope["path"]) is not None:
         return "download"
     return "other" if _OF_A_RUN.fullmatch(scope["path"]) is None else "analysis"
 

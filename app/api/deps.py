@@ -1,6 +1,6 @@
 """FastAPI dependencies of routes: the services, the client's role, a start request."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, NamedTuple, Protocol
 
@@ -12,7 +12,7 @@ from app.api.descriptions import VALID
 from app.cache import BytesCache
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
-from app.exports.video_renderer import VideoRenderer
+from app.exports.file_renderer import FileRenderer
 from app.jobs.jobs import Jobs
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
@@ -27,6 +27,7 @@ from app.storage.run import MAX_KEY_LENGTH, Run
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
 from hexapods.domain.types import Cells
+from hexapods.exports.export_format import EncodedReplay
 from hexapods.runs.clocks import Clock
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
@@ -35,11 +36,6 @@ from hexapods.shows.race_show import Original
 StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock, Original | None], bytes]
 """Encodes a race's lanes as a recorded stream for viser: with the race's name, under a clock, and
 with the race from which it branched off, if any."""
-
-
-PageBuilder = Callable[[str, str, Clock], Iterator[bytes]]
-"""Builds the page that replays a run without a server: with the run's id, its title, and a clock;
-see `app.viewer.replay_frames`."""
 
 
 class HubCounters(Protocol):
@@ -70,6 +66,9 @@ class FrameEncoder(Protocol):
     def posture(self, run_id: str, clock: Clock, time_s: float, lane: int, cells: Cells) -> bytes:
         """Return a ghost of a lane's robot in a state."""
 
+    def encoded(self, run_id: str, clock: Clock) -> EncodedReplay:
+        """Return all frames of a run, each encoded when it is asked for."""
+
 
 @dataclass(frozen=True)
 class Services:
@@ -86,8 +85,7 @@ class Services:
         estimates: estimates how long runs would take.
         recorded_stream: encodes a race's recording as a recorded stream for viser.
         replays: encodes frames of runs for pages that play them by themselves.
-        replay_page: builds pages that need no server.
-        videos: renders videos.
+        renderer: renders large files, such as videos.
         stopping: ends what takes long in threads when the server stops.
         what_if_limiter: limits what-ifs of spectators, by their number and time.
         listeners: slots of event streams.
@@ -107,8 +105,7 @@ class Services:
     ready: Callable[[], str | None]
     recorded_stream: StreamEncoder
     replays: FrameEncoder
-    replay_page: PageBuilder
-    videos: VideoRenderer
+    renderer: FileRenderer
     what_if: WhatIf
     explanations: Explanations
     estimates: Estimates

@@ -4,7 +4,6 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.archive.transfer import MAX_RUNS
-from app.exports.video import MAX_FPS, MAX_HEIGHT, MAX_SPEED, MAX_WIDTH, MIN_SIDE, MIN_SPEED
 from app.storage.run import KINDS, MAX_KEY_LENGTH, SORTS, STATES
 from hexapods.domain import disturbances
 from hexapods.domain.gait import NAMED_GAITS
@@ -14,6 +13,7 @@ from hexapods.domain.settings import declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS
 from hexapods.experiments.config import EXPERIMENTS, MAX_SEEDS
+from hexapods.exports.registry import EXPORTS
 from hexapods.runs.clocks import CLOCKS
 from hexapods.runs.config import SIMULATORS, TrainingConfig
 from hexapods.runs.gait_analysis import MAX_WINDOW_S
@@ -33,6 +33,11 @@ def _one_of(names: Iterable[str]) -> str:
 
 
 VALID: Mapping[str, str] = {
+    **{
+        name: setting.valid
+        for export in EXPORTS.values()
+        for name, setting in export.settings.items()
+    },
     **{name: setting.valid for name, setting in declared_fields(TrainingConfig).items()},
     "name": NAMES,
     "gait": f"{_one_of(NAMED_GAITS)}, or {{right_leg, left_leg, and symmetry or pairs}}",
@@ -105,11 +110,8 @@ VALID: Mapping[str, str] = {
         f"a number of seconds of robot time over from_s, at most {MAX_WINDOW_S:g} s later; by "
         "default the end of the walk"
     ),
-    "width": f"an even number of pixels from {MIN_SIDE} to {MAX_WIDTH}",
-    "height": f"an even number of pixels from {MIN_SIDE} to {MAX_HEIGHT}",
-    "fps": f"a whole number of frames per second from 1 to {MAX_FPS}",
-    "playback_speed": f"a number from {MIN_SPEED} to {MAX_SPEED}, times the run's own time",
     "part": "practice, or evaluation for the newest one; of a training",
+    "settings": "an object with the agent's settings, by name",
     "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
     "format": "a format that the description of the route names",
 }

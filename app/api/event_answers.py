@@ -3,12 +3,19 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from app.api.answers import Answer, Count, ExperimentView, RaceView, StageView, TrainingView
+from app.api.answers import (
+    Answer,
+    Count,
+    ExperimentView,
+    RaceView,
+    Settings,
+    StageView,
+    TrainingView,
+)
 from app.api.recorded_answers import Evaluation
 from app.storage.run import Kind, State
-from hexapods.domain.settings import Value
 from hexapods.runs.clocks import Clock
 
 
@@ -140,14 +147,13 @@ class ReferenceEvent(Answer):
     best_known_m: float | None
 
 
-class RatesEvent(BaseModel):
-    """A change of a training's pace and live settings: their new values by name."""
-
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value]
+class RatesEvent(Answer):
+    """A change of a training's pace and live settings; what stayed is left out."""
 
     run_id: str
     step: Count
+    pace: float | Literal["max"] | None = None
+    settings: Settings = Field(default_factory=dict)
 
 
 class SummaryEvent(Answer):

@@ -16,9 +16,11 @@ from app.api.fields import (
     Name,
     RobotBody,
     Seed,
+    SettingsBody,
     Steps,
     StepsPerEpisode,
     Tolerance,
+    given_settings,
 )
 from app.api.schemas import Gait, GaitBody
 from app.jobs.submissions import ExperimentStart
@@ -93,6 +95,7 @@ class ExperimentBody(Body):
     grid_side_m: OneOrMore[GridSide] = None
     worlds: OneOrMore[str] = None
     tolerance: Tolerance | None = None
+    settings: SettingsBody = Field(default_factory=SettingsBody)
     workers: Annotated[
         int | None,
         Field(strict=True, ge=1, le=MAX_WORKERS, description=VALID["workers"]),
@@ -112,11 +115,14 @@ class ExperimentBody(Body):
             name: tuple(values) if isinstance(values, list) else values
             for name in type(self).model_fields
             for values in (getattr(self, name),)
-            if name not in ("experiment", "name", "workers", "gaits", "robots")
+            if name not in ("experiment", "name", "workers", "gaits", "robots", "settings")
         }
         if self.gaits is not None:
             given["gaits"] = tuple(g.spec() if isinstance(g, GaitBody) else g for g in self.gaits)
         if self.robots is not None:
             given["robots"] = tuple(robot(one) for one in self.robots)
+        given |= {
+            name: values and tuple(values) for name, values in given_settings(self.settings).items()
+        }
         config = experiment_config(self.experiment, given)
         return ExperimentStart(config, self.name or None, self.workers)

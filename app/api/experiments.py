@@ -18,6 +18,7 @@ from app.storage.json_text import finite
 from app.storage.run import NOT_ENDED, Run, config_as_json
 from app.storage.stored_trials import trials_as_csv
 from hexapods.experiments.config import REPORT, SUMMARY, ExperimentConfig
+from hexapods.experiments.result import ExperimentResult
 
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
@@ -164,7 +165,7 @@ def _open_report_file(services: ServicesDep, run: Run, name: str) -> ArtifactFil
             "stopped",
             run.state,
         )
-    files = (run.result or {}).get("files", [])
+    files = run.result.files if isinstance(run.result, ExperimentResult) else ()
     file = services.store.open_artifact(run.id, name) if name in files else None
     if file is None:
         valid_names = ", ".join(files) or "none"

@@ -1,5 +1,6 @@
 """Field types and the base class of request bodies."""
 
+import json
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
@@ -206,10 +207,32 @@ class Body(BaseModel):
     def _reject_unknown_fields(cls, value: Any) -> Any:
         unknown = [n for n in value if n not in cls.model_fields] if isinstance(value, dict) else []
         if unknown:
-            message = str(UnknownName("field", unknown[0][:MAX_NAME], cls.model_fields))
+            message = _nested_form(cls, {name: value[name] for name in unknown}) or str(
+                UnknownName("field", unknown[0][:MAX_NAME], cls.model_fields)
+            )
             # Passed as a value, as a name with braces is no valid template.
             raise PydanticCustomError("unknown_field", "{message}", {"message": message})
         return value
+
+
+class SettingsBody(Body):
+    """Settings of an agent, by name; omitted ones take its defaults."""
+
+
+def given_settings(body: SettingsBody) -> dict[str, Any]:
+    """Return the settings that were given."""
+    return {name: getattr(body, name) for name in body.model_fields_set}
+
+
+def _nested_form(body: type[Body], unknown: Mapping[str, Any]) -> str | None:
+    """Return where settings belong that were given as fields, as before 0.2; None if none were."""
+    settings = body.model_fields.get("settings")
+    kind = None if settings is None else settings.annotation
+    if not (isinstance(kind, type) and issubclass(kind, SettingsBody)):
+        return None
+    flat = {name: value for name, value in unknown.items() if name in kind.model_fields}
+    nested = json.dumps({"settings": flat})[1:-1][:500]
+    return f"settings are a member of their own since 0.2: {nested}" if flat else None
 
 
 class TaggedUnion:

@@ -7,29 +7,34 @@ from starlette.responses import Response, StreamingResponse
 
 from app.storage.artifact_file import ArtifactFile, chunks
 
-_TYPES = {
+_TYPES: Mapping[str, str] = {
     "application/json": "json",
     "text/csv": "csv",
-    "application/vnd.apache.parquet": "parquet",
     "application/x-npz": "npz",
     "application/octet-stream": "npz",
 }
 
 
-def negotiated(request: Request, query: str | None, formats: Sequence[str]) -> str:
+def negotiated(
+    request: Request,
+    query: str | None,
+    formats: Sequence[str],
+    types: Mapping[str, str] = _TYPES,
+) -> str:
     """Return the negotiated format, by default the first of `formats`.
 
     Args:
         request: its Accept header is used without a query.
         query: value of `?format=`, if given.
         formats: available formats.
+        types: the format of each media type.
     """
     if query is not None:
         return query
     qualities: dict[str, float] = {}
     for entry in request.headers.get("accept", "").split(","):
         media_type, *parameters = (part.strip().lower() for part in entry.split(";"))
-        name = _TYPES.get(media_type)
+        name = types.get(media_type)
         if name in formats:
             qualities.setdefault(str(name), _quality(parameters))
     best = max(qualities, key=qualities.__getitem__, default=formats[0])

@@ -23,7 +23,7 @@ from app.api.answers import HealthView
 from app.api.contract import TEXT, answers
 from app.api.deps import Services, ServicesDep
 from app.api.problems import problem
-from app.events.damage import DamageCount
+from app.events.damage import damage_count
 from app.storage.run import STATES
 from hexapods import __version__
 
@@ -72,7 +72,7 @@ def registry_of(services: Services) -> CollectorRegistry:
 class _ServicesCollector(Collector):
     def __init__(self, services: Services) -> None:
         self._services = services
-        self._damaged = DamageCount(services.store)
+        self._damaged = damage_count(services.store)
 
     def collect(self) -> Iterable[Metric]:
         services, counters = self._services, self._services.audience()

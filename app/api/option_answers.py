@@ -1,10 +1,10 @@
 """Response models of `/options`, as those of `app.api.answers`."""
 
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.answers import Answer, DisturbanceView, RobotView
+from app.api.answers import Answer, DisturbanceView, RobotView, Settings
 from hexapods.domain.settings import Value
 from hexapods.runs.config import SimulatorName
 
@@ -54,6 +54,7 @@ class TrainingDefaults(BaseModel):
     agent: str
     robot: str
     simulator: SimulatorName
+    settings: Settings
 
 
 class LaneDefaults(BaseModel):
@@ -157,6 +158,18 @@ class AgentOption(Described):
     live_settings: dict[str, SettingOption]
 
 
+class ExportOption(Answer):
+    """A type of file that a race or training which has ended can be exported as."""
+
+    title: str
+    address: str = Field(description="below `/api/v1/runs/{run_id}/`")
+    method: Literal["GET", "POST"] = Field(description="of the request; POST is for operators only")
+    ending: str
+    install: str | None = Field(
+        description="the command that installs what the server lacks; null if it lacks nothing"
+    )
+
+
 class OptionsView(Answer):
     """Options, defaults, limits and help texts of all forms."""
 
@@ -176,7 +189,4 @@ class OptionsView(Answer):
         description="[lowest, highest]; `settings` says which of them are not valid themselves"
     )
     help: dict[str, str]
-    missing_extras: dict[str, str] = Field(
-        description="extras of the package that exports need and the server lacks, each with the "
-        "command that installs it"
-    )
+    exports: list[ExportOption] = Field(description="files of a recorded walk")

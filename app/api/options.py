@@ -14,9 +14,6 @@ from app.api.deps import ServicesDep
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
 from app.archive.transfer import MAX_RUNS
-from app.exports.extras import missing_extras
-from app.exports.video import VideoOptions
-from app.exports.video_renderer import MAX_SERVED_FRAMES
 from app.jobs.submissions import MAX_SETTINGS, TITLES
 from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
@@ -41,6 +38,7 @@ from hexapods.experiments.config import (
     settings_by_name,
 )
 from hexapods.experiments.config import as_json as experiment_as_json
+from hexapods.exports.registry import EXPORTS
 from hexapods.runs import best_known
 from hexapods.runs.clocks import CLOCK_TITLES
 from hexapods.runs.config import (
@@ -149,7 +147,6 @@ _HELP = {
     "best_known": best_known.DEFINITION,
     "best_known_where": best_known.COVERAGE,
     "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",
-    "video_s": "How long a video may be, in seconds, at the default number of pictures a second.",
     "agent": "Which agent learns.",
     "seeds": "How often each setting is tried, each time with other random numbers.",
     "gaits": "Which gaits are tried.",
@@ -212,7 +209,7 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "settings": {name: _setting(setting) for name, setting in settings.items()},
         "limits": _limits(settings),
         "help": {name: setting.about.help for name, setting in settings.items()} | _HELP,
-        "missing_extras": missing_extras(),
+        "exports": _exports(),
     }
 
 
@@ -376,6 +373,20 @@ def _race_defaults() -> dict[str, Any]:
     return {"steps": RACE_STEPS, "seed": 0, "lanes": lanes}
 
 
+def _exports() -> list[dict[str, Any]]:
+    return [
+        {
+            "title": file.title,
+            "address": one.address(name, file),
+            "method": one.method,
+            "ending": file.ending,
+            "install": file.install,
+        }
+        for name, one in EXPORTS.items()
+        for file in one.files
+    ]
+
+
 def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | None]]:
     return {
         **{name: [one.low, one.high] for name, one in settings.items() if one.is_number},
@@ -389,7 +400,6 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "import_bytes": [1, MAX_FILE_BYTES],
         "archive_runs": [1, MAX_RUNS],
         "gait_window_s": [0, MAX_WINDOW_S],
-        "video_s": [0, MAX_SERVED_FRAMES / VideoOptions.fps],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],
         "settings": [1, MAX_SETTINGS],

@@ -14,12 +14,12 @@ from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, negotiated
 from app.api.recorded_answers import RecordingView, TimelineView
 from app.api.runs import RunPath, find, run_routes
-from app.exports import recording_json
 from app.stage.playback import original_of
 from app.stage.timeline import timeline
 from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict
 from app.storage.run import NOT_ENDED, Run
+from hexapods.exports import recording_json
 from hexapods.runs.clocks import Clock
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording

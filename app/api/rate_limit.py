@@ -12,11 +12,13 @@ from app.api.problems import problem
 from app.limits.addresses import client_of
 from app.limits.token_bucket import RateLimiter
 from app.settings import PREFIX, Settings
+from hexapods.exports.export_format import Load
+from hexapods.exports.registry import EXPORTS
 
 _STARTS_NOTHING = re.compile(r"/api/v1/(what-if|.*/(estimate|stop|pause|disturbances))")
 """Every other POST counts, so that a new route is limited unless it is added here."""
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
-_ENCODED = re.compile(r"/api/v1/runs/[^/]+/(mcap|page)")
+_OF_RUN = re.compile(r"/api/v1/runs/[^/]+/([^/]+)")
 WHAT_IF = "/api/v1/what-if"
 """Path of what-ifs: its POST changes nothing, so spectators may use it, too."""
 
@@ -103,9 +105,16 @@ def _starts_work(scope: Scope) -> bool:
     return is_encoding(scope)
 
 
+def export_load(scope: Scope) -> Load | None:
+    """Return what an export costs that a request asks for; None if it asks for none."""
+    found = _OF_RUN.fullmatch(scope["path"])
+    export = None if found is None else EXPORTS.get(found[1])
+    return None if export is None else export.load
+
+
 def is_encoding(scope: Scope) -> bool:
     """Whether a request asks for a file that takes seconds to minutes to encode."""
-    if _ENCODED.fullmatch(scope["path"]) is not None:
+    if export_load(scope) == "encode":
         return True
     if _RECORDING.fullmatch(scope["path"]) is None:
         return False

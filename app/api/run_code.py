@@ -20,7 +20,7 @@ from hexapods.domain.disturbances import as_text
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.robot import PRESETS
 from hexapods.domain.settings import Value
-from hexapods.experiments.config import ExperimentConfig, experiment_config, fields_of
+from hexapods.experiments.config import ExperimentConfig, by_option, experiment_config, fields_of
 from hexapods.experiments.config import as_json as experiment_as_json
 from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings
 from hexapods.runs.config_json import as_json
@@ -128,9 +128,9 @@ class _Practices:
         before = run.continued_from
         given = self._differing(run.config, [] if before is None else [before])
         given |= _differing_settings(run.config.agent, run.config.settings)
-        rates = [c for c in run.changes if set(c) - {"step", "pace", "disturbance"}]
-        if rates:
-            names = ", ".join(sorted({name for c in rates for name in c if name != "step"}))
+        tuned = {name for change in run.changes for name in change.get("settings", ())}
+        if tuned:
+            names = ", ".join(sorted(tuned))
             self.commands.append(
                 f"# While it ran, {names} changed, which no command repeats; the Python program "
                 f"does.\n{self._download(run.id)}"
@@ -347,13 +347,13 @@ def _part(value: Any) -> str:
 
 def _experiment_differences(config: ExperimentConfig) -> Arguments:
     """Return what differs from the defaults, of which some depend on simulator and agents."""
-    name, shown = config.experiment, experiment_as_json(config)
+    name, shown = config.experiment, by_option(experiment_as_json(config))
     chosen: Arguments = {"simulator": config.simulator}
     if "agents" in fields_of(name):
         chosen["agents"] = config.agents
     usual = experiment_as_json(experiment_config(name, {}))
     expected = {
-        **experiment_as_json(experiment_config(name, chosen)),
+        **by_option(experiment_as_json(experiment_config(name, chosen))),
         **{key: usual[key] for key in chosen},
         "experiment": name,
     }

@@ -25,10 +25,12 @@ from app.api.fields import (
     RobotBody,
     RunId,
     Seed,
+    SettingsBody,
     Steps,
     StepsPerEpisode,
     Tags,
     Tolerance,
+    given_settings,
     number,
 )
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
@@ -131,6 +133,7 @@ class PracticeBody(Body):
     evaluate_every: EvaluateEvery = TrainingConfig.evaluate_every
     pace: Pace = TrainingConfig.pace
     continue_from: Annotated[RunId | None, Field(description=VALID["continue_from"])] = None
+    settings: SettingsBody = Field(default_factory=SettingsBody)
 
     def practice(self, walk: WalkingProblem, agent: str, seed: int = 0) -> TrainingStart:
         """Convert to the start of an agent's training; `seed` is the default seed.
@@ -144,7 +147,8 @@ class PracticeBody(Body):
                 "or leave out continue_from"
             )
         other_fields = {"name", "seed", "continue_from", "agent", *WalkBody.model_fields}
-        given = {name: getattr(self, name) for name in self.model_fields_set - other_fields}
+        own = self.model_fields_set - other_fields - {"settings"}
+        given = {name: getattr(self, name) for name in own} | given_settings(self.settings)
         chosen_seed = seed if self.seed is None else self.seed
         config = training_config(**vars(walk), **given, seed=chosen_seed, agent=agent)
         return TrainingStart(config, self.name or None, self.continue_from)
@@ -176,11 +180,10 @@ class LaneBody(Body):
     keep_learning: KeepLearning | None = None
     plans_with: PlansWith | None = None
     observation: LaneObservation | None = None
+    settings: SettingsBody = Field(default_factory=SettingsBody)
 
     def start(self, walk: WalkingProblem, seed: int) -> LaneStart:
         """Convert to the request of the service."""
-        given = self.model_fields_set - set(LaneBody.model_fields)
-        settings = {name: getattr(self, name) for name in given}
         practice = self.training
         training = None if practice is None else practice.practice(walk, self.agent, seed)
         return LaneStart(
@@ -189,7 +192,7 @@ class LaneBody(Body):
             training,
             self.keep_learning,
             self.plans_with,
-            settings,
+            given_settings(self.settings),
             self.observation,
         )
 
@@ -280,6 +283,22 @@ class PatchBody(Body):
 
 class ChangeBody(PatchBody):
     """Changes to a running training: its pace, and live settings of its agent."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "anyOf": [
+                *one_given(["pace"])["anyOf"],
+                {"required": ["settings"], "properties": {"settings": {"minProperties": 1}}},
+            ]
+        }
+    )
+
+    pace: Pace | None = None
+    settings: SettingsBody = Field(default_factory=SettingsBody)
+
+    def changes(self) -> dict[str, Any]:
+        """Return the given fields."""
+        return {name: value for name, value in super().changes().items() if value != {}}
 
 
 class AnnotationBody(PatchBody):

@@ -41,6 +41,7 @@ from hexapods.runs.npz_slices import NpzSlices
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.race_file import BLOCK_STEPS, RaceFile
 from hexapods.runs.records import ActionValues, LaneStep
+from hexapods.runs.results import TrainingResult
 from hexapods.runs.stored_practice import practice_recording
 from hexapods.runs.transition_log import MAX_LOGGED_STEPS, transitions
 
@@ -136,7 +137,8 @@ def _check_table(run: Run, name: str, data: bytes, label: str) -> None:
             raise ValueError("it is of another step")
         if "where" in tables.agent_state(checkpoint):
             digest = tables.table_of(checkpoint).sha256()
-            if name == TABLE and run.result is not None and run.result["q_table_sha256"] != digest:
+            result = run.result if name == TABLE else None
+            if isinstance(result, TrainingResult) and result.q_table_sha256 != digest:
                 raise ValueError("its values are not those of the run's result")
     except HexapodError:
         raise

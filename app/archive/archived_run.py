@@ -7,17 +7,13 @@ import msgspec
 from msgspec import Meta, Raw
 
 from app.archive.archived_curve import CurveRows, read_curve
-from app.archive.archived_trials import ArchivedExperimentResult
 from app.archive.imported_tables import check_change, check_settings
 from app.archive.untrusted_input import (
     Count,
-    Large,
     Metres,
     Moment,
     Name,
     PortableText,
-    Seconds,
-    Step,
     UntrustedInput,
     check_json,
     check_moment,
@@ -31,7 +27,9 @@ from app.storage.run import (
     Kind,
     Run,
     config_as_json,
+    result_as_json,
     run_config_from_json,
+    untrusted_result,
     world_of,
 )
 from hexapods import __version__
@@ -39,12 +37,14 @@ from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, Unkn
 from hexapods.domain.robot import robot
 from hexapods.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, check_tags
 from hexapods.experiments.config import MAX_WORKERS, ExperimentConfig
-from hexapods.runs.clocks import CLOCKS
 from hexapods.runs.config import TrainingConfig
-from hexapods.runs.lane import PlanningModel, check_lane
+from hexapods.runs.lane import check_lane
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
+from hexapods.runs.results import RaceResult
+from hexapods.runs.version_1 import nested_change, nested_config
 
-FORMAT = 1
+FORMAT = 2
+"""Format of `run.json`; 1, of versions before 0.2, is read too."""
 MAX_JSON_BYTES = 64_000_000
 _MAX_PART_BYTES = 256_000  # of a config or a result
 _MAX_RUN_BYTES = 8_000_000  # of all but the curve
@@ -53,46 +53,8 @@ _MAX_CHANGES = 10_000
 changes that wait for acknowledgement at the same time may pass it by some."""
 
 _Id = Annotated[str, Meta(pattern="^[0-9a-z]{1,32}$")]
-_OptionalMetres = Metres | None  # null if it was not measured; JSON has no NaN
-
-
-_Change = float | int | str | bool | dict[Name, float | int | str | list[int]]
-"""A new value of a setting, or a disturbance."""
-
-
-class _ArchivedTrainingResult(UntrustedInput, frozen=True):
-    distance_m: _OptionalMetres
-    greedy_distance_m: _OptionalMetres
-    q_table_sha256: Annotated[str, Meta(pattern="^[0-9a-f]{64}$")] | None
-    fell_at_step: Step | None = None
-    best_known_m: _OptionalMetres = None
-
-
-class _ArchivedFigures(UntrustedInput, frozen=True):
-    finished_distance_m: _OptionalMetres
-    elapsed_s: Seconds
-    crossed_s: Seconds | None
-    rank: Annotated[int, Meta(ge=1, le=MAX_LANES)] | None
-
-
-class _ArchivedLaneResult(UntrustedInput, frozen=True):
-    agent: Name
-    training_id: _Id | None
-    trained_robot: dict[str, Any] | None
-    steps: Step
-    total_distance_m: _OptionalMetres
-    failure: PortableText | None
-    decision_s: Seconds
-    simulated_transitions: Large
-    clocks: dict[str, _ArchivedFigures]
-    plans_with: PlanningModel | None = None
-    fell_at_step: Step | None = None
-    heading_deg: Annotated[float, Meta(ge=-180, le=180)] | None = None
-
-
-class _ArchivedRaceResult(UntrustedInput, frozen=True):
-    lanes: list[_ArchivedLaneResult]
-    shared_machine: bool
+_Change = float | int | str | bool | dict[Name, float | int | str | bool | list[int]]
+"""The step, a new pace, new values of settings, or a disturbance."""
 
 
 class _EndedRun(UntrustedInput, frozen=True):
@@ -108,7 +70,7 @@ class _EndedRun(UntrustedInput, frozen=True):
     done: Count
     total: Count
     changes: Annotated[list[dict[Name, _Change]], Meta(max_length=_MAX_CHANGES)]
-    greedy_distance_m: _OptionalMetres
+    greedy_distance_m: Metres | None  # null if it was not measured; JSON has no NaN
     result: Raw
     error: PortableText | None
     created_at: Moment
@@ -146,6 +108,7 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
         raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
     run_fields = {name: getattr(run, name) for name in _EndedRun.__struct_fields__}
     run_fields["config"] = config_as_json(run.config)
+    run_fields["result"] = result_as_json(run.result)
     for name in ("tags", "notes"):
         if not run_fields[name]:
             del run_fields[name]  # as in earlier versions, which do not know them
@@ -172,10 +135,10 @@ def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run
         if len(data) > MAX_JSON_BYTES:
             raise ValueError("it is too long")
         head = msgspec.json.decode(data, type=_Head)
-        if head.format != FORMAT:
+        if head.format not in (1, FORMAT):
             raise DamagedFile(
                 f"{label} has format {head.format}, of version {head.version[:40]!r}; this version "
-                f"({__version__}) reads {FORMAT}"
+                f"({__version__}) reads 1 and {FORMAT}"
             )
         # Of all that is in it only the curve may be long.
         curve_json = bytes(msgspec.json.decode(data, type=_OnlyCurve).curve)
@@ -183,7 +146,7 @@ def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run
             raise ValueError("it is too long")
         rest = data.replace(curve_json, b"[]", 1)
         check_json(rest)
-        run = _run(msgspec.json.decode(rest, type=_File).run, agents)
+        run = _run(msgspec.json.decode(rest, type=_File).run, agents, is_first=head.format == 1)
         curve = read_curve(curve_json)
         _check(run, curve)
     except DamagedFile:
@@ -195,15 +158,12 @@ def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run
     return run, curve
 
 
-_RESULTS: Mapping[Kind, Any] = {
-    "training": _ArchivedTrainingResult,
-    "race": _ArchivedRaceResult,
-    "experiment": ArchivedExperimentResult,
-}
-
-
-def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
-    config = run_config_from_json(fields.kind, _decode(fields.config, dict[str, Any]))
+def _run(fields: _EndedRun, agents: Collection[str], *, is_first: bool) -> Run:
+    """Check a run; `is_first`: it is of the first format, with settings beside other fields."""
+    given, changes = _decode(fields.config, dict[str, Any]), fields.changes
+    if is_first:
+        given, changes = nested_config(given), [nested_change(one) for one in changes]
+    config = run_config_from_json(fields.kind, given)
     if not isinstance(config, CONFIGS[fields.kind]) or fields.done > fields.total:
         raise ValueError("its kind, its config and its progress do not fit together")
     # Before `plan_of`, which imports the agents of an experiment.
@@ -216,15 +176,13 @@ def _run(fields: _EndedRun, agents: Collection[str]) -> Run:
             raise ValueError("its total is not that of its trials")
     else:
         check_walk(config)
-    # Validate the types, but store the result unchanged.
-    _decode(fields.result, _RESULTS[fields.kind] | None)
-    result = _decode(fields.result, Any)
+    result = _decode(fields.result, Any) and untrusted_result(fields.kind, bytes(fields.result))
     values = {name: getattr(fields, name) for name in fields.__struct_fields__}
     lanes = tuple(fields.lane_training_ids)
     values |= {
         "config": config,
         "result": result,
-        "changes": tuple(fields.changes),
+        "changes": tuple(changes),
         "lane_training_ids": lanes,
     }
     return Run(**values)
@@ -264,13 +222,13 @@ def _check_lanes(run: Run) -> None:
         raise ValueError("its lanes do not fit together")
     for config, training_id in zip(run.config.lanes, run.lane_training_ids, strict=True):
         check_lane(config, has_training=training_id is not None)
-    for lane, agent in zip((run.result or {"lanes": ()})["lanes"], agents, strict=False):
-        if lane["agent"] != agent or lane["clocks"].keys() != set(CLOCKS):
-            raise ValueError("its result is of other lanes")
-        if lane["trained_robot"] is not None:
-            robot(lane["trained_robot"])
-    if run.result is not None and len(run.result["lanes"]) != len(agents):
+    if not isinstance(run.result, RaceResult):
+        return
+    if [lane.agent for lane in run.result.lanes] != agents:
         raise ValueError("its result is of other lanes")
+    for lane in run.result.lanes:
+        if lane.trained_robot is not None:
+            robot(lane.trained_robot)
 
 
 def _check_agents(config: Config, agents: Collection[str]) -> None:

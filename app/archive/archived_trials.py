@@ -24,33 +24,13 @@ from app.storage.run import Run
 from hexapods.domain.errors import DamagedFile
 from hexapods.domain.text import is_formula
 from hexapods.experiments.config import SUMMARY, ExperimentConfig
+from hexapods.experiments.result import ExperimentResult
 
 TRIALS = "trials.json"
 _REPORT_FILE = re.compile(
     r"report\.html|summary\.json|trials\.csv|figures/[a-z0-9_-]{1,80}\.(png|svg|pdf)", re.ASCII
 )
 _SIGNATURES = {"png": b"\x89PNG\r\n\x1a\n", "pdf": b"%PDF-"}
-
-
-class _Counts(UntrustedInput, frozen=True):
-    done: Large
-    total: Large
-    failed: Large
-    set_aside: Large
-
-
-class _ArchivedClaim(UntrustedInput, frozen=True):
-    id: Name
-    verdict: Name
-
-
-class ArchivedExperimentResult(UntrustedInput, frozen=True):
-    """Result of an experiment's run."""
-
-    trials: _Counts
-    claims: Annotated[list[_ArchivedClaim], Meta(max_length=1_000)]
-    files: Annotated[list[Name], Meta(max_length=128)]
-    shared_machine: bool
 
 
 class _Lane(UntrustedInput, frozen=True):
@@ -137,7 +117,7 @@ def is_report_file(name: str) -> bool:
 
 def report_files(run: Run) -> list[str]:
     """Return the names of an experiment's files: its summary and those listed in its result."""
-    files: list[str] = (run.result or {}).get("files", [])
+    files = run.result.files if isinstance(run.result, ExperimentResult) else ()
     return list(dict.fromkeys([SUMMARY, *files]))
 
 

@@ -97,20 +97,25 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
     """Check that a recorded change of settings or pace, or a disturbance, is valid.
 
     Args:
-        change: new values by name, and the `step` of the change.
+        change: the `step` of the change, and a new `pace`, new `settings` or a `disturbance`.
         agent: name of a registered agent.
 
     Raises:
         KeyError, TypeError, ValueError, InvalidInput: if it is not.
     """
-    valid = changeable_settings(agent)
-    if unknown := set(change) - {"step", "disturbance", *valid}:
+    valid = dict(changeable_settings(agent))
+    pace = valid.pop("pace")
+    settings = msgspec.convert(change.get("settings", {}), dict[str, Any])
+    unknown = {*change} - {"step", "pace", "disturbance", "settings"} | {*settings} - {*valid}
+    if unknown:
         raise ValueError(f"{', '.join(unknown)} cannot change while a training runs")
     msgspec.convert(change["step"], Step)
     if "disturbance" in change:
         disturbance(change["disturbance"])
-    for name in set(change) - {"step", "disturbance"}:
-        valid[name].check(change[name])
+    if "pace" in change:
+        pace.check(change["pace"])
+    for name, value in settings.items():
+        valid[name].check(value)
 
 
 def _training(config_data: Any, label: str) -> TrainingConfig:

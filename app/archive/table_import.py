@@ -9,6 +9,7 @@ from app.jobs.submissions import check_training
 from app.storage.run import IdempotencyKey, Run
 from hexapods.domain.text import check_name
 from hexapods.runs import tables
+from hexapods.runs.results import TrainingResult
 
 
 def import_table(
@@ -50,7 +51,7 @@ def import_table(
         done=step,
         total=step,
         greedy_distance_m=greedy,
-        result={"distance_m": None, "greedy_distance_m": greedy, "q_table_sha256": digest},
+        result=TrainingResult(distance_m=None, greedy_distance_m=greedy, q_table_sha256=digest),
         ended_at=datetime.now(UTC),
     )
     return jobs.keep(run, data, key)

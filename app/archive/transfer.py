@@ -13,12 +13,11 @@ from app.archive import archive
 from app.archive.archived_files import check_files, is_file_of, members_of
 from app.archive.archived_run import read_run_json, run_json
 from app.archive.archived_trials import TRIALS, read_trials_json, trials_json
-from app.events.damage import as_shown
 from app.limits.memory_budget import MemoryBudget
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Damaged
 from app.storage.json_text import is_finite
-from app.storage.run import KINDS, Content, DamagedRun, IdempotencyKey, Run
+from app.storage.run import KINDS, Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.experiments.config import ExperimentConfig
@@ -94,9 +93,7 @@ def _contents(
     store: RunStore, run_id: str
 ) -> tuple[Run, dict[str, bytes], dict[str, archive.Member]]:
     """Return an ended run, and of its archive the members in memory and those in files."""
-    run = as_shown(store.get(run_id))
-    if isinstance(run, DamagedRun):
-        raise Damaged(run.id, run.damaged)
+    run = store.get(run_id)
     curve, trials = store.evaluations(run_id), store.trials(run_id)
     if not is_finite([curve, trials]):
         # They would be null in JSON, which every import rejects.

@@ -6,6 +6,7 @@ import json
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from hexapods.arguments import read_gait as gait_of_legs
@@ -51,12 +52,20 @@ def add_settings(
     parser: argparse.ArgumentParser,
     settings: Mapping[str, DeclaredSetting],
     names: Iterable[str] | None = None,
+    flags: Mapping[str, str] = MappingProxyType({}),
 ) -> None:
-    """Add an option for each declared setting, or for those that are named."""
+    """Add an option for each declared setting, or for those that are named.
+
+    `flags` has names of options that are others than those of `flag`.
+    """
     for name in settings if names is None else names:
         setting = settings[name]
         parser.add_argument(
-            flag(name), type=parser_of(setting), default=setting.default, help=_help(setting)
+            flags.get(name, flag(name)),
+            dest=name,
+            type=parser_of(setting),
+            default=setting.default,
+            help=_help(setting),
         )
 
 
@@ -131,7 +140,7 @@ def split(text: str) -> list[str]:
 
 def _help(setting: DeclaredSetting, lists: bool = False) -> str:
     about, default = setting.about, setting.default
-    given = "" if default is REQUIRED else f" (default {default})"
+    given = "" if default is REQUIRED or default is None else f" (default {default})"
     if lists and about.examples:
         examples = ",".join(f"{value:g}" for value in about.examples)
         text = f"such as {examples}; each {setting.valid}{given}"

@@ -13,6 +13,7 @@ from app.cli.options import (
     walk_from,
 )
 from app.cli.terminal import progress, show_lanes
+from app.storage.run import result_as_json
 from hexapods.agents.registry import keeps_learning, needs_practice
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.settings import declared_fields
@@ -71,7 +72,11 @@ def run(options: argparse.Namespace) -> int:
             **walk_from(options),
         )
     if options.json:
-        shown = {"config": as_json(done.config), "result": done.result, "gait": _gaits(done)}
+        shown = {
+            "config": as_json(done.config),
+            "result": result_as_json(done.result),
+            "gait": _gaits(done),
+        }
         print(json.dumps({**shown, "best_known_m": done.best_known_m}))
     else:
         show_lanes(done, options.clock)

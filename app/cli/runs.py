@@ -9,6 +9,7 @@ import json
 import sys
 from collections.abc import Mapping
 from datetime import datetime
+from typing import cast
 from urllib.parse import quote
 
 from app.cli import run_files
@@ -16,7 +17,6 @@ from app.cli.options import CommandParser, integer
 from app.cli.server_client import call_server
 from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
 from app.cli.terminal import show_lanes, show_table
-from app.events.damage import as_shown
 from app.events.run_view import run_view
 from app.settings import read_settings
 from app.storage.json_text import json_text
@@ -25,6 +25,7 @@ from hexapods.agents.appearance import title_of
 from hexapods.domain.errors import InvalidInput
 from hexapods.races import Race
 from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.results import RaceResult, TrainingResult
 
 _LIMIT = 50
 _TITLES: Mapping[Sort, str] = {
@@ -96,8 +97,7 @@ def _list(options: argparse.Namespace) -> int:
     return 0
 
 
-def _row(stored: AnyRun) -> tuple[str, ...]:
-    run = as_shown(stored)
+def _row(run: AnyRun) -> tuple[str, ...]:
     if isinstance(run, DamagedRun):
         began = "" if run.created_at is None else _local(run.created_at)
         return (run.id, run.kind or "", "damaged", "", "", began, run.damaged)
@@ -114,17 +114,13 @@ def _local(moment: datetime) -> str:
 
 def _outcome(run: Run) -> str:
     """Summarise the result of a run in one or two words."""
-    if not run.result:
-        return ""
-    if run.kind == "training":
-        distance = run.result["distance_m"]
-        return "" if distance is None else f"{distance:.2f} m"
-    if run.kind == "experiment":
-        verdicts = [claim["verdict"] for claim in run.result["claims"]]
-        return f"{verdicts.count('holds')} of {len(verdicts)} claims hold" if verdicts else ""
-    lanes = run.result["lanes"]
-    first = [title_of(lane["agent"]) for lane in lanes if lane["clocks"]["paper"]["rank"] == 1]
-    return ", ".join(first)
+    result = run.result
+    if isinstance(result, TrainingResult):
+        return "" if result.distance_m is None else f"{result.distance_m:.2f} m"
+    if isinstance(result, RaceResult):
+        return ", ".join(title_of(one.agent) for one in result.lanes if one.clocks.paper.rank == 1)
+    verdicts = [] if result is None else [claim.verdict for claim in result.claims]
+    return f"{verdicts.count('holds')} of {len(verdicts)} claims hold" if verdicts else ""
 
 
 def _show(options: argparse.Namespace) -> int:
@@ -148,8 +144,8 @@ def _show(options: argparse.Namespace) -> int:
     for name, value in view.items():
         if value:
             print(f"{name:>18}  {value if isinstance(value, str) else json.dumps(value)}")
-    if result and isinstance(run, Run) and isinstance(run.config, RaceConfig):
-        show_lanes(Race(run.config, (), result), "paper")
+    if isinstance(run, Run) and isinstance(run.result, RaceResult):
+        show_lanes(Race(cast(RaceConfig, run.config), (), run.result), "paper")
     elif result:
         print(f"{'result':>18}  {json.dumps(result)}")
     return 0

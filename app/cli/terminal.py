@@ -146,7 +146,7 @@ def show_lanes(race: Race, clock: Clock) -> None:
     """
     rows = []
     for one in race.standings_under(clock):
-        own, lane = race.config.lanes[one.lane], race.result["lanes"][one.lane]
+        own, lane = race.config.lanes[one.lane], race.result.lanes[one.lane]
         name = name_of(own.agent, own.settings, own.keep_learning)
         known = plans_with(own, race.config)
         name += f"\n   plans with the {PLANNING_MODEL_TITLES[known]}" if known else ""
@@ -155,10 +155,10 @@ def show_lanes(race: Race, clock: Clock) -> None:
             (
                 name if one.rank is None else f"{one.rank}. {name}",
                 "–" if finished_m is None else f"{finished_m:.2f} m",
-                (lane["failure"] or "–") if total_m is None else f"{total_m:.2f} m",
+                (lane.failure or "–") if total_m is None else f"{total_m:.2f} m",
                 f"{one.elapsed_s:.1f} s",
-                f"{1000 * lane['decision_s'] / max(1, lane['steps']):.1f} ms",
-                f"{lane['simulated_transitions']:,}",
+                f"{1000 * lane.decision_s / max(1, lane.steps):.1f} ms",
+                f"{lane.simulated_transitions:,}",
             )
         )
     is_ranked = any(one.rank is not None for one in race.standings_under(clock))

@@ -13,6 +13,7 @@ from app.cli.options import (
     walk_from,
 )
 from app.cli.terminal import progress
+from app.storage.run import result_as_json
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.runs.config import TrainingConfig, WalkingProblem
@@ -75,18 +76,15 @@ def run(options: argparse.Namespace) -> int:
         write_whole(options.out, training.to_bytes())
     if options.json:
         curve = [point._asdict() for point in training.curve]
-        print(
-            json.dumps(
-                {"config": as_json(training.config), "result": training.result, "curve": curve}
-            )
-        )
+        result = result_as_json(training.result)
+        print(json.dumps({"config": as_json(training.config), "result": result, "curve": curve}))
     else:
         _print_result(options, training)
     return 0
 
 
 def _print_result(options: argparse.Namespace, training: Training) -> None:
-    best_m = training.result["best_known_m"]
+    best_m = training.best_known_m
     print(
         f"After {training.config.steps:,} steps of practice it walks {training.distance_m:.2f} m "
         f"in 50 steps; one-step look-ahead walks {training.greedy_distance_m:.2f} m"

@@ -15,8 +15,8 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import DISTURBED, REPORT, ExperimentConfig
 from hexapods.experiments.folder import ResultsFolder, open_results
-from hexapods.experiments.own_cluster import cores
 from hexapods.experiments.plan import Trial
+from hexapods.machine import cores
 
 INTERRUPTED = 130
 RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
@@ -173,7 +173,7 @@ def share_text(share: Mapping[str, Any] | None) -> str:
 def stop_signals() -> Iterator[threading.Event]:
     """Handle SIGINT and SIGTERM: yield an event that the first signal sets.
 
-    The experiment then stops once the cluster can be shut down; a second signal raises
+    The experiment then stops once the workers have ended; a second signal raises
     `KeyboardInterrupt` at once.
     """
     stop_requested = threading.Event()

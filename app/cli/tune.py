@@ -41,9 +41,10 @@ from hexapods.experiments.config import MAX_SEEDS, REPORT
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.formatting import counted
-from hexapods.experiments.own_cluster import cores
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.tuning.config import Objective, TuningConfig, tuning_config
+from hexapods.experiments.worker import Workers
+from hexapods.machine import cores
 from hexapods.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
 
 if TYPE_CHECKING:
@@ -204,14 +205,14 @@ def _run(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder, retry: b
     with stop_signals() as interrupted, ExitStack() as stack:
 
         @cache
-        def client() -> Any:
+        def workers() -> Workers:
             return stack.enter_context(connect(cluster))
 
         def run_all(trials: Sequence[Trial]) -> Iterable[Outcome]:
-            # A cluster is started by the first trial that is not there already.
+            # Workers are started by the first trial that is not there already.
             if not trials or interrupted.is_set():
                 return ()
-            return folder.run_on(client(), trials, lambda: not interrupted.is_set())
+            return folder.run_on(workers(), trials, lambda: not interrupted.is_set())
 
         with progress("trials", RATE_WINDOW_S) as bar:
             task = bar.add_task("trials", total=tuning.total, completed=folder.done)

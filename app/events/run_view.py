@@ -3,8 +3,15 @@
 from datetime import UTC, datetime
 from typing import Any
 
-from app.events.damage import as_shown
-from app.storage.run import PAUSED, RESUMABLE, AnyRun, DamagedRun, Run, config_as_json
+from app.storage.run import (
+    PAUSED,
+    RESUMABLE,
+    AnyRun,
+    DamagedRun,
+    Run,
+    config_as_json,
+    result_as_json,
+)
 from hexapods.runs.best_known import best_known_in_race_m
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import plans_with
@@ -20,10 +27,9 @@ def run_view(run: AnyRun, queue_position: int | None = None) -> dict[str, Any]:
         run: in its present state.
         queue_position: of a queued run, 1 for the next to start; None for others.
     """
-    checked = as_shown(run)
-    if isinstance(checked, DamagedRun):
-        return _damaged_view(checked)
-    return _whole_view(checked, queue_position)
+    if isinstance(run, DamagedRun):
+        return _damaged_view(run)
+    return _whole_view(run, queue_position)
 
 
 def _damaged_view(run: DamagedRun) -> dict[str, Any]:
@@ -47,7 +53,7 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
         "queue_position": queue_position,
         "progress": {"done": run.done, "total": run.total},
         "eta_s": run.eta_s,
-        "result": run.result,
+        "result": result_as_json(run.result),
         "error": run.error,
         "tags": list(run.tags),
         "notes": run.notes,

@@ -2,10 +2,11 @@
 
 import json
 import threading
-from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
+
+from cachetools import LRUCache
 
 from app.cache import BytesCache
 from app.explanations.explanation_json import SearchFindings, explanation_as_json, table_as_json
@@ -49,7 +50,7 @@ class Explanations:
     ) -> None:
         self._store, self._recordings = store, recordings
         self._stopping = stopping or Stopping()
-        self._practices: OrderedDict[Hashable, RebuiltPractice] = OrderedDict()
+        self._practices: LRUCache[Hashable, RebuiltPractice] = LRUCache(MAX_PRACTICES)
         self._answers = BytesCache(MAX_ANSWER_BYTES)
         self._lock, self._count_lock, self._waiting = threading.Lock(), threading.Lock(), 0
 
@@ -227,12 +228,9 @@ class Explanations:
         make: Callable[[], RebuiltPractice],
     ) -> RebuiltPractice:
         """Return a practice that is kept, or a new one if it is not or does not fit any more."""
-        practice = self._practices.pop(key, None)
+        practice = self._practices.get(key)
         if practice is None or not practice.fits(steps, changes):
-            practice = make()
-        self._practices[key] = practice
-        while len(self._practices) > MAX_PRACTICES:
-            self._practices.popitem(last=False)
+            self._practices[key] = practice = make()
         return practice
 
     @contextmanager

@@ -1,9 +1,5 @@
-"""Export a run's walk as files for other programs: tables, videos, robot logs.
+"""Exports of stored runs on a server; `hexapods.exports` has the formats.
 
-- `recorded_lanes`: the recorded steps of each robot of an ended race or training.
-- `trajectory`: joint angles, feet and torques over time, as CSV and Parquet.
-- `video`, `video_renderer`: MP4 and GIF, rendered off screen by MuJoCo.
-- `mcap_log`: joint states and frames for tools of robots.
-- `recording_json`: a race's recording as streamed JSON.
-- `extras`: the optional packages that some files need.
+- `stored_walks`: the recorded walk of a stored run that has ended.
+- `file_renderer`: renders large files one at a time, in a process of lower priority.
 """

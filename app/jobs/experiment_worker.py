@@ -1,8 +1,6 @@
 """An experiment in its worker process: runs the remaining trials, sends results and summaries."""
 
-import importlib
 import json
-import logging
 import os
 import queue
 import threading
@@ -17,6 +15,7 @@ from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import SUMMARY
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.progress import Progress
+from hexapods.experiments.result import ClaimVerdict, ExperimentResult, TrialCounts
 from hexapods.experiments.trial import TrialResult
 
 BATCHES_PER_S = 5
@@ -46,7 +45,7 @@ def experiment(
         if not control.draining:
             break
         if control.paused:
-            # The cluster is shut down during a pause, since it takes memory.
+            # The workers have ended during a pause, since they take memory.
             progress.summarise()
     if not control.exiting:
         progress.report()
@@ -110,15 +109,11 @@ class _SentProgress(Progress):
         self._files: list[str] = []
 
     def run_remaining(self, may_continue: Callable[[], bool]) -> None:
-        """Run the remaining trials on a cluster.
+        """Run the remaining trials on worker processes.
 
         Args:
             may_continue: polled between trials; False ends the run.
         """
-        # It would log each start and end of a cluster, and the tasks that a pause drops.
-        importlib.import_module("distributed")
-        for name in ("distributed", "distributed.scheduler"):
-            logging.getLogger(name).setLevel(logging.CRITICAL)
 
         def send_and_check() -> bool:
             self._send_due()
@@ -181,12 +176,19 @@ class _SentProgress(Progress):
         for name, data in report_files(self._summary, self.results):
             self._send_file(name, data)
 
-    def result(self) -> dict[str, Any]:
+    def result(self) -> ExperimentResult:
         """Return the run's result, short enough for lists of runs."""
-        trials = {name: self._summary["trials"][name] for name in ("done", "total", "failed")}
-        trials["set_aside"] = len(self.set_aside)
-        claims = [{n: claim[n] for n in ("id", "verdict")} for claim in self._summary["claims"]]
-        return {"trials": trials, "claims": claims, "files": self._files}
+        counts, claims = self._summary["trials"], self._summary["claims"]
+        return ExperimentResult(
+            trials=TrialCounts(
+                done=counts["done"],
+                total=counts["total"],
+                failed=counts["failed"],
+                set_aside=len(self.set_aside),
+            ),
+            claims=tuple(ClaimVerdict(id=one["id"], verdict=one["verdict"]) for one in claims),
+            files=tuple(self._files),
+        )
 
     def _send_due(self) -> None:
         now_s = time.monotonic()

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from operator import itemgetter
-from typing import Any
+from typing import Any, cast
 
 from app.events.bus import EventBus
 from app.events.run_view import run_view
@@ -38,11 +38,12 @@ from app.storage.run import ANNOTATIONS, CHECKPOINT, LIVE, RUNNING, TABLE, Run, 
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.robot import as_mapping
 from hexapods.experiments.config import SUMMARY
+from hexapods.experiments.result import ExperimentResult
 from hexapods.processes import STALLED_S
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.records import Evaluated, Reference
-from hexapods.runs.results import lane_details, race_result
+from hexapods.runs.results import RaceResult, race_result
 
 MAX_OUTAGE_S = 600.0
 """Longest database outage that a job waits out; after that its run becomes `interrupted`."""
@@ -407,33 +408,27 @@ class Job:
         else:
             self.end(ended.outcome, result=result)
 
-    def _result_so_far(self) -> dict[str, Any] | None:
+    def _result_so_far(self) -> RaceResult | None:
         """Return the result of what is recorded of a race; None for other runs."""
         lanes = self._recordings.race(self.run_id)
         if lanes is None or not isinstance(self._task, RaceTask):
             return None
         return self._race_result(lanes, self._task)
 
-    def _race_result(self, lanes: list[LaneRecording], task: RaceTask) -> dict[str, Any]:
-        result = race_result(lanes, task.config.steps)
+    def _race_result(self, lanes: list[LaneRecording], task: RaceTask) -> RaceResult:
         numbered = zip(
-            result["lanes"],
+            race_result(lanes, task.config).lanes,
             self._run.lane_training_ids,
             _trained_robots(task),
-            lane_details(lanes, task.config),
             strict=True,
         )
-        result["lanes"] = [
-            {
-                "agent": lane["agent"],
-                "training_id": training,
-                "trained_robot": robot,
-                **lane,
-                **details,
-            }
-            for lane, training, robot, details in numbered
-        ]
-        return {**result, "shared_machine": self.shared}
+        return RaceResult(
+            lanes=tuple(
+                replace(lane, training_id=training, trained_robot=robot)
+                for lane, training, robot in numbered
+            ),
+            shared_machine=self.shared,
+        )
 
     def _eta_s(self, done: int) -> float | None:
         """Return the estimated remaining time [s], None without progress.
@@ -480,5 +475,5 @@ class ExperimentJob(Job):
             super()._handle(message)
 
     def _handle_end(self, ended: Ended) -> None:
-        result: dict[str, Any] = {**(ended.result or {}), "shared_machine": self.shared}
-        self.end(ended.outcome, result=result)
+        result = cast(ExperimentResult, ended.result)
+        self.end(ended.outcome, result=replace(result, shared_machine=self.shared))

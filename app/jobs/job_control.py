@@ -239,10 +239,8 @@ class JobControl:
     def _apply(self, changes: Mapping[str, Any], step: int, agent: object) -> None:
         if "disturbance" in changes:
             changes = {**changes, "disturbance": self.disturb(changes["disturbance"])}
-        others = ("pace", "disturbance")
-        rates = {name: value for name, value in changes.items() if name not in others}
-        if rates and isinstance(agent, Tunable):
-            agent.tune(**rates)
+        if "settings" in changes and isinstance(agent, Tunable):
+            agent.tune(**changes["settings"])
         if "pace" in changes:
             self._pace = changes["pace"]
             # A step that is overdue by the new pace begins now; those after it wait their time.

@@ -299,7 +299,8 @@ class Jobs:
 
         Args:
             run_id: id of the training.
-            changes: values of its `changeable_settings` by name.
+            changes: a new `pace`, and `settings` of its agent by name, of its
+                `changeable_settings`.
 
         Raises:
             NotFound: if there is no such run.
@@ -312,10 +313,14 @@ class Jobs:
         def checked(run: Run) -> Mapping[str, Any]:
             agent = getattr(run.config, "agent", "")
             valid = changeable_settings(agent)
-            for name in changes:
-                if name not in valid:
-                    raise UnknownName(f"live setting of {agent}", name, valid)
-            return {name: valid[name].normalized(changes[name]) for name in changes}
+            checked: dict[str, Any] = {}
+            if "pace" in changes:
+                checked["pace"] = valid["pace"].normalized(changes["pace"])
+            for name, value in changes.get("settings", {}).items():
+                if name not in valid or name == "pace":
+                    raise UnknownName(f"live setting of {agent}", name, valid.keys() - {"pace"})
+                checked.setdefault("settings", {})[name] = valid[name].normalized(value)
+            return checked
 
         self._change_live(run_id, checked)
         return self._store.get(run_id)

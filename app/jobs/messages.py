@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hexapods.experiments.config import ExperimentConfig
+from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.records import RaceRecord, TrainingRecord
+from hexapods.runs.results import TrainingResult
 from hexapods.runs.tables import Checkpoint
 from hexapods.runs.transition_log import Transitions
 
@@ -142,7 +144,7 @@ class Ended(NamedTuple):
     """The job has ended; the result is that of a training or an experiment."""
 
     outcome: Literal["finished", "stopped"]
-    result: dict[str, Any] | None
+    result: TrainingResult | ExperimentResult | None
 
 
 class Failed(NamedTuple):

@@ -1,6 +1,5 @@
 """Pool of worker processes for interactive requests, which shut down when idle."""
 
-import multiprocessing
 import os
 import queue
 import threading
@@ -8,7 +7,6 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple, TypeVar
@@ -16,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 from app.jobs.fork_server import process_context
 from app.storage.errors import Busy
 from hexapods.domain.errors import HexapodError, InvalidInput
-from hexapods.processes import kill_group, set_up_process
+from hexapods.processes import end_with_parent, kill_workers, set_up_process, worker_processes
 
 IDLE_S = 60.0
 TIMEOUT_S = 60.0
@@ -79,8 +77,8 @@ class ProcessPool:
     def pids(self) -> list[int]:
         """Process ids of the running workers."""
         executor = self._executor
-        # Private, since the executor offers no way to kill its processes before Python 3.14.
-        return [] if executor is None else list(executor._processes or ())  # noqa: SLF001
+        found = [] if executor is None else worker_processes(executor)
+        return [process.pid for process in found if process.pid is not None]
 
     def map(
         self,
@@ -212,25 +210,13 @@ class ProcessPool:
             self._executor = None
 
     def _kill_workers(self) -> None:
-        executor = self._executor
-        for process in list((executor._processes or {}).values()) if executor else ():  # noqa: SLF001
-            with suppress(ValueError):  # it has exited, and its handle is closed
-                if process.pid is not None and process.is_alive():
-                    kill_group(process.pid)
-                    process.kill()  # it may have no group of its own yet
+        if (executor := self._executor) is not None:
+            kill_workers(executor)
 
 
 def _set_up_worker() -> None:
     set_up_process(NICENESS)
-    threading.Thread(target=_exit_with_parent, daemon=True).start()
-
-
-def _exit_with_parent() -> None:
-    """Exit after the server has; PR_SET_PDEATHSIG misses a server that died before its call."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
+    end_with_parent()
 
 
 def _guarded(function: Callable[[Any], Any], argument: Any) -> Any:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from contextvars import ContextVar
 from typing import Protocol
 
+from cachetools import TTLCache
 from starlette.types import Scope
 
 from app.limits.addresses import client_group
@@ -160,7 +161,9 @@ class ConnectionTable:
         self._open: dict[Connection, None] = {}
         self._files: dict[int, Connection] = {}
         self._addresses: dict[str, _Address] = {}
-        self._operators: OrderedDict[str, float] = OrderedDict()
+        self._operators: TTLCache[str, None, float] = TTLCache(
+            _MAX_OPERATOR_ADDRESSES, OPERATOR_S, now
+        )
 
     def __len__(self) -> int:
         return len(self._open)
@@ -245,10 +248,7 @@ class ConnectionTable:
             del self._addresses[connection.address]
 
     def _note_operator(self, address: str) -> None:
-        self._operators[address] = self._now()
-        self._operators.move_to_end(address)
-        if len(self._operators) > _MAX_OPERATOR_ADDRESSES:
-            self._operators.popitem(last=False)
+        self._operators[address] = None
 
     def _has_operator(self, address: str) -> bool:
-        return self._now() - self._operators.get(address, -OPERATOR_S) < OPERATOR_S
+        return address in self._operators

@@ -2,8 +2,9 @@
 
 import threading
 import time
-from collections import OrderedDict
 from collections.abc import Callable
+
+from cachetools import LRUCache
 
 MAX_CLIENTS = 10_000
 """Buckets kept at most."""
@@ -24,7 +25,7 @@ class RateLimiter:
             now: monotonic clock [s].
         """
         self._size, self._per_s, self._now = size, per_s, now
-        self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
+        self._buckets: LRUCache[str, tuple[float, float]] = LRUCache(MAX_CLIENTS)
         """By client: number of tokens, and when it was computed [s]."""
         self._lock = threading.Lock()
 
@@ -49,9 +50,6 @@ class RateLimiter:
 
     def _keep(self, client: str, tokens: float) -> None:
         self._buckets[client] = (tokens, self._now())
-        self._buckets.move_to_end(client)
-        if len(self._buckets) > MAX_CLIENTS:
-            self._buckets.popitem(last=False)
 
     def _tokens(self, client: str) -> float:
         tokens, since_s = self._buckets.get(client, (float(self._size), 0.0))

@@ -6,9 +6,10 @@ is asked for the frame at a time, so that every page can have a position of its 
 
 import json
 import threading
-from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from typing import Protocol
+
+from cachetools import LRUCache
 
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict
@@ -20,15 +21,17 @@ from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording, PracticeRecording
+from hexapods.runs.results import TrainingResult
 from hexapods.shows.practice_show import PracticeShow
 from hexapods.shows.race_show import Original, RaceShow
 from hexapods.shows.replay import Replay
 from hexapods.shows.scene_spec import race_scene, training_scene
 from hexapods.shows.show import RunLabel
 
-_KEPT_REPLAYS, _KEPT_BYTES = 64, 50_000_000
-"""Replays that are kept at most, and the size of their recordings; the newest is always kept."""
-_RUNNING_BYTES = _KEPT_BYTES // 8
+KEPT_BYTES = 50_000_000
+"""Size of the recordings of the replays that are kept; the newest is always kept."""
+_KEPT_REPLAYS = 64
+_RUNNING_BYTES = KEPT_BYTES // 8
 """Size that a replay of a run that is still computed counts as: its recording grows."""
 
 
@@ -73,7 +76,7 @@ def show_of(
         pace,
         lambda: recordings.training(run.id),
         world=world,
-        fell_at_step=(run.result or {}).get("fell_at_step"),
+        fell_at_step=run.result.fell_at_step if isinstance(run.result, TrainingResult) else None,
     )
 
 
@@ -166,11 +169,19 @@ class Replays:
     Args:
         store: store of the runs.
         recordings: recordings of the runs.
+        max_bytes: size of the recordings of those that are kept.
     """
 
-    def __init__(self, store: RunStore, recordings: Recordings) -> None:
+    def __init__(
+        self, store: RunStore, recordings: Recordings, max_bytes: int = KEPT_BYTES
+    ) -> None:
         self._store, self._recordings = store, recordings
-        self._kept: OrderedDict[tuple[str, Clock, str | None], StoredReplay] = OrderedDict()
+        # Each counts as a share of the whole at least, which limits their number, and as the whole
+        # at most, so that the newest is kept.
+        least = max_bytes // _KEPT_REPLAYS
+        self._kept: LRUCache[tuple[str, Clock, str | None], StoredReplay] = LRUCache(
+            max_bytes, lambda replay: min(max(replay.size, least), max_bytes)
+        )
         self._lock = threading.Lock()
 
     def version(self, run_id: str, ghost_id: str | None = None) -> str:
@@ -193,15 +204,14 @@ class Replays:
         run, ghost = self._runs(run_id, ghost_id)
         key = (run_id, clock, ghost_id)
         with self._lock:
-            replay = self._kept.pop(key, None)
+            replay = self._kept.get(key)
             if replay is None or replay.version != _version_of(run, ghost):
                 replay = self._replay(run, clock, self._replay(ghost, clock) if ghost else None)
-            self._kept[key] = replay
+                self._kept[key] = replay
         missing = [one.run for one in (replay, replay.stored_ghost) if one and not one.recorded]
         with self._lock:
-            # Their size is known once they were read.
-            while len(self._kept) > 1 and self._is_over_capacity():
-                self._kept.popitem(last=False)
+            # Its size is known once it was read.
+            self._kept[key] = replay
         for one in missing:
             raise Conflict(f"{one.kind} {one.id} is {one.state} and has no recording", one.state)
         return replay
@@ -221,10 +231,6 @@ class Replays:
         held = _HeldRecordings(self._recordings)
         show = show_of(run, self._store, held, clock, world=lambda: world)
         return StoredReplay(run, show, ghost, held)
-
-    def _is_over_capacity(self) -> bool:
-        size = sum(replay.size for replay in self._kept.values())
-        return len(self._kept) > _KEPT_REPLAYS or size > _KEPT_BYTES
 
 
 def _check_ghost(run: Run, ghost: Run) -> None:

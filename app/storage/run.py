@@ -6,13 +6,19 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, get_args
 
+import msgspec
+from pydantic import TypeAdapter, ValidationError
+
+from app.storage.json_text import finite
 from hexapods.domain.disturbances import disturbance
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.experiments import config as experiments
 from hexapods.experiments.config import ExperimentConfig
+from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.config_json import as_json, config_from_json
 from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.results import RaceResult, TrainingResult
 
 Kind = Literal["training", "race", "experiment"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
@@ -41,12 +47,18 @@ RESUMABLE: Mapping[Kind, frozenset[State]] = {
     "experiment": INTERRUPTED | {"stopped", "failed"},
 }
 """By kind, the states of an ended run from which it can be queued again."""
+Result = TrainingResult | RaceResult | ExperimentResult
 CONFIGS: Mapping[Kind, type[Config]] = {
     "training": TrainingConfig,
     "race": RaceConfig,
     "experiment": ExperimentConfig,
 }
 """Config class by kind of run."""
+_RESULTS: Mapping[Kind, TypeAdapter[Any]] = {
+    "training": TypeAdapter(TrainingResult),
+    "race": TypeAdapter(RaceResult),
+    "experiment": TypeAdapter(ExperimentResult),
+}
 TABLE = "q-table.npz"
 """Artifact of a training: its learned Q-table."""
 CHECKPOINT = "checkpoint.npz"
@@ -94,7 +106,7 @@ class Run:
     eta_s: float | None = None
     changes: tuple[Mapping[str, Any], ...] = ()
     greedy_distance_m: float | None = None
-    result: dict[str, Any] | None = None
+    result: Result | None = None
     error: str | None = None
     tags: tuple[str, ...] = ()
     notes: str = ""
@@ -166,23 +178,18 @@ class Content:
     artifacts: Mapping[str, bytes] = field(default_factory=dict)
 
 
-def ranking_distance_m(result: Mapping[str, Any] | None) -> float | None:
+def ranking_distance_m(result: Result | None) -> float | None:
     """Return the distance by which runs are ranked [m]: a training's, or that of a race's winner.
 
-    None if there is none, as of an experiment.
+    None if there is none, as of an experiment, or if it is NaN, which databases sort differently.
     """
-    try:
-        if result is None or "lanes" not in result:
-            return _finite((result or {}).get("distance_m"))
-        figures = [lane["clocks"]["paper"] for lane in result["lanes"]]
-        winners = (one["finished_distance_m"] for one in figures if one["rank"] == 1)
-        return _finite(next(winners, None))
-    except (TypeError, KeyError):
-        return None  # of an earlier version, or damaged
-
-
-def _finite(value: Any) -> float | None:
-    return float(value) if isinstance(value, int | float) and math.isfinite(value) else None
+    distance_m = None
+    if isinstance(result, TrainingResult):
+        distance_m = result.distance_m
+    elif isinstance(result, RaceResult):
+        figures = [lane.clocks.paper for lane in result.lanes]
+        distance_m = next((one.finished_distance_m for one in figures if one.rank == 1), None)
+    return distance_m if distance_m is not None and math.isfinite(distance_m) else None
 
 
 def world_of(run: Run) -> World:
@@ -203,6 +210,45 @@ def config_as_json(config: Config) -> dict[str, Any]:
     if isinstance(config, ExperimentConfig):
         return experiments.as_json(config)
     return as_json(config)
+
+
+def result_as_json(result: Result | None) -> dict[str, Any] | None:
+    """Serialise a result to plain JSON types, as sent by the API and stored in the database."""
+    fields: dict[str, Any] | None = msgspec.to_builtins(result)
+    return fields
+
+
+def result_from_json(kind: Kind, fields: Any) -> Result:
+    """Parse a result that `result_as_json` wrote; fields of later versions are ignored.
+
+    NaN, which earlier versions stored, is what was not measured.
+
+    Raises:
+        ValueError: if it lacks a field, or a value is out of its limits.
+    """
+    try:
+        result: Result = _RESULTS[kind].validate_python(finite(fields), extra="ignore")
+    except ValidationError as error:
+        raise ValueError(_first_error(error)) from None
+    return result
+
+
+def untrusted_result(kind: Kind, data: bytes) -> Result:
+    """Parse the JSON text of a result; no value is converted, and no other field is allowed.
+
+    Raises:
+        ValueError: if it is not exactly what `result_as_json` writes.
+    """
+    try:
+        result: Result = _RESULTS[kind].validate_json(data, strict=True, extra="forbid")
+    except ValidationError as error:
+        raise ValueError(_first_error(error)) from None
+    return result
+
+
+def _first_error(error: ValidationError) -> str:
+    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    return f"its result cannot be read: {'.'.join(map(str, first['loc']))}: {first['msg']}"
 
 
 def run_config_from_json(kind: str, fields: Mapping[str, Any]) -> Config:

@@ -7,13 +7,14 @@ fewer, or of an earlier version, has only the first. Of a longer one the figures
 
 import io
 import threading
-from collections import OrderedDict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from itertools import accumulate, takewhile
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
+from cachetools import LRUCache, cachedmethod
 
 from app.storage.artifact_file import ReadableArtifact, chunks
 from app.storage.artifacts import StoredFile
@@ -58,10 +59,10 @@ class StoredRaces:
         store: where they are.
     """
 
-    def __init__(self, store: RunStore) -> None:
+    def __init__(self, store: RunStore, max_bytes: int = BLOCKS_BYTES) -> None:
         self.store = store
-        self._blocks = _Blocks()
-        self._known: OrderedDict[str, tuple[NpzSlices, Sequence[LaneHead]]] = OrderedDict()
+        self._blocks: LRUCache[Hashable, StepArrays] = LRUCache(max_bytes, attrgetter("nbytes"))
+        self._known: LRUCache[str, tuple[NpzSlices, Sequence[LaneHead]]] = LRUCache(KNOWN_FILES)
         self._lock = threading.Lock()
 
     def read(self, run_id: str) -> list[LaneRecording] | None:
@@ -154,20 +155,20 @@ class StoredRaces:
             return chunks(self.store.open_file(parts[0].stored, parts[0].label))
         return joined(files, lambda n: self._opened(parts[n], files[n])) if files else None
 
+    @cachedmethod(
+        attrgetter("_blocks"),
+        key=lambda _self, part, lane, number: (part.stored.file, lane, number),
+        lock=attrgetter("_lock"),
+    )
     def block(self, part: "_LabelledFile", lane: int, number: int) -> StepArrays:
         """Return some steps of a lane: the `number`-th of its blocks in a file.
 
         Raises:
             HexapodError: if they cannot be read (any more).
         """
-        key = _BlockKey(part.stored.file, lane, number)
-        block = self._blocks.get(key)
-        if block is None:
-            with self._file(part) as file:
-                first, count = number * BLOCK_STEPS, file.heads[lane].steps
-                block = file.part(lane, first, min(first + BLOCK_STEPS, count))
-            self._blocks.put(key, block)
-        return block
+        with self._file(part) as file:
+            first, count = number * BLOCK_STEPS, file.heads[lane].steps
+            return file.part(lane, first, min(first + BLOCK_STEPS, count))
 
     @contextmanager
     def _file(self, part: "_LabelledFile") -> Iterator[RaceFile]:
@@ -180,9 +181,6 @@ class StoredRaces:
             file = RaceFile(opened, heads)
             with self._lock:
                 self._known[name] = opened, file.heads
-                self._known.move_to_end(name)
-                while len(self._known) > KNOWN_FILES:
-                    self._known.popitem(last=False)
             yield file
 
     @contextmanager
@@ -307,12 +305,6 @@ class GrowingRace:
                 lane.steps.store(LaneFile(self._races, part, place, first), count)
 
 
-class _BlockKey(NamedTuple):
-    file: str
-    lane: int
-    block: int
-
-
 class LaneFile:
     """The steps of a lane in a file."""
 
@@ -324,24 +316,3 @@ class LaneFile:
         """Return the step of an index of the lane, from 0 on."""
         block = (index - self.first) // BLOCK_STEPS
         return self._races.block(self._part, self._lane, block).step(index)
-
-
-class _Blocks:
-    """Least-recently-used cache of steps, never over its capacity."""
-
-    def __init__(self) -> None:
-        self._lock, self._bytes = threading.Lock(), 0
-        self._kept: OrderedDict[_BlockKey, StepArrays] = OrderedDict()
-
-    def get(self, key: _BlockKey) -> StepArrays | None:
-        with self._lock:
-            if key in self._kept:
-                self._kept.move_to_end(key)
-            return self._kept.get(key)
-
-    def put(self, key: _BlockKey, block: StepArrays) -> None:
-        with self._lock:
-            self._bytes += block.nbytes - (self._kept[key].nbytes if key in self._kept else 0)
-            self._kept[key] = block
-            while self._bytes > BLOCKS_BYTES:
-                self._bytes -= self._kept.popitem(last=False)[1].nbytes

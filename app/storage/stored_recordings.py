@@ -1,12 +1,14 @@
 """Recordings of ended runs: stored as `.npz` artifacts, with an LRU cache in memory."""
 
 import logging
+import math
 import threading
-import time
-from collections import OrderedDict
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from operator import attrgetter
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, TypeVar
+
+from cachetools import TLRUCache
 
 from app.storage.database.store import RunStore
 from app.storage.errors import NotFound
@@ -128,49 +130,39 @@ class StoredRecordings:
         self._races.drop(run_id)
 
 
-class _CachedRecording(NamedTuple, Generic[T]):
-    """A cached value, or a cached miss (None)."""
-
-    value: T | None
-    read_s: float
-    size: int
-
-
 class _LruCache(Generic[T]):
     """Least-recently-used cache with negative caching: a miss is valid for `_MISS_TTL_S`."""
 
     def __init__(self, read: Callable[[str], T | None], size_of: Callable[[T], int]) -> None:
-        self._read, self._size_of, self._lock = read, size_of, threading.Lock()
-        self._entries: OrderedDict[str, _CachedRecording[T]] = OrderedDict()
+        self._read, self._lock = read, threading.Lock()
+
+        def size(value: T | None) -> int:
+            # At least a share, which limits their number; at most all, so that the newest is kept.
+            bytes_ = 0 if value is None else size_of(value)
+            return min(max(bytes_, CACHE_BYTES // CACHE_RECORDINGS), CACHE_BYTES)
+
+        self._entries: TLRUCache[str, T | None] = TLRUCache(
+            CACHE_BYTES,
+            lambda _, value, now_s: now_s + _MISS_TTL_S if value is None else math.inf,
+            getsizeof=size,
+        )
 
     def get(self, key: str) -> T | None:
+        # Locked while it reads: what `drop` invalidates meanwhile must not be kept.
         with self._lock:
-            entry, now = self._entries.get(key), time.monotonic()
-            if entry is None or (entry.value is None and now - entry.read_s > _MISS_TTL_S):
-                entry = self._entry(self.or_none(key, self._read), now)
-            self._put(key, entry)
-            return entry.value
+            try:
+                return self._entries[key]
+            except KeyError:
+                value = self._entries[key] = self.or_none(key, self._read)
+                return value
 
     def put(self, key: str, value: T) -> None:
         with self._lock:
-            self._put(key, self._entry(value, time.monotonic()))
+            self._entries[key] = value
 
     def drop(self, key: str) -> None:
-        with self._lock:
-            self._entries.pop(key, None)
-
-    def _put(self, key: str, entry: _CachedRecording[T]) -> None:
-        self._entries[key] = entry
-        self._entries.move_to_end(key)
-        while len(self._entries) > 1 and self._is_over_capacity():
-            self._entries.popitem(last=False)
-
-    def _is_over_capacity(self) -> bool:
-        size = sum(entry.size for entry in self._entries.values())
-        return len(self._entries) > CACHE_RECORDINGS or size > CACHE_BYTES
-
-    def _entry(self, value: T | None, now: float) -> _CachedRecording[T]:
-        return _CachedRecording(value, now, 0 if value is None else self._size_of(value))
+        with self._lock, suppress(KeyError):
+            del self._entries[key]
 
     @staticmethod
     def or_none(key: str, read: Callable[[str], T | None]) -> T | None:

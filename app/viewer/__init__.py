@@ -5,5 +5,5 @@
 - `service` assembles the viewer and its routes; `stage_loop` is the drawing thread.
 - `hub` relays viser's stream to browsers, one `session` each; `snapshot` serves late joiners.
 - `replay_frames` encodes the replays of stored runs, once for everybody.
-- `recorded_stream` exports a race as a `.viser` file; `update_cost` is the benchmark of one update.
+- `update_cost` is the benchmark of one update.
 """

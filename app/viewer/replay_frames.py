@@ -1,4 +1,4 @@
-"""Replays of stored runs as frames and pages, encoded once for everybody who watches them."""
+"""Replays of stored runs as frames, encoded once for everybody who watches them."""
 
 import threading
 from collections.abc import Iterator
@@ -8,11 +8,11 @@ from typing import Any
 from app.cache import BytesCache
 from app.jobs.stopping import Stopping
 from app.stage.playback import Replays
-from app.storage.errors import Conflict, NotFound
+from app.storage.errors import NotFound
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import Cells
 from hexapods.drawing.replay_encoding import encode_frames, encode_posture, encode_scene
-from hexapods.drawing.replay_page import MAX_BYTES, TooLong, replay_page
+from hexapods.exports.export_format import EncodedReplay
 from hexapods.runs.clocks import Clock
 from hexapods.shows.replay import SEGMENT_FRAMES, NoSuchSegment
 
@@ -126,38 +126,21 @@ class ReplayFrames:
                 self._segments.put(key, encoded)
         return encoded
 
-    def page(
-        self, run_id: str, title: str, clock: Clock, max_bytes: int = MAX_BYTES
-    ) -> Iterator[bytes]:
-        """Yield the page that plays a run that has ended without a server, in chunks.
+    def encoded(self, run_id: str, clock: Clock) -> EncodedReplay:
+        """Return all frames of a run, each encoded when it is asked for.
 
         Args:
             run_id: id of a training or race.
-            title: of the page.
             clock: times a race.
-            max_bytes: maximum size of the page.
 
         Raises:
-            NotFound, InvalidInput, Conflict: at the call, see `Replays.get`, and if the run has not
-                ended, or is too long for a page.
+            NotFound, InvalidInput, Conflict: at the call, see `Replays.get`.
         """
-        plan = self.plan(run_id, clock)
-        if not plan["complete"]:
-            raise Conflict(
-                f"{plan['kind']} {run_id} is not over; it can be had as a page once it ended, or "
-                "was stopped",
-                "running",
-            )
-        try:
-            return replay_page(
-                plan,
-                lambda: self.scene(run_id),
-                lambda level, number: self.segment(run_id, clock, level, number),
-                title,
-                max_bytes,
-            )
-        except TooLong as error:
-            raise Conflict(f"{plan['kind']} {run_id} is {error}", "finished") from error
+        return EncodedReplay(
+            self.plan(run_id, clock),
+            lambda: self.scene(run_id),
+            lambda level, number: self.segment(run_id, clock, level, number),
+        )
 
     @contextmanager
     def _encoding(self) -> Iterator[None]:

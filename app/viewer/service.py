@@ -14,12 +14,12 @@ from app.events.bus import EventBus
 from app.jobs.stopping import Stopping
 from app.stage.stage import Stage
 from app.viewer.hub import Hub
-from app.viewer.recorded_stream import recorded_stream
 from app.viewer.stage_loop import StageLoop
 from app.viewer.viewer_page import sanitized_query, viewer_page
 from hexapods.drawing.scene import StageScene
 from hexapods.drawing.track import Position
 from hexapods.drawing.viser_internals.server import in_process_viser
+from hexapods.exports.recorded_stream import recorded_stream
 from hexapods.runs.clocks import Clock
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
@@ -77,7 +77,7 @@ class ViewerService:
     ) -> bytes:
         """Return a race as a `.viser` file; only one is rendered at a time."""
         with self._recording_lock:
-            return recorded_stream(config, lanes, name, clock, original, stopping=self._stopping)
+            return recorded_stream(config, lanes, name, clock, original, check=self._stopping.check)
 
     def _open(self) -> None:
         server = self._resources.enter_context(in_process_viser())

@@ -1,14 +1,15 @@
 """Estimated time of a training, race or experiment here: its steps times their measured time."""
 
 import threading
-import time
-from collections import OrderedDict, defaultdict
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain, zip_longest
 from statistics import fmean
 from typing import NamedTuple
+
+from cachetools import TTLCache
 
 from app.jobs.process_pool import TIMEOUT_S, ProcessPool, TookTooLong
 from app.jobs.stopping import Stopping
@@ -67,7 +68,7 @@ class Estimates:
         """
         self._stopping = stopping or Stopping()
         self._pool, self._cores = pool, cores
-        self._cache: OrderedDict[TimedSteps, tuple[float, float]] = OrderedDict()
+        self._cache: TTLCache[TimedSteps, float] = TTLCache(MAX_CACHED, CACHED_S)
         self._lock, self._timing = threading.Lock(), threading.Lock()
         self._free = threading.BoundedSemaphore(MAX_AT_ONCE)
 
@@ -123,7 +124,8 @@ class Estimates:
                 known = self._known(kinds)
                 missing = [kind for kind in kinds if kind not in known]
                 known |= zip(missing, self._timed(missing), strict=True)
-                self._keep({kind: known[kind] for kind in missing})
+                with self._lock:
+                    self._cache.update({kind: known[kind] for kind in missing})
         return known
 
     def _timed(self, kinds: Sequence[TimedSteps]) -> Sequence[float]:
@@ -148,17 +150,9 @@ class Estimates:
             self._free.release()
 
     def _known(self, kinds: Iterable[TimedSteps]) -> dict[TimedSteps, float]:
-        now = time.monotonic()
-        with self._lock:
-            cached = {kind: self._cache[kind] for kind in kinds if kind in self._cache}
-        return {kind: step_s for kind, (step_s, at_s) in cached.items() if now - at_s < CACHED_S}
-
-    def _keep(self, timed: Mapping[TimedSteps, float]) -> None:
-        now = time.monotonic()
-        with self._lock:
-            self._cache |= {kind: (step_s, now) for kind, step_s in timed.items()}
-            while len(self._cache) > MAX_CACHED:
-                self._cache.popitem(last=False)
+        # At one time for all: what expires between two looks would raise.
+        with self._lock, self._cache.timer:
+            return {kind: self._cache[kind] for kind in kinds if kind in self._cache}
 
 
 def _seconds(parts: Iterable[_Part], measured: Mapping[TimedSteps, float]) -> float:

@@ -2,12 +2,12 @@
 
 import threading
 import time
-from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from cachetools import LRUCache
 
 from app.jobs.process_pool import ProcessPool, TookTooLong
 from app.jobs.submissions import check_training
@@ -64,8 +64,8 @@ class WhatIf:
             pool: runs the trials.
         """
         self._pool = pool
-        self._cache: OrderedDict[TrialConfig, tuple[float, ...]] = OrderedDict()
-        """Cached distances of all seeds [m], by the trial with seed 0; oldest evicted first."""
+        self._cache: LRUCache[TrialConfig, tuple[float, ...]] = LRUCache(MAX_CACHED)
+        """Cached distances of all seeds [m], by the trial with seed 0."""
         self._turns = Turns()
         self._cache_lock = threading.Lock()
 
@@ -80,7 +80,7 @@ class WhatIf:
         Returns:
             `seeds`, `greedy_m`, `chosen` and `default` with `distances_m`, `walkers` (the share
             of seeds with at least half of greedy's distance), `iqm_m` (interquartile mean), the
-            agent's settings and `steps_per_episode`; `compute_s`.
+            agent's `settings` and `steps_per_episode`; `compute_s`.
 
         Raises:
             InvalidInput, UnknownName, Unreachable: if the training is invalid, or takes too long.
@@ -138,7 +138,8 @@ class WhatIf:
             finally:
                 compute_s = time.monotonic() - began_s
                 asker.charge(compute_s)
-        self._store(distances)
+        with self._cache_lock:
+            self._cache.update(distances)
         return distances, compute_s
 
     def _check_time(
@@ -172,14 +173,6 @@ class WhatIf:
     def _cached(self, trials: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
         with self._cache_lock:
             return {one: self._cache[one] for one in trials if one in self._cache}
-
-    def _store(self, distances: dict[TrialConfig, tuple[float, ...]]) -> None:
-        with self._cache_lock:
-            for one, of_seeds in distances.items():
-                self._cache[one] = of_seeds
-                self._cache.move_to_end(one)
-            while len(self._cache) > MAX_CACHED:
-                self._cache.popitem(last=False)
 
 
 def _check_limits(training: TrainingConfig) -> None:
@@ -226,7 +219,7 @@ def _summarize(
 ) -> dict[str, Any]:
     walkers = sum(distance >= greedy_m / 2 for distance in distances_m)
     return {
-        **config.settings,
+        "settings": dict(config.settings),
         "steps_per_episode": config.steps_per_episode,
         "distances_m": list(distances_m),
         "walkers": walkers / len(distances_m),

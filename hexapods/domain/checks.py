@@ -2,11 +2,11 @@
 
 from dataclasses import asdict
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Gt, Le, Lt, MultipleOf
 
 from hexapods.domain.errors import InvalidInput
 
-Limit = Ge | Gt | Le | Lt
+Limit = Ge | Gt | Le | Lt | MultipleOf
 
 
 def check_whole(name: str, value: int, low: int, high: int | None) -> None:
@@ -31,6 +31,8 @@ def bound_of(limit: Limit) -> float:
 def satisfies(limit: Limit, value: float) -> bool:
     """Whether a number is within a limit."""
     bound = bound_of(limit)
+    if isinstance(limit, MultipleOf):
+        return value % bound == 0
     if isinstance(limit, Gt):
         return value > bound
     if isinstance(limit, Ge):

@@ -21,7 +21,7 @@ from inspect import Parameter
 from types import MappingProxyType, NoneType, UnionType
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Gt, Le, Lt, MultipleOf
 
 from hexapods.domain.checks import Limit, bound_of, parse_number, satisfies
 from hexapods.domain.errors import InvalidInput, UnknownName
@@ -135,7 +135,7 @@ class DeclaredSetting:
         parts = list(self.choices)
         if self.is_whole:
             # The unit of a count is clear from its name.
-            parts.append(" ".join(["a whole number", *self._range()]))
+            parts.append(" ".join([self._whole_number(), *self._range()]))
         elif self.is_number:
             unit = [self.about.unit] if self.about.unit else []
             parts.append(" ".join(["a number", *self._range(), *unit]))
@@ -200,6 +200,13 @@ class DeclaredSetting:
                 value = parse_number(text, self.is_whole)
         self.check(value)
         return value
+
+    def _whole_number(self) -> str:
+        multiple = next((bound_of(x) for x in self.limits if isinstance(x, MultipleOf)), None)
+        if multiple is None:
+            return "a whole number"
+        number = "an even number" if multiple == 2 else f"a multiple of {multiple:g}"
+        return f"{number} of {self.about.unit}" if self.about.unit else number
 
     def _range(self) -> list[str]:
         low, high = (None if x is None else f"{x:,.15g}" for x in (self.low, self.high))
@@ -424,7 +431,7 @@ def _literals(annotation: Any) -> Iterator[Any]:
 
 def _limits(annotation: Any) -> Iterator[Limit]:
     for one in (*getattr(annotation, "__metadata__", ()), *get_args(annotation)):
-        if isinstance(one, Ge | Gt | Le | Lt):
+        if isinstance(one, Limit):
             yield one
         elif get_origin(one) is not None:
             yield from _limits(one)

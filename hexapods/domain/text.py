@@ -26,6 +26,8 @@ NOTES = (
     f"text of at most {MAX_NOTES:,} characters, without control characters but line breaks and tabs"
 )
 """Description of valid notes, for messages."""
+MAX_MESSAGE = 10_000
+"""Characters kept of an error; exceptions of user-defined agents may be longer."""
 NOTES_CONTROLS = "\t\n\r"
 """Control characters that notes may have."""
 _INVISIBLE = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
@@ -99,6 +101,18 @@ def invisible_ranges() -> tuple[tuple[int, int], ...]:
         is_next = bool(ranges) and ranges[-1][1] == point - 1
         ranges.append((ranges.pop()[0] if is_next else point, point))
     return tuple(ranges)
+
+
+def storable(text: str) -> str:
+    """Replace NUL and lone surrogates, which databases reject, by U+FFFD."""
+    whole = text.replace("\0", _REPLACEMENT)
+    return whole.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
+
+
+def message(text: str) -> str:
+    """Return the message of an error as it is kept: storable, and cut where it is too long."""
+    whole = storable(text)
+    return whole if len(whole) <= MAX_MESSAGE else f"{whole[: MAX_MESSAGE - 1]}…"
 
 
 def visible(text: str, also_allowed: str = "") -> str:

@@ -4,6 +4,6 @@
   `lane_ground`, `payload_and_push`, `condition_colors`.
 - `robot_mesh` builds meshes from the MJCF; `shapes` and `colormap` are its primitives.
 - `replay_encoding` encodes a replay's frames as messages that a page plays by itself, and ghosts of
-  `posture`; `replay_page` puts them into one file that needs no server.
+  `posture`.
 - `viser_internals` has all that rests on viser's private parts, and the list of what is assumed.
 """

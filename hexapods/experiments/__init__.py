@@ -2,9 +2,9 @@
 
 - `config`: the experiments' parameters; `plan`: the grid of settings and their trials; `trial`:
   one trial (practice, walk, race) and its result.
-- `engine`: runs trials on a cluster; `cluster`, `own_cluster`, `cluster_nodes`: connect to a Dask
-  cluster or start a local one; `worker`: the code that runs on a worker, and the check that
-  all machines have the same versions.
+- `engine`: runs trials on workers; `local_workers`: processes on this machine, `cluster`: those,
+  or a Dask cluster; `worker`: the code that runs on a worker, and the check that all machines have
+  the same versions.
 - `progress`: runs the remaining trials of an experiment and collects their outcomes; `folder`: the
   same with an append-only results file, from which it resumes.
 - `statistics`, `measures`, `setting_results`, `summary`: interquartile means, bootstrap intervals

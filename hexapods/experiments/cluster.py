@@ -1,24 +1,34 @@
-"""Connect to the Dask cluster that runs trials: a local one on this machine, or an existing one."""
+"""Where trials run: worker processes of this machine, or an existing Dask cluster."""
 
 import asyncio
 import logging
 import re
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hexapods.domain.checks import check_whole
-from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.config import MAX_WORKERS
-from hexapods.experiments.own_cluster import cores, own_cluster
-from hexapods.experiments.worker import difference, versions
+from hexapods.experiments.local_workers import local_workers
+from hexapods.experiments.trial import TrialConfig
+from hexapods.experiments.worker import (
+    Attempt,
+    ClusterLost,
+    WorkerDied,
+    Workers,
+    difference,
+    run_batch,
+    versions,
+)
+from hexapods.machine import cores
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, Future
     from distributed.security import Security
 
 ANSWER_S = 8.0
@@ -29,20 +39,17 @@ _HOW_TO_START = (
     "start one with `dask scheduler` and `dask worker ADDRESS --nthreads 1`, or leave --scheduler "
     "out to use the cores of this machine"
 )
-
-
-class ClusterLost(HexapodError):
-    """The connection to the scheduler was lost, or no worker is left; finished results are kept."""
+_LOST = "the connection to the cluster's scheduler was lost; what was done is kept"
 
 
 @dataclass(frozen=True, kw_only=True)
 class ClusterSpec:
-    """The cluster that trials run on.
+    """The workers that trials run on.
 
     Attributes:
-        workers: number of processes of a local cluster; None for one per core.
-        scheduler: address of an existing cluster's scheduler, such as `tcp://10.0.0.7:8786` or
-            `tls://…`; None for a local cluster.
+        workers: number of processes on this machine; None for one per core.
+        scheduler: address of a Dask cluster's scheduler, such as `tcp://10.0.0.7:8786` or
+            `tls://…`; None for this machine.
         tls_ca, tls_cert, tls_key: paths of PEM files, for a `tls://` scheduler.
 
     Raises:
@@ -83,45 +90,74 @@ class ClusterSpec:
 
 
 @contextmanager
-def connect(spec: ClusterSpec) -> "Iterator[Client]":
-    """Yield a client of the cluster; a local cluster is started first.
+def connect(spec: ClusterSpec) -> Iterator[Workers]:
+    """Yield the workers; those of this machine are started first.
 
-    Leaving the context cancels the tasks in progress. A local cluster's processes end with this
-    one, even if this one is killed.
+    Leaving the context cancels the tasks in progress. Processes on this machine end with this one,
+    even if this one is killed.
 
     Raises:
         InvalidInput: if the scheduler does not answer, or a worker would compute other results.
         ClusterLost: if no worker can be started.
     """
-    from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
+    if spec.scheduler is None:
+        with local_workers(spec.workers or cores()) as workers:
+            yield workers
+    else:
+        with _existing_cluster(spec) as client:
+            yield _ClusterWorkers(client)
 
-    with ExitStack() as stack:
-        # Silences Dask's log of every worker that dies; the engine reports these itself.
-        stack.enter_context(silence_logging_cmgr(logging.CRITICAL))
-        if spec.scheduler is None:
-            yield stack.enter_context(own_cluster(spec.workers or cores()))
-        else:
-            yield stack.enter_context(_existing_cluster(spec))
+
+class _ClusterWorkers:
+    """The workers of a Dask cluster."""
+
+    def __init__(self, client: "Client") -> None:
+        self._client, self._expected = client, versions()
+
+    def count(self) -> int:
+        try:
+            return sum(self._client.nthreads().values())
+        # Tornado raises a ValueError if the connection is closed as it begins to be encrypted.
+        except (OSError, TimeoutError, ValueError) as error:
+            raise ClusterLost(_LOST) from error
+
+    def submit(self, configs: Sequence[TrialConfig]) -> "Future[list[Attempt]]":
+        # Not through `get_executor`: its future never ends if a result is lost on its way.
+        return self._client.submit(run_batch, configs, self._expected, pure=False)
+
+    def result(self, task: Any) -> list[Attempt]:
+        from distributed import CancelledError, KilledWorker  # noqa: PLC0415
+
+        try:
+            done: list[Attempt] = task.result()
+        except KilledWorker as error:
+            raise WorkerDied(error.allowed_failures + 1) from error
+        except CancelledError as error:
+            raise ClusterLost(_LOST) from error
+        return done
 
 
 @contextmanager
 def _existing_cluster(spec: ClusterSpec) -> "Iterator[Client]":
-    from distributed import Client  # noqa: PLC0415
+    from distributed import Client  # noqa: PLC0415 - importing Dask takes half a second
+    from distributed.utils import silence_logging_cmgr  # noqa: PLC0415
 
     address = str(spec.scheduler)
-    security = _security(spec)
-    try:
-        _probe(address, security)
-        client = Client(address, security=security, timeout=ANSWER_S, set_as_default=False)
-    except (OSError, OverflowError, ValueError, TypeError) as error:
-        raise InvalidInput(
-            f"no scheduler answers at {address} ({_first_line(error)}); {_HOW_TO_START}"
-        ) from error
-    try:
-        _check_workers(client, address)
-        yield client
-    finally:
-        _close(client)
+    # Silences Dask's log of every worker that dies; the engine reports these itself.
+    with silence_logging_cmgr(logging.CRITICAL):
+        security = _security(spec)
+        try:
+            _probe(address, security)
+            client = Client(address, security=security, timeout=ANSWER_S, set_as_default=False)
+        except (OSError, OverflowError, ValueError, TypeError) as error:
+            raise InvalidInput(
+                f"no scheduler answers at {address} ({_first_line(error)}); {_HOW_TO_START}"
+            ) from error
+        try:
+            _check_workers(client, address)
+            yield client
+        finally:
+            _close(client)
 
 
 def _close(client: "Client") -> None:

@@ -256,7 +256,7 @@ def as_json(config: ExperimentConfig) -> dict[str, Any]:
     data: dict[str, Any] = {}
     for one in fields(config):
         value = getattr(config, one.name)
-        data |= value if isinstance(value, SettingValues) else {one.name: value}
+        data[one.name] = value
     data["robots"] = [as_mapping(one) for one in config.robots]
     data["gaits"] = [
         {k: v for k, v in asdict(gait).items() if v is not None}
@@ -264,13 +264,23 @@ def as_json(config: ExperimentConfig) -> dict[str, Any]:
         else gait
         for gait in config.gaits
     ]
+    data["settings"] = {name: list(values) for name, values in config.settings.items()}
     return {k: list(v) if isinstance(v, tuple) else v for k, v in data.items()}
+
+
+def by_option(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return fields and settings side by side, as options and Python's arguments have them.
+
+    Args:
+        data: the output of `as_json`.
+    """
+    return {**{k: v for k, v in data.items() if k != "settings"}, **data["settings"]}
 
 
 def from_json(
     data: Mapping[str, Any], kind: type[ExperimentConfig] = ExperimentConfig
 ) -> ExperimentConfig:
-    """Parse the output of `as_json`; keys that are no field are settings of the agents.
+    """Parse the output of `as_json`.
 
     Args:
         data: the output of `as_json`.
@@ -283,8 +293,8 @@ def from_json(
     values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
     values["robots"] = tuple(robot(one) for one in data["robots"])
     values["gaits"] = tuple(gait_from_json(one) for one in data["gaits"])
-    own = {one.name for one in fields(kind)}
-    settings = {name: values.pop(name) for name in list(values) if name not in own}
-    if single := [name for name, value in settings.items() if not isinstance(value, tuple)]:
+    settings = values.pop("settings")
+    if single := [name for name, value in settings.items() if not isinstance(value, list)]:
         raise InvalidInput(f"{single[0]} must be a list of values")
-    return kind(**values, settings=SettingValues(settings))
+    lists = {name: tuple(value) for name, value in settings.items()}
+    return kind(**values, settings=SettingValues(lists))

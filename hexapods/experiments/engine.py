@@ -1,27 +1,30 @@
-"""Run trials on a cluster: a sliding window of tasks, with retries for trials whose worker died."""
+"""Run trials on workers: a sliding window of tasks, with retries for trials whose worker died."""
 
 import queue
 import time
-import uuid
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, islice
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from hexapods.experiments.cluster import ClusterLost, ClusterSpec, connect
+from hexapods.experiments.cluster import ClusterSpec, connect
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.trial import TrialResult
-from hexapods.experiments.worker import Attempt, VersionMismatch, run_batch, versions
-
-if TYPE_CHECKING:
-    from distributed import Client, Future
+from hexapods.experiments.worker import (
+    Attempt,
+    ClusterLost,
+    Task,
+    VersionMismatch,
+    WorkerDied,
+    Workers,
+)
 
 DEATHS = 3
 """Number of times that a trial may kill its worker before it is set aside."""
 
 BATCH_S = 0.5
 MAX_BATCH = 64
-_TASKS_PER_THREAD = 2
-"""Tasks in flight per worker thread: while one is computed, the next is queued on the worker."""
+_TASKS_PER_WORKER = 2
+"""Tasks in flight per worker: while one is computed, the next is queued on the worker."""
 _POLL_S = 0.2
 _WORKER_COUNT_S = 1.0
 _WORKER_WAIT_S = 60.0
@@ -65,27 +68,28 @@ def run_trials(
 
     Args:
         trials: the trials, with unique keys.
-        spec: the cluster. A local cluster is started before the first trial.
+        spec: the workers. Those of this machine are started before the first trial.
         may_continue: called before each task is submitted, and five times a second. Returning
             False ends the run and cancels the tasks in progress; blocking in it pauses the run.
 
     Raises:
         InvalidInput: if the cluster cannot be used; see `connect`.
-        ClusterLost: if the scheduler's connection is lost, or no worker comes back in time.
+        ClusterLost: if no worker can be started or comes back in time, or the scheduler's
+            connection is lost.
     """
     remaining = iter(trials)
     first = next(remaining, None)
     if first is None or not may_continue():
         return
-    with connect(spec) as client:
-        yield from run_on(client, chain([first], remaining), may_continue)
+    with connect(spec) as workers:
+        yield from run_on(workers, chain([first], remaining), may_continue)
 
 
 def run_on(
-    client: "Client", trials: Iterable[Trial], may_continue: Callable[[], bool] = lambda: True
+    workers: Workers, trials: Iterable[Trial], may_continue: Callable[[], bool] = lambda: True
 ) -> Generator[Outcome, None, None]:
-    """Run trials as `run_trials` does, on a cluster that is already connected."""
-    return _Engine(client, may_continue).run(trials)
+    """Run trials as `run_trials` does, on workers that are already there."""
+    return _Engine(workers, may_continue).run(trials)
 
 
 class _BatchSizer:
@@ -109,14 +113,13 @@ class _BatchSizer:
 class _Engine:
     """State of one `run_on`: the sliding window of tasks in flight, and the trials to retry."""
 
-    def __init__(self, client: "Client", may_continue: Callable[[], bool]) -> None:
-        self._client, self._may_continue = client, may_continue
-        self._expected = versions()
+    def __init__(self, workers: Workers, may_continue: Callable[[], bool]) -> None:
+        self._workers, self._may_continue = workers, may_continue
         self._batches = _BatchSizer()
-        self._in_flight: dict[Future[list[Attempt]], list[Trial]] = {}
-        self._ended_tasks: queue.SimpleQueue[Future[list[Attempt]]] = queue.SimpleQueue()
+        self._in_flight: dict[Task, list[Trial]] = {}
+        self._ended_tasks: queue.SimpleQueue[Task] = queue.SimpleQueue()
         self._suspects: list[Trial] = []
-        self._threads, self._counted_s = 0, -_WORKER_COUNT_S
+        self._count, self._counted_s = 0, -_WORKER_COUNT_S
         self._without_workers_since_s: float | None = None
 
     def run(self, trials: Iterable[Trial]) -> Generator[Outcome, None, None]:
@@ -132,7 +135,7 @@ class _Engine:
             batch = self._in_flight.pop(ended)
             try:
                 yield from self._outcomes(ended, batch)
-            except _WorkerDied:
+            except WorkerDied:
                 self._suspects += batch
         for trial in self._suspects:
             yield from self._run_alone(trial, deaths=1)
@@ -140,11 +143,10 @@ class _Engine:
             yield from self._run_alone(trial, deaths=0)
 
     def _fill_window(self, untimed: Iterator[Trial]) -> None:
-        """Submit batches until each worker thread has `_TASKS_PER_THREAD` tasks in flight."""
+        """Submit batches until each worker has `_TASKS_PER_WORKER` tasks in flight."""
         self._check_workers()
         while (
-            len(self._in_flight) < _TASKS_PER_THREAD * max(1, self._threads)
-            and self._may_continue()
+            len(self._in_flight) < _TASKS_PER_WORKER * max(1, self._count) and self._may_continue()
         ):
             batch = list(islice(untimed, self._batches.size))
             if not batch:
@@ -152,7 +154,7 @@ class _Engine:
             self._submit(batch)
 
     def _run_alone(self, trial: Trial, deaths: int) -> Iterator[Outcome]:
-        """Run a trial with nothing else on the cluster, so that a worker's death is due to it."""
+        """Run a trial with nothing else on the workers, so that a worker's death is due to it."""
         while deaths < DEATHS:
             if not self._may_continue():
                 return
@@ -163,7 +165,7 @@ class _Engine:
             del self._in_flight[ended]
             try:
                 yield from self._outcomes(ended, [trial])
-            except _WorkerDied as died:
+            except WorkerDied as died:
                 deaths += died.times
             else:
                 return
@@ -171,13 +173,11 @@ class _Engine:
         yield Outcome(trial.key, None, reason, 0.0)
 
     def _submit(self, batch: list[Trial]) -> None:
-        configs = [trial.config for trial in batch]
-        key = f"hexapods-{uuid.uuid4().hex}"
-        future = self._client.submit(run_batch, configs, self._expected, key=key)
-        self._in_flight[future] = batch
-        future.add_done_callback(self._ended_tasks.put)
+        task = self._workers.submit([trial.config for trial in batch])
+        self._in_flight[task] = batch
+        task.add_done_callback(self._ended_tasks.put)
 
-    def _next_ended(self) -> "Future[list[Attempt]] | None":
+    def _next_ended(self) -> Task | None:
         """Wait for the next task that ends; None if the run shall end."""
         while self._may_continue():
             try:
@@ -186,16 +186,10 @@ class _Engine:
                 self._check_workers()
         return None
 
-    def _outcomes(self, ended: "Future[list[Attempt]]", batch: list[Trial]) -> list[Outcome]:
-        from distributed import CancelledError, KilledWorker  # noqa: PLC0415
-
+    def _outcomes(self, ended: Task, batch: list[Trial]) -> list[Outcome]:
         try:
-            done: list[Attempt] = ended.result()
-        except KilledWorker as error:
-            raise _WorkerDied(error.allowed_failures + 1) from error
-        except CancelledError as error:
-            raise ClusterLost(_CONNECTION_LOST) from error
-        except VersionMismatch:
+            done = self._workers.result(ended)
+        except (WorkerDied, ClusterLost, VersionMismatch):
             raise
         except Exception as error:
             # The task could not be deserialised, for example an agent's module is missing there.
@@ -209,29 +203,15 @@ class _Engine:
         if now_s - self._counted_s < _WORKER_COUNT_S:
             return
         self._counted_s = now_s
-        try:
-            self._threads = sum(self._client.nthreads().values())
-        # Tornado raises a ValueError if the connection is closed as it begins to be encrypted.
-        except (OSError, TimeoutError, ValueError) as error:
-            raise ClusterLost(_CONNECTION_LOST) from error
-        if self._threads:
+        self._count = self._workers.count()
+        if self._count:
             self._without_workers_since_s = None
         elif self._without_workers_since_s is None:
             self._without_workers_since_s = now_s
         elif now_s - self._without_workers_since_s > _WORKER_WAIT_S:
-            raise ClusterLost(f"no worker came back within {_WORKER_WAIT_S:.0f} s; {_RESULTS_KEPT}")
-
-
-class _WorkerDied(Exception):
-    """A worker's process ended while it computed a task."""
-
-    def __init__(self, times: int) -> None:
-        super().__init__(times)
-        self.times = times
-
-
-_RESULTS_KEPT = "what was done is kept"
-_CONNECTION_LOST = f"the connection to the cluster's scheduler was lost; {_RESULTS_KEPT}"
+            raise ClusterLost(
+                f"no worker came back within {_WORKER_WAIT_S:.0f} s; what was done is kept"
+            )
 
 
 def _split_timed(trials: Iterable[Trial], timed: list[Trial]) -> Iterator[Trial]:

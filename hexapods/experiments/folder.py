@@ -13,13 +13,15 @@ from pathlib import Path
 from typing import IO, Any
 
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
-from hexapods.experiments.config import SUMMARY, ExperimentConfig, as_json, from_json
+from hexapods.experiments.config import SUMMARY, ExperimentConfig, as_json, by_option, from_json
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.worker import difference, versions
 from hexapods.files import is_disk_full, lock_file
+from hexapods.runs.version_1 import nested_config
 
-FORMAT = 1
+FORMAT = 2
+"""Format of the header; 1, of versions before 0.2, is read too."""
 TRIALS = "trials.jsonl"
 """JSON lines, append-only: a header, then one line per trial."""
 
@@ -134,10 +136,10 @@ class ResultsFolder(Progress):
         if differs is not None:
             raise InvalidInput(f"{self.path} has results of {differs}; {_CHOOSE}")
         try:
-            there = as_json(from_json(head["config"], type(self.plan.config)))
+            there = by_option(as_json(from_json(head["config"], type(self.plan.config))))
         except (HexapodError, KeyError, TypeError, ValueError) as error:
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
-        here = as_json(self.plan.config)
+        here = by_option(as_json(self.plan.config))
         # Each trial's seed depends on its number only, so that more seeds extend the results; and
         # a tuning asks for the same settings first, however many are to come.
         every = dict.fromkeys((*here, *there))
@@ -174,6 +176,8 @@ def _converted(head: Mapping[str, Any]) -> dict[str, Any]:
     if kind == "TuningConfig":
         names = {"trials": "candidates"}
         config = {names.get(name, name): value for name, value in config.items()}
+    if head["format"] == 1:
+        head, config = {**head, "format": FORMAT}, nested_config(config)
     return {**head, "kind": _EARLIER_KINDS.get(kind, kind), "config": config}
 
 

@@ -3,16 +3,14 @@
 import time
 from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import closing
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.engine import Outcome, run_on, run_trials
 from hexapods.experiments.plan import Plan, Trial
 from hexapods.experiments.trial import TrialResult
-
-if TYPE_CHECKING:
-    from distributed import Client
+from hexapods.experiments.worker import Workers
 
 
 class Progress:
@@ -54,14 +52,14 @@ class Progress:
     def run(
         self, trials: Iterable[Trial], spec: ClusterSpec, may_continue: Callable[[], bool]
     ) -> Generator[Outcome, None, None]:
-        """Run trials on a cluster, add each outcome, and yield it; see `run_trials`."""
+        """Run trials on workers, add each outcome, and yield it; see `run_trials`."""
         yield from self._collect(lambda poll: run_trials(trials, spec, poll), may_continue)
 
     def run_on(
-        self, client: "Client", trials: Iterable[Trial], may_continue: Callable[[], bool]
+        self, workers: Workers, trials: Iterable[Trial], may_continue: Callable[[], bool]
     ) -> Generator[Outcome, None, None]:
-        """Run trials as `run` does, on a cluster that is already connected."""
-        yield from self._collect(lambda poll: run_on(client, trials, poll), may_continue)
+        """Run trials as `run` does, on workers that are already there."""
+        yield from self._collect(lambda poll: run_on(workers, trials, poll), may_continue)
 
     def _collect(
         self,
@@ -92,7 +90,7 @@ class Progress:
         """Return what the trials cost, as the summary reports it.
 
         Args:
-            workers: worker processes of the cluster; None if unknown.
+            workers: number of worker processes; None if unknown.
         """
         return {
             "wall_s": round(self.wall_s, 3),

@@ -17,7 +17,7 @@ from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.racing import record_race
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.records import StepTaken
-from hexapods.runs.results import race_result
+from hexapods.runs.results import decision_s, lane_figures
 from hexapods.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
 from hexapods.runs.training import evaluate, train
 
@@ -203,7 +203,7 @@ def _result(lanes: list[LaneRecording], wall: tuple[Mapping[str, Any], ...] | No
 
 def _wall_clock_results(lanes: list[LaneRecording]) -> tuple[Mapping[str, Any], ...]:
     lane_results = []
-    for lane in race_result(lanes, RACE_STEPS)["lanes"]:
-        timed = {k: lane["clocks"]["wall"][k] for k in ("finished_distance_m", "elapsed_s", "rank")}
-        lane_results.append({"agent": lane["agent"], "decision_s": lane["decision_s"], **timed})
+    for lane, figures in zip(lanes, lane_figures(lanes, RACE_STEPS, "wall"), strict=True):
+        timed = {k: getattr(figures, k) for k in ("finished_distance_m", "elapsed_s", "rank")}
+        lane_results.append({"agent": lane.agent, "decision_s": decision_s(lane), **timed})
     return tuple(lane_results)

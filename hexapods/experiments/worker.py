@@ -1,17 +1,29 @@
-"""The task that runs on a worker of the cluster: a batch of trials, by the same software.
+"""Workers, and the task that runs on them: a batch of trials, by the same software.
 
 A trial's result depends on the versions of the software, so a worker with others is refused.
 """
 
 import platform
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from hexapods import __version__
 from hexapods.domain.errors import HexapodError
 from hexapods.experiments.trial import TrialConfig, TrialResult, run_trial
+
+
+class ClusterLost(HexapodError):
+    """The workers cannot be reached, or none is left; finished results are kept."""
+
+
+class WorkerDied(Exception):
+    """A worker's process ended, as often as `times` says, while it computed a task."""
+
+    def __init__(self, times: int = 1) -> None:
+        super().__init__(times)
+        self.times = times
 
 
 class VersionMismatch(HexapodError):
@@ -30,6 +42,33 @@ class Attempt(NamedTuple):
     result: TrialResult | None
     reason: str | None
     compute_s: float
+
+
+class Task(Protocol):
+    """A batch of trials that is being computed: a future, as Python's or Dask's."""
+
+    def add_done_callback(self, function: Callable[[Any], None], /) -> None:
+        """Call a function with it once it has ended, in another thread."""
+
+
+class Workers(Protocol):
+    """Processes that run trials: of this machine, or of a Dask cluster."""
+
+    def count(self) -> int:
+        """Return how many tasks they compute at once; raises ClusterLost if they are lost."""
+
+    def submit(self, configs: Sequence[TrialConfig]) -> Task:
+        """Let a worker run a batch of trials."""
+
+    def result(self, task: Any) -> list[Attempt]:
+        """Return the result of a task that has ended.
+
+        Raises:
+            WorkerDied: if its worker did.
+            ClusterLost: if the workers are lost.
+            VersionMismatch: see `run_batch`.
+            Exception: if the task could not be decoded.
+        """
 
 
 def run_batch(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> list[Attempt]:

@@ -224,16 +224,14 @@ TRAINING_FIELDS = frozenset(one.name for one in fields(TrainingConfig))
 
 
 _RESERVED = """
-a agents b beats_greedy beats_greedy_total best_known_m best_known_relative blocks branch_from
-changes continue_from distances_m disturb disturbance disturbances elapsed_s experiment failed
-finished from gaits greedy_m h half_side_m help high high_m iqm_m json keep_learning key lanes low
-low_m mean_m n name observations of_best_known out plans_with plans_with_by_default points_m
-practice probability published reaches_greedy relative relative_finished retry robots role run
-scheduler seeds start step table tls_ca tls_cert tls_key total training training_id verdict walk
-walkers workers worlds
+a agents b beats_greedy beats_greedy_total best_known_m best_known_relative blocks disturb
+elapsed_s experiment failed finished from gaits greedy_m h half_side_m help high high_m iqm_m json
+key low low_m mean_m n observations of_best_known out points_m probability published
+reaches_greedy relative relative_finished retry robots role run scheduler seeds table tls_ca
+tls_cert tls_key total verdict walkers workers worlds
 """
 RESERVED = frozenset(_RESERVED.split())
-"""Names that mean something else beside the settings in requests, answers, files or commands."""
+"""Names that mean something else beside the settings on the command line or in summaries."""
 
 
 def agent_settings(agent: str) -> Mapping[str, DeclaredSetting]:
@@ -247,7 +245,7 @@ def agent_settings(agent: str) -> Mapping[str, DeclaredSetting]:
         if name in RESERVED or name.startswith(("_", "model_")):
             raise InvalidInput(
                 f"agent {agent} declares a setting named {name!r}, which means something else in "
-                "requests and files; rename the parameter"
+                "commands and summaries; rename the parameter"
             )
     return {name: one for name, one in found.items() if name not in TRAINING_FIELDS}
 

@@ -9,7 +9,7 @@ from hexapods.domain.gait import GaitSpec
 from hexapods.domain.robot import as_mapping, robot
 from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import world
-from hexapods.runs.config import TRAINING_FIELDS, TrainingConfig, WalkingProblem
+from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.lane import lane_as_json, lane_from_json
 from hexapods.runs.race_config import Branch, RaceConfig
 
@@ -19,7 +19,7 @@ def as_json(config: WalkingProblem) -> dict[str, Any]:
     data: dict[str, Any] = {}
     for one in fields(config):
         value = getattr(config, one.name)
-        data |= value if isinstance(value, SettingValues) else {one.name: value}
+        data[one.name] = dict(value) if isinstance(value, SettingValues) else value
     data["robot"] = as_mapping(config.robot)
     del data["world"]
     data["disturbances"] = [disturbances.as_mapping(one) for one in config.world.disturbances]
@@ -35,8 +35,7 @@ def as_json(config: WalkingProblem) -> dict[str, Any]:
 def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
     """Parse the output of `as_json`; a config with lanes is that of a race.
 
-    Keys that are no field of a training, or of a lane, are its agent's settings; the agent is not
-    imported.
+    The agents are not imported.
 
     Raises:
         InvalidInput: if a value is invalid.
@@ -49,8 +48,8 @@ def config_from_json(data: Mapping[str, Any]) -> TrainingConfig | RaceConfig:
         branch = values.pop("branch_from", None)  # earlier versions had none
         branch_from = None if branch is None else Branch(branch["race_id"], branch["step"])
         return RaceConfig(**values, lanes=lanes, branch_from=branch_from)
-    settings = {name: values.pop(name) for name in list(values) if name not in TRAINING_FIELDS}
-    return TrainingConfig(**values, settings=SettingValues(settings))
+    values["settings"] = SettingValues(values["settings"])
+    return TrainingConfig(**values)
 
 
 def gait_from_json(value: str | Mapping[str, Any]) -> str | GaitSpec:

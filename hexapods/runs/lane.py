@@ -71,7 +71,7 @@ class LaneConfig:
             setting.check(getattr(self, setting.name))
 
 
-_LANE_FIELDS = frozenset(one.name for one in fields(LaneConfig)) - {"settings"}
+_LANE_FIELDS = tuple(one.name for one in fields(LaneConfig) if one.name != "settings")
 
 
 def observation_of(
@@ -178,8 +178,8 @@ def check_lane(lane: LaneConfig, has_training: bool) -> None:
 
 
 def lane_as_json(lane: LaneConfig) -> dict[str, Any]:
-    """Convert a lane to plain types; its settings become flat fields."""
-    return {name: getattr(lane, name) for name in sorted(_LANE_FIELDS)} | dict(lane.settings)
+    """Convert a lane to plain types."""
+    return {**{name: getattr(lane, name) for name in _LANE_FIELDS}, "settings": dict(lane.settings)}
 
 
 def lane_from_json(data: Mapping[str, Any]) -> LaneConfig:
@@ -187,7 +187,6 @@ def lane_from_json(data: Mapping[str, Any]) -> LaneConfig:
 
     Raises:
         InvalidInput: if a value is invalid.
+        KeyError, TypeError: if it is not the output of `lane_as_json`.
     """
-    own = {name: value for name, value in data.items() if name in _LANE_FIELDS}
-    settings = {name: value for name, value in data.items() if name not in _LANE_FIELDS}
-    return LaneConfig(**own, settings=SettingValues(settings))
+    return LaneConfig(**{**data, "settings": SettingValues(data["settings"])})

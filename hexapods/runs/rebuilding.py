@@ -21,8 +21,6 @@ from hexapods.runs.config import WalkingProblem
 from hexapods.runs.recording import Arrays
 from hexapods.runs.transition_log import Logged
 
-_NOT_RATES = ("step", "pace", "disturbance")
-
 
 class NotRebuilt(HexapodError):
     """A learner cannot be rebuilt: it did not do what is in the log."""
@@ -152,9 +150,8 @@ class RebuiltLearner:
 
     def tune(self, change: Mapping[str, Any]) -> None:
         """Change settings as in the training, from the next step on."""
-        rates = {name: value for name, value in change.items() if name not in _NOT_RATES}
-        if rates and isinstance(self.agent, Tunable):
-            self.agent.tune(**rates)
+        if "settings" in change and isinstance(self.agent, Tunable):
+            self.agent.tune(**change["settings"])
         self.tuned += 1
 
     def take(self, logged: Logged, *, explain_next: bool = False) -> None:

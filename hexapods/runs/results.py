@@ -1,62 +1,152 @@
-"""Results of a race: distances, times and ranks under each clock."""
+"""Results of trainings and races, as answers, files and the database have them.
 
-from collections.abc import Sequence
+Each record is declared here, with its limits: what reads one from JSON checks them. How the lanes
+of a race are ranked is here, too.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le, MaxLen, MinLen, Predicate
 
 from hexapods.domain.posture import have_fallen, heading_deg
 from hexapods.domain.robot import Robot
+from hexapods.domain.text import MAX_MESSAGE, message
 from hexapods.domain.world import World
 from hexapods.runs.clocks import CLOCKS, Clock, Timetable, crossing_s, distance_at
-from hexapods.runs.lane import plans_with
-from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.config import MAX_STEPS
+from hexapods.runs.lane import PlanningModel, plans_with
+from hexapods.runs.race_config import MAX_LANES, RaceConfig
 from hexapods.runs.recording import LaneRecording
 
+Metres = Annotated[float, Ge(-1e6), Le(1e6)]
+Seconds = Annotated[float, Ge(0), Le(1e9)]
+StepNumber = Annotated[int, Ge(0), Le(MAX_STEPS)]
+Count = Annotated[int, Ge(0), Le(2**53)]
+"""Any other count, up to JavaScript's largest exact integer."""
 
-def race_result(lanes: Sequence[LaneRecording], steps: int) -> dict[str, Any]:
-    """Compute the result of a race, in plain types.
 
-    Deterministic except for `decision_s` and the values of the `wall` clock. A lane that did not
-    take all its steps has no total distance, and its failure as the reason. Of a race that was
-    stopped before time-out no lane has a rank.
+def _is_hexadecimal(text: str) -> bool:
+    return not set(text) - set("0123456789abcdef")
 
-    Args:
-        lanes: the complete recording.
-        steps: planned number of steps of each lane.
+
+def _is_storable(text: str) -> bool:
+    return "\0" not in text  # which no database stores
+
+
+Sha256 = Annotated[str, MinLen(64), MaxLen(64), Predicate(_is_hexadecimal)]
+Message = Annotated[str, MaxLen(MAX_MESSAGE), Predicate(_is_storable)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrainingResult:
+    """Final distance [m] of the agent and of the greedy reference, and the Q-table's hash.
+
+    Both walked in the world as it was at the end. `fell_at_step` is the first step of practice,
+    counted from 0, in which the robot fell.
     """
-    results_by_clock = {clock: _lane_results(lanes, steps, clock) for clock in CLOCKS}
-    return {
-        "lanes": [
-            {
-                "agent": lane.agent,
-                "steps": len(lane.steps),
-                "total_distance_m": lane.distance_m if len(lane.steps) == steps else None,
-                "failure": lane.failure,
-                "decision_s": sum(lane.steps.figures["decision_s"].tolist()),
-                "simulated_transitions": int(lane.steps.figures["transitions"].sum()),
-                "clocks": {clock: results_by_clock[clock][number] for clock in CLOCKS},
-            }
+
+    distance_m: Metres | None
+    greedy_distance_m: Metres | None = None
+    best_known_m: Metres | None = None
+    q_table_sha256: Sha256 | None = None
+    fell_at_step: StepNumber | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class FiguresUnderClock:
+    """Figures of a lane under one clock; lanes are ranked by the distance at time-out.
+
+    Without a time-out, as of a race that was stopped before, there are no ranks.
+    """
+
+    finished_distance_m: Metres | None
+    elapsed_s: Seconds
+    crossed_s: Seconds | None
+    rank: Annotated[int, Ge(1), Le(MAX_LANES)] | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class LaneFigures:
+    """Figures of a lane under each clock."""
+
+    paper: FiguresUnderClock
+    wall: FiguresUnderClock
+    free: FiguresUnderClock
+
+    def under(self, clock: Clock) -> FiguresUnderClock:
+        """Return the figures under one clock."""
+        figures: FiguresUnderClock = getattr(self, clock)
+        return figures
+
+
+@dataclass(frozen=True, kw_only=True)
+class LaneResult:
+    """Result of a lane. Deterministic except for `decision_s` and the `wall` clock.
+
+    A lane that did not take all its steps has no total distance, and its failure as the reason.
+    `trained_robot` is set if its table was learned on another robot. `plans_with` is what its
+    search knew, null if it does not search. `fell_at_step` is counted from 0, null if it did not
+    fall; `heading_deg` is its heading at the end: 0 along the track, and 90 to the left.
+    """
+
+    agent: Message
+    training_id: str | None = None
+    trained_robot: Mapping[str, Any] | None = None
+    steps: StepNumber
+    total_distance_m: Metres | None
+    failure: Message | None
+    decision_s: Seconds
+    simulated_transitions: Count
+    clocks: LaneFigures
+    plans_with: PlanningModel | None = None
+    fell_at_step: StepNumber | None = None
+    heading_deg: Annotated[float, Ge(-180), Le(180)] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RaceResult:
+    """Result of a race, by lane.
+
+    `shared_machine`: whether other runs computed beside it, which slows its wall clock.
+    """
+
+    lanes: Annotated[tuple[LaneResult, ...], MaxLen(MAX_LANES)]
+    shared_machine: bool = False
+
+
+def race_result(lanes: Sequence[LaneRecording], config: RaceConfig) -> RaceResult:
+    """Compute the result of a race from its recording, complete or not.
+
+    Of a race that was stopped before time-out no lane has a rank.
+    """
+    figures = {clock: lane_figures(lanes, config.steps, clock) for clock in CLOCKS}
+    return RaceResult(
+        lanes=tuple(
+            LaneResult(
+                agent=lane.agent,
+                steps=len(lane.steps),
+                total_distance_m=lane.distance_m if len(lane.steps) == config.steps else None,
+                failure=None if lane.failure is None else message(lane.failure),
+                decision_s=decision_s(lane),
+                simulated_transitions=int(lane.steps.figures["transitions"].sum()),
+                clocks=LaneFigures(**{clock: figures[clock][number] for clock in CLOCKS}),
+                plans_with=plans_with(config.lanes[number], config),
+                fell_at_step=fell_at_step(lane, config.robot, config.world),
+                heading_deg=heading_deg(
+                    lane.start_qpos(len(lane.steps)).tolist(), lane.rest_qpos.tolist()
+                ),
+            )
             for number, lane in enumerate(lanes)
-        ]
-    }
+        )
+    )
 
 
-def lane_details(lanes: Sequence[LaneRecording], config: RaceConfig) -> list[dict[str, Any]]:
-    """Return for each lane what its search knew, in which step it fell, and its heading at the end.
-
-    None if it does not search, or did not fall. The step is counted from 0. The heading is in
-    degrees: 0 along the track, and 90 to the left.
-    """
-    return [
-        {
-            "plans_with": plans_with(own, config),
-            "fell_at_step": fell_at_step(lane, config.robot, config.world),
-            "heading_deg": heading_deg(
-                lane.start_qpos(len(lane.steps)).tolist(), lane.rest_qpos.tolist()
-            ),
-        }
-        for own, lane in zip(config.lanes, lanes, strict=True)
-    ]
+def decision_s(lane: LaneRecording) -> float:
+    """Return the time that a lane thought, in all its steps [s]."""
+    return float(sum(lane.steps.figures["decision_s"].tolist()))
 
 
 def fell_at_step(lane: LaneRecording, robot: Robot, world: World, first: int = 0) -> int | None:
@@ -96,8 +186,10 @@ def time_out_s(
     return first if is_known else None
 
 
-def _lane_results(lanes: Sequence[LaneRecording], steps: int, clock: Clock) -> list[dict[str, Any]]:
-    """Compute each lane's values under one clock; lanes are ranked by distance at time-out.
+def lane_figures(
+    lanes: Sequence[LaneRecording], steps: int, clock: Clock
+) -> list[FiguresUnderClock]:
+    """Compute each lane's figures under one clock; lanes are ranked by distance at time-out.
 
     Without a time-out they have neither ranks nor distances at it.
     """
@@ -109,11 +201,11 @@ def _lane_results(lanes: Sequence[LaneRecording], steps: int, clock: Clock) -> l
         else [distance_at(lane, table, finish) for lane, table in zip(lanes, tables, strict=True)]
     )
     return [
-        {
-            "finished_distance_m": finished[number] if finished else None,
-            "elapsed_s": table.total_s,
-            "crossed_s": crossing_s(lanes[number], table),
-            "rank": 1 + sum(o > finished[number] for o in finished) if finished else None,
-        }
+        FiguresUnderClock(
+            finished_distance_m=finished[number] if finished else None,
+            elapsed_s=table.total_s,
+            crossed_s=crossing_s(lanes[number], table),
+            rank=1 + sum(o > finished[number] for o in finished) if finished else None,
+        )
         for number, table in enumerate(tables)
     ]

@@ -1,7 +1,6 @@
 """Random-access reader of a Q-table file: reads row by row, in constant memory."""
 
 import io
-import json
 import struct
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -15,7 +14,7 @@ from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.types import Cells, FloatArray
-from hexapods.runs.tables import FORMAT
+from hexapods.runs.tables import FORMAT, read_meta
 
 _LOCAL_HEADER = struct.Struct("<26xHH")
 """Lengths of the name and of the extra field in the local header of a zip member."""
@@ -53,7 +52,7 @@ class TableFile:
         try:
             with zipfile.ZipFile(readable) as archive:
                 members = {member.filename: member for member in archive.infolist()}
-                self.meta: Mapping[str, Any] = json.loads(_text(archive, "meta.npy"))
+                self.meta: Mapping[str, Any] = read_meta(_text(archive, "meta.npy"))
                 if self.meta["format"] != FORMAT:
                     raise ValueError(f"it has format {self.meta['format']}, not {FORMAT}")
                 if "agent.where.npy" not in members:

@@ -27,8 +27,10 @@ from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.config_json import as_json
 from hexapods.runs.recording import Arrays
 from hexapods.runs.training import Learner
+from hexapods.runs.version_1 import nested_change, nested_config
 
-FORMAT = 1
+FORMAT = 2
+"""Format of the metadata; of 1, of versions before 0.2, is read too."""
 MEDIA_TYPE = "application/x-npz"
 _MAX_ARRAYS = 10_000
 """Arrays of a file: more than any has that this product writes."""
@@ -243,7 +245,7 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
         members = read_arrays(data)
         digest = str(members.pop("digest"))
         is_intact = digest == _digest(members)
-        meta = json.loads(str(members.pop("meta")))
+        meta = read_meta(str(members.pop("meta")))
         is_supported = meta["format"] == FORMAT
     except Exception as error:  # zipfile and NumPy document no complete list of exceptions
         raise DamagedFile(f"{name} is not a Q-table of this product: {error}") from error
@@ -252,6 +254,20 @@ def from_bytes(data: bytes, name: str) -> Checkpoint:
     if not is_supported:
         raise DamagedFile(f"{name} has format {meta['format']}; this version reads {FORMAT}")
     return Checkpoint(meta, members)
+
+
+def read_meta(text: str) -> dict[str, Any]:
+    """Parse the metadata of a file, and return it as this version writes it.
+
+    Raises:
+        KeyError, TypeError, ValueError: if it is not that of a table.
+    """
+    meta: dict[str, Any] = json.loads(text)
+    if meta["format"] == 1:
+        meta |= {"format": FORMAT, "config": nested_config(meta["config"])}
+        if "changes" in meta:
+            meta["changes"] = [nested_change(one) for one in meta["changes"]]
+    return meta
 
 
 def read_arrays(data: bytes) -> Arrays:

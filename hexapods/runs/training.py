@@ -2,8 +2,10 @@
 
 from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass, fields, replace
+from threading import Lock
 
 import numpy as np
+from cachetools import LRUCache, cached
 
 from hexapods.domain.disturbances import Disturbance, SensorNoise
 from hexapods.domain.posture import has_fallen
@@ -19,8 +21,6 @@ from hexapods.runs.walker import Walker
 
 _PROBLEM = [one.name for one in fields(WalkingProblem) if one.name != "world"]
 _MAX_BASELINES = 256
-_baselines_m: dict[Hashable, float] = {}
-"""Distances of the baseline by all that they depend on."""
 
 
 @dataclass
@@ -193,15 +193,26 @@ def measure_baseline(learner: Learner, config: TrainingConfig, conditions: World
     It walks once in a process: in MuJoCo that takes as long as three hundred steps of practice,
     and a program that trains many seeds would measure the same in each.
     """
-    of_its_chance = config.tolerance > 0 or conditions.one_of(SensorNoise) is not None
-    key = (*(getattr(config, name) for name in _PROBLEM), conditions, of_its_chance and config.seed)
-    if key not in _baselines_m:
-        distance_m, _ = walk(learner.baseline(conditions), record=False)
-        _baselines_m[key] = distance_m
-        if len(_baselines_m) > _MAX_BASELINES:
-            del _baselines_m[next(iter(_baselines_m))]
-    learner.greedy_distance_m, learner.measured_in = _baselines_m[key], conditions
+    learner.greedy_distance_m = _baseline_m(learner, config, conditions)
+    learner.measured_in = conditions
     return Reference(learner.greedy_distance_m, best_known_m(config, conditions))
+
+
+def _baseline_key(_: Learner, config: TrainingConfig, conditions: World) -> Hashable:
+    """Return all that the baseline's distance depends on."""
+    of_its_chance = config.tolerance > 0 or conditions.one_of(SensorNoise) is not None
+    problem = (getattr(config, name) for name in _PROBLEM)
+    return (*problem, conditions, of_its_chance and config.seed)
+
+
+@cached(LRUCache(_MAX_BASELINES), key=_baseline_key, lock=Lock())
+def _baseline_m(
+    learner: Learner,
+    config: TrainingConfig,  # noqa: ARG001 - of the key
+    conditions: World,
+) -> float:
+    distance_m, _ = walk(learner.baseline(conditions), record=False)
+    return distance_m
 
 
 def evaluate(

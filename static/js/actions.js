@@ -21,8 +21,8 @@ import {
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Annotations, DamagedRun, LaneConfig, Run, RunConfig } from "./types.js" */
-/** @import { Stage, Verb } from "./types.js" */
+/** @import { Annotations, DamagedRun, LaneConfig, Run } from "./types.js" */
+/** @import { RunConfig, Stage, Verb } from "./types.js" */
 
 /** Body of PUT /stage. @typedef {Partial<Stage> & { time_s?: number, stay?: boolean }} StageChanges */
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
@@ -311,23 +311,26 @@ export const annotate = (run, changes) =>
  */
 export function copySettings(run) {
   /** @type {Walk & { [field: string]: unknown }} */
-  const copied = run.kind === "race" ? configOfRace(run) : configAtEnd(run);
-  const { robot, agent, disturbances = [], ...config } = copied;
+  const config = run.kind === "race" ? configOfRace(run) : flat(configAtEnd(run));
+  const { robot, agent, disturbances = [], ...others } = config;
   if (agent && learns(agent)) chooseLearner(agent);
   const racing = run.kind === "race" ? run.config.lanes.map((lane) => lane.agent) : [];
   const known = Object.keys({
     ...form.value, ...settingsOf([form.value.agent, ...racing]), ...laneSettings(racing),
   });
-  const taken = Object.entries(config).filter(([field]) => known.includes(field) && field !== "name");
+  const taken = Object.entries(others).filter(([field]) => known.includes(field) && field !== "name");
   const happens = { world: served().worlds[0].name, disturb: disturbances.map(textOf) };
   setFields({ ...Object.fromEntries(taken), robot: robot ? formRobot(robot) : form.value.robot, ...happens });
 }
 
+/**
+ * A config as the form has it, with the agent's settings among the other fields.
+ * @type {(config: Record<string, any>) => Record<string, any>}
+ */
+const flat = ({ settings = {}, ...config }) => ({ ...config, ...settings });
+
 /** The agent of a lane without training, its settings, and how it reads its state. @param {LaneConfig} lane */
-const settingsOfLane = ({ agent, ...lane }) => {
-  const own = ["observation", ...Object.keys(agentOf(agent).settings)];
-  return { agent, ...Object.fromEntries(Object.entries(lane).filter(([name]) => own.includes(name))) };
-};
+const settingsOfLane = ({ agent, observation, settings }) => ({ agent, observation, ...settings });
 
 /**
  * A lane as it was asked for: what its search knows by default depends on what happens in its race.
@@ -341,11 +344,11 @@ const asAsked = (lane) => lane.plans_with_by_default ? { ...lane, plans_with: nu
 function configOfRace({ config: { lanes, steps, ...walk } }) {
   const trainings = lanes.map((lane) => {
     const run = runs.value.get(lane.training_id ?? "");
-    return run ? configAtEnd(run) : learns(lane.agent) && settingsOfLane(lane);
+    return run ? flat(configAtEnd(run)) : learns(lane.agent) && settingsOfLane(lane);
   });
   // Of a setting that several learners have, the value of the first.
   const practice = Object.assign({}, ...trainings.reverse());
-  const own = lanes.map(asAsked)
+  const own = lanes.map(asAsked).map(flat)
     .flatMap((lane) => Object.entries(lane).map(([name, value]) => [`${lane.agent}.${name}`, value]));
   const agents = lanes.map(({ agent }) => agent);
   return { ...practice, ...walk, ...Object.fromEntries(own), race_steps: steps, lanes: agents };

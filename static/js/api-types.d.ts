@@ -106,12 +106,18 @@ export interface BranchView {
   step: number;
 }
 /**
- * A change of live settings: their new values by name, and the step after which it applies.
+ * A change while it ran, and the step after which it applies; what stayed is left out.
  */
 export interface Change {
   step: number;
+  pace?: number | "max" | null;
+  /**
+   * settings of the agent, by name
+   */
+  settings?: {
+    [k: string]: number | string | boolean | null;
+  };
   disturbance?: DisturbanceView | null;
-  [k: string]: number | string | boolean | null | DisturbanceView | undefined;
 }
 /**
  * Disturbance from a step on; the fields of its kind are further members, by name.
@@ -156,6 +162,13 @@ export interface ChoiceView {
    */
   probability: number;
   sentences: string[];
+}
+/**
+ * Verdict on one of the paper's claims.
+ */
+export interface ClaimVerdict {
+  id: string;
+  verdict: "holds" | "does not hold" | "not established" | "depends";
 }
 /**
  * A claim of the paper, with its verdict and the evidence.
@@ -298,6 +311,12 @@ export interface TrainingDefaults {
   agent: string;
   robot: string;
   simulator: "mujoco" | "kinematic";
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
   [k: string]: unknown;
 }
 /**
@@ -520,7 +539,7 @@ export interface ProgressView {
   total: number;
 }
 /**
- * Config of a training; the settings of its agent are further members, by name.
+ * Config of a training.
  */
 export interface TrainingConfigView {
   gait: string | GaitParts;
@@ -537,21 +556,13 @@ export interface TrainingConfigView {
   evaluate_every: number;
   pace: number | "max";
   agent: string;
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
   continue_from: string | null;
-  [k: string]:
-    | number
-    | string
-    | boolean
-    | null
-    | GaitParts
-    | RobotView
-    | "mujoco"
-    | "kinematic"
-    | DisturbanceView[]
-    | "measured"
-    | "commanded"
-    | "planned"
-    | "max";
 }
 /**
  * A custom gait; members that were not given are absent.
@@ -585,9 +596,9 @@ export interface LegView {
  */
 export interface TrainingResult {
   distance_m: number | null;
-  greedy_distance_m: number | null;
+  greedy_distance_m?: number | null;
   best_known_m?: number | null;
-  q_table_sha256: string | null;
+  q_table_sha256?: string | null;
   fell_at_step?: number | null;
 }
 /**
@@ -632,7 +643,7 @@ export interface RaceConfigView {
 /**
  * A lane of a race, with the id of the training whose Q-table it uses.
  *
- * The settings of an agent without training are further members, by name.
+ * The settings of an agent with training are those of the training.
  */
 export interface LaneView {
   agent: string;
@@ -646,27 +657,47 @@ export interface LaneView {
    */
   plans_with_by_default: boolean;
   observation: "measured" | "commanded" | "planned";
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
   training_id: string | null;
-  [k: string]: number | string | boolean | null | "world" | "start" | "nominal" | "measured" | "commanded" | "planned";
 }
 /**
  * Result of a race, by lane.
+ *
+ * `shared_machine`: whether other runs computed beside it, which slows its wall clock.
  */
 export interface RaceResult {
-  lanes: LaneResult[];
-  shared_machine: boolean;
+  /**
+   * @maxItems 6
+   */
+  lanes:
+    | []
+    | [LaneResult]
+    | [LaneResult, LaneResult]
+    | [LaneResult, LaneResult, LaneResult]
+    | [LaneResult, LaneResult, LaneResult, LaneResult]
+    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult]
+    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult, LaneResult];
+  shared_machine?: boolean;
 }
 /**
- * Result of a lane; `trained_robot` is set if its table was learned on another robot.
+ * Result of a lane. Deterministic except for `decision_s` and the `wall` clock.
  *
- * `plans_with` is what its search knew, null if it does not search.
- *
- * `fell_at_step` is counted from 0, null if it did not fall; `heading_deg` is 0 along the track.
+ * A lane that did not take all its steps has no total distance, and its failure as the reason.
+ * `trained_robot` is set if its table was learned on another robot. `plans_with` is what its
+ * search knew, null if it does not search. `fell_at_step` is counted from 0, null if it did not
+ * fall; `heading_deg` is its heading at the end: 0 along the track, and 90 to the left.
  */
 export interface LaneResult {
   agent: string;
-  training_id: string | null;
-  trained_robot: RobotView | null;
+  training_id?: string | null;
+  trained_robot?: {
+    [k: string]: unknown;
+  } | null;
   steps: number;
   total_distance_m: number | null;
   failure: string | null;
@@ -731,37 +762,35 @@ export interface ExperimentConfigView {
   robots: RobotView[];
   simulator: "mujoco" | "kinematic";
   steps: number[];
+  /**
+   * values of the agents' settings, by name
+   */
+  settings: {
+    [k: string]: (number | string | boolean | null)[];
+  };
   steps_per_episode: number[];
   divisions: number[];
   grid_side_m: number[];
   blocks: number;
   worlds?: string[];
   tolerance?: number;
-  [k: string]:
-    | (number | string | boolean | null)[]
-    | "table1"
-    | "figure4"
-    | "sweep"
-    | "league"
-    | "recovery"
-    | number
-    | string[]
-    | (string | GaitParts)[]
-    | ("measured" | "commanded" | "planned")[]
-    | RobotView[]
-    | "mujoco"
-    | "kinematic"
-    | number[]
-    | undefined;
 }
 /**
  * Result of an experiment; `files` are those of its report.
+ *
+ * `shared_machine`: whether other runs computed beside it, which slows what is timed.
  */
 export interface ExperimentResult {
   trials: TrialCounts;
-  claims: Verdict[];
+  /**
+   * @maxItems 1000
+   */
+  claims: ClaimVerdict[];
+  /**
+   * @maxItems 128
+   */
   files: string[];
-  shared_machine: boolean;
+  shared_machine?: boolean;
 }
 /**
  * Number of trials by outcome.
@@ -771,13 +800,6 @@ export interface TrialCounts {
   total: number;
   failed: number;
   set_aside: number;
-}
-/**
- * Verdict on one of the paper's claims.
- */
-export interface Verdict {
-  id: string;
-  verdict: "holds" | "does not hold" | "not established" | "depends";
 }
 /**
  * State of the stage, which shows one run to all viewers.
@@ -908,12 +930,18 @@ export interface ReferenceEvent {
   best_known_m: number | null;
 }
 /**
- * A change of a training's pace and live settings: their new values by name.
+ * A change of a training's pace and live settings; what stayed is left out.
  */
 export interface RatesEvent {
   run_id: string;
   step: number;
-  [k: string]: number | string | boolean | null;
+  pace?: number | "max" | null;
+  /**
+   * settings of the agent, by name
+   */
+  settings?: {
+    [k: string]: number | string | boolean | null;
+  };
 }
 /**
  * The summary of an experiment has a new number of trials.
@@ -1099,6 +1127,25 @@ export interface FutureView {
   steps: number;
 }
 /**
+ * A type of file that a race or training which has ended can be exported as.
+ */
+export interface ExportOption {
+  title: string;
+  /**
+   * below `/api/v1/runs/{run_id}/`
+   */
+  address: string;
+  /**
+   * of the request; POST is for operators only
+   */
+  method: "GET" | "POST";
+  ending: string;
+  /**
+   * the command that installs what the server lacks; null if it lacks nothing
+   */
+  install: string | null;
+}
+/**
  * Figures of a walk in the window.
  *
  * `distance_m` is along the direction that the robot faced at first; a body length is the
@@ -1264,11 +1311,9 @@ export interface OptionsView {
     [k: string]: string;
   };
   /**
-   * extras of the package that exports need and the server lacks, each with the command that installs it
+   * files of a recorded walk
    */
-  missing_extras: {
-    [k: string]: string;
-  };
+  exports: ExportOption[];
 }
 /**
  * A robot preset.
@@ -1778,11 +1823,16 @@ export interface TrialsView {
  * Result of 30 seeds with these settings: their distances [m] and interquartile mean.
  */
 export interface WhatIfHalf {
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
   steps_per_episode: number;
   distances_m: number[];
   walkers: number;
   iqm_m: number;
-  [k: string]: number | string | boolean | null | number[];
 }
 /**
  * Result of a what-if: the chosen settings compared with the defaults.

@@ -239,7 +239,8 @@ export const startRace = (body) => start("races", body);
 export const startExperiment = (body) => start("experiments", body);
 
 /** @type {(id: string, changes: Rates) => Promise<Run>} */
-export const tuneTraining = (id, changes) => call("PATCH", pathOf({ kind: "training", id }), changes);
+export const tuneTraining = (id, { pace, ...settings }) =>
+  call("PATCH", pathOf({ kind: "training", id }), { ...(pace === undefined ? {} : { pace }), settings });
 
 /** @type {(id: string, disturbance: object) => Promise<Disturbance>} */
 export const disturbTraining = (id, disturbance) =>
@@ -298,9 +299,9 @@ export async function getReplayFrames(id, address, query) {
   return (await request("GET", path)).arrayBuffer();
 }
 
-/** Render a video of a run, which takes up to minutes. @type {(id: string, playback_speed: number) => Promise<Blob>} */
-export const getVideo = async (id, playback_speed) =>
-  (await request("POST", `runs/${encodeURIComponent(id)}/video?playback_speed=${playback_speed}`)).blob();
+/** Have an export of a run computed, in up to minutes. @type {(id: string, address: string) => Promise<Blob>} */
+export const postExport = async (id, address) =>
+  (await request("POST", `runs/${encodeURIComponent(id)}/${address}`)).blob();
 
 /**
  * The gait of a race, or of a part of a training; from a moment of robot time on, or all that is analysed at once.

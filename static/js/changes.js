@@ -13,8 +13,8 @@ const UNLEARNED = "pace";
 const BURST_SHARE = 0.02;
 
 /** Changed settings, without disturbances. @type {(change: Change) => [string, SettingValue][]} */
-const ratesOf = ({ step: _step, disturbance: _disturbance, ...values }) =>
-  Object.entries(/** @type {Rates} */ (values));
+const ratesOf = ({ pace = null, settings = {} }) =>
+  Object.entries({ ...settings, ...(pace === null ? {} : { [UNLEARNED]: pace }) });
 
 /**
  * Values that were changed while a run ran, as they hold at its end.
@@ -39,12 +39,14 @@ export const presentRates = (run) => ({ ...changedValues(run), ...rates.value[ru
  */
 export function configAtEnd(run) {
   const { settings, live_settings } = agentOf(run.config.agent);
-  const values = Object.entries(changedValues(run)).flatMap(([name, value]) => {
-    if (name in run.config) return [[name, value]];
+  const { [UNLEARNED]: newest, ...changed } = changedValues(run);
+  const values = Object.entries(changed).flatMap(([name, value]) => {
+    if (name in run.config.settings) return [[name, value]];
     const same = Object.keys(settings).filter((one) => settings[one].symbol === (live_settings[name]?.symbol ?? name));
     return same.map((one) => [one, value]);
   });
-  return { ...run.config, ...Object.fromEntries(values) };
+  const pace = /** @type {RunConfig["pace"]} */ (newest ?? run.config.pace);
+  return { ...run.config, pace, settings: { ...run.config.settings, ...Object.fromEntries(values) } };
 }
 
 /**

@@ -173,7 +173,8 @@ export const comparedSettings = computed(() => {
   const all = comparable.value.map(runOf);
   const agents = [...new Set(all.flatMap(({ config: { agent } }) => (agent ? [agent] : [])))];
   const own = Object.entries(settingsOf(agents)).map(([name, setting]) =>
-    row(name, fullTitle(setting), all.map(({ config }) => valueInWords(setting, config.agent ? config[name] : null))));
+    row(name, fullTitle(setting), all.map(({ config }) =>
+      valueInWords(setting, config.agent ? config.settings[name] : null))));
   const plain = PLAIN.map(([name, kind]) => {
     const setting = served().settings[name];
     const field = name === "race_steps" ? "steps" : name;

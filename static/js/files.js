@@ -1,16 +1,16 @@
 // Files that the browser downloads: the addresses of a run's, and those that the page makes.
-import { addressOf, getVideo, getReplay, idQuery, pathOf } from "./api.js";
-import { limitsOf } from "./settings.js";
+import { addressOf, idQuery, pathOf, postExport } from "./api.js";
+import { served } from "./store.js";
 
 /** @import { RunKey } from "./api.js" */
-/** @import { Run } from "./types.js" */
+/** @import { ExportOption, Run } from "./types.js" */
 
 // ---- files of the server
 
 /** @type {(run: RunKey, rest: string) => string} */
 const partOf = (run, rest) => addressOf(`${pathOf(run)}/${rest}`);
 
-/** A file of a run's walk, for other programs. @type {(run: RunKey, rest: string) => string} */
+/** Where a file of a run's walk is, for other programs. @type {(run: RunKey, rest: string) => string} */
 const exportOf = ({ id }, rest) => addressOf(`runs/${encodeURIComponent(id)}/${rest}`);
 
 /** @param {RunKey} run */
@@ -32,10 +32,9 @@ export function downloads(run) {
   }
   // Nothing was recorded of an imported table.
   /** @type {[string, string][]} */
-  const walk = run.started_at === null ? [] : [
-    ["Joints and feet (CSV)", exportOf(run, "trajectory?format=csv")],
-    ["Offline replay (HTML)", exportOf(run, "page")],
-  ];
+  const walk = run.started_at === null ? [] : served().exports
+    .filter(({ method, install }) => method === "GET" && install === null)
+    .map(({ title, address }) => [title, exportOf(run, address)]);
   if (run.kind === "race") return [["Recording", partOf(run, "recording")], ...walk];
   return [["Curve (CSV)", partOf(run, "curve?format=csv")], ...learned(run), ...walk];
 }
@@ -65,8 +64,6 @@ export const fileAddress = (run, name) =>
 // ---- files of the page
 
 const KEPT_MS = 60_000;
-/** Kept below the longest video that the server renders, since each recorded part is rounded up to a picture [s]. */
-const VIDEO_MARGIN_S = 1;
 
 /** @type {(content: Blob, name: string) => void} */
 export function saveFile(content, name) {
@@ -77,15 +74,20 @@ export function saveFile(content, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), KEPT_MS);
 }
 
-/** The playback speed at which all that is recorded fits into a video. @param {[number, number][]} recorded_s [s] */
-export function videoSpeed(recorded_s) {
-  const length_s = recorded_s.reduce((sum, [begin, end]) => sum + end - begin, 0);
-  const longest_s = (limitsOf("video_s").maximum ?? Infinity) - VIDEO_MARGIN_S;
-  return Math.max(1, Math.ceil((10 * length_s) / longest_s) / 10);
+/** The exports that the server computes only for operators, on request. */
+export const rendered = () => served().exports.filter(({ method, install }) => method === "POST" && install === null);
+
+/** What the exports need that the server lacks: the command that installs it, and the files by title. */
+export function notInstalled() {
+  /** @type {Map<string, string[]>} */
+  const titles = new Map();
+  for (const { title, install } of served().exports) {
+    if (install !== null) titles.set(install, [...(titles.get(install) ?? []), title]);
+  }
+  return [...titles];
 }
 
-/** Have a video of a run rendered, and save it. @param {Run} run */
-export async function saveVideo(run) {
-  const { recorded_s } = await getReplay(run.id, "paper", null);
-  saveFile(await getVideo(run.id, videoSpeed(recorded_s)), `${run.kind}-${run.id}.mp4`);
+/** Have an export of a run computed, and save it. @type {(run: RunKey, file: ExportOption) => Promise<void>} */
+export async function saveExport(run, { address, ending }) {
+  saveFile(await postExport(run.id, address), `${run.kind}-${run.id}.${ending}`);
 }

@@ -66,8 +66,7 @@ function read(field, text, agents) {
  */
 function commonDefaults() {
   const { training, race } = served().defaults;
-  const own = settingsOf([training.agent]);
-  const others = ["agent", "disturbances", ...Object.keys(own)];
+  const others = ["agent", "disturbances", "settings"];
   const common = Object.entries(training).filter(([field]) => !others.includes(field));
   const world = { world: served().worlds[0].name, disturb: [] };
   return { ...Object.fromEntries(common), ...world, race_steps: race.steps, name: "" };
@@ -327,17 +326,17 @@ const nameField = () => {
 };
 
 /** The settings of an agent that have a value. @param {string} agent */
-const ownFields = (agent) =>
+const ownSettings = (agent) =>
   Object.fromEntries(Object.entries(settingValues(agent, overrides.value)).filter(([, value]) => value !== null));
 
-/** The practice of an agent: the fields that are common to all, and the agent's own. @param {string} agent */
+/** The practice of an agent: the fields that are common to all, and the agent's settings. @param {string} agent */
 function practiceFields(agent) {
   const elsewhere = [
     "agent", "name", "seed", ...WALK_FIELDS, ...WORLD_FIELDS, ...RACE_FIELDS,
     ...Object.keys(laneSettings(form.value.lanes)),
   ];
   const common = select(commonFields(), (field) => !elsewhere.includes(field));
-  return { ...common, ...ownFields(agent) };
+  return { ...common, settings: ownSettings(agent) };
 }
 
 /**
@@ -365,16 +364,18 @@ export function whatIfBody() {
 }
 
 /**
- * The settings of an agent's lane: all that are the agent's own, and those of any lane that are not the default.
+ * The fields of an agent's lane that are not the default, and all settings that are the agent's own.
  * @param {string} agent
  */
 function laneFields(agent) {
   const { settings } = agentOf(agent);
-  const given = Object.entries(laneSettings([agent])).flatMap(([field, setting]) => {
-    const [name, value] = [field.slice(agent.length + 1), form.value[field]];
-    return value !== null && (name in settings || value !== setting.default) ? [[name, value]] : [];
-  });
-  return Object.fromEntries(given);
+  const given = Object.entries(laneSettings([agent]))
+    .map(([field, setting]) => ({ name: field.slice(agent.length + 1), value: form.value[field], setting }))
+    .filter(({ value }) => value !== null);
+  const own = given.filter(({ name }) => name in settings).map(({ name, value }) => [name, value]);
+  const others = given.filter(({ name, value, setting }) => !(name in settings) && value !== setting.default);
+  const ofAgent = own.length ? { settings: Object.fromEntries(own) } : {};
+  return { ...Object.fromEntries(others.map(({ name, value }) => [name, value])), ...ofAgent };
 }
 
 /** Agent → id of a training. @typedef {Record<string, string | undefined>} TrainingIds */
@@ -392,7 +393,7 @@ export const raceBody = ({ continued = {}, tables = {}, isUnpractised = false } 
   lanes: form.value.lanes.map((agent) => {
     const own = laneFields(agent);
     if (!learns(agent)) return { agent, ...own };
-    if (isUnpractised) return { agent, ...own, observation: form.value.observation, ...ownFields(agent) };
+    if (isUnpractised) return { agent, ...own, observation: form.value.observation, settings: ownSettings(agent) };
     if (tables[agent]) return { agent, ...own, training_id: tables[agent] };
     return { agent, ...own, training: { ...practiceFields(agent), ...beginning(continued[agent]) } };
   }),

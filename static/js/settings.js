@@ -202,10 +202,11 @@ export function laneSettings(names) {
  */
 export function laneTitle(lane) {
   const { title, settings, learns: isLearner, keeps_learning } = agentOf(lane.agent);
+  const own = lane.settings ?? {};
   const told = Object.entries(settings).filter(
-    ([name, setting]) => name in lane && (!isLearner || lane[name] !== setting.default),
+    ([name, setting]) => name in own && (!isLearner || own[name] !== setting.default),
   );
-  const words = told.map(([name, setting]) => settingInWords(setting, lane[name]));
+  const words = told.map(([name, setting]) => settingInWords(setting, own[name]));
   if ((lane.keep_learning ?? keeps_learning) !== keeps_learning) {
     words.push(lane.keep_learning ? "keeps learning" : "frozen");
   }

@@ -105,7 +105,8 @@ const handlers = {
     setEntry(references, run_id, greedy_distance_m);
     setEntry(bestKnown, run_id, best_known_m);
   },
-  rates: ({ run_id, step: _, ...changed }) => setEntry(rates, run_id, { ...rates.value[run_id], ...changed }),
+  rates: ({ run_id, step: _, settings = {}, ...pace }) =>
+    setEntry(rates, run_id, { ...rates.value[run_id], ...settings, ...pace }),
   stage(data) {
     newestEvents.set("stage", eventCount);
     commonStage.value = data;

@@ -77,8 +77,13 @@ const ROBOT_PART = /\brobot\.([a-z_]+)/gi;
 /** @param {string} text */
 const withPartsInWords = (text) => text.replace(ROBOT_PART, (_, part) => `Robot, ${partInWords(part)[0]}`);
 
-/** A path of the API, such as `lanes.0.training.alpha`, and what follows it where it is the subject of a sentence. */
-const PATH = /\b(lanes\.\d+\.(?:training\.)?)?([A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*)(?=( must be | is missing)?)/g;
+/**
+ * A path of the API, such as `lanes.0.training.settings.alpha`, and what follows it where it is the subject of a
+ * sentence.
+ */
+const FIELD = String.raw`[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*`;
+const PATH = new RegExp(
+  String.raw`\b((?:lanes\.\d+\.)?(?:training\.)?(?:settings\.)?)(${FIELD})(?=( must be | is missing)?)`, "g");
 
 /**
  * A sentence of the server in which fields have their names of the form. A word such as "steps" is a field only
@@ -163,7 +168,7 @@ const worldsIn = ({ worlds = [] }) =>
  * @param {Run["config"]} config
  */
 const sweptIn = (config) =>
-  Object.entries(config).flatMap(([name, values]) =>
+  Object.entries({ ...config, ...config.settings }).flatMap(([name, values]) =>
     Array.isArray(values) && values.length > 1 && !TOLD_APART.includes(name)
       ? [`${fieldTitle(name)} ${values.join(", ")}`]
       : []);

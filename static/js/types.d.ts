@@ -16,6 +16,7 @@ export type {
   DisturbanceOption as DisturbanceKind,
   Evaluation,
   EventBodies,
+  ExportOption,
   ExplanationView as Explanation,
   FieldOption,
   Finding,
@@ -52,18 +53,15 @@ export type {
 
 // ---- runs: the page lists all kinds together, and asks `kind` before it reads what only one kind has
 
-/** The declared members, without those whose names only the server knows. */
-type Declared<Type> = { [Name in keyof Type as string extends Name ? never : Name]: Type[Name] };
 type NameIn<Union> = Union extends unknown ? keyof Union : never;
 type MemberOf<Union, Name> = Union extends unknown ? (Name extends keyof Union ? Union[Name] : never) : never;
 /** The members of all types of a union, each of the type that it has where it is. */
 type Merged<Union> = { [Name in NameIn<Union>]: MemberOf<Union, Name> };
 
 type AnyRun = Api.TrainingView | Api.RaceView | Api.ExperimentView;
-type WalkConfig = Merged<Declared<Api.TrainingConfigView> | Declared<Api.RaceConfigView>>;
-type OtherConfig = Omit<Declared<Api.ExperimentConfigView>, keyof WalkConfig>;
-/** With the settings of the training's agent by name. */
-export type RunConfig = OtherConfig & WalkConfig & { [setting: string]: unknown };
+type WalkConfig = Merged<Api.TrainingConfigView | Api.RaceConfigView>;
+/** Some of its fields are looked up by their names. */
+export type RunConfig = WalkConfig & Omit<Api.ExperimentConfigView, keyof WalkConfig> & { [field: string]: unknown };
 export type RunResult = Merged<Api.TrainingResult | Api.RaceResult | Api.ExperimentResult>;
 export type Run = Omit<Merged<AnyRun>, "config" | "result"> & { config: RunConfig; result: RunResult | null };
 export type Kind = AnyRun["kind"];
@@ -80,7 +78,9 @@ export type Timeline = Api.TimelineView & { id: string };
 export type ClockResult = Api.FiguresUnderClock;
 /** Something that happens; its fields but the first two depend on its kind. Legs are numbered from 1. */
 export type Disturbance = Api.DisturbanceView & { until_step?: number | null; leg?: number; legs?: number[] };
-export type LaneConfig = Partial<Api.LaneView> & Pick<Api.LaneView, "agent">;
+/** A lane as it was started, or as the form starts it. */
+export type LaneConfig = Pick<Api.LaneView, "agent"> &
+  Partial<Omit<Api.LaneView, "observation">> & { observation?: string };
 export type SettingValue = Api.SettingOption["default"];
 export type Limits = Pick<Api.SettingOption, "minimum" | "maximum" | "excludes_minimum" | "excludes_maximum">;
 export type TimelinePoint = Api.TimelineLane["points"][number];

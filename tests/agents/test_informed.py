@@ -1,6 +1,6 @@
 """Informed search: its heuristic, what it learns of the simulator, its budget and its figures."""
 
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ from hexapods.domain.types import Action
 from hexapods.runs.lane import LaneConfig, lane_config
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.racing import record_race
-from hexapods.runs.results import race_result
+from hexapods.runs.results import LaneResult, race_result
 from tests.agents.walkers import kinematic_walker
 from tests.promises.length import at_length
 
@@ -97,13 +97,12 @@ def test_three_transitions_are_as_good_as_all_where_the_law_holds(gait: str) -> 
     assert expand.transitions == 150
 
 
-def raced(preset: str, gait: str, *lanes: LaneConfig, threads: int = 1) -> list[Any]:
+def raced(preset: str, gait: str, *lanes: LaneConfig, threads: int = 1) -> Sequence[LaneResult]:
     """Return the results of the lanes of a race over MuJoCo."""
     config = RaceConfig(gait=gait, robot=robot(preset), lanes=lanes)
     walkers = build_walkers(config, [None] * len(lanes), threads=threads)
     *_, recorded = record_race(walkers, config, lambda: 0.0)
-    results: list[Any] = race_result(recorded, config.steps)["lanes"]
-    return results
+    return race_result(recorded, config).lanes
 
 
 GAITS = at_length(["left-right-vertical"], [*NAMED_GAITS])
@@ -113,9 +112,9 @@ GAITS = at_length(["left-right-vertical"], [*NAMED_GAITS])
 def test_informed_search_overtakes_greedy_on_the_stiff_robot(gait: str) -> None:
     informed, greedy = raced("stiff", gait, lane_config("informed"), lane_config("greedy"))
 
-    assert informed["total_distance_m"] >= 0.98 * greedy["total_distance_m"]
-    assert informed["simulated_transitions"] <= 3 * 50
-    at_time_out = [one["clocks"]["paper"]["finished_distance_m"] for one in (informed, greedy)]
+    assert (informed.total_distance_m or 0) >= 0.98 * (greedy.total_distance_m or 0)
+    assert informed.simulated_transitions <= 3 * 50
+    at_time_out = [one.clocks.paper.finished_distance_m or 0 for one in (informed, greedy)]
     assert at_time_out[0] > at_time_out[1]
 
 
@@ -130,11 +129,11 @@ def test_forty_transitions_are_worth_two_steps_of_look_ahead(preset: str) -> Non
     lanes = [chosen[agent] for agent in LANES]
     informed, *two_step = raced(preset, "left-right-vertical", *lanes, threads=0)
 
-    assert informed["total_distance_m"] >= TWO_STEP_M[preset]
-    assert informed["simulated_transitions"] <= 40 * 50
+    assert (informed.total_distance_m or 0) >= TWO_STEP_M[preset]
+    assert informed.simulated_transitions <= 40 * 50
     for one in two_step:
-        assert one["total_distance_m"] == pytest.approx(TWO_STEP_M[preset], abs=0.0006)
-        assert informed["total_distance_m"] >= one["total_distance_m"]
+        assert (one.total_distance_m or 0) == pytest.approx(TWO_STEP_M[preset], abs=0.0006)
+        assert (informed.total_distance_m or 0) >= (one.total_distance_m or 0)
 
 
 @pytest.mark.parametrize("agent", ["informed", "mcts", "beam"])

@@ -217,7 +217,7 @@ def test_table_of_a_file_is_that_of_the_result(name: str) -> None:
     result = finish_training(learner, config)
     table = table_of(from_bytes(to_bytes(snapshot(learner, config)), "q.npz"))
 
-    assert table.sha256() == result["q_table_sha256"]
+    assert table.sha256() == result.q_table_sha256
     assert sum(np.nansum(visits) for _, _, visits in table.rows()) == config.steps
 
 

@@ -1,31 +1,15 @@
-"""Names that an agent's settings may not have: all that bodies, answers and commands use."""
+"""Names that an agent's settings may not have: all that commands and summaries use beside them."""
 
 import argparse
 from dataclasses import fields
 
-from pydantic import BaseModel
-
-from app.api.answers import Change, ExperimentConfigView, LaneView, TrainingConfigView, WhatIfHalf
 from app.api.experiment_answers import CurveOfSetting, PooledView, SettingView, VersusView
-from app.api.experiment_body import ExperimentBody
-from app.api.schemas import ChangeBody, LaneBody, PracticeBody, RaceBody, TrainingBody
 from app.cli import _parser
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.runs.config import RESERVED, TrainingConfig
-from hexapods.runs.race_config import RaceConfig
 
-BODIES = (PracticeBody, TrainingBody, LaneBody, RaceBody, ExperimentBody, ChangeBody)
-ANSWERS = (
-    LaneView,
-    SettingView,
-    PooledView,
-    CurveOfSetting,
-    VersusView,
-    WhatIfHalf,
-    Change,
-    TrainingConfigView,
-    ExperimentConfigView,
-)
+# Rows of summaries, which have settings beside what was measured with them.
+ROWS = (SettingView, PooledView, CurveOfSetting, VersusView)
 
 
 def names_of_commands() -> set[str]:
@@ -43,11 +27,9 @@ def names_of_commands() -> set[str]:
 
 def test_every_name_that_is_used_otherwise_is_reserved() -> None:
     used = names_of_commands()
-    for body in BODIES:
-        used |= {*dir(body), *body.model_fields} - set(dir(BaseModel))
-    for answer in ANSWERS:
-        used |= set(answer.model_fields)
-    for config in (ExperimentConfig, RaceConfig):
-        used |= {one.name for one in fields(config)}
+    for row in ROWS:
+        used |= set(row.model_fields)
+    # Settings are arguments beside the fields: `experiment_config(name, {"alpha": ...})`.
+    used |= {one.name for one in fields(ExperimentConfig)}
     own = {one.name for one in fields(TrainingConfig)}
     assert {name for name in used - own if not name.startswith("_")} == RESERVED

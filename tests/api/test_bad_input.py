@@ -22,8 +22,8 @@ WRONG_TRAININGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({"agent": "os:system"}, ("os:system", "q-learning")),
     ({"agent": "greedy"}, ("Greedy does not learn",)),
     ({"agent": "dyna-q", "divisions": 5}, ("300,000", "1,171,875", "fewer divisions")),
-    ({"agent": "r-max", "known_after": 0}, ("known_after", "from 1 to 100")),
-    ({"agent": "sarsa", "trace_decay": 0.5}, ("trace_decay",)),
+    ({"agent": "r-max", "settings": {"known_after": 0}}, ("known_after", "from 1 to 100")),
+    ({"agent": "sarsa", "settings": {"trace_decay": 0.5}}, ("trace_decay",)),
     ({"robot": "steel"}, ("steel", "stiff", "compliant", "slippery")),
     ({"robot": {"wings": 2}}, ("wings", "tibia_m")),
     ({"robot": {"n_legs": 5}}, ("even number of legs",)),
@@ -45,12 +45,12 @@ WRONG_TRAININGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({"steps": None}, ("steps", "whole number")),
     ({"seed": -1}, ("seed", "at least 0")),
     ({"seed": 0.5}, ("seed", "whole number")),
-    ({"alpha": 0}, ("alpha", "over 0 and at most 1")),
-    ({"alpha": 1.1}, ("alpha", "over 0 and at most 1")),
-    ({"alpha": float("inf")}, ("alpha",)),
-    ({"gamma": 1}, ("gamma", "under 1")),
-    ({"epsilon_start": 1.5}, ("epsilon_start", "from 0 to 1")),
-    ({"epsilon_end": -0.5}, ("epsilon_end", "from 0 to 1")),
+    ({"settings": {"alpha": 0}}, ("alpha", "over 0 and at most 1")),
+    ({"settings": {"alpha": 1.1}}, ("alpha", "over 0 and at most 1")),
+    ({"settings": {"alpha": float("inf")}}, ("alpha",)),
+    ({"settings": {"gamma": 1}}, ("gamma", "under 1")),
+    ({"settings": {"epsilon_start": 1.5}}, ("epsilon_start", "from 0 to 1")),
+    ({"settings": {"epsilon_end": -0.5}}, ("epsilon_end", "from 0 to 1")),
     ({"steps_per_episode": 0}, ("steps_per_episode",)),
     ({"evaluate_every": -1}, ("evaluate_every", "from 0")),
     ({"divisions": 1}, ("divisions", "from 2 to 8")),
@@ -125,10 +125,30 @@ def test_body_that_is_not_json_is_refused(api: Api) -> None:
     refused(api.call("POST", "/trainings", content=b"\xff\xfe{"), 422)
 
 
+def test_flat_settings_are_refused_with_the_nested_form(api: Api) -> None:
+    """Versions before 0.2 took them so."""
+    for path, body in (
+        ("/trainings", {**WALK, "alpha": 0.5, "gamma": 0.8}),
+        ("/what-if", {**WALK, "alpha": 0.5, "gamma": 0.8}),
+        ("/races", {**WALK, "lanes": [{"agent": "q-learning", "alpha": 0.5, "gamma": 0.8}]}),
+        (
+            "/races",
+            {**WALK, "lanes": [{"agent": "q-learning", "training": {"alpha": 0.5, "gamma": 0.8}}]},
+        ),
+        ("/experiments", {"experiment": "sweep", "alpha": 0.5, "gamma": 0.8}),
+    ):
+        refusal = '"settings": {"alpha": 0.5, "gamma": 0.8}'
+        assert refusal in refused(api.call("POST", path, json=body), 422)["detail"], path
+    run = api.slow_training()
+    changed = api.call("PATCH", f"/trainings/{run['id']}", json={"alpha": 0.5})
+    assert '"settings": {"alpha": 0.5}' in refused(changed, 422)["detail"]
+    api.stop(run)
+
+
 def test_all_invalid_fields_are_listed(api: Api) -> None:
-    body = {**WALK, "steps": 0, "alpha": 2, "pace": "fast"}
+    body = {**WALK, "steps": 0, "settings": {"alpha": 2}, "pace": "fast"}
     problem = refused(api.call("POST", "/trainings", json=body), 422)
-    assert [error["field"] for error in problem["errors"]] == ["steps", "pace", "alpha"]
+    assert [error["field"] for error in problem["errors"]] == ["steps", "pace", "settings.alpha"]
 
 
 def test_running_training_has_no_table(api: Api) -> None:

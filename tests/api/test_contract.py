@@ -212,7 +212,7 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     services: Services = api.client.app.state.services
     subscription = services.bus.subscribe()
     run = api.slow_training()
-    api.call("PATCH", f"/trainings/{run['id']}", json={"pace": 30, "alpha": 0.5})
+    api.call("PATCH", f"/trainings/{run['id']}", json={"pace": 30, "settings": {"alpha": 0.5}})
     limp = {"kind": "limp", "legs": [1]}
     api.call("POST", f"/trainings/{run['id']}/disturbances", json=limp)
     api.tell(run, "stop")

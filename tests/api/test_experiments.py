@@ -19,7 +19,7 @@ SMALL = {
     "simulator": "kinematic",
     "gaits": "left-right-origin",
     "steps": 40,
-    "alpha": [0.1, 0.5],
+    "settings": {"alpha": [0.1, 0.5]},
     "workers": 1,
 }
 
@@ -33,7 +33,7 @@ def swept(api: Api) -> dict[str, Any]:
 def test_finished_experiment_has_summary_and_report(swept: dict[str, Any], api: Api) -> None:
     assert (swept["kind"], swept["name"], swept["workers"]) == ("experiment", "<b>Mine</b>", 1)
     assert swept["progress"] == {"done": 7, "total": 7}
-    assert swept["config"]["alpha"] == [0.1, 0.5]
+    assert swept["config"]["settings"]["alpha"] == [0.1, 0.5]
     assert swept["config"]["robots"] == [{"preset": "stiff"}]
     result = swept["result"]
     assert result["trials"] == {"done": 7, "total": 7, "failed": 0, "set_aside": 0}
@@ -133,8 +133,8 @@ def test_same_idempotency_key_returns_the_same_experiment(serve: Serve) -> None:
         ({"seeds": 2.5}, "seeds must be"),
         ({"seed": -1}, "seed must be"),
         ({"gaits": []}, "gaits must be a list"),
-        ({"alpha": []}, "alpha must be a list of at least 1 value."),
-        ({"alpha": [0.1] * 101}, "alpha must be a list of at most 100 values."),
+        ({"settings": {"alpha": []}}, "alpha must be a list of at least 1 value."),
+        ({"settings": {"alpha": [0.1] * 101}}, "alpha must be a list of at most 100 values."),
         ({"experiment": "league", "worlds": []}, "worlds must be a list, each the name of a world"),
         ({"experiment": "league", "worlds": [5]}, "worlds.0 must be a list, each the name"),
         ({"gaits": ["hop"]}, "left-right-vertical"),
@@ -143,9 +143,9 @@ def test_same_idempotency_key_returns_the_same_experiment(serve: Serve) -> None:
         ({"robots": ["stiff", "soft"]}, "compliant"),
         ({"robots": [{"femur_m": -1}]}, "femur_m"),
         ({"agents": ["hexapods.agents.q_learning:QLearning"]}, "q-learning"),
-        ({"alpha": [0.3, 2]}, "alpha.1 must be a number over 0"),
-        ({"alpha": "0.3"}, "alpha"),
-        ({"gamma": 1}, "gamma"),
+        ({"settings": {"alpha": [0.3, 2]}}, "settings.alpha.1 must be a number over 0"),
+        ({"settings": {"alpha": "0.3"}}, "alpha"),
+        ({"settings": {"gamma": 1}}, "gamma"),
         ({"divisions": [1]}, "divisions"),
         ({"grid_side_m": [5]}, "reach"),
         ({"steps": 0}, "steps"),
@@ -155,16 +155,16 @@ def test_same_idempotency_key_returns_the_same_experiment(serve: Serve) -> None:
         ({"simulator": "real"}, "mujoco, kinematic"),
         ({"colour": 1}, "colour"),
         ({"blocks": 2}, "blocks"),
-        ({"experiment": "table1", "alpha": [0.1]}, "alpha"),
+        ({"experiment": "table1", "settings": {"alpha": [0.1]}}, "alpha"),
         ({"experiment": "figure4", "steps": [100]}, "steps"),
-        ({"experiment": "league", "alpha": None, "worlds": ["moon"]}, "limp-pair"),
-        ({"experiment": "league", "alpha": None, "tolerance": 0.3}, "tolerance"),
-        ({"experiment": "league", "alpha": None, "tolerance": 0.1}, "mujoco"),
-        ({"experiment": "recovery", "alpha": None, "worlds": ["ice:at=5"]}, "ice"),
+        ({"experiment": "league", "worlds": ["moon"]}, "limp-pair"),
+        ({"experiment": "league", "tolerance": 0.3}, "tolerance"),
+        ({"experiment": "league", "tolerance": 0.1}, "mujoco"),
+        ({"experiment": "recovery", "worlds": ["ice:at=5"]}, "ice"),
         ({"worlds": ["ice"]}, "worlds"),
-        ({"seeds": 10_000, "alpha": [n / 100 for n in range(1, 51)]}, "trials"),
-        ({"gamma": [n / 200 for n in range(100)], "alpha": [n / 100 for n in range(1, 101)]},
-         "settings"),
+        ({"seeds": 10_000, "settings": {"alpha": [n / 100 for n in range(1, 51)]}}, "trials"),
+        ({"settings": {"gamma": [n / 200 for n in range(100)],
+                       "alpha": [n / 100 for n in range(1, 101)]}}, "settings"),
     ],
 )  # fmt: skip
 def test_invalid_experiment_is_refused_with_a_sentence(
@@ -219,10 +219,14 @@ def test_what_if_that_continues_a_training_is_refused(serve: Serve) -> None:
 
 
 def test_what_if_compares_chosen_with_default_settings(api: Api) -> None:
-    body = {"gait": "left-right-origin", "steps": 20, "alpha": 0.7, "seed": 3, "name": "x"}
+    body = {"gait": "left-right-origin", "steps": 20, "seed": 3, "name": "x"}
+    body["settings"] = {"alpha": 0.7}
     answer = api.call("POST", "/what-if", json=body).json()
     assert (answer["seeds"], len(answer["chosen"]["distances_m"])) == (30, 30)
-    assert (answer["chosen"]["alpha"], answer["default"]["alpha"]) == (0.7, 0.3)
+    assert (answer["chosen"]["settings"]["alpha"], answer["default"]["settings"]["alpha"]) == (
+        0.7,
+        0.3,
+    )
     assert answer["compute_s"] > 0
 
 

@@ -138,7 +138,7 @@ def test_a_training_whose_table_is_gone_cannot_be_explained(api: Api) -> None:
 def test_a_training_is_explained_while_it_runs_and_is_changed(api: Api) -> None:
     run = api.slow_training()
     seen = explained(api, run["id"], step=1)
-    api.call("PATCH", f"/trainings/{run['id']}", json={"alpha": 0.5, "epsilon": 0.1})
+    api.call("PATCH", f"/trainings/{run['id']}", json={"settings": {"alpha": 0.5, "epsilon": 0.1}})
     now = api.until(run, lambda now: now["changes"] and now["progress"]["done"] > 40)
     at = now["changes"][0]["step"]
     before, after = (explained(api, run["id"], step=step) for step in (at, at + 1))

@@ -6,8 +6,10 @@ from typing import Any
 
 import pytest
 
-from app.exports.trajectory import PARQUET_TYPE
+from hexapods.exports.registry import EXPORTS
 from tests.api.calls import Api, refused
+
+PARQUET_TYPE = EXPORTS["trajectory"].file("parquet").media_type
 
 
 @pytest.fixture(scope="module")

@@ -40,7 +40,7 @@ def test_gait_of_a_race_has_the_figures_of_each_lane(api: Api, raced: dict[str, 
 def test_gait_of_a_race_that_goes_on_is_new_and_of_one_that_ended_is_kept(
     api: Api, raced: dict[str, Any]
 ) -> None:
-    lanes = [{"agent": "look-ahead", "depth": 3}]
+    lanes = [{"agent": "look-ahead", "settings": {"depth": 3}}]
     running = api.race(lanes=lanes, simulator="kinematic", steps=200)
     ends, done = [], 0
     for _ in range(2):

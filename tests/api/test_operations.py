@@ -137,7 +137,7 @@ def test_long_requests_end_with_the_server(tmp_path: Path) -> None:
         app = create_app(Settings(data=tmp_path), store)
         with TestClient(app, base_url=ADDRESS):
             services: Services = app.state.services
-        for user in (services.what_if, services.estimates, services.videos):
+        for user in (services.what_if, services.estimates, services.renderer):
             with pytest.raises(Busy, match="the server is stopping"):
                 user._pool.map(abs, [-1])
         with pytest.raises(Busy, match="the server is stopping"):

@@ -86,9 +86,9 @@ def test_lane_uses_the_observation_of_its_table(api: Api) -> None:
 
 
 def test_lane_has_settings_of_its_own(api: Api) -> None:
-    lanes = [{"agent": "look-ahead", "depth": 1}, {"agent": "look-ahead", "depth": 2}]
+    lanes = [{"agent": "look-ahead", "settings": {"depth": depth}} for depth in (1, 2)]
     race = api.finished(api.race(lanes=lanes, steps=3))
-    assert [lane["depth"] for lane in race["config"]["lanes"]] == [1, 2]
+    assert [lane["settings"]["depth"] for lane in race["config"]["lanes"]] == [1, 2]
     transitions = [lane["simulated_transitions"] for lane in race["result"]["lanes"]]
     assert transitions == [3 * 12, 3 * 156]
 
@@ -104,24 +104,27 @@ def test_lane_has_an_observation_of_its_own(api: Api) -> None:
 
 
 def test_lane_may_learn_in_the_race_without_practice(api: Api) -> None:
-    lane = {"agent": "q-learning", "keep_learning": True, "epsilon_start": 0.1}
+    lane = {"agent": "q-learning", "keep_learning": True, "settings": {"epsilon_start": 0.1}}
     race = api.finished(api.race(lanes=[lane], steps=10))
     assert race["waiting_for"] == []
     (shown,) = race["config"]["lanes"]
     assert (shown["training_id"], shown["keep_learning"]) == (None, True)
-    assert (shown["alpha"], shown["epsilon_start"]) == (0.3, 0.1)
+    assert (shown["settings"]["alpha"], shown["settings"]["epsilon_start"]) == (0.3, 0.1)
 
 
 @pytest.mark.parametrize(
     ("lane", "names"),
     [
-        ({"agent": "look-ahead", "depth": 0}, "lanes.0.depth must be a whole number from 1 to 50"),
-        ({"agent": "look-ahead", "depth": 5}, "Lane 1: depth 5 would simulate more than 40,000"),
+        (
+            {"agent": "look-ahead", "settings": {"depth": 0}},
+            "lanes.0.settings.depth must be",
+        ),
+        ({"agent": "look-ahead", "settings": {"depth": 5}}, "Lane 1: depth 5 would simulate more"),
         *(
-            ({"agent": agent, "budget": 0}, "lanes.0.budget must be a whole number from 1 to 40")
+            ({"agent": agent, "settings": {"budget": 0}}, "lanes.0.settings.budget must be a whole")
             for agent in ("informed", "mcts")
         ),
-        ({"agent": "look-ahead", "width": 5}, "unknown field 'width'"),
+        ({"agent": "look-ahead", "settings": {"width": 5}}, "unknown field 'width'"),
         ({"agent": "greedy", "keep_learning": True}, "Lane 1: greedy does not learn, so it cannot"),
         ({"agent": "greedy", "keep_learning": 1}, "keep_learning must be true or false"),
         (
@@ -134,7 +137,7 @@ def test_lane_may_learn_in_the_race_without_practice(api: Api) -> None:
         ),
         ({"agent": "q-learning"}, "Lane 1: q-learning races with what it has learned"),
         (
-            {"agent": "q-learning", "training": {}, "alpha": 0.5},
+            {"agent": "q-learning", "training": {}, "settings": {"alpha": 0.5}},
             "Lane 1: a lane with training takes its settings from there; leave out alpha",
         ),
     ],

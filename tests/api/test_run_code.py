@@ -1,16 +1,17 @@
 """A run as code: its commands and its Python program, executed, make the same run."""
 
-import ast
 import contextlib
 import io
 import json
 import shlex
+from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import hexapods.runs.results
 from app.api.run_code import MAX_CONTINUED, run_code
 from app.storage.run import Run
 from tests.api.calls import Api, refused
@@ -47,7 +48,7 @@ def results_of_program(text: str, folder: Path) -> list[dict[str, Any]]:
     out = io.StringIO()
     with contextlib.chdir(folder), contextlib.redirect_stdout(out):
         exec(compile(text, "the program", "exec"), {"__name__": "__main__"})
-    return [ast.literal_eval(line) for line in out.getvalue().splitlines()]
+    return [asdict(eval(line, vars(hexapods.runs.results))) for line in out.getvalue().splitlines()]
 
 
 def distances(result: dict[str, Any]) -> list[float]:
@@ -57,7 +58,12 @@ def distances(result: dict[str, Any]) -> list[float]:
 def test_a_race_and_its_practice_are_made_again_by_commands_and_by_the_program(
     api: Api, code: Any, tmp_path: Path
 ) -> None:
-    practice = {"steps": 60, "alpha": 0.2, "evaluate_every": 0, "observation": "commanded"}
+    practice = {
+        "steps": 60,
+        "settings": {"alpha": 0.2},
+        "evaluate_every": 0,
+        "observation": "commanded",
+    }
     race = api.race(
         gait=GAIT,
         robot=ROBOT,
@@ -67,8 +73,13 @@ def test_a_race_and_its_practice_are_made_again_by_commands_and_by_the_program(
         seed=7,
         lanes=[
             {"agent": "q-learning", "training": practice, "keep_learning": True},
-            {"agent": "look-ahead", "depth": 1, "plans_with": "world"},
-            {"agent": "sarsa", "keep_learning": True, "observation": "planned", "gamma": 0.5},
+            {"agent": "look-ahead", "settings": {"depth": 1}, "plans_with": "world"},
+            {
+                "agent": "sarsa",
+                "keep_learning": True,
+                "observation": "planned",
+                "settings": {"gamma": 0.5},
+            },
         ],
     )
     made = api.finished(race)
@@ -113,14 +124,15 @@ def test_what_changed_while_it_ran_changes_in_the_program_too(
 ) -> None:
     run = api.train(steps=400, pace=100, evaluate_every=0, simulator="mujoco")
     api.until(run, lambda now: now["progress"]["done"] > 3)
-    assert api.call("PATCH", f"/trainings/{run['id']}", json={"alpha": 0.05}).status_code == 200
+    change = {"settings": {"alpha": 0.05}}
+    assert api.call("PATCH", f"/trainings/{run['id']}", json=change).status_code == 200
     limp = {"kind": "limp", "legs": [2]}
     assert api.call("POST", f"/trainings/{run['id']}/disturbances", json=limp).status_code == 202
     api.call("PATCH", f"/trainings/{run['id']}", json={"pace": "max"})
     made = api.finished(run)
     assert {name for change in made["changes"] for name in change} == {
         "step",
-        "alpha",
+        "settings",
         "disturbance",
         "pace",
     }
@@ -138,7 +150,7 @@ def test_an_experiment_is_made_again(api: Api, code: Any, tmp_path: Path) -> Non
         "gaits": ["left-right-origin"],
         "agents": ["q-learning", "sarsa"],
         "steps": [20],
-        "alpha": [0.1, 0.3],
+        "settings": {"alpha": [0.1, 0.3]},
     }
     run = api.start("/experiments", body)
     api.tell(run, "stop")

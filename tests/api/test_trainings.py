@@ -2,6 +2,7 @@
 
 import csv
 import io
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ def train_directly(**fields: Any) -> dict[str, Any]:
     learner = build_learner(config)
     for _ in train(learner, config):
         pass
-    return finish_training(learner, config)
+    return asdict(finish_training(learner, config))
 
 
 def test_training_needs_only_a_gait(api: Api) -> None:
@@ -30,7 +31,11 @@ def test_training_needs_only_a_gait(api: Api) -> None:
     assert run["name"] == "500 steps: Front-back, mirrored"
     assert run["state"] == "queued"
     assert run["progress"] == {"done": 0, "total": 500}
-    assert (config["steps"], config["alpha"], config["gamma"]) == (500, 0.3, 0.9)
+    assert (config["steps"], config["settings"]["alpha"], config["settings"]["gamma"]) == (
+        500,
+        0.3,
+        0.9,
+    )
     assert (config["observation"], config["simulator"]) == ("measured", "mujoco")
     assert run["created_at"].endswith("Z")
 
@@ -89,7 +94,7 @@ def test_table_can_be_imported_and_raced(api: Api, trained: dict[str, Any]) -> N
     assert response.headers["location"] == f"/api/v1/trainings/{run['id']}"
     assert (run["name"], run["state"]) == ("from elsewhere", "finished")
     assert run["result"]["q_table_sha256"] == trained["result"]["q_table_sha256"]
-    shared = ("gait", "steps", "seed", "alpha", "observation", "agent")
+    shared = ("gait", "steps", "seed", "settings", "observation", "agent")
     assert all(run["config"][name] == trained["config"][name] for name in shared)
     lanes = [{"agent": "q-learning", "training_id": run["id"]}]
     assert api.finished(api.race(lanes=lanes))["result"]["lanes"][0]["steps"] == 50
@@ -150,22 +155,27 @@ def test_learner_without_values_has_no_table_to_show(api: Api) -> None:
 def test_live_changes_are_applied_and_recorded(api: Api) -> None:
     run = api.slow_training()
     path = f"/trainings/{run['id']}"
-    now = api.call("PATCH", path, json={"alpha": 0.1, "epsilon": 0.5}).json()
-    assert [(c["alpha"], c["epsilon"]) for c in now["changes"]] == [(0.1, 0.5)]
+    now = api.call("PATCH", path, json={"settings": {"alpha": 0.1, "epsilon": 0.5}}).json()
+    assert [c["settings"] for c in now["changes"]] == [{"alpha": 0.1, "epsilon": 0.5}]
     api.tell(run, "pause")
-    now = api.call("PATCH", path, json={"pace": "max", "gamma": 0}).json()
-    assert now["changes"][-1] == {"step": now["changes"][-1]["step"], "pace": "max", "gamma": 0}
+    now = api.call("PATCH", path, json={"pace": "max", "settings": {"gamma": 0}}).json()
+    step = now["changes"][-1]["step"]
+    assert now["changes"][-1] == {"step": step, "pace": "max", "settings": {"gamma": 0}}
     api.stop(run)
     data = api.call("GET", f"{path}/q-table?format=npz").content
     assert from_bytes(data, "it").meta["changes"] == now["changes"]
     refused(api.call("PATCH", path, json={"pace": 1}), 409, "stopped")
-    for body in ({}, {"alpha": None}, {"alpha": 0}, {"pace": 0}, {"steps": 5}, {"gamma": 1}):
+    bodies: list[dict[str, Any]] = [{}, {"settings": {}}, {"pace": 0}, {"steps": 5}]
+    for body in bodies:
         refused(api.call("PATCH", path, json=body), 422)
+    for settings in ({"alpha": None}, {"alpha": 0}, {"gamma": 1}, {"pace": 3}):
+        refused(api.call("PATCH", path, json={"settings": settings}), 422)
 
 
 def test_training_with_live_changes_is_reproducible(api: Api) -> None:
     run = api.slow_training()
-    now = api.call("PATCH", f"/trainings/{run['id']}", json={"alpha": 0.05, "pace": 50}).json()
+    change = {"settings": {"alpha": 0.05}, "pace": 50}
+    now = api.call("PATCH", f"/trainings/{run['id']}", json=change).json()
     api.until(run, lambda then: then["progress"]["done"] > now["changes"][0]["step"] + 20)
     api.stop(run)
     now = api.look(run)
@@ -176,10 +186,11 @@ def test_training_with_live_changes_is_reproducible(api: Api) -> None:
     for _ in train(learner, config):
         for change in now["changes"]:
             if learner.step == change["step"]:
-                learner.walker.agent.tune(alpha=change["alpha"])  # type: ignore[attr-defined]
+                learner.walker.agent.tune(**change["settings"])  # type: ignore[attr-defined]
         if learner.step == now["progress"]["done"]:
             break
-    assert finish_training(learner, config, measure_reference=False) == now["result"]
+    result = finish_training(learner, config, measure_reference=False)
+    assert asdict(result) == now["result"]
 
 
 def test_list_is_paginated_newest_first(api: Api, trained: dict[str, Any]) -> None:

@@ -27,10 +27,10 @@ from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import World
-from hexapods.runs.lane import lane_config
+from hexapods.runs.lane import PlanningModel, lane_config
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.race_file import race_arrays
-from tests.storage.ended_runs import ended_race, ended_training
+from tests.storage.ended_runs import ended_race, ended_training, result_of_race
 from tests.storage.stores import ODD, opened, temporary_store, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
@@ -315,12 +315,13 @@ def test_branch_of_a_race_is_exported_and_imported(source: RunStore, store: RunS
         world=World((SensorNoise(sd_m=0.004, at_step=3),)),
         branch_from=Branch(RACED, 3),
     )
-    assert original.result is not None
+    raced = result_of_race(original)
+    known: tuple[PlanningModel | None, ...] = (None, "nominal")
     lanes = [
-        {**lane, "plans_with": known, "fell_at_step": None, "heading_deg": 1.5}
-        for lane, known in zip(original.result["lanes"], (None, "nominal"), strict=True)
+        replace(lane, plans_with=model, fell_at_step=None, heading_deg=1.5)
+        for lane, model in zip(raced.lanes, known, strict=True)
     ]
-    result = {**original.result, "lanes": lanes}
+    result = replace(raced, lanes=tuple(lanes))
     branch = replace(
         original, id=ONE, config=branched, result=result, lane_training_ids=(None, None)
     )
@@ -342,7 +343,7 @@ def test_training_that_was_disturbed_while_it_ran_is_exported_and_imported(
     source: RunStore, store: RunStore
 ) -> None:
     noise = {"kind": "sensor-noise", "at_step": 51, "until_step": 90, "sd_m": 0.004}
-    changes = ({"step": 50, "disturbance": noise}, {"step": 60, "alpha": 0.1})
+    changes = ({"step": 50, "disturbance": noise}, {"step": 60, "settings": {"alpha": 0.1}})
     run = replace(source.get(TRAINING), id=ONE, changes=changes)
     store.create(run)
     data = export_run(store, ONE)
@@ -375,11 +376,11 @@ def _shorter(content: Any) -> None:
 @pytest.mark.parametrize(
     ("change", "names"),
     [
-        (_set("format", 2), "format 2"),
+        (_set("format", 3), "format 3"),
         (_set("format", "1"), "run.json"),
         (_set("more", 1), "unknown field `more`"),
         (_set("more", 1, "run"), "unknown field `more`"),
-        (_set("more", 1, "run", "result"), "unknown field `more`"),
+        (_set("more", 1, "run", "result"), "result cannot be read: more: Unexpected"),
         (_set("more", 1, "run", "config"), "more"),
         (_set("wings", 2, "run", "config", "robot"), "femur_m"),
         (_set("n_legs", 10**9, "run", "config", "robot"), "even number of legs"),
@@ -403,7 +404,7 @@ def _shorter(content: Any) -> None:
         (_set("greedy_distance_m", float("nan"), "run"), "run.json"),
         (_set("greedy_distance_m", 1e300, "run"), "greedy_distance_m"),
         (_set("distance_m", 1e300, "run", "result"), "distance_m"),
-        (_set("changes", [{"step": 5, "alpha": 7.0}], "run"), "alpha"),
+        (_set("changes", [{"step": 5, "settings": {"alpha": 7.0}}], "run"), "alpha"),
         (_set("changes", [{"step": 5, "pace": -1.0}], "run"), "pace"),
         (_set("curve", [{"step": 5, "distance_m": 1, "epsilon": 1.5}]), "epsilon"),
         (_set("curve", [{"step": 10**30, "distance_m": 1, "epsilon": 0}]), "step"),
@@ -439,7 +440,7 @@ def test_invalid_run_json_of_a_training_is_refused(
         lambda content: content["run"]["config"]["lanes"].reverse(),
         _set("steps", 3, "run", "config"),
         _set("divisions", 3, "run", "config"),
-        lambda content: content["run"]["config"]["lanes"][0].update(alpha=0.5),
+        lambda content: content["run"]["config"]["lanes"][0]["settings"].update(alpha=0.5),
         lambda content: content["run"]["config"]["lanes"][0].update(keep_learning="yes"),
         lambda content: content["run"]["config"]["lanes"][1].update(depth=2),
         lambda content: content["run"]["config"]["lanes"][1].update(keep_learning=True),

@@ -282,7 +282,7 @@ def small_runs(shared_server: Serving) -> list[str]:
     corner = {**CORNER, "robots": "stiff", "seeds": 3, "workers": 1}
     asked = [
         {"experiment": "figure4", **corner, "gaits": ["left-right-origin", "left-right-vertical"]},
-        {"experiment": "sweep", **corner, "alpha": [0.1, 0.3], "steps": 100},
+        {"experiment": "sweep", **corner, "settings": {"alpha": [0.1, 0.3]}, "steps": 100},
         {
             "experiment": "recovery",
             **corner,

@@ -44,7 +44,8 @@ def trainings(dashboard: Dashboard) -> list[dict[str, Any]]:
 def changed(dashboard: Dashboard) -> dict[str, Any]:
     """Return the values to which the settings of the only training were changed last."""
     [training] = trainings(dashboard)
-    return {name: value for change in training["changes"] for name, value in change.items()}
+    settings = [change.get("settings", {}) for change in training["changes"]]
+    return {name: value for one in settings for name, value in one.items()}
 
 
 def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, server: Serving) -> None:
@@ -61,7 +62,7 @@ def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, serve
     expect(page.get_by_role("slider", name="Exploration now ε")).to_be_visible()
     [training] = trainings(dashboard)
     assert training["config"]["agent"] == "sarsa-lambda"
-    assert training["config"]["trace_decay"] == 0.5
+    assert training["config"]["settings"]["trace_decay"] == 0.5
     trace_decay(dashboard).fill("0.25")
     dashboard.eventually(lambda: changed(dashboard).get("trace_decay") == 0.25, "the new λ")
     page.get_by_role("slider", name="Exploration now ε").fill("0.4")
@@ -105,9 +106,9 @@ def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, serve
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
     configs = {one["config"]["agent"]: one["config"] for one in trainings(dashboard)}
     assert set(configs) == {"q-learning", "sarsa-lambda"}
-    assert [config["alpha"] for config in configs.values()] == [0.5, 0.5]
-    assert configs["sarsa-lambda"]["trace_decay"] == 0.9
-    assert "trace_decay" not in configs["q-learning"]
+    assert [config["settings"]["alpha"] for config in configs.values()] == [0.5, 0.5]
+    assert configs["sarsa-lambda"]["settings"]["trace_decay"] == 0.9
+    assert "trace_decay" not in configs["q-learning"]["settings"]
 
     expect(dashboard.primary).to_have_text("Practise 20 more, race again")
     dashboard.primary.click()

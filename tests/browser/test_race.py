@@ -5,7 +5,7 @@ from itertools import combinations
 from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Browser, Locator, Page, Route, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
@@ -115,17 +115,31 @@ def check_widths_of_the_scoreboard(dashboard: Dashboard) -> None:
         assert board["x"] + board["width"] <= panel["x"] + panel["width"] - 16
 
 
+def boxes(shown: Locator) -> list[tuple[str, dict[str, float]]]:
+    """The text of each element, and where it lies in the window [px], all at one moment.
+
+    Read one by one, an element that is hidden meanwhile would be waited for.
+    """
+    found: list[tuple[str, dict[str, float]]] = shown.evaluate_all(
+        """shown => shown.map(one => {
+            const frame = window.frameElement?.getBoundingClientRect() ?? {x: 0, y: 0};
+            const {x, y, width, height} = one.getBoundingClientRect();
+            return [one.innerText, {x: x + frame.x, y: y + frame.y, width, height}];
+        }).filter(([, {width}]) => width > 0)"""
+    )
+    return found
+
+
 def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
     """Pairs of the stage's labels and chips that lie on each other, or what is missing."""
     frame = dashboard.page.frame_locator(".picture iframe")
-    labels = frame.locator(".labels > div:not([hidden])").all()
+    labels = boxes(frame.locator(".labels > div:not([hidden])"))
     if len(labels) < 3:
         return [("labels", f"{len(labels)} are shown")]
-    chips = dashboard.page.locator(".stage .chip").all()
-    boxes = [(one.inner_text(), box) for one in (*labels, *chips) if (box := one.bounding_box())]
+    chips = boxes(dashboard.page.locator(".stage .chip"))
     return [
         (words, others)
-        for (words, one), (others, other) in combinations(boxes, 2)
+        for (words, one), (others, other) in combinations((*labels, *chips), 2)
         if one["x"] < other["x"] + other["width"]
         and other["x"] < one["x"] + one["width"]
         and one["y"] < other["y"] + other["height"]
@@ -163,7 +177,9 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
 
     def changes() -> dict[str, float]:
         [training] = dashboard.get("/api/v1/trainings")["items"]
-        return {k: v for change in training["changes"] for k, v in change.items() if v is not None}
+        return {
+            k: v for change in training["changes"] for k, v in change.get("settings", {}).items()
+        }
 
     dashboard.eventually(
         lambda: (changes().get("alpha"), changes().get("epsilon")) == (0.5, 0.25), "the new rates"

@@ -21,7 +21,7 @@ RACE: dict[str, Any] = {
     "simulator": "kinematic",
     "steps": 20,
     "lanes": [
-        {"agent": "q-learning", "training": {"steps": 60, "alpha": 0.7}},
+        {"agent": "q-learning", "training": {"steps": 60, "settings": {"alpha": 0.7}}},
         {"agent": "greedy"},
     ],
     "disturbances": [{"kind": "sensor-noise", "sd_m": 0.001, "at_step": 5}],

@@ -1,6 +1,7 @@
 """Beside the settings: what thirty robots make of them, and how one goes on from there."""
 
 import re
+from typing import Any
 from urllib.parse import urlencode
 
 import pytest
@@ -50,11 +51,11 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
     dashboard.eventually(lambda: len(trainings(dashboard)) == 2, "the training that goes on")
     second, first = trainings(dashboard)
     assert second["config"]["continue_from"] == first["id"]
-    assert second["config"]["alpha"] == 0.8
+    assert second["config"]["settings"]["alpha"] == 0.8
 
 
-def trainings(dashboard: Dashboard) -> list[dict[str, dict[str, object]]]:
-    found: list[dict[str, dict[str, object]]] = dashboard.get("api/v1/trainings")["items"]
+def trainings(dashboard: Dashboard) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = dashboard.get("api/v1/trainings")["items"]
     return found
 
 

@@ -38,8 +38,9 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     lines = done.stdout.splitlines()
     assert all(line.startswith("✓ ") for line in lines)
     names = [line[2:].partition(":")[0] for line in lines]
-    assert names[:6] == ["python", "packages", "physics", "browser", "cores", "settings"]
-    assert names[6:] == ["data folder", "room", "lock", "database", "address"]
+    assert names[:5] == ["python", "packages", "physics", "browser", "cores"]
+    assert names[5:7] == ["exports", "settings"]
+    assert names[7:] == ["data folder", "room", "lock", "database", "address"]
     assert list(tmp_path.iterdir()) == []
 
 

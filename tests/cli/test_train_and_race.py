@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -37,7 +38,7 @@ def test_train_equals_a_direct_call(tmp_path: Path) -> None:
     learner = build_learner(config)
     for _ in train(learner, config):
         pass
-    assert printed["result"] == finish_training(learner, config)
+    assert printed["result"] == asdict(finish_training(learner, config))
     assert [point["step"] for point in printed["curve"]] == [50, 60]
 
 
@@ -111,7 +112,7 @@ def test_lanes_take_settings_and_keep_learning(folder: Path) -> None:
     race = ("race", *QUICK, "--steps", "5", *(part for lane in lanes for part in ("--lane", lane)))
     printed = output(*race, folder=folder)
     settings = [
-        (one.get("depth"), one["keep_learning"], one.get("alpha"))
+        (one["settings"].get("depth"), one["keep_learning"], one["settings"].get("alpha"))
         for one in printed["config"]["lanes"]
     ]
     assert settings == [(2, False, None), (None, True, None), (None, True, 0.5)]

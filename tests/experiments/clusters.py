@@ -49,6 +49,6 @@ def workers_of(process: psutil.Process) -> list[psutil.Process]:
     found = []
     for child in process.children(recursive=True):
         with suppress(psutil.NoSuchProcess):
-            if child.name() == "dask worker":
+            if child.name() == "trial worker":
                 found.append(child)
     return found

@@ -1,4 +1,4 @@
-"""Connecting to clusters: a local one, closed to other users, and an existing Dask cluster."""
+"""Where trials run: worker processes of this machine, and an existing Dask cluster."""
 
 import os
 import signal
@@ -10,14 +10,15 @@ from typing import Any
 
 import psutil
 import pytest
-from distributed import Client
 from tornado.iostream import IOStream
 
 from hexapods.domain.errors import InvalidInput
 from hexapods.experiments import cluster
-from hexapods.experiments.cluster import ClusterLost, ClusterSpec, connect
+from hexapods.experiments.cluster import ClusterSpec, connect
 from hexapods.experiments.engine import run_trials
-from hexapods.experiments.own_cluster import cores
+from hexapods.experiments.local_workers import LocalWorkers
+from hexapods.experiments.worker import ClusterLost, WorkerDied
+from hexapods.machine import cores
 from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
 from tests.experiments.existing_cluster import scheduler
 from tests.timeouts import LONG_S
@@ -46,37 +47,66 @@ def test_an_invalid_cluster_spec_is_refused(given: dict[str, Any], names: str) -
     assert names in str(refused.value)
 
 
-def test_a_local_cluster_listens_on_loopback_with_tls_and_leaves_no_files_or_processes(
+def test_workers_of_this_machine_open_no_port_and_leave_no_files_or_processes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     me = psutil.Process()
-    before = {c.laddr for c in me.net_connections() if c.status == psutil.CONN_LISTEN}
-    with connect(ClusterSpec()) as client:
-        assert len(client.nthreads()) == cores()
-        address = str(client.scheduler_info()["address"])
-        assert address.startswith("tls://127.0.0.1:")
+    before = {c.laddr for c in me.net_connections()}
+    with connect(ClusterSpec()) as workers:
+        assert workers.count() == len(workers_of(me)) == cores()
         for process in (me, *me.children(recursive=True)):
-            for port in process.net_connections():
-                if port.status == psutil.CONN_LISTEN and port.laddr not in before:
-                    assert port.laddr.ip == "127.0.0.1"
-        with pytest.raises((OSError, TypeError)):
-            Client(address.replace("tls", "tcp"), timeout=1, set_as_default=False)
+            assert {c.laddr for c in process.net_connections()} <= before
     assert not workers_of(me)
     assert list(tmp_path.iterdir()) == []
-    after = {c.laddr for c in me.net_connections() if c.status == psutil.CONN_LISTEN}
-    assert after <= before
+
+
+def test_a_worker_that_takes_too_much_memory_is_killed() -> None:
+    endless = trials_of(small(seeds=1, steps=9_000_000))[-1]
+    workers = LocalWorkers(os.environ)
+    try:
+        workers.start(1, most_bytes=1 << 20)
+        task = workers.submit([endless.config])
+        with pytest.raises(WorkerDied):
+            workers.result(task)
+    finally:
+        workers.close()
+    assert not workers_of(psutil.Process())
+
+
+def test_a_program_that_its_workers_cannot_import_is_told_how_to_start(tmp_path: Path) -> None:
+    script = tmp_path / "unguarded.py"
+    script.write_text(
+        "from hexapods.experiments.cluster import ClusterSpec\n"
+        "from hexapods.experiments.engine import run_trials\n"
+        "from tests.experiments.clusters import small, trials_of\n"
+        "list(run_trials(trials_of(small(seeds=1)), ClusterSpec(workers=1)))\n",
+        "utf-8",
+    )
+    ended = subprocess.run(
+        [sys.executable, str(script)],
+        env={**os.environ, "PYTHONPATH": str(Path.cwd())},
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=LONG_S,
+    )
+    assert ended.returncode == 1
+    assert ended.stderr.splitlines()[-1].endswith("as the workers import it?")
+    assert 'if __name__ == "__main__":' in ended.stderr.splitlines()[-1]
 
 
 def test_workers_end_when_the_process_that_started_them_is_killed(tmp_path: Path) -> None:
     script = tmp_path / "endless.py"
     script.write_text(
+        "import sys\n"
         "from hexapods.experiments.cluster import ClusterSpec\n"
         "from hexapods.experiments.engine import run_trials\n"
         "from tests.experiments.clusters import small, trials_of\n"
         "if __name__ == '__main__':\n"
         "    trials = trials_of(small(seeds=1)) + trials_of(small(seeds=9, steps=9_000_000))\n"
         "    for outcome in run_trials(trials, ClusterSpec(workers=2)):\n"
+        "        assert not {'dask', 'distributed'} & set(sys.modules)\n"
         "        print(outcome.key, flush=True)\n",
         "utf-8",
     )

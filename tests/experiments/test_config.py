@@ -14,6 +14,7 @@ from hexapods.experiments.config import (
     MAX_SEEDS,
     ExperimentConfig,
     as_json,
+    by_option,
     experiment_config,
     from_json,
     settings_by_name,
@@ -47,7 +48,7 @@ def test_a_sweep_can_vary_every_grid_parameter() -> None:
         "grid_side_m": (0.03, 0.04),
     }
     assert set(grid) == {*GRID, *settings_by_name(["q-learning"])}
-    shown = as_json(experiment_config("sweep", grid))
+    shown = by_option(as_json(experiment_config("sweep", grid)))
     assert {name: tuple(shown[name]) for name in grid} == grid
     assert shown["observations"] == ["measured"]
 

@@ -158,8 +158,8 @@ def test_a_file_in_another_format_is_refused(head: bytes, folder: Path) -> None:
 def test_results_of_another_version_are_refused(folder: Path) -> None:
     change_head(folder, lambda head: head["versions"].update(mujoco="3.3.7"))  # type: ignore[attr-defined]
     assert "has results of mujoco 3.3.7 instead of 4.0.0" in refusal(folder)
-    change_head(folder, lambda head: head.update(format=2))
-    assert "has results in format 2, and this version writes format 1" in refusal(folder)
+    change_head(folder, lambda head: head.update(format=3))
+    assert "has results in format 3, and this version writes format 2" in refusal(folder)
 
 
 @pytest.mark.parametrize("earlier", [None, "ExperimentConfig"])

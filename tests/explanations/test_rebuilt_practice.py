@@ -114,12 +114,12 @@ def test_a_long_way_is_gone_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_practice_that_forgot_steps_or_changes_is_another() -> None:
     practice, steps = practice_of("q-learning"), steps_by("q-learning")
-    change = {"step": 5, "alpha": 0.5}
+    change = {"step": 5, "settings": {"alpha": 0.5}}
     practice.learner_at(4, steps, (change,))
     assert practice.fits(steps, (change,))
     assert practice.fits(steps, ())  # it was not made yet
     practice.learner_at(6, steps, (change,))
-    assert practice.fits(steps, (change, {"step": 9, "alpha": 0.1}))
+    assert practice.fits(steps, (change, {"step": 9, "settings": {"alpha": 0.1}}))
     assert not practice.fits(steps, ())
     fewer = steps_by("q-learning")
     del fewer._steps[5:]

@@ -75,7 +75,7 @@ def test_an_answer_is_new_where_the_run_was_changed_before(store: RunStore) -> N
     recordings = Recordings(store)
     run_id, explanations = stored_training(store, recordings), Explanations(store, recordings)
     steps = [explanations.explain(run_id, number, 0) for number in (40, 50)]
-    store.update(run_id, changes=({"step": 45, "alpha": 0.9},))
+    store.update(run_id, changes=({"step": 45, "settings": {"alpha": 0.9}},))
 
     assert explanations.explain(run_id, 40, 0) is steps[0]
     assert explanations.explain(run_id, 50, 0) != steps[1]

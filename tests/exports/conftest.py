@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.exports.recorded_lanes import RecordedWalks, recorded_walks
+from app.exports.stored_walks import recorded_walks
+from hexapods.exports.recorded_walks import RecordedWalks
 from tests.stage.stage_parts import StageParts
 from tests.storage.stores import temporary_store
 

@@ -8,13 +8,14 @@ import pytest
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from app.exports.mcap_log import mcap_log
-from app.exports.recorded_lanes import RecordedWalks
-from app.exports.trajectory import joint_names
 from app.jobs.stopping import Stopping
 from app.storage.errors import Busy
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import foot_positions, rotation_matrices
+from hexapods.exports.export_format import Execution
+from hexapods.exports.mcap_log import mcap_log
+from hexapods.exports.recorded_walks import RecordedWalks
+from hexapods.exports.trajectory import joint_names
 
 Messages = dict[str, list[Any]]
 
@@ -60,14 +61,14 @@ def test_a_server_that_stops_writes_no_log(raced: RecordedWalks) -> None:
     stopping = Stopping()
     stopping.set()
     with pytest.raises(Busy, match="stopping"):
-        mcap_log(raced, "paper", stopping)
+        mcap_log(raced, "paper", Execution(check=stopping.check))
 
 
 def test_a_log_that_would_be_too_long_is_refused(raced: RecordedWalks) -> None:
     frames = sum(len(one.motion(index).time_s) for one in raced.lanes for index in range(6))
-    assert b"".join(mcap_log(raced, "paper", max_frames=frames))
+    assert b"".join(mcap_log(raced, "paper", Execution(max_frames=frames)))
     with pytest.raises(InvalidInput, match=f"would have {frames} frames"):
-        mcap_log(raced, "paper", max_frames=frames - 1)
+        mcap_log(raced, "paper", Execution(max_frames=frames - 1))
 
 
 def test_joint_states_are_the_recorded_angles(raced: RecordedWalks, messages: Messages) -> None:

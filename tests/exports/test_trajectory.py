@@ -12,12 +12,13 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from app.exports import extras
-from app.exports.recorded_lanes import RecordedWalks, checked_lane, recorded_walks
-from app.exports.trajectory import column_names, trajectory_csv, trajectory_parquet
+from app.exports.stored_walks import recorded_walks
 from app.storage.errors import Conflict
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import foot_positions
+from hexapods.exports import extras, registry
+from hexapods.exports.recorded_walks import RecordedWalks, checked_lane
+from hexapods.exports.trajectory import column_names, trajectory_csv, trajectory_parquet
 from tests.exports.conftest import AGENTS
 from tests.stage.stage_parts import StageParts
 
@@ -121,6 +122,7 @@ def test_extras_that_are_missing_are_named_with_the_command_that_installs_them(
         installed = ModuleType(name)
         installed.__spec__ = ModuleSpec(name, None)
         monkeypatch.setitem(sys.modules, name, installed)
-    assert extras.missing_extras() == {}
+    assert registry.missing_extras() == {}
     monkeypatch.setitem(sys.modules, "OpenGL", None)
-    assert extras.missing_extras() == {"video": "pip install 'racing-hexapods[video]'"}
+    install = "pip install 'racing-hexapods[video]'"
+    assert registry.missing_extras() == {"Video (MP4)": install, "Video (GIF)": install}

@@ -15,14 +15,17 @@ import psutil
 import pytest
 from PIL import Image, ImageSequence
 
-from app.exports import video
-from app.exports.extras import MissingExtra
-from app.exports.recorded_lanes import RecordedWalks, recorded_walks
-from app.exports.video import VideoOptions, render_video, shown_poses
-from app.exports.video_renderer import VideoRenderer
+from app.exports.file_renderer import FileRenderer
+from app.exports.stored_walks import recorded_walks
 from app.jobs import process_pool
 from app.storage.errors import Busy
 from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.exports import video
+from hexapods.exports.export_format import Execution
+from hexapods.exports.extras import MissingExtra
+from hexapods.exports.options import VideoOptions
+from hexapods.exports.recorded_walks import RecordedWalks
+from hexapods.exports.video import render_video, shown_poses
 from tests.jobs.waiting import wait_until
 from tests.stage.stage_parts import StageParts
 from tests.timeouts import LONG_S
@@ -31,9 +34,13 @@ SMALL = VideoOptions(width=160, height=120, fps=5, clock="free")
 PICTURES = 11  # 6 steps of 0.32 s at 5 a second, and the end
 
 
+def rendered_by(renderer: FileRenderer, walks: RecordedWalks, options: VideoOptions) -> bytes:
+    return render_video(walks, options, "mp4", Execution(write_file=renderer.render))
+
+
 def test_an_mp4_opens_in_another_reader_and_moves(raced: RecordedWalks) -> None:
-    renderer = VideoRenderer()
-    with av.open(io.BytesIO(renderer.render(raced, SMALL)), "r") as video:
+    renderer = FileRenderer()
+    with av.open(io.BytesIO(rendered_by(renderer, raced, SMALL)), "r") as video:
         stream = video.streams.video[0]
         pictures = [frame.to_ndarray(format="rgb24").astype(int) for frame in video.decode(stream)]
     renderer.close()
@@ -47,8 +54,8 @@ def test_an_mp4_opens_in_another_reader_and_moves(raced: RecordedWalks) -> None:
 
 
 def test_a_gif_opens_in_another_reader(raced: RecordedWalks) -> None:
-    options = VideoOptions(".gif", 160, 120, 5, clock="free")
-    with Image.open(io.BytesIO(render_video(raced, options))) as video:
+    options = VideoOptions(160, 120, 5, clock="free")
+    with Image.open(io.BytesIO(render_video(raced, options, "gif"))) as video:
         assert (video.format, video.size) == ("GIF", (160, 120))
         assert len([*ImageSequence.Iterator(video)]) == PICTURES
         assert video.info["duration"] == 200
@@ -73,27 +80,40 @@ def test_a_gap_in_a_practice_is_left_out(parts: StageParts) -> None:
     assert len(times_s) == pytest.approx(520 * 0.32, abs=2)
 
 
+def test_a_long_walk_is_shown_whole_but_faster_unless_its_speed_is_chosen(
+    parts: StageParts, raced: RecordedWalks
+) -> None:
+    assert shown_poses(raced, SMALL, 900).times_s[1] == pytest.approx(1 / 5), "at its own speed"
+    run = parts.finished_training(steps=700)
+    walks = recorded_walks(parts.store.find(run.id), parts.recordings)
+    times_s = shown_poses(walks, VideoOptions(), 900).times_s
+    assert 800 < len(times_s) <= 900
+    assert times_s[-1] == pytest.approx(700 * 0.32)
+    with pytest.raises(InvalidInput, match="more than 900 frames; choose a higher speed"):
+        shown_poses(walks, VideoOptions(playback_speed=1.0), 900)
+
+
 def test_a_video_that_is_rendered_ends_with_the_renderer(
     raced: RecordedWalks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    renderer = VideoRenderer()
-    long = replace(SMALL, width=1920, height=1080, speed=0.05)
+    renderer = FileRenderer()
+    long = replace(SMALL, width=1920, height=1080, playback_speed=0.05)
     with ThreadPoolExecutor(1) as threads:
-        rendered = threads.submit(renderer.render, raced, long)
+        rendered = threads.submit(rendered_by, renderer, raced, long)
         wait_until(lambda: [*tmp_path.rglob("video.mp4")])
         (worker,) = map(psutil.Process, renderer._pool.pids)
         worker_and_encoder = [worker, *worker.children()]
         assert len(worker_and_encoder) == 2
         with pytest.raises(Busy, match="another video is being rendered"):
-            renderer.render(raced, SMALL)
+            rendered_by(renderer, raced, SMALL)
         renderer.close()
         with pytest.raises(Busy, match="one of them ended"):
             rendered.result()
     assert [*tmp_path.iterdir()] == []
     assert psutil.wait_procs(worker_and_encoder, LONG_S)[1] == []
     with pytest.raises(Busy, match="the server is stopping"):
-        renderer.render(raced, SMALL)
+        rendered_by(renderer, raced, SMALL)
 
 
 def test_a_video_that_takes_too_long_or_cannot_be_encoded_fails_alone(
@@ -105,17 +125,17 @@ def test_a_video_that_takes_too_long_or_cannot_be_encoded_fails_alone(
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(encoder))
     # The fork server has the environment that was there when it was started.
     monkeypatch.setattr(process_pool, "process_context", lambda: get_context("spawn"))
-    stuck = VideoRenderer(timeout_s=2.0)
+    stuck = FileRenderer(timeout_s=2.0)
     with pytest.raises(Busy, match="it took over 2 s"):
-        stuck.render(raced, SMALL)
+        rendered_by(stuck, raced, SMALL)
     assert not stuck._rendering.locked()
     pid = (tmp_path / "pid").read_text() if (tmp_path / "pid").exists() else ""
     wait_until(lambda: not pid or not psutil.pid_exists(int(pid)))
     stuck.close()
     encoder.write_text("#!/bin/sh\nexit 1")
-    renderer = VideoRenderer()
+    renderer = FileRenderer()
     with pytest.raises(HexapodError, match="a video failed: OSError") as failure:
-        renderer.render(raced, SMALL)
+        rendered_by(renderer, raced, SMALL)
     assert not isinstance(failure.value, InvalidInput)
     renderer.close()
 
@@ -124,20 +144,20 @@ def test_what_cannot_be_rendered_is_refused(
     raced: RecordedWalks, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for wrong, words in (
-        ({"width": 63}, "width must be from 64 to 1920"),
-        ({"height": 121}, "must be even"),
-        ({"fps": 0}, "fps must be from 1 to 60"),
-        ({"speed": float("nan")}, "speed must be from"),
+        ({"width": 63}, "width must be an even number of pixels from 64 to 1,920"),
+        ({"height": 121}, "height must be an even number"),
+        ({"fps": 0}, "fps must be a whole number from 1 to 60"),
+        ({"playback_speed": float("nan")}, "playback_speed must be a number from 0.05 to 64"),
     ):
         with pytest.raises(InvalidInput, match=words):
             VideoOptions(**wrong)
     with pytest.raises(InvalidInput, match="more than 5 frames; choose a higher speed"):
-        shown_poses(raced, SMALL, 5)
+        shown_poses(raced, replace(SMALL, playback_speed=1.0), 5)
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setitem(sys.modules, "mujoco.egl", None)
     with pytest.raises(MissingExtra, match="apt-get install libegl1 libgl1-mesa-dri") as error:
-        render_video(raced, SMALL)
+        render_video(raced, SMALL, "mp4")
     assert str(pickle.loads(pickle.dumps(error.value))) == str(error.value)
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(MissingExtra, match=r"pip install 'racing-hexapods\[video\]'"):
-        render_video(raced, SMALL)
+        render_video(raced, SMALL, "mp4")

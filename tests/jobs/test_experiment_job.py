@@ -20,10 +20,12 @@ from app.storage.run import NOT_ENDED, Run
 from hexapods.domain.errors import InvalidInput, Unreachable
 from hexapods.experiments.config import REPORT, SUMMARY, ExperimentConfig, experiment_config
 from hexapods.experiments.plan import Plan
+from hexapods.experiments.result import TrialCounts
 from tests.experiments.clusters import workers_of
 from tests.jobs.experiments import stored_results, sweep, tried
 from tests.jobs.waiting import wait_until, wait_until_ended
 from tests.served import is_job
+from tests.storage.ended_runs import experiment_result
 from tests.storage.stores import of_type
 
 
@@ -72,10 +74,10 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     assert (stopped.state, stopped.error) == ("stopped", None)
     kept = store.trials(run.id)
     assert stopped.done == len(kept) < 25
-    assert stopped.result is not None
-    assert stopped.result["trials"] == {"done": len(kept), "total": 25, "failed": 0, "set_aside": 0}
-    assert stopped.result["files"][0] == SUMMARY
-    for name in stopped.result["files"]:
+    result = experiment_result(stopped)
+    assert result.trials == TrialCounts(done=len(kept), total=25, failed=0, set_aside=0)
+    assert result.files[0] == SUMMARY
+    for name in result.files:
         assert store.artifact(run.id, name), name
     wait_until(lambda: worker_pids() == before)
 
@@ -150,8 +152,7 @@ def test_invalid_trials_are_set_aside_and_the_others_are_kept(jobs: Jobs, store:
     config = sweep(agents=("q-learning", "tests.own_agents:Clumsy"))
     run = wait_until_ended(store, jobs.experiment(ExperimentStart(config, name="Mine", workers=1)))
     assert (run.name, run.state, run.done) == ("Mine", "finished", run.total)
-    assert run.result is not None
-    assert run.result["trials"] == {"done": 4, "total": 7, "failed": 0, "set_aside": 3}
+    assert experiment_result(run).trials == TrialCounts(done=4, total=7, failed=0, set_aside=3)
     for row in store.trials(run.id):
         assert (row["result"] is None) == ("Clumsy" in row["key"])
         assert row["result"] is not None or "I tripped" in row["set_aside"]

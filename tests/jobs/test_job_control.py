@@ -107,10 +107,10 @@ def test_one_step_begins_at_once_if_a_new_pace_makes_it_overdue(pipe: FakePipe) 
 def test_tune_changes_rates_and_records_the_change(pipe: FakePipe) -> None:
     grid = FootGrid()
     agent = QLearning(generator(0), Problem(((1, 4), (2, 5), (3, 6)), grid.cells))
-    pipe.commands.put(Command("tune", 1, {"alpha": 0.7, "epsilon": 0.25}))
+    pipe.commands.put(Command("tune", 1, {"settings": {"alpha": 0.7, "epsilon": 0.25}}))
     assert pipe.control.wait_for_turn(12, agent)
     assert agent.epsilon == 0.25
-    assert pipe.control.changes == [{"step": 12, "alpha": 0.7, "epsilon": 0.25}]
+    assert pipe.control.changes == [{"step": 12, "settings": {"alpha": 0.7, "epsilon": 0.25}}]
 
 
 def checkpoint_regularly(pipe: FakePipe) -> list[int]:
@@ -165,7 +165,10 @@ def test_leave_ends_the_loop_but_is_not_a_stop(pipe: FakePipe) -> None:
 def test_changes_are_replayed_after_the_same_steps(pipe: FakePipe) -> None:
     agent = QLearning(generator(0), Problem(((1, 4), (2, 5), (3, 6)), FootGrid().cells))
     included = [{"step": 2, "pace": "max"}]
-    later_on = [{"step": 5, "epsilon": 0.5}, {"step": 7, "epsilon": 0.25}]
+    later_on = [
+        {"step": 5, "settings": {"epsilon": 0.5}},
+        {"step": 7, "settings": {"epsilon": 0.25}},
+    ]
     pipe.control.restore_changes(included, later_on, 5, agent)
     assert agent.epsilon == 0.5, "it was made after this step, and after the checkpoint"
     epsilons = []

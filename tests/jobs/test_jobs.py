@@ -24,6 +24,7 @@ from app.storage.stored_tables import load_table
 from hexapods.domain.errors import InvalidInput
 from hexapods.runs.config import WalkingProblem, training_config
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
+from tests.storage.ended_runs import result_of_race, training_result
 from tests.storage.stores import of_type
 from tests.timeouts import LONG_S
 
@@ -118,8 +119,8 @@ def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: RunSto
     start = TrainingStart(training_config(**vars(mujoco), steps=1_000_000, evaluate_every=0))
     run = jobs.train(start)
     wait_for_progress(store, run)
-    changed = jobs.change(run.id, {"alpha": 0.2})
-    assert changed.changes[0]["alpha"] == 0.2
+    changed = jobs.change(run.id, {"settings": {"alpha": 0.2}})
+    assert changed.changes[0]["settings"]["alpha"] == 0.2
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.error) == ("stopped", None)
     assert stopped.result is not None
@@ -134,12 +135,11 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunSto
     wait_for_progress(store, run)
     time.sleep(0.5)
     assert jobs.pause(run.id).state == "paused"
-    changed = jobs.change(run.id, {"gamma": 0.5})
-    assert changed.changes == ({"step": 1, "gamma": 0.5},)
+    changed = jobs.change(run.id, {"settings": {"gamma": 0.5}})
+    assert changed.changes == ({"step": 1, "settings": {"gamma": 0.5}},)
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.done, stopped.error) == ("stopped", 1, None)
-    assert stopped.result is not None
-    assert stopped.result["greedy_distance_m"] is None
+    assert training_result(stopped).greedy_distance_m is None
 
 
 def test_stop_interrupts_a_long_decision(jobs: Jobs, store: RunStore) -> None:
@@ -150,8 +150,7 @@ def test_stop_interrupts_a_long_decision(jobs: Jobs, store: RunStore) -> None:
     stopped = jobs.stop(race.id)
 
     assert (stopped.state, stopped.error) == ("stopped", None)
-    assert stopped.result is not None
-    assert [lane["steps"] for lane in stopped.result["lanes"]] == [1, 0]
+    assert [lane.steps for lane in result_of_race(stopped).lanes] == [1, 0]
 
 
 def test_race_whose_agent_does_not_let_itself_be_stopped_is_ended(
@@ -167,8 +166,7 @@ def test_race_whose_agent_does_not_let_itself_be_stopped_is_ended(
     assert stopped.error == (
         "It did not answer when it was to stop, so it was ended after 0 s; what was done is kept."
     )
-    assert stopped.result is not None
-    assert [lane["steps"] for lane in stopped.result["lanes"]] == [1, 0]
+    assert [lane.steps for lane in result_of_race(stopped).lanes] == [1, 0]
 
 
 def test_stop_keeps_what_was_learned_although_the_last_evaluation_takes_too_long(
@@ -210,10 +208,10 @@ def test_number_of_live_changes_is_limited(
     monkeypatch.setattr("app.jobs.jobs.MAX_CHANGES", 2)
     run = jobs.train(endless())
     wait_for_progress(store, run)
-    jobs.change(run.id, {"alpha": 0.5})
+    jobs.change(run.id, {"settings": {"alpha": 0.5}})
     jobs.change(run.id, {"pace": 10})
     with pytest.raises(Conflict, match="was changed 2 times, which is the most"):
-        jobs.change(run.id, {"alpha": 0.6})
+        jobs.change(run.id, {"settings": {"alpha": 0.6}})
     assert len(store.get(run.id).changes) == 2
     jobs.stop(run.id)
 
@@ -310,9 +308,7 @@ def test_race_result_reports_a_shared_machine(store: RunStore) -> None:
         other = jobs.train(endless())
         wait_for_progress(store, other)
         shared = wait_until_ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
-        assert alone.result is not None
-        assert shared.result is not None
-        assert (alone.result["shared_machine"], shared.result["shared_machine"]) == (False, True)
+        assert [result_of_race(run).shared_machine for run in (alone, shared)] == [False, True]
     finally:
         jobs.close()
 

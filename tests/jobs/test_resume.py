@@ -27,7 +27,7 @@ from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
 from tests.jobs.test_jobs import WALK, pid_of
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
-from tests.storage.ended_runs import ended_training
+from tests.storage.ended_runs import ended_training, training_result
 from tests.storage.stores import training
 
 SLOW = training_config(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)
@@ -124,7 +124,7 @@ def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
     for number in range(200):
         rebuilt.take(whole.step(number))
     assert isinstance(rebuilt.agent, Tabular)
-    assert rebuilt.agent.table.sha256() == ended.result["q_table_sha256"]
+    assert rebuilt.agent.table.sha256() == training_result(ended).q_table_sha256
 
 
 def test_training_without_a_checkpoint_restarts_from_its_table(

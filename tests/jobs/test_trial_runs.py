@@ -13,6 +13,7 @@ from hexapods.domain.robot import robot
 from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.trial import run_trial
+from hexapods.runs.results import RaceResult, TrainingResult
 from tests.jobs.waiting import wait_until_ended
 
 SWEEP: dict[str, Any] = {
@@ -47,9 +48,9 @@ def test_a_trial_run_here_has_the_trials_distance(
         made = wait_until_ended(store, jobs.run_trial(experiment.id, trial.key))
         assert made.state == "finished", made.error
         assert made.notes == f"Trial {trial.key} of experiment {experiment.id}."
-        assert made.result is not None
-        lanes = made.result.get("lanes")
-        distance_m = lanes[0]["total_distance_m"] if lanes else made.result["distance_m"]
+        assert isinstance(made.result, TrainingResult | RaceResult)
+        result = made.result.lanes[0] if isinstance(made.result, RaceResult) else made.result
+        distance_m = getattr(result, "total_distance_m", getattr(result, "distance_m", None))
         assert distance_m == run_trial(trial.config).distances_m[-1], trial.key
 
 

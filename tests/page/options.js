@@ -81,16 +81,16 @@ const WORLDS = [
 ];
 
 const TRAINING = {
-  agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured", alpha: 0.3, gamma: 0.9,
-  epsilon_start: 1, epsilon_end: 0, steps_per_episode: 50, evaluate_every: 50, robot: "stiff",
-  simulator: /** @type {const} */ ("mujoco"), divisions: 2, grid_side_m: 0.04, tolerance: 0, disturbances: [],
+  agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured",
+  settings: { alpha: 0.3, gamma: 0.9, epsilon_start: 1, epsilon_end: 0 }, steps_per_episode: 50, evaluate_every: 50,
+  robot: "stiff", simulator: /** @type {const} */ ("mujoco"),
+  divisions: 2, grid_side_m: 0.04, tolerance: 0, disturbances: [],
 };
 
 const GRID = ["steps", "alpha", "gamma", "epsilon_start", "epsilon_end", "trace", "kind"];
 const EXPERIMENT = {
   name: "", seeds: 30, seed: 0, gaits: ["tripod", "wave"], observations: ["measured"], robots: ["stiff"],
-  simulator: "mujoco", agents: ["learner"], steps: [500], alpha: [0.3], gamma: [0.9], epsilon_start: [1],
-  epsilon_end: [0], steps_per_episode: [50], divisions: [2], grid_side_m: [0.04],
+  simulator: "mujoco", agents: ["learner"], steps: [500], steps_per_episode: [50], divisions: [2], grid_side_m: [0.04],
 };
 const COMMON = ["seeds", "seed", "gaits", "observations", "robots", "simulator"];
 
@@ -177,10 +177,16 @@ export const OPTIONS = {
     ...TRACER, ...LEARNER,
   },
   limits: { seeds: [1, null], seed: [0, null], what_if_steps: [1, 2000], lanes: [1, 6], name: [0, 20], tag: [1, 9],
-    tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120], video_s: [0, 30],
+    tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120],
     import_bytes: [1, 2 ** 20] },
   help: { alpha: "Learning rate." },
-  missing_extras: {},
+  exports: [
+    { title: "Joints (CSV)", address: "joints?format=csv", method: "GET", ending: "csv", install: null },
+    { title: "Joints (Parquet)", address: "joints?format=parquet", method: "GET", ending: "parquet",
+      install: "pip install p" },
+    { title: "Page", address: "page", method: "GET", ending: "html", install: null },
+    { title: "Film", address: "film?format=mp4", method: "POST", ending: "mp4", install: null },
+  ],
 };
 
 let number = 0;

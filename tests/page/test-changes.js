@@ -9,7 +9,7 @@ import { curve } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, ended: false, speed: 1, clock: "paper" };
-const CHANGES = [{ step: 136, alpha: 0.5 }, { step: 200, epsilon: 0.25, pace: 8 }];
+const CHANGES = [{ step: 136, settings: { alpha: 0.5 } }, { step: 200, settings: { epsilon: 0.25 }, pace: 8 }];
 
 const makeChanged = (changes = {}) => makeRun({ changes: CHANGES, progress: { done: 500, total: 500 }, ...changes });
 
@@ -23,10 +23,11 @@ test("a page that opens later knows the changes, and events supersede them", () 
   const run = makeChanged({ state: "running" });
   applyEvent("snapshot", { runs: [run], stage: STAGE, scene: null });
   assert.deepEqual(presentRates(run), { alpha: 0.5, epsilon: 0.25, pace: 8 });
-  applyEvent("rates", { run_id: run.id, step: 300, alpha: 0.7 });
+  applyEvent("rates", { run_id: run.id, step: 300, settings: { alpha: 0.7 } });
   assert.deepEqual(presentRates(run), { alpha: 0.7, epsilon: 0.25, pace: 8 });
   // The snapshot after a lost connection is newer than the events before it.
-  applyEvent("snapshot", { runs: [{ ...run, changes: [{ step: 350, alpha: 0.2 }] }], stage: STAGE, scene: null });
+  const changes = [{ step: 350, settings: { alpha: 0.2 } }];
+  applyEvent("snapshot", { runs: [{ ...run, changes }], stage: STAGE, scene: null });
   assert.deepEqual(presentRates(runs.value.get(run.id) ?? run), { alpha: 0.2 });
   assert.deepEqual(rates.value, {});
 });
@@ -35,12 +36,12 @@ test("the changes of a run are told with their steps, without the pace", () => {
   const run = makeChanged();
   assert.deepEqual(changesInWords("learner", rateChanges(run)),
     ["α\u00a00.5 from step 136", "ε\u00a00.25 from step 200"]);
-  const often = makeRun({ changes: [...CHANGES, { step: 400, alpha: 0.1 }] });
+  const often = makeRun({ changes: [...CHANGES, { step: 400, settings: { alpha: 0.1 } }] });
   assert.equal(changesInWords("learner", rateChanges(often))[0], "α\u00a00.1 from step 400 (2 changes)");
 });
 
 test("a slider that is dragged makes one change", () => {
-  const run = makeRun({ changes: [130, 132, 136].map((step) => ({ step, alpha: step / 1000 })) });
+  const run = makeRun({ changes: [130, 132, 136].map((step) => ({ step, settings: { alpha: step / 1000 } })) });
   assert.deepEqual(rateChanges(run), [{ name: "alpha", value: 0.136, step: 136 }]);
 });
 
@@ -48,7 +49,7 @@ test("the curve marks changes at their steps of all practice, once they are on s
   const first = makeChanged();
   const second = makeRun({
     state: "running", progress: { done: 300, total: 500 },
-    changes: [{ step: 10, gamma: 0.5 }, { step: 250, gamma: 0.6 }],
+    changes: [{ step: 10, settings: { gamma: 0.5 } }, { step: 250, settings: { gamma: 0.6 } }],
     config: { ...first.config, continue_from: first.id },
   });
   applyEvent("snapshot", { runs: [first, second], stage: { ...STAGE, run_id: second.id }, scene: null });
@@ -59,7 +60,7 @@ test("the curve marks changes at their steps of all practice, once they are on s
 
 test("the settings of a run are copied as they hold at its end", () => {
   const run = makeChanged();
-  const { alpha, gamma, epsilon_start, epsilon_end, pace } = configAtEnd(run);
+  const { settings: { alpha, gamma, epsilon_start, epsilon_end }, pace } = configAtEnd(run);
   assert.deepEqual([alpha, gamma, epsilon_start, epsilon_end, pace], [0.5, 0.9, 0.25, 0.25, 8]);
   copySettings(run);
   assert.deepEqual([form.value.alpha, form.value.epsilon_end, form.value.pace], [0.5, 0.25, 8]);
@@ -72,8 +73,8 @@ test("the settings of a run are copied as they hold at its end", () => {
 
 test("the settings of lanes are copied", () => {
   const lanes = [
-    { agent: "planner", depth: 2 },
-    { agent: "learner", training_id: null, keep_learning: true, gamma: 0.5 },
+    { agent: "planner", settings: { depth: 2 } },
+    { agent: "learner", training_id: null, keep_learning: true, settings: { gamma: 0.5 } },
   ];
   copySettings(makeRun({ kind: "race", config: { steps: 50, lanes } }));
   assert.deepEqual(form.value.lanes, ["planner", "learner"]);
@@ -120,7 +121,7 @@ test("what happens by a run's config is copied, and replaces what the form had",
 
 test("what happened while it ran is no setting", () => {
   const disturbance = { kind: "limp", at_step: 5, legs: [1] };
-  const run = makeRun({ changes: [{ step: 5, disturbance }, { step: 6, alpha: 0.5 }] });
+  const run = makeRun({ changes: [{ step: 5, disturbance }, { step: 6, settings: { alpha: 0.5 } }] });
   assert.deepEqual(rateChanges(run).map(({ name }) => name), ["alpha"]);
   assert.ok(!("disturbance" in configAtEnd(run)));
 });

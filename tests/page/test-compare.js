@@ -62,7 +62,7 @@ test("settings that differ are marked; what a run does not have is no difference
       grid_side_m: config.grid_side_m, seed: config.seed, steps: 25, lanes: [{ agent: "greedy" }] },
   });
   const disturbed = { disturbances: [{ kind: "limp", at_step: 25, legs: [1, 4] }] };
-  compare(trained({ alpha: 0.3 }), trained({ alpha: 0.5, ...disturbed }), race);
+  compare(trained({ settings: { alpha: 0.3 } }), trained({ settings: { alpha: 0.5 }, ...disturbed }), race);
   const rows = Object.fromEntries(comparedSettings.value.map((row) => [row.name, row]));
   assert.deepEqual(rows.alpha.cells, ["0.3", "0.5", null]);
   assert.deepEqual(["alpha", "world", "kind"].map((name) => rows[name].differs), [true, true, true]);
@@ -206,7 +206,7 @@ test("a table that is refused for good is asked for once, another again", async 
 });
 
 test("trained runs race if gait and grid are the same, and else it says what differs", () => {
-  const [one, other] = [trained({}, { name: "One" }), trained({ alpha: 0.9 }, { name: "Other" })];
+  const [one, other] = [trained({}, { name: "One" }), trained({ settings: { alpha: 0.9 } }, { name: "Other" })];
   assert.equal(obstacle([one, other]), null);
   assert.equal(conditionsOfRace([one, other]), null);
   const finer = trained({ divisions: 4 }, { name: "Finer" });

@@ -52,7 +52,7 @@ test("words are short, with units, and count steps from 1", () => {
 
 test("a training that runs has what its config says, and what was done to it", () => {
   const { config } = makeRun({});
-  const changes = [{ step: 7, disturbance: { ...LIMP, at_step: 7 } }, { step: 8, alpha: 0.5 }];
+  const changes = [{ step: 7, disturbance: { ...LIMP, at_step: 7 } }, { step: 8, settings: { alpha: 0.5 } }];
   const run = makeRun({ config: { ...config, disturbances: [SLOPE] }, changes, progress: { done: 3, total: 500 } });
   assert.deepEqual(disturbancesOf(run).map(({ kind }) => kind), ["slope", "limp"]);
   assert.deepEqual(conditionsInWords(conditionsNow(run)), ["slope 8°", "legs\u00a01, 4 limp"]);

@@ -1,7 +1,7 @@
 // Files that the browser downloads.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { downloads, fileAddress, videoSpeed } from "../../static/js/files.js";
+import { downloads, fileAddress, notInstalled, rendered } from "../../static/js/files.js";
 import { options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -13,7 +13,8 @@ test("addresses of files are escaped part by part", () => {
 
 test("each run offers the files that it has", () => {
   const labels = (/** @type {object} */ changes) => downloads(makeRun(changes)).map(([label]) => label);
-  const walk = ["Joints and feet (CSV)", "Offline replay (HTML)"];
+  options.value = OPTIONS;
+  const walk = ["Joints (CSV)", "Page"];
   const withTable = { result: { q_table_sha256: "ab" } };
   assert.deepEqual(labels({ kind: "race" }), ["Recording", ...walk]);
   assert.deepEqual(labels(withTable), ["Curve (CSV)", "Q-table (CSV)", "Q-table (npz)", ...walk]);
@@ -23,9 +24,14 @@ test("each run offers the files that it has", () => {
   assert.deepEqual(labels({ state: "interrupted" }), ["Curve (CSV)", ...walk]);
 });
 
-test("a video shows all that is recorded, faster where that would be too long for one", () => {
+test("exports are those that the server names: downloads, what it renders, and what it lacks", () => {
   options.value = OPTIONS;
-  assert.equal(videoSpeed([[0, 12]]), 1);
-  assert.equal(videoSpeed([[0, 10], [500, 577]]), 3);
-  assert.equal(videoSpeed([[0, 90.88]]), 3.2);
+  const addresses = Object.fromEntries(downloads({ ...makeRun({ kind: "race" }), id: "a b" }));
+  assert.equal(addresses["Joints (CSV)"], "http://page.test/api/v1/runs/a%20b/joints?format=csv");
+  assert.deepEqual(rendered().map(({ title }) => title), ["Film"]);
+  assert.deepEqual(notInstalled(), [["pip install p", ["Joints (Parquet)"]]]);
+  const lacking = OPTIONS.exports.map((one) => ({ ...one, install: "pip install p" }));
+  options.value = { ...OPTIONS, exports: lacking };
+  assert.deepEqual(rendered(), []);
+  assert.deepEqual(notInstalled(), [["pip install p", lacking.map(({ title }) => title)]]);
 });

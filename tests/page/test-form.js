@@ -24,17 +24,17 @@ beforeEach(() => {
 });
 
 test("the form begins with the server's defaults and nothing else", () => {
-  const { disturbances: _, ...training } = OPTIONS.defaults.training;
+  const { disturbances: _, settings, ...training } = OPTIONS.defaults.training;
   const lanes = { lanes: ["learner", "greedy"], "learner.keep_learning": false };
   const greedy = { "greedy.plans_with": null, "greedy.observation": "measured" };
   assert.deepEqual(form.value,
-    { ...training, world: "flat", disturb: [], race_steps: 50, ...lanes, ...greedy, name: "" });
+    { ...training, ...settings, world: "flat", disturb: [], race_steps: 50, ...lanes, ...greedy, name: "" });
 });
 
 test("the address follows the form, and is clean again when the form is", () => {
   setField("alpha", 0.7);
   assert.match(location.search, /alpha=0.7/);
-  setField("alpha", OPTIONS.settings.alpha.default);
+  setField("alpha", OPTIONS.defaults.training.settings.alpha);
   assert.equal(location.search, "");
 });
 
@@ -163,12 +163,12 @@ test("a training has the settings of its learner and no others", () => {
   assert.deepEqual(trainingBody(), {
     agent: "learner", gait: "tripod", robot: "stiff", simulator: "mujoco", divisions: 2, grid_side_m: 0.04,
     tolerance: 0, steps: 500,
-    seed: 0, observation: "measured", alpha: 0.3, gamma: 0.5, epsilon_start: 1, epsilon_end: 0, steps_per_episode: 50,
-    evaluate_every: 50, pace: "max",
+    seed: 0, observation: "measured", settings: { alpha: 0.3, gamma: 0.5, epsilon_start: 1, epsilon_end: 0 },
+    steps_per_episode: 50, evaluate_every: 50, pace: "max",
   });
   chooseLearner("tracer");
-  const { alpha, trace, kind, ...rest } = trainingBody();
-  assert.deepEqual([alpha, trace, kind], [0.1, 0.9, "replacing"]);
+  const { settings, ...rest } = trainingBody();
+  assert.deepEqual(settings, { alpha: 0.1, trace: 0.9, kind: "replacing" });
   assert.ok(!("gamma" in rest) && !("lanes" in rest) && !("race_steps" in rest));
 });
 
@@ -186,7 +186,7 @@ test("in a race learners practise, continue or use a table", () => {
 
 test("each learner of a race practises with its own settings, and a link has them all", () => {
   setFields({ lanes: ["learner", "tracer"], trace: 0.5, gamma: 0.8 });
-  const practices = () => lanesOf().map(({ training }) => training);
+  const practices = () => lanesOf().map(({ training }) => /** @type {any} */ (training?.settings));
   const [learner, tracer] = practices();
   assert.deepEqual([learner?.alpha, learner?.gamma, learner?.trace], [0.3, 0.8, undefined]);
   assert.deepEqual([tracer?.alpha, tracer?.gamma, tracer?.trace], [0.1, undefined, 0.5]);
@@ -213,7 +213,7 @@ test("what a link says that is no field is told, until another link is read", ()
 test("a lane has its agent's settings, in the form, in the address and in the request", () => {
   setFields({ lanes: ["tracer", "planner", "greedy"] });
   assert.equal(form.value["planner.depth"], 3);
-  assert.deepEqual(raceBody().lanes.slice(1), [{ agent: "planner", depth: 3 }, { agent: "greedy" }]);
+  assert.deepEqual(raceBody().lanes.slice(1), [{ agent: "planner", settings: { depth: 3 } }, { agent: "greedy" }]);
   enter("planner.depth", "2");
   enter("tracer.keep_learning", "false");
   const query = new URLSearchParams(location.search);
@@ -221,7 +221,7 @@ test("a lane has its agent's settings, in the form, in the address and in the re
   overrides.value = {};
   readAddress();
   const [tracer, planner] = /** @type {any[]} */ (raceBody().lanes);
-  assert.deepEqual(planner, { agent: "planner", depth: 2 });
+  assert.deepEqual(planner, { agent: "planner", settings: { depth: 2 } });
   assert.equal(tracer.keep_learning, false);
   assert.ok(!Object.keys({ ...tracer.training, ...trainingBody() }).some((name) => name.includes(".")));
   assert.deepEqual(unknownParts.value, []);
@@ -247,7 +247,7 @@ test("a learner that keeps learning may begin in the race, with its settings in 
   setFields({ lanes: ["learner"], "learner.keep_learning": true, gamma: 0.5 });
   const settings = { alpha: 0.3, gamma: 0.5, epsilon_start: 1, epsilon_end: 0 };
   assert.deepEqual(raceBody({ isUnpractised: true }).lanes,
-    [{ agent: "learner", keep_learning: true, observation: "measured", ...settings }]);
+    [{ agent: "learner", keep_learning: true, observation: "measured", settings }]);
 });
 
 test("a learner that begins in the race reads its state as it would in its practice", () => {

@@ -120,8 +120,8 @@ test("a limit that is not valid itself is refused", () => {
 test("a lane is named by its agent and its settings", () => {
   options.value = OPTIONS;
   assert.equal(laneTitle({ agent: "greedy" }), "Greedy");
-  assert.equal(laneTitle({ agent: "planner", depth: 2, keep_learning: false }), "Planner, depth\u00a02");
-  assert.equal(laneTitle({ agent: "learner", alpha: 0.3, gamma: 0.5 }), "Learner, γ\u00a00.5");
+  assert.equal(laneTitle({ agent: "planner", settings: { depth: 2 }, keep_learning: false }), "Planner, depth\u00a02");
+  assert.equal(laneTitle({ agent: "learner", settings: { alpha: 0.3, gamma: 0.5 } }), "Learner, γ\u00a00.5");
   assert.equal(laneTitle({ agent: "learner", keep_learning: true }), "Learner, keeps learning");
   assert.equal(laneTitle({ agent: "tracer", keep_learning: false }), "Tracer, frozen");
 });

@@ -39,7 +39,8 @@ def test_interrupted_trainings_end_like_uninterrupted_ones(
         assert server.tell(run, "resume").status_code == 202
     for run in runs:
         server.after_step(run, 45)
-        changed = server.client.patch(path_of(run), json={"alpha": 0.7, "epsilon": 0.5})
+        rates = {"settings": {"alpha": 0.7, "epsilon": 0.5}}
+        changed = server.client.patch(path_of(run), json=rates)
         assert changed.status_code == 200, changed.text
     for run in runs:
         server.after_step(run, 65)
@@ -51,7 +52,8 @@ def test_interrupted_trainings_end_like_uninterrupted_ones(
         assert server.tell(run, "resume").json()["state"] != "interrupted"
     for run in runs:
         server.after_step(run, 85)
-        assert server.client.patch(path_of(run), json={"gamma": 0.8}).status_code == 200
+        rates = {"settings": {"gamma": 0.8}}
+        assert server.client.patch(path_of(run), json=rates).status_code == 200
     assert server.end(signal.SIGTERM) == 0
 
     server = launch()
@@ -74,10 +76,10 @@ def check_end(server: Served, run: dict[str, Any]) -> None:
     """Check that a training ends with the table and curve of an uninterrupted one."""
     ended = server.in_state(run, "finished", "failed")
     assert ended["state"] == "finished", ended
-    assert [sorted(set(c) - {"step"}) for c in ended["changes"]] == [
+    assert [sorted(c.get("settings", c)) for c in ended["changes"]] == [
         ["alpha", "epsilon"],
         ["gamma"],
-        ["pace"],
+        ["pace", "step"],
     ]
     table, curve = uninterrupted(ended["config"], ended["changes"])
     assert server.client.get(f"{path_of(run)}/q-table?format=npz").content == table

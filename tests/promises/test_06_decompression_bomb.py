@@ -129,7 +129,7 @@ def long_curve(members: Members) -> Members:
 
 def many_changes(members: Members) -> Members:
     run = json.loads(members["run.json"])
-    change = '{"step":1,"alpha":0.5}'
+    change = '{"step":1,"settings":{"alpha":0.5}}'
     return {**members, "run.json": repeated(run, run["run"], "changes", change)}
 
 

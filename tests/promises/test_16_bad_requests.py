@@ -45,7 +45,7 @@ ODD_BODIES = [
     b'{"gait":"left-right-origin","gait":{}}',
     b'{"\\ud800":1}',
     b'{"gait":{"right_leg":1,"left_leg":2,"pairs":' + b"[" * 500 + b"]" * 500 + b"}}",
-    b'{"experiment":"sweep","alpha":' + b"[" * DEEP + b"]" * DEEP + b"}",
+    b'{"experiment":"sweep","settings":{"alpha":' + b"[" * DEEP + b"]" * DEEP + b"}}",
     b'{"experiment":"sweep","robots":[{"\\ud800":1}]}',
 ]
 ODD_QUERIES = ["limit=NaN", "cursor=%00", "state=%ff", "limit=" + "9" * 5000, "format=%F0%9F%A4%96"]
@@ -162,7 +162,7 @@ def odd_values() -> Iterator[tuple[str, str]]:
     """Yield path and body with every odd number in each numeric field."""
     for field in ("steps", "seed", "alpha", "grid_side_m", "pace", "divisions", "name", "robot"):
         for number in NUMBERS:
-            yield "/api/v1/trainings", json.dumps(WALK)[:-1] + f', "{field}": {number}}}'
+            yield "/api/v1/trainings", json.dumps(WALK)[:-1] + f", {_field(field, number)}}}"
             leg = f'{{"gait": "left-right-origin", "robot": {{"{field}": {number}}}}}'
             yield "/api/v1/trainings", leg
     for field in (
@@ -177,14 +177,18 @@ def odd_values() -> Iterator[tuple[str, str]]:
     ):
         for number in NUMBERS:
             for value in (number, f"[{number}]"):
-                sweep = f'"experiment": "sweep", "gaits": ["hop"], "{field}": {value}'
+                sweep = f'"experiment": "sweep", "gaits": ["hop"], {_field(field, value)}'
                 yield "/api/v1/experiments", f"{{{sweep}}}"
     for field in ("steps", "alpha", "divisions", "grid_side_m"):
         for number in NUMBERS:
-            yield "/api/v1/what-if", f'{{"gait": "left-right-origin", "{field}": {number}}}'
+            yield "/api/v1/what-if", f'{{"gait": "left-right-origin", {_field(field, number)}}}'
     for field in ("time_s", "speed", "playing"):
         for number in NUMBERS:
             yield "/api/v1/stage", f'{{"{field}": {number}}}'
+
+
+def _field(name: str, value: str) -> str:
+    return f'"settings": {{"{name}": {value}}}' if name == "alpha" else f'"{name}": {value}'
 
 
 def test_malformed_requests_give_no_5xx(unlimited_api: Api) -> None:

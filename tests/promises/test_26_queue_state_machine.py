@@ -130,7 +130,8 @@ def apply_verb(client: httpx2.Client, run: Model, chance: random.Random) -> bool
         run.expect(client.post(f"{run.path}/stop"), transitions, ENDED)
     elif name == "change":
         transitions = {state: state for state in LIVE}
-        run.expect(client.patch(run.path, json={"alpha": 0.5}), transitions, ENDED | {"queued"})
+        changed = client.patch(run.path, json={"settings": {"alpha": 0.5}})
+        run.expect(changed, transitions, ENDED | {"queued"})
     else:
         transitions = dict.fromkeys(ENDED, "deleted")
         run.expect(client.delete(run.path), transitions, LIVE | {"queued"})

@@ -294,12 +294,12 @@ def test_no_row_can_break_a_listing(data_folder: Path, launch: Callable[..., Ser
 
 DAMAGE: list[tuple[str, Any]] = [
     ("kind", "regatta"),
-    ("result", '{"distance_m": NaN}'),
+    ("result", '{"distance_m": []}'),
     ("id", BROKEN_TEXT),
     ("config", "milk"),
     ("state", "lost"),
     ("result", '{"distance_m": "far"}'),
-    ("changes", '[{"step": 1, "alpha": NaN}]'),
+    ("changes", '[{"step": 1, "settings": {"alpha": NaN}}]'),
     ("greedy_distance_m", float("inf")),
     ("created_at", "yesterday"),
     ("done", "many"),

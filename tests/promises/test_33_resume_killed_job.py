@@ -61,7 +61,7 @@ def test_a_change_to_a_stopped_process_delays_no_other_request(
     path = f"/api/v1/trainings/{run['id']}"
 
     def change(_: int) -> int:
-        return server.client.patch(path, json={"alpha": 0.9}).status_code
+        return server.client.patch(path, json={"settings": {"alpha": 0.9}}).status_code
 
     with ThreadPoolExecutor(30) as pool:
         changing = [pool.submit(change, n) for n in range(30)]

@@ -44,7 +44,7 @@ EXPERIMENT = {
     "simulator": "kinematic",
     "gaits": "left-right-origin",
     "steps": 40,
-    "alpha": [0.1, 0.2, 0.3, 0.4, 0.5],
+    "settings": {"alpha": [0.1, 0.2, 0.3, 0.4, 0.5]},
 }
 TABLES = at_length(
     ("q-table", "q-table?format=npz", "export"),

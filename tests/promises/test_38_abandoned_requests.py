@@ -42,8 +42,7 @@ HEAVY_WHAT_IF = {
     **BODY,
     "agent": "posterior-sampling",
     "steps": 2_000,
-    "plan_every": 1,
-    "gamma": 0.9999999,
+    "settings": {"plan_every": 1, "gamma": 0.9999999},
 }
 
 

@@ -40,7 +40,7 @@ def uninterrupted(
             curve.append(row)
         while isinstance(record, StepTaken) and later and later[0]["step"] == learner.step:
             change = later.pop(0)
-            agent.tune(**{k: v for k, v in change.items() if k not in ("step", "pace")})
+            agent.tune(**change.get("settings", {}))
     assert not later
     return to_bytes(snapshot(learner, config, changes=list(changes))), curve
 

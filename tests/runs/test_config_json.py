@@ -63,7 +63,7 @@ def test_config_round_trips_through_json(config: TrainingConfig | RaceConfig) ->
     assert config_from_json(json.loads(json.dumps(as_json(config)))) == config
 
 
-def test_lane_in_plain_types_has_its_settings_as_flat_fields() -> None:
+def test_lane_in_plain_types_has_its_settings_as_a_member() -> None:
     race = RaceConfig(gait=GAIT, lanes=(lane_config("look-ahead", depth=2),))
     assert as_json(race)["lanes"] == [
         {
@@ -71,14 +71,14 @@ def test_lane_in_plain_types_has_its_settings_as_flat_fields() -> None:
             "observation": "measured",
             "keep_learning": False,
             "plans_with": None,
-            "depth": 2,
+            "settings": {"depth": 2},
         }
     ]
 
 
 def test_race_of_an_earlier_version_has_lanes_that_do_not_keep_learning() -> None:
     stored = {**as_json(RaceConfig(gait=GAIT, lanes=LANES))}
-    stored["lanes"] = [{"agent": "greedy", "observation": "measured"}]
+    stored["lanes"] = [{"agent": "greedy", "observation": "measured", "settings": {}}]
     assert config_from_json(stored) == RaceConfig(gait=GAIT, lanes=LANES)
 
 

@@ -308,17 +308,17 @@ def test_paper_clock_ends_three_lanes_after_16_22_and_91_seconds() -> None:
     """At 0.32 s per motion; decisions without look-ahead take no time."""
     asked = config("tests.own_agents:Restless", "greedy", "two-step", steps=50)
     *_, lanes = record_race(build_walkers(asked, [None] * 3), asked, ticking())
-    result = race_result(lanes, 50)["lanes"]
-    paper = [lane["clocks"]["paper"] for lane in result]
+    result = race_result(lanes, asked).lanes
+    paper = [lane.clocks.paper for lane in result]
 
-    assert [round(lane["elapsed_s"]) for lane in paper] == [16, 22, 91]
-    assert [lane["elapsed_s"] for lane in paper] == pytest.approx(
+    assert [round(lane.elapsed_s) for lane in paper] == [16, 22, 91]
+    assert [lane.elapsed_s for lane in paper] == pytest.approx(
         [50 * 0.32, 50 * 0.32 * 1.36, 50 * 0.32 * 5.68]
     )
-    assert [lane["simulated_transitions"] for lane in result] == [0, 600, 7_800]
+    assert [lane.simulated_transitions for lane in result] == [0, 600, 7_800]
     # When the first lane is done greedy has about 74 % of its way, two-step 18 %.
     shares = [
-        p["finished_distance_m"] / lane["total_distance_m"]
+        (p.finished_distance_m or 0) / (lane.total_distance_m or 0)
         for p, lane in zip(paper, result, strict=True)
     ]
     assert shares[1] == pytest.approx(1 / 1.36, abs=0.02)

@@ -157,7 +157,7 @@ def test_rates_that_were_changed_are_changed_again() -> None:
     rebuilt = rebuild_learner(config)
     for number, step in enumerate(steps_of(taken)):
         if number == 30:
-            rebuilt.tune({"step": 30, "alpha": 0.9, "epsilon": 0.0, "pace": 3.0})
+            rebuilt.tune({"step": 30, "pace": 3.0, "settings": {"alpha": 0.9, "epsilon": 0.0}})
         rebuilt.take(step)
 
     assert agent_state(rebuilt.agent) == agent_state(learner.walker.agent)

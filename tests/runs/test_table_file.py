@@ -118,7 +118,7 @@ def test_values_out_of_order_are_refused() -> None:
 
 def test_another_format_version_is_refused() -> None:
     _, checkpoint = filled(2, 0.4)
-    meta = {**json.loads(json.dumps(dict(checkpoint.meta))), "format": 2}
+    meta = {**json.loads(json.dumps(dict(checkpoint.meta))), "format": 3}
 
-    with pytest.raises(DamagedFile, match="it has format 2"):
+    with pytest.raises(DamagedFile, match="it has format 3"):
         opened(to_bytes(Checkpoint(meta, checkpoint.arrays)))

@@ -21,6 +21,7 @@ from hexapods.domain.gait import GaitSpec
 from hexapods.domain.robot import robot
 from hexapods.runs.config import TrainingConfig, training_config
 from hexapods.runs.tables import (
+    FORMAT,
     Checkpoint,
     check_fits,
     continue_from,
@@ -87,7 +88,7 @@ def test_checkpoint_on_mujoco_has_the_full_state_vector() -> None:
 
 def test_numpy_loads_the_file_without_pickle() -> None:
     with np.load(io.BytesIO(FILE), allow_pickle=False) as file:
-        assert json.loads(str(file["meta"]))["format"] == 1
+        assert json.loads(str(file["meta"]))["format"] == FORMAT
         assert np.isfinite(file["agent.q"]).all()
 
 
@@ -178,7 +179,7 @@ def without(name: str) -> dict[str, Any]:
         (npz(without("agent.q")), "worn.npz is damaged: its contents do not match its checksum"),
         (npz({**members(), "more": np.zeros(1)}), "worn.npz is damaged"),
         (npz({**members(), "agent.q": members()["agent.q"] * 2}), "worn.npz is damaged"),
-        (npz({**members(), "meta": np.array('{"format": 1}')}), "worn.npz is damaged"),
+        (npz({**members(), "meta": np.array('{"format": 2}')}), "worn.npz is damaged"),
         (npz({**members(), "meta": np.array("not json")}), "worn.npz is not a Q-table"),
         (npz(members(), compressed=True), "its members are compressed; write it with numpy.savez"),
     ],
@@ -255,8 +256,8 @@ def test_pickle_in_a_file_is_refused_and_not_executed(tmp_path: Path) -> None:
 
 
 def test_newer_format_is_refused_with_the_supported_one() -> None:
-    newer = to_bytes(Checkpoint({**TABLE.meta, "format": 2}, TABLE.arrays))
-    with pytest.raises(DamagedFile, match=r"q\.npz has format 2; this version reads 1"):
+    newer = to_bytes(Checkpoint({**TABLE.meta, "format": 3}, TABLE.arrays))
+    with pytest.raises(DamagedFile, match=r"q\.npz has format 3; this version reads 2"):
         from_bytes(newer, "q.npz")
 
 

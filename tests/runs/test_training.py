@@ -15,6 +15,7 @@ from hexapods.domain.world import World
 from hexapods.runs import seeding
 from hexapods.runs.config import SIMULATORS, SimulatorName, TrainingConfig, training_config
 from hexapods.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
+from hexapods.runs.results import TrainingResult
 from hexapods.runs.tables import from_bytes, restore, snapshot, to_bytes
 from hexapods.runs.training import Learner, train
 from hexapods.runs.walker import Walker
@@ -333,13 +334,13 @@ def test_result_has_distance_greedy_distance_and_hash() -> None:
     last = records[-1]
 
     assert isinstance(last, Evaluated)
-    assert result == {
-        "distance_m": last.distance_m,
-        "greedy_distance_m": learner.greedy_distance_m,
-        "q_table_sha256": table_hash(learner),
-        "fell_at_step": None,
-        "best_known_m": None,
-    }
+    assert result == TrainingResult(
+        distance_m=last.distance_m,
+        greedy_distance_m=learner.greedy_distance_m,
+        q_table_sha256=table_hash(learner),
+        fell_at_step=None,
+        best_known_m=None,
+    )
 
 
 def test_result_is_the_same_without_evaluations() -> None:
@@ -356,7 +357,7 @@ def test_user_supplied_agent_trains_and_resumes() -> None:
 
     assert float(state["earned_m"][0]) == pytest.approx(learner.walker.state.distance_m)
     assert onward.walker.agent.state() == state
-    assert finish_training(learner, config)["q_table_sha256"] is None
+    assert finish_training(learner, config).q_table_sha256 is None
 
 
 def test_illegal_action_raises_an_error_that_names_agent_and_action() -> None:
@@ -382,7 +383,7 @@ def test_the_robot_is_evaluated_where_the_world_changes_and_greedy_in_each_world
 
     assert evaluated == [10, 20, 30]
     assert len(references) == len(set(references)) == 2
-    assert finish_training(learner, EVENTFUL)["greedy_distance_m"] == references[-1]
+    assert finish_training(learner, EVENTFUL).greedy_distance_m == references[-1]
 
 
 def test_a_disturbed_training_resumes_to_the_last_bit() -> None:

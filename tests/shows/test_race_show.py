@@ -11,7 +11,7 @@ from hexapods.domain.world import World
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.recording import LaneRecording
-from hexapods.runs.results import finish_s, lane_details, race_result
+from hexapods.runs.results import fell_at_step, finish_s, lane_figures
 from hexapods.shows.race_show import LAST_LANE_SPEED, PHOTO_FINISH_S, SPEED
 from hexapods.shows.stage_frame import StageFrame
 from tests.stage.stage_parts import FRAME_S, StageParts
@@ -118,15 +118,14 @@ def test_photo_finish_freezes_the_first_finish_for_three_seconds(parts: StagePar
     frames = show_to_end(parts)
     frozen = [frame for frame in frames if frame.phase == "photo-finish"]
     lanes = parts.recordings.race(frozen[0].run_id or "") or []
-    result = race_result(lanes, 12)["lanes"]
 
     assert len(frozen) * FRAME_S == pytest.approx(PHOTO_FINISH_S, abs=2 * FRAME_S)
     assert {frame.time_s for frame in frozen} == {finish_s(lanes, 12, "paper")}
-    by_lane = [lane["clocks"]["paper"] for lane in result]
+    by_lane = lane_figures(lanes, 12, "paper")
     assert [lane.distance_m for lane in frozen[0].lanes] == pytest.approx(
-        [lane["finished_distance_m"] for lane in by_lane]
+        [lane.finished_distance_m for lane in by_lane]
     )
-    assert [lane.rank for lane in frames[-1].lanes] == [lane["rank"] for lane in by_lane]
+    assert [lane.rank for lane in frames[-1].lanes] == [lane.rank for lane in by_lane]
 
 
 def test_poses_are_continuous_from_rest_to_the_end_of_the_recording(parts: StageParts) -> None:
@@ -319,7 +318,8 @@ def test_fall_is_shown_from_its_step_on(parts: StageParts) -> None:
     world = World((Lost(legs=(1, 2, 3), at_step=1),))
     run = parts.finished_race(("q-learning",), 5, simulator="mujoco", world=world)
     assert isinstance(run.config, RaceConfig)
-    fell = lane_details(parts.recordings.race(run.id) or [], run.config)[0]["fell_at_step"]
+    recorded = parts.recordings.race(run.id) or []
+    fell = fell_at_step(recorded[0], run.config.robot, world)
     parts.stage.set(run_id=run.id)
 
     lanes = [frame.lanes[0] for frame in parts.watch_to_end()]

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from app.stage import playback
 from app.stage.playback import Replays
 from app.storage.errors import Conflict, NotFound
 from hexapods.domain.disturbances import SensorNoise
@@ -79,9 +78,7 @@ def test_a_practice_has_its_evaluations_and_the_steps_that_are_kept(parts: Stage
     assert in_gap.time_s == pytest.approx(100 * step_s), "the next that is recorded"
 
 
-def test_replays_are_kept_up_to_the_size_of_their_recordings(
-    parts: StageParts, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_replays_are_kept_up_to_the_size_of_their_recordings(parts: StageParts) -> None:
     runs = [parts.finished_training(40, evaluate_every=20) for _ in range(3)]
     runs += [parts.finished_race(LANES, steps=10) for _ in range(3)]
     for run in runs:
@@ -95,14 +92,13 @@ def test_replays_are_kept_up_to_the_size_of_their_recordings(
     with_ghost = replays.get(runs[0].id, "paper", runs[1].id)
     assert with_ghost.size == kept[0].size + kept[1].size
 
-    assert replays.get(runs[-2].id, "paper") is kept[-2]
-    monkeypatch.setattr(playback, "_KEPT_BYTES", sum(one.size for one in kept[-2:]))
-    assert replays.get(runs[-1].id, "paper") is kept[-1]
-    assert replays.get(runs[-2].id, "paper") is kept[-2]
-    assert replays.get(runs[0].id, "paper") is not kept[0]
-    monkeypatch.setattr(playback, "_KEPT_BYTES", 0)
-    newest = replays.get(runs[1].id, "paper")
-    assert replays.get(runs[1].id, "paper") is newest
+    two = Replays(parts.store, parts.recordings, sum(replay.size for replay in kept[-2:]))
+    first, *newer = (two.get(run.id, "paper") for run in (runs[0], *runs[-2:]))
+    assert [two.get(run.id, "paper") for run in runs[-2:]] == newer
+    assert two.get(runs[0].id, "paper") is not first
+    one = Replays(parts.store, parts.recordings, 1)
+    newest = one.get(runs[1].id, "paper")
+    assert one.get(runs[1].id, "paper") is newest
 
 
 def test_a_renamed_run_is_replayed_under_its_new_name(parts: StageParts) -> None:

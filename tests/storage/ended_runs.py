@@ -2,6 +2,7 @@
 
 import json
 import time
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from app.storage.stored_trials import trials_as_csv
 from hexapods.assembly import build_learner, build_walkers, finish_training
 from hexapods.experiments.config import SUMMARY
 from hexapods.experiments.plan import Plan
+from hexapods.experiments.result import ExperimentResult
 from hexapods.experiments.summary import summarise
 from hexapods.experiments.trial import run_trial
 from hexapods.runs.config import training_config
@@ -20,7 +22,7 @@ from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.racing import record_race
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.records import Evaluated, StepTaken
-from hexapods.runs.results import race_result
+from hexapods.runs.results import RaceResult, TrainingResult, race_result
 from hexapods.runs.tables import from_bytes, snapshot, to_bytes
 from hexapods.runs.training import train
 from tests.jobs.experiments import sweep
@@ -49,7 +51,7 @@ def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps
     recordings.finish(run_id)
     store.put_artifact(run_id, TABLE, to_bytes(snapshot(learner, config)))
     result = finish_training(learner, config)
-    changes = ({"step": 3, "alpha": 0.25}, {"step": 9, "pace": "max"})
+    changes = ({"step": 3, "settings": {"alpha": 0.25}}, {"step": 9, "pace": "max"})
     return store.change(run_id, {"queued"}, "finished", done=steps, result=result, changes=changes)
 
 
@@ -75,10 +77,8 @@ def ended_race(store: RunStore, run_id: str, training_id: str) -> Run:
         for step in steps:
             recordings.add(run_id, step)
     recordings.finish(run_id)
-    result = race_result(recorded, config.steps)
-    for lane, lane_training_id in zip(result["lanes"], (training_id, None), strict=True):
-        lane |= {"training_id": lane_training_id, "trained_robot": None}
-    result["shared_machine"] = False
+    first, *others = race_result(recorded, config).lanes
+    result = RaceResult(lanes=(replace(first, training_id=training_id), *others))
     return store.change(run_id, {"queued"}, "finished", done=16, result=result)
 
 
@@ -107,3 +107,21 @@ def ended_experiment(store: RunStore, run_id: str) -> Run:
         "shared_machine": False,
     }
     return store.change(run_id, {"queued"}, "finished", done=plan.total, result=result)
+
+
+def training_result(run: Run) -> TrainingResult:
+    """Return the result of a training that has one."""
+    assert isinstance(run.result, TrainingResult)
+    return run.result
+
+
+def result_of_race(run: Run) -> RaceResult:
+    """Return the result of a race that has one."""
+    assert isinstance(run.result, RaceResult)
+    return run.result
+
+
+def experiment_result(run: Run) -> ExperimentResult:
+    """Return the result of an experiment that has one."""
+    assert isinstance(run.result, ExperimentResult)
+    return run.result

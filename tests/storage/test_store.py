@@ -15,11 +15,18 @@ import pytest
 
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
-from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, SORTS, AnyRun, Run, State
+from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, SORTS, AnyRun, DamagedRun, Run, State
 from app.storage.run_ids import RunIds
 from hexapods.domain.disturbances import Slope
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.world import World
+from hexapods.runs.results import (
+    FiguresUnderClock,
+    LaneFigures,
+    LaneResult,
+    RaceResult,
+    TrainingResult,
+)
 from tests.storage.stores import (
     ODD,
     RACE,
@@ -42,7 +49,7 @@ def test_stored_runs_are_returned_unchanged(store: RunStore) -> None:
     now = datetime(2026, 3, 1, 12, 30, 15, 123456, tzinfo=timezone(timedelta(hours=5)))
     runs = [
         training("a", config=ODD, continued_from="x", changes=({"step": 3, "pace": "max"},)),
-        training("b", result={"nan": math.inf, "more": [1, None, {"a": True}]}, error="It broke."),
+        training("b", result=TrainingResult(distance_m=0.5, fell_at_step=3), error="It broke."),
         race("c", waiting_for=("a", "b"), state="running", done=2**40, eta_s=1.25),
         training("d", name="ü 🕷 <b>'--", created_at=now, started_at=now, ended_at=now),
         experiment("d2", workers=2, done=7),
@@ -62,12 +69,35 @@ def test_counts_are_by_state(store: RunStore) -> None:
     assert store.counts() == {"queued": 2, "failed": 1}
 
 
-def test_nan_and_infinity_are_preserved(store: RunStore) -> None:
-    store.create(training("a", result={"distance_m": math.nan, "lanes": [math.nan, -math.inf]}))
-    result: Any = store.get("a").result
-    assert math.isnan(result["distance_m"])
-    assert math.isnan(result["lanes"][0])
-    assert result["lanes"][1] == -math.inf
+@pytest.mark.parametrize(
+    ("damage", "reason"),
+    [
+        ({"result": TrainingResult(distance_m=1e9)}, "its result cannot be read: distance_m"),
+        ({"greedy_distance_m": math.inf}, "its greedy_distance_m has NaN or an infinity"),
+        (
+            {"changes": ({"step": 1, "settings": {"alpha": math.nan}},)},
+            "its changes has NaN or an infinity",
+        ),
+    ],
+)
+def test_run_with_an_impossible_number_is_damaged(
+    store: RunStore, damage: dict[str, Any], reason: str
+) -> None:
+    """JSON has no NaN."""
+    store.create(training("a", **damage))
+    found = store.find("a")
+    assert isinstance(found, DamagedRun)
+    assert reason in found.damaged
+
+
+def test_nan_in_a_result_is_what_was_not_measured(store: RunStore) -> None:
+    """Earlier versions stored it."""
+    store.create(training("a", result=TrainingResult(distance_m=math.nan)))
+    assert store.get("a").result == TrainingResult(distance_m=None)
+
+
+def test_nan_in_a_curve_is_preserved(store: RunStore) -> None:
+    store.create(training("a"))
     store.append_evaluations("a", [{"step": 1, "distance_m": math.nan, "epsilon": 1.0}])
     assert math.isnan(store.evaluations("a")[0]["distance_m"])
 
@@ -141,16 +171,30 @@ def test_list_finds_a_part_of_a_name_or_id_literally(store: RunStore) -> None:
 
 
 def walked(run_id: str, distance_m: float, **fields: Any) -> Run:
-    return training(run_id, state="finished", result={"distance_m": distance_m}, **fields)
+    return training(
+        run_id, state="finished", result=TrainingResult(distance_m=distance_m), **fields
+    )
 
 
 def race_won(run_id: str, distance_m: float) -> Run:
     """Create a race that its second lane won."""
-    lanes = [
-        {"clocks": {"paper": {"rank": rank, "finished_distance_m": distance_m / rank}}}
-        for rank in (2, 1)
-    ]
-    return race(run_id, state="finished", result={"lanes": lanes})
+    lanes = tuple(lane_result(rank, distance_m / rank) for rank in (2, 1))
+    return race(run_id, state="finished", result=RaceResult(lanes=lanes))
+
+
+def lane_result(rank: int, distance_m: float) -> LaneResult:
+    figures = FiguresUnderClock(
+        finished_distance_m=distance_m, elapsed_s=1.0, crossed_s=None, rank=rank
+    )
+    return LaneResult(
+        agent="greedy",
+        steps=1,
+        total_distance_m=distance_m,
+        failure=None,
+        decision_s=0.0,
+        simulated_transitions=12,
+        clocks=LaneFigures(paper=figures, wall=figures, free=figures),
+    )
 
 
 def test_lists_are_sorted_by_name_distance_and_time_page_by_page(store: RunStore) -> None:

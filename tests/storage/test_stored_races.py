@@ -261,22 +261,19 @@ def test_steps_that_cannot_be_stored_stay_in_memory(
 
 
 def test_what_is_kept_of_what_was_read_is_bounded(
-    store: RunStore, raced: list[LaneRecording], monkeypatch: pytest.MonkeyPatch
+    store: RunStore, raced: list[LaneRecording]
 ) -> None:
     """Even if one part alone is over the limit."""
     recordings = Recordings(store)
     record(recordings, raced)
     recordings.finish("a")
-    reader = Recordings(store)
-    lanes = reader.race("a")
-    assert lanes is not None
     for limit in (0, 50_000, 100_000_000):
-        monkeypatch.setattr(stored_races, "BLOCKS_BYTES", limit)
-        assert_recorded(lanes, raced)
-        blocks = reader._stored.races._blocks
-        kept = sum(block.nbytes for block in blocks._kept.values())
-        assert kept == blocks._bytes <= limit
-    assert len(blocks._kept) == 3 * 4
+        races = StoredRaces(store, limit)
+        assert_recorded(races.read("a"), raced)
+        blocks = races._blocks
+        kept = sum(block.nbytes for block in blocks.values())
+        assert kept == blocks.currsize <= limit
+    assert len(blocks) == 3 * 4
 
 
 def test_a_compressed_race_of_an_early_version_is_shown_and_downloaded(
@@ -342,9 +339,8 @@ def test_a_reader_across_a_resume_leaves_nothing_stale(
     recordings = Recordings(store)
     record(recordings, raced, steps=6)
     recordings.finish("a")
-    lanes = recordings.race("a")
+    lanes = StoredRaces(store, max_bytes=0).read("a")
     assert lanes is not None
-    monkeypatch.setattr(stored_races, "BLOCKS_BYTES", 0)
     assert_same(lanes[0].steps[0], raced[0].steps[0])
 
     def resume_first(stored: StoredFile, label: str, *, is_verified: bool) -> ArtifactFile:

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, expect
 
+from tests.exports.test_replay_page import page_of
 from tests.stage.stage_parts import StageParts
 from tests.viewer.test_replay_frames import LANES, frames_of
-from tests.viewer.test_replay_page import page_of
 
 HOST = """<!doctype html>
 <script>

@@ -7,6 +7,8 @@ from typing import Any
 from sqlalchemy import JSON, DateTime, Dialect, String
 from sqlalchemy.types import TypeDecorator
 
+from hexapods.domain.text import storable
+
 _NON_FINITE = "$float"
 
 
@@ -26,10 +28,7 @@ class PortableText(TypeDecorator[str]):
 
     def process_bind_param(self, value: str | None, dialect: Dialect) -> str | None:
         """Replace NUL and lone surrogates before a value is stored."""
-        if value is None:
-            return None
-        text = value.replace("\0", "\ufffd")
-        return text.encode("utf-16", "surrogatepass").decode("utf-16", "replace")
+        return None if value is None else storable(value)
 
 
 class TagList(TypeDecorator[tuple[str, ...]]):

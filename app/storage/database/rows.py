@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from app.storage.database.columns import decode_json, decode_tags
 from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged
+from app.storage.json_text import is_finite
 from app.storage.run import (
     CONFIGS,
     KINDS,
@@ -17,16 +18,17 @@ from app.storage.run import (
     AnyRun,
     Config,
     DamagedRun,
+    Result,
     Run,
     config_as_json,
     ranking_distance_m,
+    result_as_json,
+    result_from_json,
     run_config_from_json,
 )
-from hexapods.domain.text import NOTES_CONTROLS, visible
+from hexapods.domain.text import MAX_MESSAGE, NOTES_CONTROLS, message, visible
 from hexapods.runs.race_config import RaceConfig
 
-MAX_ERROR_CHARS = 10_000
-"""Maximum length of a run's error; exceptions of user-defined agents may be longer."""
 MAX_COUNT = 2**53
 """Maximum of steps or trials: JavaScript's largest exact integer."""
 _MAX_TEXT = 10_000
@@ -53,10 +55,10 @@ def encode_fields(values: Mapping[str, Any]) -> dict[str, Any]:
         if name in columns:
             columns[name] = [dict(v) if isinstance(v, Mapping) else v for v in columns[name]]
     if "result" in columns:
-        columns["distance_m"] = ranking_distance_m(columns["result"])
-    error = columns.get("error")
-    if error is not None and len(error) > MAX_ERROR_CHARS:
-        columns["error"] = f"{error[: MAX_ERROR_CHARS - 1]}…"
+        result: Result | None = columns["result"]
+        columns |= {"result": result_as_json(result), "distance_m": ranking_distance_m(result)}
+    if columns.get("error") is not None:
+        columns["error"] = message(columns["error"])
     return columns
 
 
@@ -101,6 +103,8 @@ def _decode_fields(row: Mapping[str, Any]) -> dict[str, Any]:
     values["config"] = config = parse(row["kind"], row["config"])
     if not isinstance(config, CONFIGS[row["kind"]]):
         raise ValueError("its config is that of another kind")
+    if values["result"] is not None:
+        values["result"] = result_from_json(row["kind"], values["result"])
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
         raise ValueError("its numbers of lanes and of training ids differ")
     return values
@@ -125,8 +129,9 @@ def _check_scalars(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:
     for name in ("eta_s", "greedy_distance_m"):
         if row[name] is not None and not isinstance(row[name], int | float):
             raise ValueError(f"its {name} is not a number")
-    if not isinstance(values["result"], dict | None):
-        raise ValueError("its result is not an object")
+    for name in ("eta_s", "greedy_distance_m", "changes"):
+        if not is_finite(values[name]):
+            raise ValueError(f"its {name} has NaN or an infinity")
 
 
 def _json(name: str, text: Any) -> Any:
@@ -162,7 +167,7 @@ def _text(name: str, value: Any, *, is_needed: bool) -> str | None:
         raise ValueError(f"its {name} is not a text")
     if name == "error":
         # Not checked by `visible`: an agent's exception may have several lines.
-        return value[:MAX_ERROR_CHARS].encode("utf-8", "replace").decode()
+        return value[:MAX_MESSAGE].encode("utf-8", "replace").decode()
     return visible(_limited(name, value))
 
 

@@ -16,6 +16,7 @@ from hexapods.experiments.claims.cases import Case, cases_of
 from hexapods.experiments.config import (
     ExperimentConfig,
     as_json,
+    by_option,
     default_agents,
     experiment_config,
     fields_of,
@@ -83,17 +84,17 @@ def page(summary: Mapping[str, Any]) -> str:
 
 def command(config: Mapping[str, Any]) -> str:
     """Return the shell command of an experiment: its seeds and all options other than defaults."""
-    name = config["experiment"]
+    name, chosen = config["experiment"], by_option(config)
     given: dict[str, Any] = {"simulator": config["simulator"]}
     if "agents" in fields_of(name):
         given["agents"] = tuple(config["agents"])
     usual = {"agents": default_agents(name), "simulator": ExperimentConfig.simulator}
-    defaults = as_json(experiment_config(name, given)) | usual
+    defaults = by_option(as_json(experiment_config(name, given))) | usual
     arguments = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
-    for field in dict.fromkeys((*_FIRST, *config)):
-        if field in config and (field in ("seeds", "seed") or config[field] != defaults.get(field)):
+    for field in dict.fromkeys((*_FIRST, *chosen)):
+        if field in chosen and (field in ("seeds", "seed") or chosen[field] != defaults.get(field)):
             option = ExperimentConfig.option_of(field)
-            arguments += [part for text in _option_values(config[field]) for part in (option, text)]
+            arguments += [part for text in _option_values(chosen[field]) for part in (option, text)]
     return shlex.join(arguments)
 
 

@@ -33,7 +33,7 @@ def summarise_tuning(tuning: Tuning, progress: Progress, workers: int | None) ->
     Args:
         tuning: the tuning, after its run.
         progress: the outcomes of its trials.
-        workers: worker processes of the cluster; None if unknown.
+        workers: number of worker processes; None if unknown.
 
     Returns:
         Plain types, fit for JSON: `search` (ranges, all candidates, the best), `held_out` (the same

@@ -227,6 +227,7 @@ function StartList() {
     const words = replayProblem.value ? "No run is shown, so there are no figures." : "Loading the run on stage…";
     return html`<p class="dim" role="status">${words}</p>`;
   }
+  /** @type {import("../types.js").LaneConfig[]} */
   const lanes = race?.config?.lanes ?? raceBody().lanes;
   return html`
     <p class="dim">${startSentence(race)}</p>

@@ -134,7 +134,7 @@ function LearnerSettings() {
 }
 
 /** The pace or a live setting now: of the training that runs. @type {(run: Run, name: string) => any} */
-const rateNow = (run, name) => presentRates(run)[name] ?? run.config[name];
+const rateNow = (run, name) => presentRates(run)[name] ?? run.config.settings[name] ?? run.config[name];
 
 /** Values that the next training starts with, where the one that runs has others. @param {{ run: Run }} props */
 function NextRates({ run }) {
@@ -175,7 +175,7 @@ function Present({ name, setting, run }) {
   const { id, config } = run;
   const { step } = sliderOf(setting) ?? { step: 0 };
   const last = /** @type {Record<string, number> | undefined} */ (evaluations.value[id]?.at(-1));
-  const scheduled = last?.[name] ?? beginningOf(config.agent, name, config);
+  const scheduled = last?.[name] ?? beginningOf(config.agent, name, config.settings);
   const rounded = step && typeof scheduled === "number"
     ? Number((Math.round(scheduled / step) * step).toPrecision(SHOWN_DIGITS))
     : scheduled;

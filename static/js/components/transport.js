@@ -237,7 +237,8 @@ function Choice({ label, isSelfEvident = false, name, getValue, choices, onValue
 
 function Follow() {
   const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
-  const robots = lanes.map((lane, n) => [String(n + 1), `Follow ${lane.name ?? agentOf(lane.agent).title}`]);
+  const robots = lanes.map((lane, n) =>
+    [String(n + 1), `Follow ${"name" in lane ? lane.name : agentOf(lane.agent).title}`]);
   const choices = [["leader", "Follow leader"], ...robots, ["free", "Free camera"]];
   if (!choices.some(([one]) => one === view.value)) choices.push([view.value, `lane ${view.value}`]);
   return html`

@@ -16,7 +16,8 @@ import { options, served } from "../store.js";
 /** Every kind of experiment, robots by the names of their presets. @type {{ value: ExperimentKind[] }} */
 export const experiments = computed(() =>
   (options.value?.experiments ?? []).map((kind) => {
-    const { robots, ...defaults } = /** @type {ExperimentValues} */ (kind.defaults);
+    // The settings have the defaults of the agents that are chosen.
+    const { settings: _, robots, ...defaults } = /** @type {ExperimentValues} */ (kind.defaults);
     return { ...kind, defaults: { ...defaults, name: "", robots: robots.map((robot) => presetOf(robot) ?? "") } };
   }),
 );
@@ -262,12 +263,19 @@ export function enter(field, text) {
   else typed.value = { ...typed.value, [field]: text };
 }
 
-/** The request's body. @returns {Record<string, ExperimentValue>} */
+/** The request's body. @returns {Record<string, unknown>} */
 export function requestBody() {
   const own = Object.entries(overrides.value).filter(([field]) => takesField(field));
-  const { name = "", ...others } = Object.fromEntries(own);
+  const fields = Object.fromEntries(own.filter(([field]) => !(field in everySetting.value)));
+  const settings = Object.fromEntries(own.filter(([field]) => field in everySetting.value));
+  const { name = "", ...others } = fields;
   const trimmed = String(name).trim();
-  return { experiment: chosenExperiment.value.name, ...others, ...(trimmed ? { name: trimmed } : {}) };
+  return {
+    experiment: chosenExperiment.value.name,
+    ...others,
+    ...(Object.keys(settings).length ? { settings } : {}),
+    ...(trimmed ? { name: trimmed } : {}),
+  };
 }
 
 /** @type {(value: ExperimentValue, separator: string) => string} */

@@ -83,7 +83,8 @@ const PLACES = ["agents", "gaits", "observations", "robots", "worlds"];
  * @returns {Summary}
  */
 function withParameters(stored) {
-  const lists = Object.entries(stored.config).filter(([, value]) => Array.isArray(value));
+  const { settings, ...fields } = stored.config;
+  const lists = Object.entries({ ...fields, ...settings }).filter(([, value]) => Array.isArray(value));
   const names = lists.map(([name]) => name).filter((name) => !PLACES.includes(name));
   return { ...stored, parameters: stored.parameters ?? names };
 }

@@ -7,12 +7,14 @@ from typing import Any
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE, Run
 from hexapods.domain.settings import SettingValues
+from hexapods.runs.results import RaceResult, TrainingResult
 from tests.storage.stores import ODD, SWEEP, TRIALS, experiment, race, training
 
 # Schemas up to 0003 were released when every agent had Q-learning's settings.
 _RATES = {"alpha": 0.3, "gamma": 0.9, "epsilon_start": 1.0, "epsilon_end": 0.0}
 _GRID = {name: (value,) for name, value in _RATES.items()} | {"alpha": (0.1, 0.3)}
 _T = datetime(2026, 2, 28, 23, 59, 59, 123456, tzinfo=UTC)
+# Up to 0004 the distance of the first is NaN, which is read as one that was not measured.
 RUNS: list[Run] = [
     training(
         "0pmz0000a0001",
@@ -20,9 +22,9 @@ RUNS: list[Run] = [
         state="finished",
         config=replace(ODD, settings=SettingValues(_RATES)),
         done=500,
-        changes=({"step": 20, "alpha": 0.1}, {"step": 30, "pace": "max"}),
+        changes=({"step": 20, "settings": {"alpha": 0.1}}, {"step": 30, "pace": "max"}),
         greedy_distance_m=0.4321,
-        result={"distance_m": float("nan"), "q_table_sha256": "ab" * 32},
+        result=TrainingResult(distance_m=None, q_table_sha256="ab" * 32),
         created_at=_T,
         started_at=_T + timedelta(seconds=1),
         ended_at=_T + timedelta(hours=1),
@@ -34,7 +36,7 @@ RUNS: list[Run] = [
         error="The physics diverged.",
         created_at=_T,
     ),
-    race("0pmz0000a0003", state="stopped", result={"lanes": []}, created_at=_T, ended_at=_T),
+    race("0pmz0000a0003", state="stopped", result=RaceResult(lanes=()), created_at=_T, ended_at=_T),
 ]
 EXPERIMENT = experiment(
     "0pmz0000a0004",

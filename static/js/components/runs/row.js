@@ -4,7 +4,7 @@ import { attempt, copySettings, deleteRun, isShown, pending, resumeRun, runAgain
 import { changesInWords, rateChanges } from "../../changes.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../../disturbances.js";
 import { paceOf } from "../../experiments/runs.js";
-import { archiveAddress, downloads, saveVideo } from "../../files.js";
+import { archiveAddress, downloads, notInstalled, rendered, saveExport } from "../../files.js";
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
@@ -18,7 +18,7 @@ import { edit, Name, Notes, Tags } from "./annotations.js";
 import { showCode } from "./code.js";
 
 /** @import { AnyRun } from "../../runs.js" */
-/** @import { DamagedRun, Run } from "../../types.js" */
+/** @import { DamagedRun, ExportOption, Run } from "../../types.js" */
 
 /** @param {{ run: AnyRun }} props */
 export const RunRow = ({ run }) => html`<${"damaged" in run ? DamagedRow : Row} run=${run} />`;
@@ -97,7 +97,7 @@ function ofTraining(run) {
   return [
     state === "finished" ? total : `${whole(progress.done)} of ${total}`,
     config.continue_from ? "continues an earlier one" : `seed ${config.seed}`,
-    ...ratesInWords(config.agent, config), ...changesInWords(config.agent, rateChanges(run)),
+    ...ratesInWords(config.agent, config.settings), ...changesInWords(config.agent, rateChanges(run)),
     observationTitle(config.observation),
   ];
 }
@@ -159,7 +159,10 @@ function Menu({ run }) {
       <div class="menu-body">
         <${Downloads} run=${run} />
         ${isOperator.value && run.kind !== "experiment" && !isActive(run) && run.progress.done > 0 && html`
-          <${VideoButton} run=${run} />
+          ${rendered().map((file) => html`<${RenderButton} key=${file.title} run=${run} file=${file} />`)}
+          ${notInstalled().map(([install, titles]) => html`
+            <p class="dim">${listed(titles)}: not installed on the server; <code>${install}</code> adds it.</p>
+          `)}
         `}
         ${isOperator.value && run.kind !== "experiment" && html`
           <a href="#" onClick=${() => copySettings(run)}>Use its settings</a>
@@ -181,28 +184,18 @@ function Menu({ run }) {
   `;
 }
 
-/**
- * Have a video rendered; the menu says so until it is there, or why there is none stands in the row.
- * @param {{ run: Run }} props
- */
-function VideoButton({ run }) {
-  const install = served().missing_extras.video;
-  return install
-    ? html`<p class="dim">Video (MP4): not installed on the server; <code>${install}</code> adds it.</p>`
-    : html`<${RenderButton} run=${run} />`;
-}
-
-/** @param {{ run: Run }} props */
-function RenderButton({ run }) {
+/** Have a file computed; the menu says so until it is there, or why there is none stands in the row. */
+/** @param {{ run: Run, file: ExportOption }} props */
+function RenderButton({ run, file }) {
   const [isRendering, setRendering] = useState(false);
   const onClick = async () => {
     setRendering(true);
-    await attempt(run.id, () => saveVideo(run));
+    await attempt(run.id, () => saveExport(run, file));
     setRendering(false);
   };
   return html`
     <button disabled=${pending.value[run.id]} onClick=${onClick} aria-live="polite">
-      ${isRendering ? "Rendering a video…" : "Video (MP4)"}
+      ${isRendering ? `${file.title}: being rendered…` : file.title}
     </button>
   `;
 }

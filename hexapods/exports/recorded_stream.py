@@ -1,8 +1,7 @@
 """Export of a race as a `.viser` file, which the viewer's page plays with a seek bar."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from app.jobs.stopping import Stopping
 from hexapods.drawing.scene import StageScene
 from hexapods.drawing.viser_internals.server import in_process_viser
 from hexapods.runs.clocks import Clock
@@ -25,7 +24,7 @@ def recorded_stream(
     clock: Clock = "paper",
     original: Original | None = None,
     *,
-    stopping: Stopping | None = None,
+    check: Callable[[], None] = lambda: None,
 ) -> bytes:
     """Render a race as the stage shows it, photo finish included, with the camera on the leader.
 
@@ -35,20 +34,16 @@ def recorded_stream(
         name: name of the race.
         clock: clock that times it.
         original: the race from which it branched off, if it is known.
-        stopping: whether the server stops, which renders no more then.
+        check: raises once nobody needs the file any more; called for each frame.
 
     Returns:
         the file in the format of the installed viser, whose version is part of the file.
-
-    Raises:
-        Busy: if the server stops.
     """
     spec = race_scene(config)
     show = RaceShow(spec, config.steps, clock, lambda: lanes, world=config.world, original=original)
     show.advance(0.0, None, run_ended=True)
     duration_s = show.duration_s or 0.0
     speed = duration_s / MAX_LENGTH_S if duration_s > 2 * MAX_LENGTH_S else None
-    stopping = stopping or Stopping()
     frame_s, run_label = 1 / FRAMES_PER_S, RunLabel(None, name)
     with in_process_viser() as server:
         scene = StageScene(server)
@@ -56,7 +51,7 @@ def recorded_stream(
         serializer = server.get_scene_serializer()
         now = 0.0
         while not show.ended:
-            stopping.check()
+            check()
             serializer.insert_sleep(frame_s)
             now += frame_s
             show.advance(frame_s, speed, run_ended=True)

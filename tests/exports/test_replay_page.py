@@ -7,13 +7,21 @@ import re
 import numpy as np
 import pytest
 
+from app.exports.stored_walks import source_of
 from app.jobs.stopping import Stopping
 from app.stage.playback import Replays
 from app.storage.errors import Busy, Conflict
 from app.viewer.replay_frames import ReplayFrames
-from hexapods.drawing.replay_page import MAX_SEGMENTS, _notes, _recorded_segments
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.drawing.scene import SCENE_ROOT
+from hexapods.exports.export_format import TooLong
+from hexapods.exports.replay_page import (
+    MAX_BYTES,
+    MAX_SEGMENTS,
+    _notes,
+    _recorded_segments,
+    replay_page,
+)
 from hexapods.shows.replay import FRAMES_PER_S, SEGMENT_FRAMES
 from tests.stage.stage_parts import StageParts
 from tests.viewer.test_replay_frames import LANES, decoded, frames_of, shown
@@ -21,8 +29,9 @@ from tests.viewer.test_replay_frames import LANES, decoded, frames_of, shown
 _BLOCK = re.compile(r'<script type="text/plain" id="([\w-]+)">([^<]*)</script>')
 
 
-def page_of(frames: ReplayFrames, run_id: str, **more: int) -> str:
-    return b"".join(frames.page(run_id, "A <race> & more", "paper", **more)).decode()
+def page_of(frames: ReplayFrames, run_id: str, max_bytes: int = MAX_BYTES) -> str:
+    encoded = frames.encoded(run_id, "paper")
+    return b"".join(replay_page(*encoded, "A <race> & more", max_bytes)).decode()
 
 
 def blocks_of(page: str) -> dict[str, str]:
@@ -76,7 +85,7 @@ def test_a_page_that_would_be_too_large_has_fewer_frames(parts: StageParts) -> N
     assert len(small.encode()) < whole - 20_000
     assert about["level"] >= 1
     assert "pictures a second of the run's time" in about["notes"][0]
-    with pytest.raises(Conflict, match="too long for a page of"):
+    with pytest.raises(TooLong, match="the race is too long for a page of"):
         page_of(frames, run.id, max_bytes=100_000)
 
 
@@ -112,5 +121,5 @@ def test_a_server_that_stops_encodes_no_more(parts: StageParts) -> None:
 def test_a_race_under_way_has_no_page(parts: StageParts) -> None:
     run, advance = parts.running_race(LANES)
     advance()
-    with pytest.raises(Conflict, match="can be had as a page once it ended"):
-        page_of(frames_of(parts), run.id)
+    with pytest.raises(Conflict, match="can be had as a file once it ended"):
+        source_of(parts.store.find(run.id), parts.recordings, frames_of(parts).encoded)

@@ -7,26 +7,23 @@ Topics: `/lane0/joint_states` with the angle and, where it is recorded, the torq
 
 import heapq
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 
-from app.exports.extras import import_extra
-from app.exports.recorded_lanes import ExportedLane, RecordedWalks
-from app.exports.trajectory import joint_names
-from app.jobs.stopping import Stopping
 from hexapods.agents.appearance import title_of
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
+from hexapods.exports.export_format import HERE, Execution
+from hexapods.exports.extras import import_extra
+from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
+from hexapods.exports.trajectory import joint_names
 from hexapods.physics.mjcf import compile_visual_model
 from hexapods.runs.clocks import Clock
 
 MCAP_EXTRA = "mcap"
-MCAP_TYPE = "application/octet-stream"
-MAX_SERVED_FRAMES = 200_000
-"""Of a log over REST; the longest race has 4,800,000, which takes an hour and a gigabyte."""
 LANE_WIDTH_M = 1.0
 """Between the origins of the lanes."""
 _CHUNK_BYTES = 1 << 16
@@ -43,37 +40,30 @@ class _Frame(NamedTuple):
     torque_nm: FloatArray | None
 
 
-def mcap_log(
-    walks: RecordedWalks,
-    clock: Clock,
-    stopping: Stopping | None = None,
-    max_frames: int | None = None,
-) -> Iterator[bytes]:
+def mcap_log(walks: RecordedWalks, clock: Clock, execution: Execution = HERE) -> Iterator[bytes]:
     """Yield an MCAP file in chunks; time 0 of the run is the epoch.
 
     Args:
         walks: the recorded walks.
         clock: times a race.
-        stopping: whether the server stops, which writes no more then.
-        max_frames: frames that it may have at most; None for any number.
+        execution: the frames that it may have at most, and whether it is still needed.
 
     Raises:
         InvalidInput: at the call, if it would have more frames.
         MissingExtra: at the call, if the Foxglove SDK is not installed.
-        Busy: at the call, if the server stops.
     """
     foxglove = import_extra("foxglove", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.messages", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.channels", MCAP_EXTRA, "an MCAP file")
     frames = sum(lane.frames for lane in walks.lanes)
-    if max_frames is not None and frames > max_frames:
+    if execution.max_frames is not None and frames > execution.max_frames:
         raise InvalidInput(
-            f"the log would have {frames:,} frames, and may have {max_frames:,}; export the "
-            "trajectory, or use `hexapods runs mcap` on the server's machine"
+            f"the log would have {frames:,} frames, and may have {execution.max_frames:,}; export "
+            "the trajectory, or use `hexapods runs mcap` on the server's machine"
         )
     file = tempfile.TemporaryFile()  # noqa: SIM115 - closed when all was read
     try:
-        _write(foxglove, walks, clock, file, stopping or Stopping())
+        _write(foxglove, walks, clock, file, execution.check)
     except BaseException:
         file.close()
         raise
@@ -88,7 +78,7 @@ def _chunks(file: Any) -> Iterator[bytes]:
 
 
 def _write(
-    foxglove: Any, walks: RecordedWalks, clock: Clock, file: Any, stopping: Stopping
+    foxglove: Any, walks: RecordedWalks, clock: Clock, file: Any, check: Callable[[], None]
 ) -> None:
     step_s, robot = walks.problem.robot.step_s, walks.problem.built_robot
     names, links = joint_names(robot), _Links(compile_visual_model(robot))
@@ -103,7 +93,7 @@ def _write(
         writer.write_metadata("agents", agents)
         tracks = [_frames(lane, n, step_s, clock) for n, lane in enumerate(walks.lanes)]
         for frame in heapq.merge(*tracks, key=lambda one: one.time_s):
-            stopping.check()
+            check()
             time = _timestamp(messages, frame.time_s)
             nanoseconds = time.sec * 1_000_000_000 + time.nsec
             efforts = [None] * len(names)

@@ -11,13 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.exports.extras import import_extra
-from app.exports.recorded_lanes import ExportedLane, RecordedWalks
 from hexapods.domain.kinematics import JOINT_LIMITS_RAD, foot_positions
 from hexapods.domain.robot import Robot
+from hexapods.exports.extras import import_extra
+from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
 from hexapods.files import DrainedBuffer
 
-CSV_TYPE, PARQUET_TYPE = "text/csv; charset=utf-8", "application/vnd.apache.parquet"
 PARQUET_EXTRA = "parquet"
 _STEPS_PER_BLOCK = 8
 """About 130 frames, 90 kB of text, which stay in memory while a client reads them."""

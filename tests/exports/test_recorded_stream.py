@@ -8,7 +8,7 @@ import zstandard
 from app.jobs.stopping import Stopping
 from app.stage.playback import original_of
 from app.storage.errors import Busy
-from app.viewer.recorded_stream import MAX_LENGTH_S, recorded_stream
+from hexapods.exports.recorded_stream import MAX_LENGTH_S, recorded_stream
 from hexapods.runs.race_config import Branch, RaceConfig
 from tests.stage.stage_parts import StageParts
 
@@ -33,7 +33,7 @@ def test_a_server_that_stops_renders_no_more(parts: StageParts) -> None:
     assert isinstance(run.config, RaceConfig)
     stopping.set()
     with pytest.raises(Busy, match="stopping"):
-        recorded_stream(run.config, parts.recordings.race(run.id) or [], stopping=stopping)
+        recorded_stream(run.config, parts.recordings.race(run.id) or [], check=stopping.check)
 
 
 def test_file_has_the_whole_race_and_visers_version(parts: StageParts) -> None:

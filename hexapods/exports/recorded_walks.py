@@ -1,20 +1,18 @@
-"""The recorded steps of each robot of an ended run, the source of all exports of its walk."""
+"""The recorded steps of each robot of a run, the source of most exports of its walk."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
-from app.storage.errors import Conflict, Damaged
-from app.storage.recordings import Recordings
-from app.storage.run import NOT_ENDED, AnyRun, DamagedRun
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
 from hexapods.runs.clocks import Clock, Timetable, motions_s
 from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recorded_walk import RecordedSteps
-from hexapods.runs.recording import LaneSteps
+from hexapods.runs.recording import LaneRecording, LaneSteps, PracticeRecording
 from hexapods.runs.records import LaneStep, StepTaken
 
 
@@ -65,40 +63,16 @@ class RecordedWalks:
     problem: WalkingProblem
     lanes: Sequence[ExportedLane]
 
+    @classmethod
+    def of_race(cls, config: RaceConfig, lanes: Iterable[LaneRecording]) -> Self:
+        """Return what is recorded of a race."""
+        return cls(config, [ExportedLane(one.rest_qpos, one.steps, one.agent) for one in lanes])
 
-def recorded_walks(run: AnyRun, recordings: Recordings) -> RecordedWalks:
-    """Return what is recorded of a race or training that has ended.
-
-    Raises:
-        InvalidInput: if the run is an experiment.
-        Damaged: if it cannot be read.
-        Conflict: if it has not ended, or has no recording.
-    """
-    if isinstance(run, DamagedRun):
-        raise Damaged(run.id, run.damaged)
-    config = run.config
-    if not isinstance(config, RaceConfig | TrainingConfig):
-        raise InvalidInput(
-            f"{run.id} is an experiment, which records no walk; choose a race or a training"
-        )
-    if run.state in NOT_ENDED:
-        raise Conflict(
-            f"{run.kind} {run.id} is {run.state}; its walk can be had as a file once it ended, or "
-            "was stopped",
-            run.state,
-        )
-    if isinstance(config, RaceConfig):
-        race = recordings.race(run.id)
-        lanes = [ExportedLane(one.rest_qpos, one.steps, one.agent) for one in race or ()]
-    else:
-        practice = recordings.training(run.id)
-        lanes = []
-        if practice is not None:
-            steps = [step for step in practice.steps if step.motion is not None]
-            lanes = [ExportedLane(practice.rest_qpos, steps, config.agent)]
-    if not any(lane.steps for lane in lanes):
-        raise Conflict(f"{run.kind} {run.id} is {run.state} and has no recording", run.state)
-    return RecordedWalks(config, lanes)
+    @classmethod
+    def of_training(cls, config: TrainingConfig, recording: PracticeRecording) -> Self:
+        """Return what is recorded of a practice."""
+        steps = [step for step in recording.steps if step.motion is not None]
+        return cls(config, [ExportedLane(recording.rest_qpos, steps, config.agent)])
 
 
 def checked_lane(walks: RecordedWalks, lane: int | None) -> list[int]:

@@ -1,17 +1,8 @@
-"""A recorded walk as a video, MP4 or GIF, rendered off screen by MuJoCo.
-
-Nothing is simulated: each picture shows the recorded poses, interpolated as in a replay. OpenGL
-draws in software where there is no graphics card (Mesa's llvmpipe), with EGL, or with OSMesa if the
-environment has `MUJOCO_GL=osmesa`.
-"""
+"""The pictures of a video, drawn off screen by MuJoCo; importing it loads OpenGL."""
 
 import importlib
 import os
-import tempfile
-from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -19,183 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from app.exports.extras import import_extra, no_opengl
-from app.exports.recorded_lanes import ExportedLane, RecordedWalks
 from hexapods.agents.appearance import colors_of, title_of
-from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
+from hexapods.exports.extras import import_extra, no_opengl
+from hexapods.exports.options import VideoOptions
+from hexapods.exports.video import VIDEO_EXTRA, ShownPoses
 from hexapods.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
-from hexapods.runs.clocks import FINISH_LINE_M, Clock
-from hexapods.runs.config import WalkingProblem
-from hexapods.runs.recording import pose_at
+from hexapods.runs.clocks import FINISH_LINE_M
 
-VIDEO_EXTRA = "video"
-MIN_SIDE, MAX_WIDTH, MAX_HEIGHT, MAX_FPS = 64, 1920, 1080, 60
-MIN_SPEED, MAX_SPEED = 0.05, 64
-MAX_FRAMES = 9000
-"""Pictures of one video; each takes about 0.1 s in software."""
 _GAP_M = 0.25
 _SMOOTHING_S = 0.25  # as in the live view (hexapods/drawing/scene.py)
 _BACKGROUND, _GROUND, _GROUND_LINES = (0.05, 0.07, 0.1), (0.16, 0.2, 0.26), (0.3, 0.36, 0.44)
 _CAPTION, _CAPTION_BOX = (236, 240, 245, 255), (13, 17, 23, 190)
 
 
-@dataclass(frozen=True)
-class VideoOptions:
-    """Settings of a rendered video.
-
-    Attributes:
-        ending: `.mp4` or `.gif`.
-        width, height: of the picture [px], even.
-        fps: pictures a second of the video.
-        speed: times the run's own time.
-        clock: times a race.
-    """
-
-    ending: str = ".mp4"
-    width: int = 640
-    height: int = 360
-    fps: int = 30
-    speed: float = 1.0
-    clock: Clock = "paper"
-
-    def __post_init__(self) -> None:
-        limits = {
-            "width": (MIN_SIDE, MAX_WIDTH),
-            "height": (MIN_SIDE, MAX_HEIGHT),
-            "fps": (1, MAX_FPS),
-            "speed": (MIN_SPEED, MAX_SPEED),
-        }
-        for name, (low, high) in limits.items():
-            if not low <= getattr(self, name) <= high:
-                raise InvalidInput(f"{name} must be from {low} to {high}")
-        if self.width % 2 or self.height % 2:
-            raise InvalidInput("width and height must be even")
-
-
-@dataclass(frozen=True)
-class ShownPoses:
-    """What each picture of a video shows; small, so that a process can be sent it.
-
-    Attributes:
-        problem: the walking problem, with the robot.
-        agents: of the lanes.
-        times_s: moment of the run [s].
-        poses: (pictures, lanes, 7 + joints): position [m], quaternion, angles [rad].
-    """
-
-    problem: WalkingProblem
-    agents: tuple[str, ...]
-    times_s: tuple[float, ...]
-    poses: FloatArray
-
-
-def shown_poses(
-    walks: RecordedWalks, options: VideoOptions, max_frames: int = MAX_FRAMES
-) -> ShownPoses:
-    """Return what the pictures of a run's video show.
-
-    Raises:
-        InvalidInput: if there would be more of them than `max_frames`.
-    """
-    tracks = [_Track(lane, walks.problem.robot.step_s, options.clock) for lane in walks.lanes]
-    times_s = _times_s(tracks, options, max_frames)
-    poses = np.array([[track.pose(time_s) for track in tracks] for time_s in times_s])
-    agents = tuple(lane.agent for lane in walks.lanes)
-    return ShownPoses(walks.problem, agents, tuple(times_s), poses)
-
-
-def render_video(walks: RecordedWalks, options: VideoOptions) -> bytes:
-    """Return the video of a run; raises as `shown_poses` and `write_video`."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / f"video{options.ending}"
-        write_video(shown_poses(walks, options), options, file)
-        return file.read_bytes()
-
-
-def write_video(shown: ShownPoses, options: VideoOptions, file: Path) -> None:
-    """Render the video of a run to a file.
-
-    Raises:
-        MissingExtra: if a package of the extra, or OpenGL, is not installed.
-        OSError: if it cannot be encoded or written.
-    """
-    ffmpeg = import_extra("imageio_ffmpeg", VIDEO_EXTRA, "a video")
-    writer = ffmpeg.write_frames(str(file), (options.width, options.height), **_coding(options))
-    writer.send(None)
-    try:
-        for picture in _pictures(shown, options):
-            writer.send(np.ascontiguousarray(picture))
-    finally:
-        writer.close()
-
-
-def _coding(options: VideoOptions) -> dict[str, Any]:
-    common = {"fps": options.fps, "macro_block_size": 2, "ffmpeg_log_level": "error"}
-    if options.ending == ".mp4":
-        return {
-            **common,
-            "codec": "libx264",
-            "quality": 8,
-            "output_params": ["-movflags", "+faststart"],
-        }
-    palette = "split[a][b];[a]palettegen[p];[b][p]paletteuse"
-    return {
-        **common,
-        "codec": "gif",
-        "pix_fmt_out": "pal8",
-        "output_params": ["-filter_complex", palette],
-    }
-
-
-def _times_s(tracks: Sequence["_Track"], options: VideoOptions, max_frames: int) -> list[float]:
-    """Return the moment of the run that each picture shows; gaps in a practice are left out."""
-    end_s = max(track.end_s for track in tracks)
-    first = tracks[0]
-    shift_s, times_s = 0.0, list[float]()
-    while True:
-        time_s = len(times_s) * options.speed / options.fps + shift_s
-        if len(tracks) == 1:
-            skipped = first.gap_s(time_s)
-            shift_s, time_s = shift_s + skipped, time_s + skipped
-        if time_s > end_s:
-            return [*times_s, end_s]
-        times_s.append(time_s)
-        if len(times_s) >= max_frames:
-            raise InvalidInput(
-                f"the video would have more than {max_frames:,} frames; choose a higher speed, or "
-                "fewer frames per second"
-            )
-
-
-class _Track:
-    """Poses of a lane's robot, interpolated over playback time."""
-
-    def __init__(self, lane: ExportedLane, step_s: float, clock: Clock) -> None:
-        self.lane = lane
-        self._starts_s = lane.starts_s(step_s, clock)
-        self._ends_s = lane.ends_s(step_s, clock)
-        self.end_s = float(self._ends_s[-1]) if len(self._ends_s) else 0.0
-
-    def gap_s(self, time_s: float) -> float:
-        """Return how long nothing is recorded from a moment on, where steps are missing."""
-        index = bisect_right(self._starts_s, time_s) - 1
-        if index < 0 or index + 1 >= len(self._starts_s) or time_s <= self._ends_s[index] + 1e-6:
-            return 0.0
-        return float(self._starts_s[index + 1]) - time_s
-
-    def pose(self, time_s: float) -> FloatArray:
-        index = bisect_right(self._starts_s, time_s) - 1
-        if index < 0:
-            return self.lane.start_qpos.astype(float)
-        start = self.lane.pose_before(index)
-        return pose_at(start, self.lane.motion(index), time_s - float(self._starts_s[index]))
-
-
-def _pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.uint8]]:
+def pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.uint8]]:
     """Yield the pictures, (height, width, 3)."""
     scene = _Scene(shown, options)
-    followed, elapsed_s = 0.0, options.speed / options.fps
+    followed = 0.0
     caption = _Caption(shown.agents, options.height)
     with _gl_context(options.width, options.height):
         painter = scene.painter()
@@ -203,7 +35,7 @@ def _pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.u
             leader = max(pose[1] for pose in poses)
             if len(poses) == 1:
                 scene.center_x(poses[0][0])
-            lag = np.exp(-elapsed_s / options.speed / _SMOOTHING_S) if number else 0.0
+            lag = np.exp(-1 / options.fps / _SMOOTHING_S) if number else 0.0
             followed = leader + (followed - leader) * lag
             picture = painter(poses, followed)
             yield caption.drawn(picture, time_s, [pose[1] for pose in poses])

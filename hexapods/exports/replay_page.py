@@ -2,7 +2,8 @@
 
 The page is `viser_internals.client`'s with `static/js/offline/player.js` and the modules that this
 imports, all inline, and blocks of data: `replay`, JSON about the run; `scene` and `segment-…`, the
-encodings of `replay_encoding` in base64. By its Content-Security-Policy it can load nothing.
+encodings of `drawing.replay_encoding` in base64. By its Content-Security-Policy it can load
+nothing.
 """
 
 import base64
@@ -12,8 +13,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from hexapods import assets
-from hexapods.domain.errors import HexapodError
 from hexapods.drawing.viser_internals.client import OFFLINE_SCRIPTS, content_policy, patched_page
+from hexapods.exports.export_format import TooLong
 from hexapods.runs.recording import FIRST_STEPS, NEWEST_STEPS
 from hexapods.shows.replay import HIGHEST_LEVEL
 
@@ -30,10 +31,6 @@ _STYLE = "style/offline.css"
 _IMPORT = re.compile(r'^import \{[^}]*\} from "(?P<path>\.[^"]*)";\n', re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(async )?(function|class|const)\b)", re.MULTILINE)
 _HEAD_END, _BODY_END = "</head>", "</body>"
-
-
-class TooLong(HexapodError):
-    """A run does not fit into a page; the message continues "the race is"."""
 
 
 def replay_page(
@@ -101,7 +98,10 @@ def _segments_that_fit(
                 break
         else:
             return level, numbers
-    raise TooLong(f"too long for a page of {MAX_BYTES // 1_000_000} MB; replay it on the server")
+    raise TooLong(
+        f"the {plan['kind']} is too long for a page of {MAX_BYTES // 1_000_000} MB; replay it on "
+        "the server"
+    )
 
 
 def _recorded_segments(plan: Mapping[str, Any], level: int) -> list[int]:

@@ -56,13 +56,9 @@ def install_command(extra: str) -> str:
     return f"pip install 'racing-hexapods[{extra}]'"
 
 
-def missing_extras() -> dict[str, str]:
-    """Return the extras of exports that are not installed, each with the command that installs it.
+def is_installed(extra: str) -> bool:
+    """Whether the packages of an extra are installed.
 
     Nothing is imported; whether OpenGL works only drawing can tell.
     """
-    return {
-        extra: install_command(extra)
-        for extra, modules in _MODULES.items()
-        if any(importlib.util.find_spec(module) is None for module in modules)
-    }
+    return all(importlib.util.find_spec(module) is not None for module in _MODULES[extra])

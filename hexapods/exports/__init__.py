@@ -1,0 +1,13 @@
+"""Export a recorded walk as files for other programs: tables, videos, pages, robot logs.
+
+- `registry`: all formats, from which routes, commands, menu and checks of extras follow.
+- `export_format`: what the registry declares of a format, and what a format's function is given.
+- `options`: settings of the formats.
+- `recorded_walks`: the recorded steps of each robot, the source of most formats.
+- `trajectory`: joint angles, feet and torques over time, as CSV and Parquet.
+- `replay_page`: a page that replays a run without a server.
+- `video`, `video_pictures`: MP4 and GIF, rendered off screen by MuJoCo.
+- `mcap_log`: joint states and frames for tools of robots.
+- `recording_json`, `recorded_stream`: a race's recording as JSON, and for viser's player.
+- `extras`: the optional packages that some files need.
+"""

@@ -1,0 +1,169 @@
+"""What is declared of an export format, and what its function is given."""
+
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.settings import DeclaredSetting, declared_fields
+from hexapods.exports.extras import install_command, is_installed
+from hexapods.exports.options import ExportOptions
+from hexapods.exports.recorded_walks import RecordedWalks
+from hexapods.runs.clocks import Clock
+
+
+class TooLong(HexapodError):
+    """A run is too long for a file type."""
+
+
+Load = Literal["stream", "encode", "render"]
+"""What an export costs a server.
+
+- `stream`: little; it is computed chunk by chunk while a client reads it.
+- `encode`: seconds to minutes before its first byte.
+- `render`: minutes of all cores, so only operators may have one, one at a time.
+"""
+WriteFile = Callable[[Callable[[Path], None], str], bytes]
+"""Calls a function that writes a file, which has a given name, and returns the file's content."""
+
+
+class EncodedReplay(NamedTuple):
+    """The encoded frames of a run; `hexapods.drawing.replay_encoding` has their form."""
+
+    plan: Mapping[str, Any]
+    """Of the replay: see `hexapods.shows.replay.Replay.plan`."""
+    scene: Callable[[], bytes]
+    segment: Callable[[int, int], bytes]
+    """Returns a segment, by its level and number."""
+
+
+@dataclass(frozen=True)
+class ExportSource:
+    """A run that has ended, as exports read it.
+
+    Attributes:
+        title: of the run.
+        walks: returns its recorded walks. Called again for each chunk of a long file.
+        replay: returns its frames, of a race as timed by a clock.
+    """
+
+    title: str
+    walks: Callable[[], RecordedWalks]
+    replay: Callable[[Clock], EncodedReplay]
+
+
+def _write_here(write: Callable[[Path], None], name: str) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / name
+        write(file)
+        return file.read_bytes()
+
+
+@dataclass(frozen=True)
+class Execution:
+    """Where and how far an export is computed; by default here, without a server's limits.
+
+    Attributes:
+        max_frames: maximum number of recorded frames, or pictures; None for that of the format.
+        check: raises once nobody needs the file any more; called between the parts of long work.
+        write_file: has a function write a file, possibly in another process.
+    """
+
+    max_frames: int | None = None
+    check: Callable[[], None] = lambda: None
+    write_file: WriteFile = _write_here
+
+
+@dataclass(frozen=True)
+class FileType:
+    """A type of file that a format has.
+
+    Attributes:
+        ending: of its name, without the point; the value of `format` in a request.
+        title: label of its download.
+        media_type: of an answer with the file.
+        extra: of `[project.optional-dependencies]`, if it needs one.
+    """
+
+    ending: str
+    title: str
+    media_type: str
+    extra: str | None = None
+
+    @property
+    def install(self) -> str | None:
+        """The command that installs the missing extra; None if nothing is missing."""
+        return (
+            None if self.extra is None or is_installed(self.extra) else install_command(self.extra)
+        )
+
+
+HERE = Execution()
+"""Without limits, in this process."""
+
+Write = Callable[[ExportSource, FileType, Any, Execution], Iterable[bytes] | Iterable[str]]
+"""Yields a file in chunks; all that can be refused is refused at the call."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExportFormat:
+    """An export format, as the registry declares it.
+
+    Attributes:
+        title: what the files are, to follow "Export".
+        files: the types of file, the default first.
+        write: writes a file.
+        note: more about it, for the description of its route.
+        options: their declaration.
+        flags: shorter names of options on the command line.
+        load: what it costs a server.
+        max_served_frames: see `Execution.max_frames`, over REST.
+    """
+
+    title: str
+    files: tuple[FileType, ...]
+    write: Write
+    note: str
+    options: type[ExportOptions] = ExportOptions
+    flags: Mapping[str, str] = field(default_factory=dict)
+    load: Load = "stream"
+    max_served_frames: int | None = None
+
+    @property
+    def settings(self) -> Mapping[str, DeclaredSetting]:
+        """Its options, by name."""
+        return declared_fields(self.options)  # type: ignore[arg-type]  # as of any class
+
+    @property
+    def method(self) -> Literal["GET", "POST"]:
+        """The method of its route; what only operators may have is no GET."""
+        return "POST" if self.load == "render" else "GET"
+
+    def address(self, name: str, file: FileType) -> str:
+        """Return where a type of file is, below the address of a run; `name` is the format's."""
+        return name if len(self.files) == 1 else f"{name}?format={file.ending}"
+
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """The endings of its types of file."""
+        return tuple(one.ending for one in self.files)
+
+    def file(self, ending: str) -> FileType:
+        """Return the type of file with an ending.
+
+        Raises:
+            InvalidInput: if there is none.
+        """
+        for one in self.files:
+            if one.ending == ending:
+                return one
+        valid = " or ".join(f".{one}" for one in self.endings)
+        raise InvalidInput(f"the name of the file must end with {valid}")
+
+
+def as_bytes(chunks: Iterable[bytes] | Iterable[str]) -> Iterator[bytes]:
+    """Yield chunks of a file as bytes; text as UTF-8."""
+    for chunk in chunks:
+        yield chunk.encode() if isinstance(chunk, str) else chunk

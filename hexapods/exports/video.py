@@ -1,0 +1,183 @@
+"""A recorded walk as a video, MP4 or GIF, rendered off screen by MuJoCo.
+
+Nothing is simulated: each picture shows the recorded poses, interpolated as in a replay. OpenGL
+draws in software where there is no graphics card (Mesa's llvmpipe), with EGL, or with OSMesa if the
+environment has `MUJOCO_GL=osmesa`.
+"""
+
+import math
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.settings import declared_fields
+from hexapods.domain.types import FloatArray
+from hexapods.exports.export_format import HERE, Execution
+from hexapods.exports.extras import import_extra, no_opengl
+from hexapods.exports.options import VideoOptions
+from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
+from hexapods.runs.clocks import Clock
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.recording import pose_at
+
+VIDEO_EXTRA = "video"
+MAX_FRAMES = 9000
+"""Pictures of one video; each takes about 0.1 s in software."""
+
+
+@dataclass(frozen=True)
+class ShownPoses:
+    """What each picture of a video shows; small, so that a process can be sent it.
+
+    Attributes:
+        problem: the walking problem, with the robot.
+        agents: of the lanes.
+        times_s: moment of the run [s].
+        poses: (pictures, lanes, 7 + joints): position [m], quaternion, angles [rad].
+    """
+
+    problem: WalkingProblem
+    agents: tuple[str, ...]
+    times_s: tuple[float, ...]
+    poses: FloatArray
+
+
+def shown_poses(
+    walks: RecordedWalks, options: VideoOptions, max_frames: int = MAX_FRAMES
+) -> ShownPoses:
+    """Return what the pictures of a run's video show.
+
+    Raises:
+        InvalidInput: if there would be more of them than `max_frames`.
+    """
+    tracks = [_Track(lane, walks.problem.robot.step_s, options.clock) for lane in walks.lanes]
+    times_s = _times_s(tracks, options, max_frames)
+    poses = np.array([[track.pose(time_s) for track in tracks] for time_s in times_s])
+    agents = tuple(lane.agent for lane in walks.lanes)
+    return ShownPoses(walks.problem, agents, tuple(times_s), poses)
+
+
+def render_video(
+    walks: RecordedWalks, options: VideoOptions, ending: str, execution: Execution = HERE
+) -> bytes:
+    """Return the video of a run; raises as `shown_poses` and `write_video`.
+
+    Args:
+        walks: the recorded walks.
+        options: settings of the video.
+        ending: `mp4` or `gif`.
+        execution: maximum number of pictures, and where they are drawn.
+    """
+    shown = shown_poses(walks, options, execution.max_frames or MAX_FRAMES)
+    return execution.write_file(partial(write_video, shown, options), f"video.{ending}")
+
+
+def write_video(shown: ShownPoses, options: VideoOptions, file: Path) -> None:
+    """Render the video of a run to a file, as its ending says.
+
+    Raises:
+        MissingExtra: if a package of the extra, or OpenGL, is not installed.
+        OSError: if it cannot be encoded or written.
+    """
+    pictures = _drawing()
+    ffmpeg = import_extra("imageio_ffmpeg", VIDEO_EXTRA, "a video")
+    size, coding = (options.width, options.height), _coding(options.fps, file.suffix)
+    writer = ffmpeg.write_frames(str(file), size, **coding)
+    writer.send(None)
+    try:
+        for picture in pictures(shown, options):
+            writer.send(np.ascontiguousarray(picture))
+    finally:
+        writer.close()
+
+
+def _drawing() -> Callable[["ShownPoses", VideoOptions], Iterator[NDArray[np.uint8]]]:
+    try:
+        from hexapods.exports.video_pictures import pictures  # noqa: PLC0415
+    # MuJoCo loads the OpenGL of MUJOCO_GL when it is imported, and PyOpenGL fails in many ways.
+    except (ImportError, AttributeError, RuntimeError) as error:
+        raise no_opengl(error) from error
+    return pictures
+
+
+def _coding(fps: int, ending: str) -> dict[str, Any]:
+    common = {"fps": fps, "macro_block_size": 2, "ffmpeg_log_level": "error"}
+    if ending == ".mp4":
+        return {
+            **common,
+            "codec": "libx264",
+            "quality": 8,
+            "output_params": ["-movflags", "+faststart"],
+        }
+    palette = "split[a][b];[a]palettegen[p];[b][p]paletteuse"
+    return {
+        **common,
+        "codec": "gif",
+        "pix_fmt_out": "pal8",
+        "output_params": ["-filter_complex", palette],
+    }
+
+
+def _times_s(tracks: Sequence["_Track"], options: VideoOptions, max_frames: int) -> list[float]:
+    """Return the moment of the run that each picture shows; gaps in a practice are left out."""
+    end_s = max(track.end_s for track in tracks)
+    first, speed = tracks[0], options.playback_speed or _fitting_speed(tracks, options, max_frames)
+    shift_s, times_s = 0.0, list[float]()
+    while True:
+        time_s = len(times_s) * speed / options.fps + shift_s
+        if len(tracks) == 1:
+            skipped = first.gap_s(time_s)
+            shift_s, time_s = shift_s + skipped, time_s + skipped
+        if time_s > end_s:
+            return [*times_s, end_s]
+        times_s.append(time_s)
+        if len(times_s) >= max_frames:
+            raise InvalidInput(
+                f"the video would have more than {max_frames:,} frames; choose a higher speed, or "
+                "fewer frames per second"
+            )
+
+
+def _fitting_speed(tracks: Sequence["_Track"], options: VideoOptions, max_frames: int) -> float:
+    """Return 1, or the playback speed at which the whole run fits into a video."""
+    length_s = tracks[0].recorded_s if len(tracks) == 1 else max(track.end_s for track in tracks)
+    # A second less, since each recorded part is rounded up to a picture.
+    frames = max(1, max_frames - options.fps)
+    needed = math.ceil(10 * length_s * options.fps / frames) / 10
+    return min(max(1.0, needed), declared_fields(VideoOptions)["playback_speed"].high or needed)
+
+
+class _Track:
+    """Poses of a lane's robot, interpolated over playback time."""
+
+    def __init__(self, lane: ExportedLane, step_s: float, clock: Clock) -> None:
+        self.lane = lane
+        self._starts_s = lane.starts_s(step_s, clock)
+        self._ends_s = lane.ends_s(step_s, clock)
+        self.end_s = float(self._ends_s[-1]) if len(self._ends_s) else 0.0
+
+    @property
+    def recorded_s(self) -> float:
+        """How long motions are recorded [s]."""
+        return float((self._ends_s - self._starts_s).sum())
+
+    def gap_s(self, time_s: float) -> float:
+        """Return how long nothing is recorded from a moment on, where steps are missing."""
+        index = bisect_right(self._starts_s, time_s) - 1
+        if index < 0 or index + 1 >= len(self._starts_s) or time_s <= self._ends_s[index] + 1e-6:
+            return 0.0
+        return float(self._starts_s[index + 1]) - time_s
+
+    def pose(self, time_s: float) -> FloatArray:
+        index = bisect_right(self._starts_s, time_s) - 1
+        if index < 0:
+            return self.lane.start_qpos.astype(float)
+        start = self.lane.pose_before(index)
+        return pose_at(start, self.lane.motion(index), time_s - float(self._starts_s[index]))

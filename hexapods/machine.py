@@ -1,0 +1,41 @@
+"""Cores and memory of this machine, or as many as this process's container (cgroup) may use."""
+
+import math
+import os
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+_CGROUPS = Path("/sys/fs/cgroup")
+
+
+def cores() -> int:
+    """Return the number of usable cores."""
+    if hasattr(os, "sched_getaffinity"):
+        count = len(os.sched_getaffinity(0))
+    else:
+        count = os.cpu_count() or 1
+    match _limit("cpu.max") or _limit("cpu/cpu.cfs_quota_us", "cpu/cpu.cfs_period_us"):
+        case [quota_us, period_us] if quota_us > 0:
+            return min(count, math.ceil(quota_us / period_us))
+    return count
+
+
+def memory_bytes() -> int | None:
+    """Return the size of the usable memory; None if the system does not tell."""
+    if sys.platform == "win32":
+        return None
+    size = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    limit = _limit("memory.max") or _limit("memory/memory.limit_in_bytes")
+    return min([size, *limit])
+
+
+def _limit(*names: str) -> list[int]:
+    """Return the numbers in some files of this process's cgroup; none if it has no limit."""
+    with suppress(OSError, ValueError):
+        own = Path("/proc/self/cgroup").read_text("ascii").strip().rpartition(":")[2].lstrip("/")
+        # Version 1 mounts each controller by itself, of a container at its own cgroup.
+        folder = _CGROUPS / own if (_CGROUPS / own / names[0]).exists() else _CGROUPS
+        texts = [(folder / name).read_text("ascii") for name in names]
+        return [int(number) for text in texts for number in text.split()]
+    return []
