@@ -69,11 +69,26 @@ browser: $(DEV_STAMP)
 	$(BIN)/python tests/install_browser.py
 
 .PHONY: test-page
-test-page: $(PAGE_STAMP) ## Check the page's JavaScript: linter, types, unit tests
+test-page: check-page-types ## Check the page's JavaScript: linter, types, unit tests
 	$(BIN)/node node_modules/eslint/bin/eslint.js .
 	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.json
-	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.logic.json
 	$(BIN)/node --import ./tests/page/browser.js --test --test-reporter=dot "tests/page/test-*.js"
+
+# The types of what the page reads, from the models that describe what the server sends.
+PAGE_TYPES := static/js/api-types.d.ts
+write_page_types = mkdir -p build && \
+	$(BIN)/python -m tests.page.answer_schemas > build/answer-schemas.json && \
+	$(BIN)/node tests/page/page-types.js build/answer-schemas.json
+
+.PHONY: page-types
+page-types: $(PAGE_STAMP) ## Write the page's types of the API's answers
+	@$(write_page_types) $(PAGE_TYPES)
+
+.PHONY: check-page-types
+check-page-types: $(PAGE_STAMP)
+	@$(write_page_types) build/api-types.d.ts
+	@cmp -s build/api-types.d.ts $(PAGE_TYPES) || { \
+		echo "$(PAGE_TYPES) is not what the API answers: renew it by 'make page-types'"; exit 1; }
 
 .PHONY: docs
 docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.auth import PUBLIC_PATHS
 from app.api.cookies import NAME
+from app.api.event_answers import EventBodies
 from app.api.problems import MEDIA_TYPE
 from app.api.rate_limit import WHAT_IF
 from app.settings import Settings
@@ -21,6 +22,7 @@ from app.settings import Settings
 Schema = dict[str, Any]
 BINARY: Schema = {"type": "string", "format": "binary"}
 TEXT: Schema = {"type": "string"}
+_REFERENCE = "#/components/schemas/{model}"
 _METHODS = ("get", "put", "post", "patch", "delete")
 _UNUSED_SCHEMAS = ("HTTPValidationError", "ValidationError")
 _WRITE_METHODS = frozenset(_METHODS) - {"get"}
@@ -112,6 +114,17 @@ def takes_file(*media_types: str) -> Schema:
     return {"requestBody": {"content": content, "required": True}}
 
 
+def sends_events(name: str) -> Schema:
+    """Return a route's `openapi_extra` argument for a stream of events.
+
+    Args:
+        name: of the schema that has the JSON of each event's data, by the event's name.
+    """
+    data = {"contentMediaType": "application/json", "description": f"a property of `{name}`"}
+    content = {"text/event-stream": {"itemSchema": {"properties": {"data": data}}}}
+    return {"responses": {"200": {"content": content}}}
+
+
 _generated: dict[tuple[tuple[str, ...], int], Schema] = {}
 """Cache of FastAPI's OpenAPI description by agents and number of routes; equal for all apps."""
 _lock = threading.Lock()
@@ -142,9 +155,11 @@ def install(app: FastAPI, agents: tuple[str, ...], settings: Settings) -> None:
 def _completed(schema: Schema, agents: tuple[str, ...], settings: Settings) -> Schema:
     components = schema.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
-    problem_schema = ProblemDetails.model_json_schema(ref_template="#/components/schemas/{model}")
-    schemas |= problem_schema.pop("$defs")
-    schemas["Problem"] = problem_schema
+    # FastAPI finds neither: routes do not declare errors, and events are sent as text.
+    for name, model in (("Problem", ProblemDetails), ("EventBodies", EventBodies)):
+        described = model.model_json_schema(ref_template=_REFERENCE, mode="serialization")
+        schemas |= described.pop("$defs")
+        schemas[name] = described
     for name in _UNUSED_SCHEMAS:
         schemas.pop(name, None)
     components["responses"] = {name: _problem(status) for status, (name, _) in _PROBLEMS.items()}

@@ -7,6 +7,7 @@ from fastapi import APIRouter, Depends, Header, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
+from app.api.contract import sends_events
 from app.api.deps import EventListener, RoleDep, Services, ServicesDep
 from app.api.descriptions import VALID
 from app.limits.addresses import client_of
@@ -57,7 +58,10 @@ async def _client_slot(
 
 
 @router.get(
-    "", summary="Stream the events of all runs and of the stage", response_class=EventSourceResponse
+    "",
+    summary="Stream the events of all runs and of the stage",
+    response_class=EventSourceResponse,
+    openapi_extra=sends_events("EventBodies"),
 )
 async def get_events(
     services: ServicesDep,

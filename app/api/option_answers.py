@@ -2,23 +2,24 @@
 
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.answers import Answer, DisturbanceView, RobotView
+from app.api.answers import Answer, DisturbanceView, RobotView, Settings
 from hexapods.domain.settings import Value
+from hexapods.runs.config import SimulatorName
 
 
 class Described(Answer):
-    """An option of a form, with a one-sentence description."""
+    """An option of a form, with its name on the page and a one-sentence description."""
 
     name: str
+    title: str
     description: str
 
 
 class GaitOption(Described):
     """A gait, with the directions of its legs [°] and the pairs of legs that move together."""
 
-    title: str
     forward_deg: float
     azimuths_deg: list[float]
     pairs: list[tuple[int, int]]
@@ -36,7 +37,6 @@ class RobotOption(Described):
 class ExperimentOption(Described):
     """An experiment, with the fields of its request body and their defaults."""
 
-    title: str
     fields: list[str]
     grid: list[str]
     defaults: dict[str, Any]
@@ -46,12 +46,45 @@ class ExperimentOption(Described):
     agents: list[str] = Field(description="the agents that it can compare")
 
 
+class TrainingDefaults(BaseModel):
+    """Default request body of a training."""
+
+    model_config = ConfigDict(extra="allow")
+
+    agent: str
+    robot: str
+    simulator: SimulatorName
+    settings: Settings
+
+
+class LaneDefaults(BaseModel):
+    """Default request body of a lane."""
+
+    model_config = ConfigDict(extra="allow")
+
+    agent: str
+
+
+class RaceDefaults(Answer):
+    """Default request body of a race."""
+
+    steps: int
+    seed: int
+    lanes: list[LaneDefaults]
+
+
+class WhatIfDefaults(Answer):
+    """The number of seeds of a what-if."""
+
+    seeds: int
+
+
 class DefaultsView(Answer):
     """Default request bodies of a training and of a race, and the number of seeds of a what-if."""
 
-    training: dict[str, Any]
-    race: dict[str, Any]
-    what_if: dict[str, int]
+    training: TrainingDefaults
+    race: RaceDefaults
+    what_if: WhatIfDefaults
 
 
 class SettingOption(Answer):
@@ -79,7 +112,6 @@ class SettingOption(Answer):
 class WorldOption(Described):
     """A named world, with what happens in it."""
 
-    title: str
     disturbances: list[DisturbanceView]
 
 
@@ -101,19 +133,22 @@ class FieldOption(SettingOption):
 class DisturbanceOption(Described):
     """A kind of disturbance, with its fields and the simulators that know it."""
 
-    title: str
     fields: dict[str, FieldOption]
     size: str | None = Field(description="the field that says how much happens")
     nothing: float | str | None = Field(
         description="the size at which nothing happens: a number, or the robot's part that has it"
     )
+    lasts: bool = Field(description="whether it holds until another of the same thing")
+    identified_by: list[str] = Field(
+        description="fields that tell, beside the kind, what it changes; each leg is one thing"
+    )
+    part: list[str] = Field(description="part of a leg to which it happens; empty for all of it")
     simulators: list[str]
 
 
 class AgentOption(Described):
     """An agent, with its constructor's settings and those that can change during a training."""
 
-    title: str
     learns: bool
     searches: bool = Field(description="whether it plans with a simulator: takes `plans_with`")
     needs_practice: bool

@@ -40,6 +40,7 @@ from hexapods.experiments.config import (
 from hexapods.experiments.config import as_json as experiment_as_json
 from hexapods.exports.registry import EXPORTS
 from hexapods.runs import best_known
+from hexapods.runs.clocks import CLOCK_TITLES
 from hexapods.runs.config import (
     RACE_STEPS,
     TrainingConfig,
@@ -127,6 +128,7 @@ _SIMULATORS = {
     "mujoco": "Real physics: servos, contacts, friction.",
     "kinematic": "The law of a step without slip: exact, and very quick.",
 }
+_SIMULATOR_TITLES = {"mujoco": "MuJoCo physics", "kinematic": "ideal (no slip)"}
 _HELP = {
     "gait": "Which way is forward, and which two legs move together.",
     "what_if_steps": "How many steps of practice a what-if may have.",
@@ -185,6 +187,7 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "robots": [
             {
                 "name": name,
+                "title": name.capitalize(),
                 "description": _ROBOTS.get(name, ""),
                 "robot": as_mapping(robot),
                 "built": {part: getattr(robot, part) for part in _replaced_parts()},
@@ -194,9 +197,9 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "agents": _agents(agents),
         "worlds": _worlds(),
         "disturbances": _disturbances(),
-        "simulators": _described(_SIMULATORS),
-        "observations": _described(_OBSERVATIONS),
-        "clocks": _described(_CLOCKS),
+        "simulators": _described(_SIMULATORS, _SIMULATOR_TITLES),
+        "observations": _described(_OBSERVATIONS, _choice_titles("observation")),
+        "clocks": _described(_CLOCKS, CLOCK_TITLES),
         "experiments": _experiments(agents),
         "defaults": {
             "training": _training_defaults(),
@@ -276,6 +279,9 @@ def _disturbances() -> list[dict[str, Any]]:
             "fields": _fields_of(kind),
             "size": kind.size,
             "nothing": kind.nothing,
+            "lasts": kind.lasts,
+            "identified_by": kind.identified_by,
+            "part": kind.part,
             "simulators": [one for one in _SIMULATORS if is_simulated(name, one)],
         }
         for name, kind in disturbances.KINDS.items()
@@ -345,8 +351,16 @@ def _simulator_defaults(
     }
 
 
-def _described(sentences: dict[str, str]) -> list[dict[str, str]]:
-    return [{"name": name, "description": sentence} for name, sentence in sentences.items()]
+def _described(sentences: Mapping[str, str], titles: Mapping[Any, str]) -> list[dict[str, str]]:
+    return [
+        {"name": name, "title": titles[name], "description": sentence}
+        for name, sentence in sentences.items()
+    ]
+
+
+def _choice_titles(field: str) -> dict[str, str]:
+    setting = _SETTINGS[field]
+    return dict(zip(setting.choices, setting.about.choice_titles, strict=True))
 
 
 def _training_defaults() -> dict[str, Any]:

@@ -76,6 +76,12 @@ class Disturbance:
     something always happens."""
     ranges: ClassVar[Mapping[str, RangesByChoice]] = MappingProxyType({})
     """Narrower limits of fields, by the choice of another field."""
+    lasts: ClassVar[bool] = True
+    """Whether it holds until another of the same thing; a push does not."""
+    identified_by: ClassVar[tuple[str, ...]] = ()
+    """The fields that tell, beside the kind, what it changes; of a list each value by itself."""
+    part: ClassVar[Key] = ()
+    """The part of a leg to which it happens; by default all of it."""
 
     at_step: Annotated[
         int,
@@ -112,7 +118,7 @@ class Disturbance:
 
     def parts(self) -> "Mapping[Key, Disturbance]":
         """Return it by what it changes, leg by leg; the newest disturbance of a key holds."""
-        return {(self.kind,): self}
+        return {(self.kind, *(getattr(self, name) for name in self.identified_by)): self}
 
     def check(self, robot: Robot) -> None:
         """Check that it can happen to this robot.
@@ -126,8 +132,7 @@ class Disturbance:
 class _OfLegs(Disturbance):
     """Something that happens to legs, given by their numbers from 1."""
 
-    part: ClassVar[Key] = ()
-    """The part of a leg to which it happens; by default all of it."""
+    identified_by = ("legs",)
     legs: tuple[int, ...]
 
     def __post_init__(self) -> None:
@@ -176,6 +181,7 @@ class Stuck(Disturbance):
     title = "Stuck joint"
     help = "One joint holds this angle, whatever it is told."
     ranges = MappingProxyType({"angle_rad": RangesByChoice("joint", JOINT_LIMITS_RAD)})
+    identified_by = ("leg", "joint")
     leg: Annotated[
         int, Ge(1), Le(MAX_LEGS), Setting(title="Leg", help="The number of the leg, from 1.")
     ]
@@ -292,6 +298,7 @@ class Patch(Disturbance):
     help = "A strip across the track with another friction."
     # On other ground, such as ice, a strip with the robot's own friction is something.
     size, nothing = "friction", None
+    identified_by = ("from_m", "to_m")
     from_m: Annotated[
         float, Ge(-10), Le(1000), Setting(title="From", unit="m", help="Where the strip begins.")
     ]
@@ -304,10 +311,6 @@ class Patch(Disturbance):
         super().__post_init__()
         if self.to_m <= self.from_m:
             raise InvalidInput(f"patch: to_m must be over from_m, {self.from_m:g}")
-
-    def parts(self) -> "Mapping[Key, Disturbance]":
-        """Return itself as what happened to this part of the track."""
-        return {("patch", self.from_m, self.to_m): self}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -334,6 +337,7 @@ class Push(Disturbance):
     kind = "push"
     title = "Push"
     help = "A push at the beginning of the step."
+    lasts = False
     size = "impulse_ns"
     impulse_ns: Annotated[
         float, Ge(0), Le(20), Setting(title="Impulse", unit="N·s", help="Of the push.")

@@ -122,7 +122,7 @@ class World:
     def _conditions_at(self, step: int) -> "World":
         newest: dict[Key, Disturbance] = {}
         for one in sorted(self.disturbances, key=lambda one: one.at_step):
-            if not one.holds_at(step) or isinstance(one, Push):
+            if not one.holds_at(step) or not one.lasts:
                 continue
             for covered in [key for key in newest if _covers(one, key)]:
                 del newest[covered]
@@ -142,7 +142,7 @@ class World:
         kept: list[Disturbance] = []
         for other in self.disturbances:
             parts = other.parts()
-            is_undone = other.at_step == one.at_step and not isinstance(one, Push)
+            is_undone = other.at_step == one.at_step and one.lasts
             rest = [p for k, p in parts.items() if not (is_undone and _covers(one, k))]
             kept += [other] if len(rest) == len(parts) else rest
         return World((*kept, one))
@@ -150,7 +150,7 @@ class World:
     @property
     def at_start(self) -> "World":
         """Disturbances that hold from the start, for good and as given; without pushes."""
-        early = (d for d in self.disturbances if d.at_step == 0 and not isinstance(d, Push))
+        early = (d for d in self.disturbances if d.at_step == 0 and d.lasts)
         return World(tuple(replace(one, until_step=None) for one in early))
 
     def later(self, steps: int) -> "World":
@@ -231,7 +231,7 @@ def _check_compatible(one: Disturbance, other: Disturbance) -> None:
     Raises:
         InvalidInput: if they contradict each other.
     """
-    if one.at_step != other.at_step or isinstance(one, Push) or isinstance(other, Push):
+    if one.at_step != other.at_step or not (one.lasts and other.lasts):
         return
     if any(_covers(one, key) for key in other.parts()) or any(
         _covers(other, key) for key in one.parts()

@@ -22,7 +22,7 @@ import {
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
 /** @import { Annotations, DamagedRun, LaneConfig, Run } from "./types.js" */
-/** @import { Stage, Verb } from "./types.js" */
+/** @import { RunConfig, Stage, Verb } from "./types.js" */
 
 /** Body of PUT /stage. @typedef {Partial<Stage> & { time_s?: number, stay?: boolean }} StageChanges */
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
@@ -310,6 +310,7 @@ export const annotate = (run, changes) =>
  * @param {Run} run
  */
 export function copySettings(run) {
+  /** @type {Walk & { [field: string]: unknown }} */
   const config = run.kind === "race" ? configOfRace(run) : flat(configAtEnd(run));
   const { robot, agent, disturbances = [], ...others } = config;
   if (agent && learns(agent)) chooseLearner(agent);
@@ -337,7 +338,9 @@ const settingsOfLane = ({ agent, observation, settings }) => ({ agent, observati
  */
 const asAsked = (lane) => lane.plans_with_by_default ? { ...lane, plans_with: null } : lane;
 
-/** @type {(race: Run) => Record<string, any>} */
+/** What the form takes over. @typedef {Partial<Pick<RunConfig, "robot" | "agent" | "disturbances">>} Walk */
+
+/** @type {(race: Run) => Walk & { lanes: string[], [field: string]: unknown }} */
 function configOfRace({ config: { lanes, steps, ...walk } }) {
   const trainings = lanes.map((lane) => {
     const run = runs.value.get(lane.training_id ?? "");

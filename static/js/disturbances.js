@@ -8,12 +8,9 @@ import { options } from "./store.js";
 /** @import { Parsed } from "./parse.js" */
 /** @import { Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run } from "./types.js" */
 
-/** It lasts no longer than the beginning of its step. */
 export const PUSH = "push";
 const REPAIR = "repair";
 const LOST = "lost";
-/** Conditions of the servos of a leg, of which a joint may be stuck besides. */
-const POWER_KINDS = ["limp", "weak"];
 const STEPS = ["at_step", "until_step"];
 /** Of the fields in a text. @type {Record<string, string>} */
 const SHORT = { at_step: "at", until_step: "until" };
@@ -46,10 +43,9 @@ const holdsAt = ({ at_step, until_step }, step) =>
  * @returns {[string, Disturbance][]}
  */
 function partsOf(one) {
-  const part = POWER_KINDS.includes(one.kind) ? " power" : "";
-  if (one.legs) return one.legs.map((leg) => [`leg ${leg}${part}`, { ...one, legs: [leg] }]);
-  if (one.leg) return [[`leg ${one.leg} ${one.joint}`, one]];
-  return [[one.from_m === undefined ? one.kind : `${one.kind} ${one.from_m} ${one.to_m}`, one]];
+  const { identified_by = [], part = [] } = kindNamed(one.kind) ?? {};
+  if (one.legs) return one.legs.map((leg) => [["leg", leg, ...part].join(" "), { ...one, legs: [leg] }]);
+  return [[[one.leg ? "leg" : one.kind, ...identified_by.map((field) => one[field])].join(" "), one]];
 }
 
 /** Whether what changes one thing replaces what changes another: of a leg that of its joints. */
@@ -67,7 +63,7 @@ const keysOf = (one) => partsOf(one).map(([key]) => key);
 export function conditionsAt(disturbances, step, robot) {
   /** @type {Map<string, Disturbance>} */
   const newest = new Map();
-  const lasting = disturbances.filter((one) => one.kind !== PUSH && holdsAt(one, step));
+  const lasting = disturbances.filter((one) => kindNamed(one.kind)?.lasts !== false && holdsAt(one, step));
   for (const one of lasting.sort((a, b) => a.at_step - b.at_step)) {
     for (const [key, part] of partsOf(one)) {
       [...newest.keys()].filter((old) => covers(key, old)).forEach((old) => newest.delete(old));
@@ -335,7 +331,7 @@ export function parseText(text) {
     return { mistake: `${kind.title}: give ${listed(missing.map(([, { title }]) => title.toLowerCase()))}` };
   }
   for (const [own, field] of Object.entries(kind.fields).filter(([, { ranges }]) => ranges)) {
-    const mistake = mistakeIn(found[own], fieldBeside(field, found), field.is_whole);
+    const mistake = mistakeIn(/** @type {number} */ (found[own]), fieldBeside(field, found), field.is_whole);
     if (mistake) return { mistake: `${kind.title}, ${field.title.toLowerCase()}: ${mistake}` };
   }
   return { value: found };

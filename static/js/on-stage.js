@@ -156,7 +156,7 @@ const fits = (training, values) =>
   hasTable(training) &&
   isSame(training.config.gait, values.gait) &&
   isSame(formRobot(training.config.robot), formRobot(values.robot)) &&
-  WALK_FIELDS.every((field) => [undefined, values[field]].includes(training.config[field]));
+  WALK_FIELDS.every((field) => training.config[field] === undefined || training.config[field] === values[field]);
 
 /** The trainings whose tables fit the form: those on stage first, then this tab's. */
 const fittingTrainings = computed(() => {

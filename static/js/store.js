@@ -2,7 +2,7 @@
 import { batch, computed, signal } from "@preact/signals";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { DamagedRun, Evaluation, Options, Rates, Run, Scene, Stage } from "./types.js" */
+/** @import { DamagedRun, Evaluation, EventBodies, Options, Rates, Run, Scene, Stage } from "./types.js" */
 
 /** @type {Signal<"connecting" | "live" | "reconnecting">} */
 export const connection = signal("connecting");
@@ -72,7 +72,7 @@ const deletedIds = new Set();
 /** @param {string} id */
 export const isDeleted = (id) => deletedIds.has(id);
 
-/** @type {Record<string, (data: any) => void>} */
+/** @type {{ [Name in keyof EventBodies]: (data: EventBodies[Name]) => void }} */
 const handlers = {
   snapshot(data) {
     // It tells of the stage and of the newest runs; an answer about an older run is still news.
@@ -122,12 +122,12 @@ export const eventNames = Object.keys(handlers);
 /**
  * Apply a server-sent event. Unknown names are ignored.
  * @param {string} name
- * @param {any} data
+ * @param {unknown} data
  */
 export const applyEvent = (name, data) =>
   batch(() => {
     eventCount += 1;
-    handlers[name]?.(data);
+    /** @type {Record<string, (data: unknown) => void>} */ (handlers)[name]?.(data);
   });
 
 /**
@@ -176,13 +176,13 @@ export async function requestStage(send) {
 
 /**
  * Insert a run, or replace the version that is known.
- * @param {Run | DamagedRun} run
+ * @param {Run | EventBodies["run"]} run
  */
 const upsertRun = (run) =>
   batch(() => {
     forgetRun(run.id);
     if ("damaged" in run) damagedRuns.value = new Map(damagedRuns.value).set(run.id, run);
-    else runs.value = new Map(runs.value).set(run.id, run);
+    else runs.value = new Map(runs.value).set(run.id, /** @type {Run} */ (run));
   });
 
 /**

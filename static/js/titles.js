@@ -8,11 +8,6 @@ import { options } from "./store.js";
 
 /** @import { Described, GaitConfig, RobotConfig, Run } from "./types.js" */
 
-/** @type {Record<string, string>} */
-const SIMULATORS = { mujoco: "MuJoCo physics", kinematic: "ideal (no slip)" };
-/** @type {Record<string, string>} */
-const CLOCKS = { paper: "paper clock", wall: "real clock", free: "no clock" };
-
 /** @type {(list: Described[] | undefined, name: string) => Described | undefined} */
 const find = (list, name) => list?.find((one) => one.name === name);
 
@@ -35,9 +30,9 @@ export const observationTitle = (name) => titleOfChoice("observation", name);
 /** Model that a search plans with: "nominal model". @param {string} name */
 export const planningModelTitle = (name) => titleOfChoice("plans_with", name);
 /** @param {string} name */
-export const simulatorTitle = (name) => find(options.value?.simulators, name)?.title ?? SIMULATORS[name] ?? name;
+export const simulatorTitle = (name) => find(options.value?.simulators, name)?.title ?? name;
 /** @param {string} name */
-export const clockTitle = (name) => find(options.value?.clocks, name)?.title ?? CLOCKS[name] ?? name;
+export const clockTitle = (name) => find(options.value?.clocks, name)?.title ?? name;
 
 /** Meaning of flat parts of a lane's line under each clock. @type {Record<string, string>} */
 const FLAT_PARTS = {
@@ -173,9 +168,10 @@ const worldsIn = ({ worlds = [] }) =>
  * @param {Run["config"]} config
  */
 const sweptIn = (config) =>
-  Object.entries({ ...config, ...config.settings })
-    .filter(([name, values]) => Array.isArray(values) && values.length > 1 && !TOLD_APART.includes(name))
-    .map(([name, values]) => `${fieldTitle(name)} ${values.join(", ")}`);
+  Object.entries({ ...config, ...config.settings }).flatMap(([name, values]) =>
+    Array.isArray(values) && values.length > 1 && !TOLD_APART.includes(name)
+      ? [`${fieldTitle(name)} ${values.join(", ")}`]
+      : []);
 
 /**
  * An experiment's swept values, seeds and places in one line.

@@ -1,5 +1,6 @@
 """OpenAPI document: it describes every route and response, and real responses match it."""
 
+import asyncio
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -7,6 +8,7 @@ from typing import Any
 import pytest
 from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
+from fastapi.sse import ServerSentEvent
 from pydantic import TypeAdapter
 
 from app.api.answers import (
@@ -19,6 +21,9 @@ from app.api.answers import (
     WhatIfView,
 )
 from app.api.contract import operations, problems_of
+from app.api.deps import EventListener, Services
+from app.api.event_answers import EventBodies
+from app.api.events import get_events
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.option_answers import OptionsView
 from app.api.problems import STATUSES
@@ -200,6 +205,38 @@ def test_real_responses_match_their_models(api: Api, trained: dict[str, Any]) ->
         TypeAdapter(model).validate_python(answer)
         count += 1
     assert count > 20
+
+
+def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> None:
+    assert isinstance(api.client.app, FastAPI)
+    services: Services = api.client.app.state.services
+    subscription = services.bus.subscribe()
+    run = api.slow_training()
+    api.call("PATCH", f"/trainings/{run['id']}", json={"pace": 30, "settings": {"alpha": 0.5}})
+    limp = {"kind": "limp", "legs": [1]}
+    api.call("POST", f"/trainings/{run['id']}/disturbances", json=limp)
+    api.tell(run, "stop")
+    api.finished(api.train(steps=100, evaluate_every=50))
+    api.finished(api.race(lanes=[{"agent": "q-learning", "training_id": trained["id"]}], steps=3))
+    body = {"experiment": "sweep", "seeds": 2, "steps": 20, "gaits": "left-right-origin"}
+    api.finished(api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1}))
+    api.ended(run)
+    api.call("DELETE", f"/trainings/{run['id']}")
+
+    async def first_event() -> ServerSentEvent:
+        return await anext(get_events(services, "operator", None, EventListener()))
+
+    snapshot = asyncio.run(first_event())
+    bodies = EventBodies.model_fields.items()
+    models: dict[str, Any] = {field.alias or name: field.annotation for name, field in bodies}
+    events = subscription.drain()
+    subscription.close()
+    received = {event.event for event in events}
+    assert snapshot.raw_data is not None
+    # A viewer connects to the stage only in a browser.
+    assert received | {"snapshot", "viewers"} == set(models)
+    for name, data in [("snapshot", snapshot.raw_data), *((one.event, one.data) for one in events)]:
+        TypeAdapter(models[name]).validate_json(data)
 
 
 @pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep"])

@@ -42,10 +42,10 @@ const DIRECTION = field("Direction", { minimum: -180, maximum: 180, unit: "°", 
 const NUMBER = { minimum: 0, is_required: true };
 /** @type {(name: string, title: string, fields: object, more?: object) => any} */
 const kind = (name, title, fields, more = {}) =>
-  ({ ...described(name, title), fields: { ...fields, ...STEP_FIELDS }, size: null, nothing: 0, simulators: ["mujoco"],
-    ...more });
+  ({ ...described(name, title), fields: { ...fields, ...STEP_FIELDS }, size: null, nothing: 0, lasts: true,
+    identified_by: [], part: [], simulators: ["mujoco"], ...more });
 const KINDS = [
-  kind("limp", "Limp legs", { legs: LEGS }),
+  kind("limp", "Limp legs", { legs: LEGS }, { identified_by: ["legs"], part: ["power"] }),
   kind("stuck", "Stuck joint", {
     leg: field("Leg", { minimum: 1, maximum: 12, is_whole: true, is_required: true }),
     joint: field("Joint", { is_number: false, choices: ["coxa", "femur"], is_required: true }),
@@ -53,20 +53,24 @@ const KINDS = [
       minimum: -1.5, maximum: 1.5, unit: "rad", is_required: true,
       ranges: { field: "joint", ranges: { coxa: [-1.2, 1.2], femur: [-1.5, 1.5] } },
     }),
-  }),
-  kind("lost", "Lost legs", { legs: LEGS }),
+  }, { identified_by: ["leg", "joint"] }),
+  kind("lost", "Lost legs", { legs: LEGS }, { identified_by: ["legs"] }),
   kind("weak", "Weak servos", {
     legs: LEGS, torque_share: field("Share of torque", { ...NUMBER, maximum: 1 }),
-  }, { size: "torque_share", nothing: 1 }),
-  kind("repair", "Repaired legs", { legs: LEGS }),
+  }, { size: "torque_share", nothing: 1, identified_by: ["legs"], part: ["power"] }),
+  kind("repair", "Repaired legs", { legs: LEGS }, { identified_by: ["legs"] }),
   kind("slope", "Slope", {
     degrees: field("Slope", { ...NUMBER, maximum: 30, unit: "°" }), direction_deg: DIRECTION,
   }, { size: "degrees" }),
   kind("friction", "Friction", { value: field("Friction", { minimum: 0.01, maximum: 5, is_required: true }) },
     { size: "value", nothing: "friction" }),
+  kind("patch", "Patch", {
+    from_m: field("From", { ...NUMBER, unit: "m" }), to_m: field("To", { ...NUMBER, unit: "m" }),
+    friction: field("Friction", NUMBER),
+  }, { size: "friction", nothing: null, identified_by: ["from_m", "to_m"] }),
   kind("push", "Push", {
     impulse_ns: field("Impulse", { ...NUMBER, maximum: 20, unit: "N·s" }), direction_deg: DIRECTION,
-  }, { size: "impulse_ns" }),
+  }, { size: "impulse_ns", lasts: false }),
   kind("sensor-noise", "Sensor noise", {
     sd_m: field("Standard deviation", { ...NUMBER, maximum: 0.05, unit: "m" }),
   }, { size: "sd_m", simulators: ["mujoco", "kinematic"] }),
@@ -79,7 +83,7 @@ const WORLDS = [
 const TRAINING = {
   agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured",
   settings: { alpha: 0.3, gamma: 0.9, epsilon_start: 1, epsilon_end: 0 }, steps_per_episode: 50, evaluate_every: 50,
-  robot: "stiff", simulator: "mujoco",
+  robot: "stiff", simulator: /** @type {const} */ ("mujoco"),
   divisions: 2, grid_side_m: 0.04, tolerance: 0, disturbances: [],
 };
 
@@ -124,9 +128,9 @@ export const OPTIONS = {
   ],
   worlds: WORLDS,
   disturbances: KINDS,
-  simulators: [{ name: "mujoco", description: "" }, { name: "kinematic", description: "" }],
-  observations: [{ name: "measured", description: "" }, { name: "commanded", description: "" }],
-  clocks: [{ name: "paper", description: "" }, { name: "wall", description: "" }, { name: "free", description: "" }],
+  simulators: [described("mujoco", "MuJoCo physics"), described("kinematic", "ideal (no slip)")],
+  observations: [described("measured"), described("commanded")],
+  clocks: [described("paper", "paper clock"), described("wall", "real clock"), described("free", "no clock")],
   experiments: [
     {
       ...described("table1", "Table 1"), fields: COMMON, grid: [], defaults: { ...EXPERIMENT, steps: [500, 1000] },
@@ -149,7 +153,7 @@ export const OPTIONS = {
   ],
   defaults: {
     training: { ...TRAINING, pace: "max" },
-    race: { steps: 50, lanes: [{ agent: "learner" }, { agent: "greedy" }] },
+    race: { steps: 50, seed: 0, lanes: [{ agent: "learner" }, { agent: "greedy" }] },
     what_if: { seeds: 30 },
   },
   settings: {
@@ -194,11 +198,11 @@ let number = 0;
  */
 export function makeRun(changes) {
   number += 1;
-  return /** @type {Run} */ ({
+  return /** @type {Run} */ (/** @type {unknown} */ ({
     id: `run-${String(number).padStart(4, "0")}`, kind: "training", name: null, state: "finished",
     config: /** @type {any} */ ({ ...TRAINING, pace: "max" }),
     progress: { done: 0, total: 500 }, can_resume: false,
     created_at: new Date(Date.UTC(2030, 0, 1) + 1000 * number).toISOString(),
     ...changes,
-  });
+  }));
 }

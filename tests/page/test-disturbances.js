@@ -84,6 +84,13 @@ test("a leg without power may have a stuck joint besides; one that is lost has n
   assert.deepEqual([...legStates(conditionsAt([...both, weak, lost], 4))], [[1, "lost"]]);
 });
 
+test("a strip of the track replaces what happened to the same strip only", () => {
+  const patch = { kind: "patch", at_step: 1, from_m: 0.1, to_m: 0.2, friction: 0.3 };
+  const other = { ...patch, at_step: 2, to_m: 0.4 };
+  const anew = { ...patch, at_step: 3, friction: 0.5 };
+  assert.deepEqual(conditionsAt([patch, other, anew], 3).map(({ friction }) => friction), [0.3, 0.5]);
+});
+
 test("a text has several worlds, each with a title", () => {
   assert.deepEqual(splitWorlds("flat, limp:legs=1,4+slope:degrees=4 ; limp-pair,"),
     ["flat", "limp:legs=1,4+slope:degrees=4", "limp-pair"]);

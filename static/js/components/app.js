@@ -19,6 +19,9 @@ import { Stage } from "./stage.js";
 import { SharedChoices } from "./transport.js";
 import { WhatIf } from "./what-if.js";
 
+/** @import { FunctionComponent } from "preact" */
+/** @import { Changed } from "../types.js" */
+
 export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
   <${Header} />
@@ -50,7 +53,7 @@ const Loading = () => html`
   </section>
 `;
 
-/** The hash names the view, so a link cannot move the focus by itself. */
+/** The hash names the view, so a link cannot move the focus by itself. @param {Event} event */
 function focusMain(event) {
   event.preventDefault();
   document.getElementById("main")?.focus();
@@ -58,7 +61,10 @@ function focusMain(event) {
 
 // ---- the race view
 
-/** Hidden, not removed, while another view is open, so that the stage does not load again. */
+/**
+ * Hidden, not removed, while another view is open, so that the stage does not load again.
+ * @param {{ isHidden: boolean }} props
+ */
 const RaceView = ({ isHidden }) => html`
   <div class="race-view" hidden=${isHidden}>
     <${Stage} />
@@ -88,12 +94,14 @@ const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 
 // ---- the views that are loaded when they are first opened: most visits do not
 
+/** @type {Record<string, () => Promise<FunctionComponent>>} */
 const LOADERS = {
   experiments: () => import("./experiments/experiments.js").then(({ Experiments }) => Experiments),
   runs: () => import("./runs/runs.js").then(({ Runs }) => Runs),
   compare: () => import("./compare/compare.js").then(({ Compare }) => Compare),
 };
 
+/** @param {{ name: string }} props */
 function LoadedView({ name }) {
   const shown = html`<${Loaded} name=${name} load=${LOADERS[name]} />`;
   return loaded.value[name] ? shown : html`<section class="panel locked">${shown}</section>`;
@@ -328,6 +336,7 @@ function HelpDialog() {
   }), []);
   const close = () => (helpIsOpen.value = false);
   const onClose = () => !dialog.current?.open && close();
+  /** @param {MouseEvent} event */
   const onBackdrop = (event) => event.target === dialog.current && close();
   return html`
     <dialog class="help" id="help" ref=${dialog} onClose=${onClose} onClick=${onBackdrop} aria-labelledby="help-title">
@@ -337,7 +346,8 @@ function HelpDialog() {
           ${KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
         </dl>
         <label class="check">
-          <input type="checkbox" checked=${shortcuts.value} onChange=${(e) => setShortcuts(e.target.checked)} />
+          <input type="checkbox" checked=${shortcuts.value}
+            onChange=${(/** @type {Changed} */ { target }) => setShortcuts(target.checked)} />
           Use single keys
         </label>
         <h2>Charts</h2>

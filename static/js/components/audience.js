@@ -14,6 +14,7 @@ import { clockTitle } from "../titles.js";
 import { html } from "./elements.js";
 
 /** @import { Spectators } from "../types.js" */
+/** @import { RequestError } from "../api.js" */
 
 export function Audience() {
   const [known, setKnown] = useState(/** @type {Spectators | null} */ (null));
@@ -38,6 +39,7 @@ export function Audience() {
   `;
 }
 
+/** @param {{ known: Spectators | null, problem: RequestError | null }} props */
 function Address({ known, problem }) {
   if (known?.address) return html`<p class="address">${known.address.replace(/^http:\/\/|\/$/g, "")}</p>`;
   return html`<p class="dim" role="status">${known?.reason || problem}</p>`;

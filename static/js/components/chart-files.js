@@ -6,6 +6,8 @@ import { widthOf } from "./line-labels.js";
 
 /** @import { Line, Mark } from "../chart.js" */
 
+/** An entry of the legend, of a line that is drawn. @typedef {{ name: string, of: Element }} Sample */
+
 const SVG = "http://www.w3.org/2000/svg";
 /** Pixels of the PNG to one on the page. */
 const SCALE = 2;
@@ -52,16 +54,20 @@ export async function saveChart(kind, chart) {
   saveFile(await blobs[kind](), `${chart.file}.${kind}`);
 }
 
+/** @param {{ lines: Line[], marks: Mark[], xs: number[], x: { unit: string }, y: { unit: string } }} one */
 const numbersOf = ({ lines, marks, xs, x, y }) =>
   tableOf({ lines, marks, xs, titles: { x: sentence(x.unit), y: y.unit } });
 
-/** The picture with a title and a legend: on the page they stand beside it. */
+/**
+ * The picture with a title and a legend: on the page they stand beside it.
+ * @param {{ svg: SVGSVGElement, name: string, label: string, lines: Line[], marks: Mark[] }} one
+ */
 function pictureOf({ svg, name, label, lines, marks }) {
   const copy = withStyles(svg);
   const samples = [
     ...lines.map((line) => ({ name: line.name, of: svg.querySelectorAll(".curve")[lines.indexOf(line)] })),
     ...marks.filter((mark) => mark.name).map((mark) => ({ name: mark.name, of: markOf(svg, mark) })),
-  ].filter(({ of }) => of);
+  ].filter(/** @returns {one is Sample} */ (one) => one.of !== null && one.name !== undefined);
   const [chartWidth, chartHeight] = [svg.width.baseVal.value, svg.height.baseVal.value];
   const rows = rowsOf(samples, chartWidth);
   const width = chartWidth + 2 * MARGIN_PX;
@@ -85,7 +91,10 @@ function pictureOf({ svg, name, label, lines, marks }) {
   return { text: new XMLSerializer().serializeToString(root), width, height };
 }
 
-/** A line of the legend, drawn like the one in the chart. */
+/**
+ * A line of the legend, drawn like the one in the chart.
+ * @param {{ svg: SVGSVGElement, words: string, of: Element, left: number, y: number }} one
+ */
 function legendOf({ svg, words, of, left, y }) {
   const sample = element("line", { x1: left, x2: left + SAMPLE_PX, y1: y, y2: y });
   copyStyles(of, sample);
@@ -95,8 +104,13 @@ function legendOf({ svg, words, of, left, y }) {
   })];
 }
 
-/** The samples of a legend in as many rows as they need. */
+/**
+ * The samples of a legend in as many rows as they need.
+ * @param {Sample[]} samples
+ * @param {number} width
+ */
 function rowsOf(samples, width) {
+  /** @type {(Sample & { left: number })[][]} */
   const rows = [];
   let left = Infinity;
   for (const { name, of } of samples) {
@@ -111,6 +125,7 @@ function rowsOf(samples, width) {
   return rows;
 }
 
+/** @param {SVGSVGElement} svg @param {Mark} other */
 const markOf = (svg, { kind }) => svg.querySelector(kind ? `.mark.${kind}` : ".mark:not([class*=' '])");
 
 /** @param {SVGSVGElement} svg */
@@ -124,6 +139,7 @@ function withStyles(svg) {
   return copy;
 }
 
+/** @param {Element} from @param {Element} to */
 function copyStyles(from, to) {
   const computed = getComputedStyle(from);
   to.removeAttribute("class");
@@ -135,6 +151,7 @@ function copyStyles(from, to) {
   }
 }
 
+/** @param {string} name */
 function element(name, attributes = {}) {
   const made = document.createElementNS(SVG, name);
   for (const [key, value] of Object.entries(attributes)) {
@@ -143,23 +160,28 @@ function element(name, attributes = {}) {
   return made;
 }
 
+/** @param {string} name @param {string} words */
 function textElement(name, words, attributes = {}) {
   const made = element(name, attributes);
   made.textContent = words;
   return made;
 }
 
-/** The value of a custom property of colours where it is shown. */
+/**
+ * The value of a custom property of colours where it is shown.
+ * @param {Element} host
+ * @param {string} name
+ */
 function colourOf(host, name) {
   const probe = document.createElement("span");
   probe.style.color = `var(${name})`;
-  host.parentNode.append(probe);
+  host.parentElement?.append(probe);
   const found = getComputedStyle(probe).color;
   probe.remove();
   return asRgb(found);
 }
 
-/** A colour as other programs read it: not all know `oklab()`. */
+/** A colour as other programs read it: not all know `oklab()`. @param {string} color */
 function asRgb(color) {
   if (!/^(?!rgb)[\w-]+\(/.test(color)) return color;
   const pen = penOf(new OffscreenCanvas(1, 1));
@@ -169,8 +191,10 @@ function asRgb(color) {
   return alpha < 255 ? `rgba(${red}, ${green}, ${blue}, ${alpha / 255})` : `rgb(${red}, ${green}, ${blue})`;
 }
 
+/** @param {OffscreenCanvas} canvas */
 const penOf = (canvas) => /** @type {OffscreenCanvasRenderingContext2D} */ (canvas.getContext("2d"));
 
+/** @param {{ text: string, width: number, height: number }} one */
 async function asPng({ text, width, height }) {
   const image = new Image();
   image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;

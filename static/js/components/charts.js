@@ -10,8 +10,11 @@ import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html, useWidth } from "./elements.js";
 import { cssColour, LineLabels, MarkLines, roomFor, widthOf } from "./line-labels.js";
 
-/** @import { Line, Mark } from "../chart.js" */
+/** @import { ComponentChildren } from "preact" */
+/** @import { Line, Mark, Range } from "../chart.js" */
+/** @import { Axis } from "./crosshair.js" */
 /** @import { Frame } from "./line-labels.js" */
+/** @import { Toggled } from "../types.js" */
 
 // ---- lines
 
@@ -42,7 +45,7 @@ const MAX_SEEDS = 200;
  * @param {((x: number) => unknown) | null} [props.seek] shows a moment; null where there is none, or for who may not
  * @param {{ shown: number, computed: number } | null} [props.reach] of the axis: up to where lines are shown, and up to
  *   where they can be; null where all that is known is shown
- * @param {any} [props.children] between the picture and the table
+ * @param {ComponentChildren} [props.children] between the picture and the table
  */
 export function Chart(props) {
   const { name, label, x, y, lines, marks = [], xs, now = xs.length - 1, seek = null, reach = null, children } = props;
@@ -59,6 +62,7 @@ export function Chart(props) {
   const inset = {
     left: scale * frame.left, right: scale * (width - frame.right), top: scale * TOP_PX, bottom: scale * BOTTOM_PX,
   };
+  /** @param {{ relatedTarget: Node | null, currentTarget: HTMLElement }} event */
   const onFocusOut = ({ relatedTarget, currentTarget }) => {
     if (!currentTarget.contains(relatedTarget) && crosshair.peek()?.axis === x.axis) crosshair.value = null;
   };
@@ -83,8 +87,16 @@ export function Chart(props) {
 }
 
 /** @typedef {Frame & { xTicks: number[], yTicks: number[] }} TickedFrame */
+/** @typedef {Parameters<typeof Chart>[0]} ChartProps */
+/** @typedef {ChartProps["x"]} XAxis */
+/** @typedef {ChartProps["y"]} YAxis */
+/** @typedef {ChartProps & { marks: Mark[] }} ShownChart */
 
-/** @returns {TickedFrame} */
+/**
+ * @param {number} width
+ * @param {{ y: YAxis, lines: Line[], part: Range, values: Range }} other
+ * @returns {TickedFrame}
+ */
 function frameOf(width, { y, lines, part: [from, to], values: [least, most] }) {
   const yTicks = withOwnText(ticks(most, 4, least), y.text);
   const left = Math.ceil(Math.max(0, ...yTicks.map((one) => widthOf(y.text(one), REGULAR)))) + TICK_GAP_PX + 2;
@@ -98,19 +110,29 @@ function frameOf(width, { y, lines, part: [from, to], values: [least, most] }) {
   };
 }
 
-/** Numbers that do not read like one before. */
+/**
+ * Numbers that do not read like one before.
+ * @param {number[]} numbers
+ * @param {(value: number) => string} text
+ */
 const withOwnText = (numbers, text) =>
   numbers.filter((one, n) => numbers.findIndex((other) => text(other) === text(one)) === n);
 
 let pictures = 0;
 
+/**
+ * @param {{ label: string, x: XAxis, y: YAxis, lines: Line[], marks: Mark[], frame: TickedFrame, scale: number }} props
+ */
 function Picture({ label, x, y, lines, marks, frame, scale }) {
   const { current: id } = useRef(`chart-${(pictures += 1)}`);
   const { left, right, top, bottom, width, height } = frame;
+  /** @param {number} at */
   const isAcross = (at) => at >= left - 1 && at <= right + 1;
+  /** @param {number} at */
   const isUp = (at) => at >= top - 1 && at <= bottom + 1;
-  const inView = marks.filter((mark) => (mark.x === undefined ? isUp(frame.y(mark.y)) : isAcross(frame.x(mark.x))));
-  const ended = lines.filter(({ xs, ys }) => isAcross(frame.x(xs.at(-1))) && isUp(frame.y(ys.at(-1))));
+  const inView = marks.filter((mark) =>
+    (mark.x === undefined ? isUp(frame.y(mark.y ?? NaN)) : isAcross(frame.x(mark.x))));
+  const ended = lines.filter(({ xs, ys }) => isAcross(frame.x(xs.at(-1) ?? NaN)) && isUp(frame.y(Number(ys.at(-1)))));
   return html`
     <svg class="chart-lines" width=${scale * width} height=${scale * height} viewBox=${`0 0 ${width} ${height}`}
       role="img" aria-label=${label}>
@@ -128,6 +150,7 @@ function Picture({ label, x, y, lines, marks, frame, scale }) {
   `;
 }
 
+/** @param {{ x: XAxis, y: YAxis, frame: TickedFrame }} props */
 function Axes({ x, y, frame }) {
   const { left, right, bottom, height, xTicks, yTicks } = frame;
   const boxes = xTicks.map((one) => {
@@ -149,21 +172,24 @@ function Axes({ x, y, frame }) {
 /** @type {(value: number) => string} */
 const tickText = (value) => (Number.isInteger(value) ? wholeNumber(value) : String(Number(value.toFixed(3))));
 
+/** @param {{ line: Line, frame: TickedFrame }} props */
 function Curve({ line: { color, dash = [], xs, ys, low, high, seeds = [], dots }, frame }) {
+  /** @param {(number | null)[]} values */
   const at = (values) => thinnedPath(
     values.flatMap((value, n) => (value === null || value === undefined ? [] : [[frame.x(xs[n]), frame.y(value)]])),
     Math.max(1, frame.right - frame.left),
   ).map(([left, top]) => `${left.toFixed(1)} ${top.toFixed(1)}`);
+  /** @param {(number | null)[]} values */
   const path = (values) => (values.length ? `M${at(values).join("L")}` : "");
   const each = (seeds[0] ?? []).map((_, seed) => seeds.map((block) => block[seed]));
   const hasBand = low?.length && low.every((value) => value !== null);
   return html`
     <g style=${{ "--agent": cssColour(color) }} class=${low ? "with-band" : ""}>
       ${thinned(each, MAX_SEEDS).map((values) => html`<path class="seed-line" d=${path(values)} />`)}
-      ${hasBand && html`<path class="band" d=${`${path(low)}L${at(high).reverse().join("L")}Z`} />`}
+      ${hasBand && html`<path class="band" d=${`${path(low)}L${at(high ?? []).reverse().join("L")}Z`} />`}
       <path class="curve" d=${path(ys)} stroke-dasharray=${dash.length ? dash.join(" ") : undefined} />
       ${dots && ys.map((value, n) => html`
-        <circle class="curve-dot" cx=${frame.x(xs[n])} cy=${frame.y(value)} r=${DOT_PX} />
+        <circle class="curve-dot" cx=${frame.x(xs[n])} cy=${frame.y(Number(value))} r=${DOT_PX} />
       `)}
     </g>
   `;
@@ -185,11 +211,11 @@ function useSize() {
   return [host, Math.round(width / larger), larger];
 }
 
-/** The line of the best known walk, thin. */
+/** The line of the best known walk, thin. @param {number} y */
 export const bestKnownMark = (y) =>
   ({ y, name: "Best known", kind: "best-known", ink: "--dim", text: `best known: ${metres(y)}` });
 
-/** Note on the thin line, where its caption has no room. */
+/** Note on the thin line, where its caption has no room. @param {{ distance: number }} props */
 export const BestKnownKey = ({ distance }) => html`
   <p class="line-key dim" title=${served().help.best_known}>
     <i class="thin-line" aria-hidden="true"></i>
@@ -199,18 +225,22 @@ export const BestKnownKey = ({ distance }) => html`
 
 // ---- the menu: what the keys do, and the chart as a file
 
+/** @type {["png" | "svg" | "csv", string][]} */
 const FILES = [["png", "Download as PNG"], ["svg", "Download as SVG"], ["csv", "Download its numbers as CSV"]];
 const MENU_FACTOR = 2;
 
+/** @param {{ chart: ShownChart, axis: Axis, host: { current: HTMLElement } }} props */
 function ChartMenu({ chart, axis, host }) {
   const [problem, setProblem] = useState("");
   const index = readIndex(axis);
   const x = index === null ? null : axis.xs[index];
+  /** @param {"png" | "svg" | "csv"} kind */
   const save = async (kind) => {
     setProblem("");
     try {
       const { saveChart } = await import("./chart-files.js");
-      await saveChart(kind, { ...chart, svg: host.current.querySelector("svg"), file: fileNameOf(chart.name) });
+      const svg = /** @type {SVGSVGElement} */ (host.current.querySelector("svg"));
+      await saveChart(kind, { ...chart, svg, file: fileNameOf(chart.name) });
     } catch {
       setProblem("The file could not be made. Load the page again.");
     }
@@ -220,7 +250,7 @@ function ChartMenu({ chart, axis, host }) {
       <summary class="quiet square small" aria-label=${`More of ${chart.name}: zoom, download`}>⋯</summary>
       <div class="menu-body">
         ${axis.seek && x !== null && html`
-          <button class="quiet" onClick=${() => axis.seek(x)}>Show this moment: ${chart.x.text(x)}</button>
+          <button class="quiet" onClick=${() => axis.seek?.(x)}>Show this moment: ${chart.x.text(x)}</button>
         `}
         <button class="quiet" onClick=${() => zoomBy(axis, MENU_FACTOR)}>Zoom in</button>
         ${zoomOf(axis.axis) && html`
@@ -237,11 +267,14 @@ function ChartMenu({ chart, axis, host }) {
 
 const MAX_ROWS = 100;
 
-/** Numbers as a table, folded; `columns` and `rows` return them, and are called when it is opened. */
+/**
+ * Numbers as a table, folded; `columns` and `rows` return them, and are called when it is opened.
+ * @param {{ caption: string, columns: () => string[], rows: () => string[][] }} props
+ */
 export function AsTable({ caption, columns, rows }) {
   const [isOpen, setOpen] = useState(false);
   return html`
-    <details class="as-table" onToggle=${({ target }) => setOpen(target.open)}>
+    <details class="as-table" onToggle=${(/** @type {Toggled} */ { target }) => setOpen(target.open)}>
       <summary>As a table</summary>
       ${isOpen && html`
         <div class="scroller" tabindex="0" role="region" aria-label=${caption}>
@@ -260,8 +293,10 @@ export function AsTable({ caption, columns, rows }) {
   `;
 }
 
+/** @param {{ caption: string, chart: ShownChart }} props */
 function ChartAsTable({ caption, chart: { x, y, lines, marks, xs } }) {
   const table = () => tableOf({ lines, marks, xs: thinned(xs, MAX_ROWS), titles: { x: sentence(x.unit) } });
+  /** @param {number | null} value */
   const words = (value) => (value === null ? "–" : y.text(value));
   const rows = () => table().rows.map(([at, ...values]) => [x.text(at), ...values.map(words)]);
   return html`<${AsTable} caption=${caption} columns=${() => table().columns} rows=${rows} />`;
@@ -288,6 +323,7 @@ const CELLS = html`
 
 const SHAPES = { curve: CURVE, lines: LINES, cells: CELLS };
 
+/** @param {{ words: string, shape?: keyof typeof SHAPES }} props */
 export const Empty = ({ words, shape = "curve" }) => html`
   <div class=${`empty ${shape}`}>
     ${SHAPES[shape]}

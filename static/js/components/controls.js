@@ -20,6 +20,8 @@ import {
 import { Settings } from "./settings.js";
 import { Branch, LiveWorld } from "./world-controls.js";
 
+/** @import { Run } from "../types.js" */
+
 export function Controls() {
   if (!isOperator.value) return html`<${Spectator} />`;
   // On a phone the button comes first. Keys keep what is unfolded when the phone is turned.
@@ -40,6 +42,7 @@ function FoldedSettings() {
   const about = wrong.length
     ? [`Not valid: ${listed(wrong)}`]
     : [gaitTitle(gait), count(steps, "step"), agentOf(agent).title, ...ratesInWords(agent, form.value)];
+  /** @param {{ target: HTMLDetailsElement }} event */
   const onToggle = ({ target }) => isNarrow.value && setOpen(target.open);
   return html`
     <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}
@@ -84,7 +87,10 @@ function Actions() {
   `;
 }
 
-/** Focus a field; a setting of another learner of the race has one once that learner is chosen. */
+/**
+ * Focus a field; a setting of another learner of the race has one once that learner is chosen.
+ * @param {string} field
+ */
 function showField(field) {
   const { agent, lanes } = form.value;
   const owner = learners.value.find(({ name, settings }) => lanes.includes(name) && field in settings);
@@ -166,6 +172,7 @@ function Steering() {
   `;
 }
 
+/** @param {{ shown: number | null }} state */
 const seenStep = ({ shown }) => (shown === null ? "; it is not on stage" : `; the picture shows step ${whole(shown)}`);
 
 function OffStage() {
@@ -180,6 +187,7 @@ function OffStage() {
   `;
 }
 
+/** @param {{ run: Run }} props */
 const ResumeButton = ({ run }) => html`
   <button class="secondary" disabled=${pending.value[run.id]} onClick=${() => resumeRun(run)}>Resume</button>
   <${Problem} at=${run.id} />

@@ -8,7 +8,7 @@ import { percent, shareOf } from "../scale.js";
 import { html } from "./elements.js";
 import { cssColour } from "./line-labels.js";
 
-/** @import { Range } from "../chart.js" */
+/** @import { Line, Mark, Range } from "../chart.js" */
 
 /** From this share of the width on, the values stand on the left of the crosshair. */
 const FLIP_SHARE = 0.5;
@@ -37,7 +37,11 @@ export function readIndex({ axis, xs, part: [low, high] }) {
   return index >= 0 && xs[index] >= low && xs[index] <= high ? index : null;
 }
 
-/** Zoom by a factor around the crosshair, or around the middle; 0 shows all. */
+/**
+ * Zoom by a factor around the crosshair, or around the middle; 0 shows all.
+ * @param {Axis} one
+ * @param {number} factor
+ */
 export function zoomBy(one, factor) {
   const { axis, whole, part, xs } = one;
   const index = readIndex(one);
@@ -45,7 +49,13 @@ export function zoomBy(one, factor) {
   zoomTo(axis, factor ? scaledAround(part, middle, factor) : null, whole);
 }
 
-/** Covers the plotting area of a chart whose frame is positioned. */
+/** A drawn line or a level, as it is read. @typedef {{ name?: string, color?: string, value: string }} ReadValue */
+/** @typedef {{ name: string, lines: Line[], marks: Mark[], inset: Record<string, number> }} Drawn */
+/** @typedef {{ x: { text: (x: number) => string }, y: { text: (y: number) => string } }} Texts */
+/** @typedef {Axis & Drawn & Texts} CrosshairProps */
+/** @typedef {PointerEvent & { currentTarget: HTMLElement }} OnChart */
+
+/** Covers the plotting area of a chart whose frame is positioned. @param {CrosshairProps} props */
 export function Crosshair(props) {
   const { name, inset, xs, now, part: [low, high] } = props;
   const [selection, setSelection] = useState(/** @type {Range | null} */ (null));
@@ -58,13 +68,15 @@ export function Crosshair(props) {
   const words = `${at}: ${missing || values.map((one) => `${one.name} ${one.value}`).join(", ")}`;
   const style = Object.fromEntries(Object.entries(inset).map(([side, px]) => [side, `${px}px`]));
   const share = shareOf(xs[shown], low, high);
+  /** @param {{ currentTarget: HTMLElement }} event */
   const onFocus = ({ currentTarget }) => {
     if (index === null && currentTarget.matches(":focus-visible")) crosshair.value = { axis: props.axis, x: xs[shown] };
   };
   return html`
     <div class=${`crosshair ${props.seek ? "seeks" : ""}`} style=${style} tabindex="0" role="slider"
       aria-label=${`Values of ${name}`} aria-valuemin="0" aria-valuemax=${last} aria-valuenow=${shown}
-      aria-valuetext=${words} ...${onPointer} onKeyDown=${(event) => onKey(event, props, shown)} onFocus=${onFocus}>
+      aria-valuetext=${words} ...${onPointer} onFocus=${onFocus}
+      onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, props, shown)}>
       ${selection && html`<${Selection} from=${Math.min(...selection)} to=${Math.max(...selection)} />`}
       ${index !== null && html`
         <i class="line" style=${{ left: percent(share) }}></i>
@@ -74,20 +86,30 @@ export function Crosshair(props) {
   `;
 }
 
+/** @param {{ from: number, to: number }} props */
 const Selection = ({ from, to }) => html`
   <i class="selection" style=${{ left: percent(from), right: percent(1 - to) }}></i>
 `;
 
-/** Why there are no values at a position; empty where there are. */
+/**
+ * Why there are no values at a position; empty where there are.
+ * @param {Axis["reach"]} reach
+ * @param {number} position
+ */
 function missingAt(reach, position) {
   if (!reach || position <= reach.shown) return "";
   return position <= reach.computed ? "not shown yet" : "not computed yet";
 }
 
-/** Readings at a position: of each line, and of each named level; or why there are none. */
+/**
+ * Readings at a position: of each line, and of each named level; or why there are none.
+ * @param {CrosshairProps} one
+ * @param {number} position
+ */
 function readingOf({ lines, marks, x, y, reach }, position) {
   const missing = missingAt(reach, position);
   if (missing) return { at: x.text(position), values: [], missing };
+  /** @param {Line} line */
   const valueOf = (line) => {
     const value = valueAt(line, position);
     const interval = intervalAt(line, position);
@@ -99,11 +121,12 @@ function readingOf({ lines, marks, x, y, reach }, position) {
     missing,
     values: [
       ...lines.map((line) => ({ name: line.name, color: line.color, value: valueOf(line) })),
-      ...marks.filter((mark) => mark.name).map((mark) => ({ ...mark, value: y.text(mark.y) })),
+      ...marks.filter((mark) => mark.name).map((mark) => ({ ...mark, value: y.text(mark.y ?? NaN) })),
     ],
   };
 }
 
+/** @param {KeyboardEvent} event @param {CrosshairProps} props @param {number} shown */
 function onKey(event, props, shown) {
   const { axis, xs, whole, part, seek } = props;
   const { key } = event;
@@ -122,35 +145,47 @@ function onKey(event, props, shown) {
   event.stopPropagation();
 }
 
-/** Where a pointer is: its share of the width, the width, and the position on the axis. */
+/**
+ * Where a pointer is: its share of the width, the width, and the position on the axis.
+ * @param {OnChart} event
+ * @param {Range} other
+ */
 function placeOf({ clientX, currentTarget }, [low, high]) {
   const { left, width } = currentTarget.getBoundingClientRect();
   const share = width > 0 ? Math.max(0, Math.min((clientX - left) / width, 1)) : 0;
   return { share, width, x: low + (high - low) * share };
 }
 
-/** Handlers of a mouse, which reads, selects and seeks, and of fingers: one reads, and seeks ahead; two zoom. */
+/**
+ * Handlers of a mouse, which reads, selects and seeks, and of fingers: one reads, and seeks ahead; two zoom.
+ * @param {CrosshairProps} props
+ * @param {(selection: Range | null) => void} setSelection
+ */
 function usePointer(props, setSelection) {
   const mouse = useMouse(props, setSelection);
   const finger = useFingers(props);
   const { axis, xs, part } = props;
+  /** @param {OnChart} event */
   const read = (event) => {
     const { x } = placeOf(event, part);
     const inView = xs.filter((one) => one >= part[0] && one <= part[1]);
     const isOfMouse = event.pointerType === "mouse";
     if (inView.length) crosshair.value = { axis, x: inView[nearestIndex(inView, x)], isOfMouse };
   };
+  /** @param {PointerEvent} one */
   const handlersOf = ({ pointerType }) => (pointerType === "touch" ? finger : mouse);
   return {
+    /** @param {OnChart} event */
     onPointerDown(event) {
       read(event);
       handlersOf(event).down(event);
     },
+    /** @param {OnChart} event */
     onPointerMove(event) {
       if (!handlersOf(event).move(event)) read(event);
     },
-    onPointerUp: (event) => handlersOf(event).up(event),
-    onPointerCancel: (event) => handlersOf(event).cancel(event),
+    onPointerUp: (/** @type {OnChart} */ event) => handlersOf(event).up(event),
+    onPointerCancel: (/** @type {OnChart} */ event) => handlersOf(event).cancel(event),
     onPointerLeave() {
       // A reading by keys or a finger stays until something else has the focus.
       if (crosshair.peek()?.isOfMouse) crosshair.value = null;
@@ -159,9 +194,11 @@ function usePointer(props, setSelection) {
   };
 }
 
+/** @param {Axis} one @param {(selection: Range | null) => void} setSelection */
 function useMouse({ axis, whole, part, seek }, setSelection) {
   const press = useRef(/** @type {{ x: number, share: number, isDrag: boolean } | null} */ (null));
-  const timer = useRef(/** @type {any} */ (0));
+  const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
+  /** @param {number} x */
   const click = (x) => {
     clearTimeout(timer.current);
     // Of what is zoomed, a double click shows all and does not seek.
@@ -173,11 +210,13 @@ function useMouse({ axis, whole, part, seek }, setSelection) {
   };
   return {
     cancel,
+    /** @param {OnChart} event */
     down(event) {
       if (event.button !== 0) return;
       event.currentTarget.setPointerCapture(event.pointerId);
       press.current = { ...placeOf(event, part), isDrag: false };
     },
+    /** @param {OnChart} event */
     move(event) {
       const from = press.current;
       if (!from) return false;
@@ -186,6 +225,7 @@ function useMouse({ axis, whole, part, seek }, setSelection) {
       if (from.isDrag) setSelection([from.share, share]);
       return false;
     },
+    /** @param {OnChart} event */
     up(event) {
       const from = press.current;
       cancel();
@@ -201,12 +241,14 @@ function useMouse({ axis, whole, part, seek }, setSelection) {
   };
 }
 
+/** @param {Axis} one */
 function useFingers({ axis, whole, part, seek, reach }) {
   const fingers = useRef(/** @type {Map<number, { x: number, share: number }>} */ (new Map()));
   const hasZoomed = useRef(false);
+  /** @param {PointerEvent} event */
   const lift = ({ pointerId }) => fingers.current.delete(pointerId);
   return {
-    /** Where nothing is to be read yet but can be shown, a finger seeks. */
+    /** Where nothing is to be read yet but can be shown, a finger seeks. @param {OnChart} event */
     up(event) {
       lift(event);
       const { x } = placeOf(event, part);
@@ -215,11 +257,12 @@ function useFingers({ axis, whole, part, seek, reach }) {
       seek(x);
     },
     cancel: lift,
+    /** @param {OnChart} event */
     down(event) {
       if (!fingers.current.size) hasZoomed.current = false;
       fingers.current.set(event.pointerId, placeOf(event, part));
     },
-    /** Whether two fingers zoom, which reads nothing. */
+    /** Whether two fingers zoom, which reads nothing. @param {OnChart} event */
     move(event) {
       const moved = fingers.current.get(event.pointerId);
       if (moved) moved.share = placeOf(event, part).share;
@@ -232,6 +275,7 @@ function useFingers({ axis, whole, part, seek, reach }) {
   };
 }
 
+/** @param {{ at: string, values: ReadValue[], share: number, isHigh: boolean }} props */
 function Readout({ at, values, share, isHigh }) {
   // Beside the crosshair, on the side with more room and no wider than that.
   const side = share < FLIP_SHARE

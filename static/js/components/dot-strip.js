@@ -35,6 +35,7 @@ export function DotStrip({
   label, points, low = 0, high, typical = null, marks = [], color, height = 36, axis = null, onDot = null,
 }) {
   const [host, width] = useWidth();
+  /** @param {number} value */
   const at = (value) => percent(shareOf(value, low, high));
   const drawn = points.length > MAX_DOTS ? thinned([...points].sort((a, b) => a - b), MAX_DOTS) : points;
   const rows = swarm(drawn.map((value) => shareOf(value, low, high)));
@@ -62,7 +63,15 @@ export function DotStrip({
   `;
 }
 
-/** Round numbers, of which a narrow strip has room for fewer. */
+/**
+ * Round numbers, of which a narrow strip has room for fewer.
+ * @param {object} props
+ * @param {number} props.high
+ * @param {(value: number) => string} props.axis
+ * @param {(value: number) => string} props.at
+ * @param {number} props.width
+ * @param {number} props.y
+ */
 function Axis({ high, axis, at, width, y }) {
   const values = ticks(high, AXIS_NUMBERS);
   const boxes = values.map((value) => {
@@ -81,9 +90,15 @@ function Axis({ high, axis, at, width, y }) {
   `);
 }
 
+/**
+ * @param {object} props
+ * @param {{ iqm: number, low?: number | null, high?: number | null }} props.typical
+ * @param {(value: number) => string} props.at
+ * @param {number} props.y
+ */
 const Typical = ({ typical, at, y }) => html`
   ${typical.low !== null && typical.low !== undefined && html`
-    <line class="interval" x1=${at(typical.low)} x2=${at(typical.high)} y1=${y} y2=${y} />
+    <line class="interval" x1=${at(typical.low)} x2=${at(typical.high ?? NaN)} y1=${y} y2=${y} />
   `}
   <line class="typical" x1=${at(typical.iqm)} x2=${at(typical.iqm)} y1=${y - 5} y2=${y + 5} />
 `;

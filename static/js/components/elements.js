@@ -8,7 +8,9 @@ import { listed } from "../format.js";
 import { connection, setEntry } from "../store.js";
 import { labelOf, messageOf } from "../titles.js";
 
-/** @import { Signal } from "@preact/signals" */
+/** @import { ReadonlySignal, Signal } from "@preact/signals" */
+/** @import { Gait } from "../types.js" */
+/** @import { ComponentChildren, FunctionComponent } from "preact" */
 
 export const html = htm.bind(h);
 
@@ -38,7 +40,7 @@ const PATHS = {
 const OUTLINED = new Set(["link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present"]);
 const SIZE = 16;
 
-/** An icon, drawn in the colour of the text beside it. */
+/** An icon, drawn in the colour of the text beside it. @param {{ name: keyof typeof PATHS }} props */
 export function Icon({ name }) {
   const style = OUTLINED.has(name) ? "icon outlined" : "icon";
   return html`
@@ -51,7 +53,11 @@ export function Icon({ name }) {
 const HIP = 7.5;
 const FOOT = 24;
 
-/** The point at a distance from the centre in the direction of a leg; azimuths turn anticlockwise. */
+/**
+ * The point at a distance from the centre in the direction of a leg; azimuths turn anticlockwise.
+ * @param {number} azimuth_deg
+ * @param {number} radius
+ */
 export function pointAt(azimuth_deg, radius) {
   const angle = (azimuth_deg * Math.PI) / 180;
   return [-radius * Math.sin(angle), -radius * Math.cos(angle)].map((c) => c.toFixed(1));
@@ -60,6 +66,7 @@ export function pointAt(azimuth_deg, radius) {
 /**
  * A hexapod from above, forward up. Legs that move together share a colour and are joined by a line.
  * `only`: the pair to show in colour; without it, all are.
+ * @param {{ gait: Gait, only?: number | null }} props
  */
 export function HexapodGlyph({ gait, only = null }) {
   const pairs = gait.pairs.map((legs, number) => {
@@ -81,6 +88,7 @@ export function HexapodGlyph({ gait, only = null }) {
   `;
 }
 
+/** @param {{ azimuth: number }} props */
 function Leg({ azimuth }) {
   const foot = pointAt(azimuth, FOOT);
   return html`
@@ -89,7 +97,7 @@ function Leg({ azimuth }) {
   `;
 }
 
-/** An error, beside the control that caused it. */
+/** An error, beside the control that caused it. @param {{ at: string }} props */
 export function Problem({ at }) {
   const error = problems.value[at];
   return html`
@@ -104,11 +112,14 @@ export function Problem({ at }) {
   `;
 }
 
-/** Why a field's text is not valid, beside the field. */
+/** Why a field's text is not valid, beside the field. @param {{ id: string, children: ComponentChildren }} props */
 export const Mistake = ({ id, children }) =>
   children && html`<span class="mistake" role="alert" id=${id}>${children}</span>`;
 
-/** Note on the parts of a link that the form does not know, until dismissed. `parts`: signal of texts. */
+/**
+ * Note on the parts of a link that the form does not know, until dismissed. `parts`: signal of texts.
+ * @param {{ parts: Signal<string[]> }} props
+ */
 export const UnknownParts = ({ parts }) =>
   parts.value.length > 0 && html`
     <div class="notice" role="status">
@@ -117,7 +128,14 @@ export const UnknownParts = ({ parts }) =>
     </div>
   `;
 
-/** Why the button above is held: each field that is not valid, to go to, and what it must be. */
+/**
+ * Why the button above is held: each field that is not valid, to go to, and what it must be.
+ * @param {object} props
+ * @param {string} props.id
+ * @param {Record<string, string>} props.mistakes
+ * @param {(field: string) => unknown} props.onField
+ * @param {(field: string) => string} [props.nameOf]
+ */
 export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`
   <ul class="held" id=${id}>
     ${Object.entries(mistakes).map(([field, mistake]) => html`
@@ -128,7 +146,7 @@ export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`
   </ul>
 `;
 
-/** Estimated duration of a start, if that is long. `words`: signal. */
+/** Estimated duration of a start, if that is long. `words`: signal. @param {{ words: ReadonlySignal<string> }} props */
 export const EstimateNote = ({ words }) => html`<p class="estimate dim" role="status">${words}</p>`;
 
 /** Focus a field, in whatever is folded around it. @param {string} id */
@@ -140,7 +158,10 @@ export function goToField(id) {
   field?.focus();
 }
 
-/** `share` is done; `shown`, if it is told, is the part of the whole that the picture has shown. */
+/**
+ * `share` is done; `shown`, if it is told, is the part of the whole that the picture has shown.
+ * @param {{ label: string, share: number, shown?: number | null }} props
+ */
 export const ProgressBar = ({ label, share, shown = null }) => html`
   <div class="bar" role="progressbar" aria-label=${label} aria-valuemin="0" aria-valuemax="100"
     aria-valuenow=${Math.round(100 * share)}>
@@ -149,7 +170,11 @@ export const ProgressBar = ({ label, share, shown = null }) => html`
   </div>
 `;
 
-/** A choice of one out of a few, side by side. `choices`: [value, title]. */
+/**
+ * A choice of one out of a few, side by side. `choices`: [value, title].
+ * @template Value
+ * @param {{ label: string, choices: [Value, string][], value: Value, onValue: (value: Value) => unknown }} props
+ */
 export const Segments = ({ label, choices, value, onValue }) => html`
   <div class="segments" role="group" aria-label=${label}>
     ${choices.map(([one, title]) => html`
@@ -219,7 +244,10 @@ export function LazyPanel({ title, style = "", load }) {
 /** Loaded components, by their names on the page. @type {Signal<Record<string, any>>} */
 export const loaded = signal({});
 
-/** `load`: imports the module and returns its component. */
+/**
+ * `load`: imports the module and returns its component.
+ * @param {{ name: string, load: () => Promise<FunctionComponent> }} props
+ */
 export function Loaded({ name, load }) {
   const [hasFailed, setFailed] = useState(false);
   const state = connection.value;

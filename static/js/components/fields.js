@@ -9,11 +9,14 @@ import { choiceTitle, fullTitle, kindOf, settingOf, sliderOf } from "../settings
 import { options } from "../store.js";
 import { html, Mistake } from "./elements.js";
 
+/** @import { Changed, FormValue, SettingOption, SettingValue } from "../types.js" */
+
 // ---- help: a sentence below each field
 
+/** @param {string} field */
 export const helpFor = (field) => options.value?.help[field] ?? "";
 
-/** The sentence that a field's `aria-describedby` names. */
+/** The sentence that a field's `aria-describedby` names. @param {{ field: string, words?: string }} props */
 export const Description = ({ field, words = helpFor(field) }) =>
   html`<p class="sentence" id=${`help-${field}`}>${words}</p>`;
 
@@ -28,7 +31,7 @@ export const attributesOf = (field, mistake = wrong.value[field]?.mistake) => ({
   "aria-describedby": mistake ? `mistake-${field} help-${field}` : `help-${field}`,
 });
 
-/** Why a field of the form is not valid, if it is not. */
+/** Why a field of the form is not valid, if it is not. @param {{ field: string, mistake?: string }} props */
 export const MistakeOf = ({ field, mistake = wrong.value[field]?.mistake }) =>
   html`<${Mistake} id=${`mistake-${field}`}>${mistake}<//>`;
 
@@ -40,7 +43,12 @@ const SUM_DIGITS = 12;
 /** @type {Record<string, number>} */
 const DIRECTIONS = { ArrowUp: 1, ArrowDown: -1 };
 
-/** The text of a number's field, and why it is not valid. */
+/**
+ * The text of a number's field, and why it is not valid.
+ * @param {string} field
+ * @param {SettingOption} setting
+ * @param {{ value: FormValue, draft: string | null, isOfForm: boolean }} typed
+ */
 function shownIn(field, setting, { value, draft, isOfForm }) {
   const kept = isOfForm ? wrong.value[field] : undefined;
   if (kept) return kept;
@@ -55,18 +63,29 @@ function shownIn(field, setting, { value, draft, isOfForm }) {
  * A text field, because one of type "number" drops what it cannot read; arrow keys step its value. `setting` is the
  * declaration; `label` is for screen readers where no <label> names the field. One that is not `isOfForm` keeps to
  * itself what is typed, until it is valid.
+ * @param {object} props
+ * @param {string} props.field
+ * @param {SettingOption} [props.setting]
+ * @param {FormValue} props.value
+ * @param {(value: FormValue) => unknown} props.onValue
+ * @param {number} [props.step]
+ * @param {string} props.label
+ * @param {boolean} [props.isOfForm]
+ * @param {boolean} [props.isDisabled]
  */
 export function NumberField({
   field, setting = settingOf(field), value, onValue, step = 1, label, isOfForm = true, isDisabled = false,
 }) {
   const [draft, setDraft] = useState(/** @type {string | null} */ (null));
   const { text, mistake } = shownIn(field, setting, { value, draft, isOfForm });
+  /** @param {string} typed */
   const take = (typed) => {
     setDraft(typed);
     const parsed = parseSetting(typed, setting);
     if (parsed.mistake === undefined) onValue(parsed.value);
     else if (isOfForm) enter(field, typed);
   };
+  /** @param {KeyboardEvent} event */
   const onKeyDown = (event) => {
     const direction = DIRECTIONS[event.key];
     if (!direction || event.altKey || event.ctrlKey || event.metaKey) return;
@@ -81,7 +100,7 @@ export function NumberField({
         ...${attributesOf(field, mistake)} value=${text} disabled=${isDisabled} aria-label=${label}
         aria-valuetext=${text || "empty"}
         aria-valuenow=${value} aria-valuemin=${setting.minimum} aria-valuemax=${setting.maximum}
-        onInput=${({ target }) => take(target.value)} onKeyDown=${onKeyDown} />
+        onInput=${(/** @type {Changed} */ { target }) => take(target.value)} onKeyDown=${onKeyDown} />
     </span>
     <${MistakeOf} field=${field} mistake=${mistake} />
   `;
@@ -92,6 +111,17 @@ export function NumberField({
 /**
  * `setting` is the field's declaration, of which `title` and `unit` replace the words. `min` and `max` are the
  * slider's ends; the text field accepts what the server does.
+ * @param {object} props
+ * @param {string} props.field
+ * @param {SettingOption} [props.setting]
+ * @param {string} props.title
+ * @param {string | null} props.unit
+ * @param {number | null} props.value
+ * @param {(value: FormValue) => unknown} props.onValue
+ * @param {number} props.min
+ * @param {number} props.max
+ * @param {number} props.step
+ * @param {boolean} [props.isOfForm]
  */
 export function Slider({
   field, setting = settingOf(field), title, unit, value, onValue, min, max, step, isOfForm = true,
@@ -105,7 +135,7 @@ export function Slider({
       <input type="range" id=${`slide-${field}`} min=${min} max=${max} step=${step}
         value=${reached} style=${{ "--share": `${100 * shareOf(reached, min, max)}%` }}
         aria-describedby=${`help-${field}`}
-        onInput=${({ target }) => onValue(Number(target.value))} />
+        onInput=${(/** @type {Changed} */ { target }) => onValue(Number(target.value))} />
       <${NumberField} field=${field} setting=${setting} value=${value} onValue=${onValue} step=${step}
         label=${`${name}, as a number`} isOfForm=${isOfForm} />
       <span class="unit">${unit ?? setting.unit}</span>
@@ -116,12 +146,22 @@ export function Slider({
 
 // ---- a choice out of a list
 
-/** `choices`: [value, title]; `value` and `onValue` replace the form's field, `words` its help. */
+/**
+ * `choices`: [value, title]; `value` and `onValue` replace the form's field, `words` its help.
+ * @param {object} props
+ * @param {string} props.field
+ * @param {string} props.label
+ * @param {[string, string][]} props.choices
+ * @param {FormValue} [props.value]
+ * @param {(value: FormValue) => unknown} [props.onValue]
+ * @param {string} props.words
+ */
 export function SelectField({
   field, label, choices, value = form.value[field], onValue = (chosen) => setField(field, chosen), words,
 }) {
   const kept = wrong.value[field];
-  const onChange = ({ target }) => onValue(choices.find(([one]) => textOf(one) === target.value)[0]);
+  /** @param {{ target: HTMLSelectElement }} event */
+  const onChange = ({ target }) => onValue(choices.find(([one]) => textOf(one) === target.value)?.[0] ?? null);
   return html`
     <div class="field">
       <label for=${`field-${field}`}>${label}</label>
@@ -137,27 +177,38 @@ export function SelectField({
   `;
 }
 
-/** The choice that a link made and that is none; it cannot be chosen again. */
+/** The choice that a link made and that is none; it cannot be chosen again. @param {{ text: string }} props */
 const InvalidOption = ({ text }) => html`
   <option value=${text} selected disabled>${text || "(empty)"}: not valid</option>
 `;
 
-/** The value of a choice as an option's text; a custom robot is an object. */
+/** The value of a choice as an option's text; a custom robot is an object. @param {FormValue} value */
 const textOf = (value) => (typeof value === "object" ? JSON.stringify(value) : String(value));
 
 // ---- the control that a setting's declaration asks for: a number, a choice, a switch or a text
 
-/** A setting among the fields that are seldom changed, with its help below it. */
+/**
+ * A setting among the fields that are seldom changed, with its help below it.
+ * @param {{ name: string, setting: SettingOption }} props
+ */
 export const SettingField = ({ name, setting }) => html`
   <div class="field">
     <label for=${`field-${name}`}>${fullTitle(setting)}</label>
     <${SettingControl} name=${name} setting=${setting} value=${form.value[name]} isOfForm=${true}
-      onValue=${(value) => setField(name, value)} />
+      onValue=${(/** @type {SettingValue} */ value) => setField(name, value)} />
     <${Description} field=${name} words=${setting.help} />
   </div>
 `;
 
-/** A setting without a slider in a row among the sliders. */
+/**
+ * A setting without a slider in a row among the sliders.
+ * @param {object} props
+ * @param {string} props.name
+ * @param {SettingOption} props.setting
+ * @param {FormValue} props.value
+ * @param {(value: FormValue) => unknown} props.onValue
+ * @param {boolean} [props.isOfForm]
+ */
 export function SettingRow({ name, setting, value, onValue, isOfForm = true }) {
   const { title, symbol, unit, help } = setting;
   return html`
@@ -172,19 +223,25 @@ export function SettingRow({ name, setting, value, onValue, isOfForm = true }) {
   `;
 }
 
+/** @param {{ name: string, setting: SettingOption } & { [prop: string]: unknown }} props */
 function NumberControl({ name, setting, ...rest }) {
   const step = sliderOf(setting)?.step ?? 1;
   return html`<${NumberField} field=${name} setting=${setting} step=${step} ...${rest} />`;
 }
 
+/**
+ * @typedef {{ name: string, setting: SettingOption, value: FormValue, onValue: (value: FormValue) => unknown }} Control
+ */
+
+/** @param {Control} props */
 function Choice({ name, setting, value, onValue }) {
   const { choices, default: first } = setting;
   const kept = wrong.value[name];
   return html`
-    <select ...${attributesOf(name)} onChange=${({ target }) => onValue(target.value || null)}>
+    <select ...${attributesOf(name)} onChange=${(/** @type {Changed} */ { target }) => onValue(target.value || null)}>
       ${kept && html`<${InvalidOption} text=${kept.text} />`}
       ${first === null && html`<option value="" selected=${!kept && value === null}>by default</option>`}
-      ${first !== null && !kept && !choices.includes(value) && html`
+      ${first !== null && !kept && !choices.includes(String(value)) && html`
         <option value="" selected disabled>choose</option>
       `}
       ${choices.map((one) => html`
@@ -195,14 +252,24 @@ function Choice({ name, setting, value, onValue }) {
   `;
 }
 
+/** @param {{ name: string, value: FormValue, onValue: (value: FormValue) => unknown }} props */
 const Switch = ({ name, value, onValue }) => html`
   <input type="checkbox" ...${attributesOf(name)} checked=${value}
-    onChange=${({ target }) => onValue(target.checked)} />
+    onChange=${(/** @type {Changed} */ { target }) => onValue(target.checked)} />
   <${MistakeOf} field=${name} />
 `;
 
-/** A text, or a number or one of some words. Text takes effect when it has been typed. */
+/**
+ * A text, or a number or one of some words. Text takes effect when it has been typed.
+ * @param {object} props
+ * @param {string} props.name
+ * @param {SettingOption} props.setting
+ * @param {FormValue} props.value
+ * @param {(value: FormValue) => unknown} props.onValue
+ * @param {boolean} props.isOfForm
+ */
 function Text({ name, setting, value, onValue, isOfForm }) {
+  /** @param {{ target: HTMLSelectElement }} event */
   const onChange = ({ target }) => {
     const { value: found, mistake } = parseSetting(target.value, setting);
     if (mistake === undefined) onValue(found);
@@ -217,5 +284,6 @@ function Text({ name, setting, value, onValue, isOfForm }) {
 
 const CONTROLS = { number: NumberControl, choice: Choice, switch: Switch, text: Text };
 
+/** @param {{ setting: SettingOption } & { [prop: string]: unknown }} props */
 const SettingControl = ({ setting, ...rest }) =>
   html`<${CONTROLS[kindOf(setting)]} setting=${setting} ...${rest} />`;

@@ -10,6 +10,11 @@ import { agentOf, laneTitle } from "../settings.js";
 import { AsTable, Empty } from "./charts.js";
 import { html, Segments } from "./elements.js";
 
+/** @import { GaitAnalysis, GaitFigures, Run } from "../types.js" */
+/** @import { Range } from "../chart.js" */
+/** @import { Series } from "../gait.js" */
+/** @import { ComponentChildren } from "preact" */
+
 const INVITATION = "When a robot walks, its footfalls are drawn here: a bar where a foot is on the ground.";
 
 /** @param {{ isNear: boolean }} props whether the panel can be seen */
@@ -20,7 +25,7 @@ export function Gait({ isNear }) {
   useEffect(followGait, []);
   const known = analysis.value;
   const { run, part: shown } = subject.value ?? {};
-  const lanes = useMemo(() => known && lanesOf(known, run), [known, run?.config, colorOf(0)]);
+  const lanes = useMemo(() => known && run && lanesOf(known, run), [known, run?.config, colorOf(0)]);
   return html`
     <p class="dim">When each foot is on the ground, in robot time: without the time that decisions take</p>
     ${run && run.progress.done > 0 && html`<${Choices} shown=${shown} />`}
@@ -31,18 +36,32 @@ export function Gait({ isNear }) {
   `;
 }
 
-/** The lanes of which something is known, with their names and colours. */
+/** A lane that is drawn. @typedef {ReturnType<typeof lanesOf>[number]} ShownLane */
+/** The lines of a strip. @typedef {NonNullable<ReturnType<typeof linesOf>>} Strip */
+/** The time that is drawn, and the moment in it. @typedef {{ now: number | null, low: number, high: number }} View */
+
+/**
+ * The lanes of which something is known, with their names and colours.
+ * @param {GaitAnalysis} known
+ * @param {Run} run
+ */
 function lanesOf(known, run) {
   return known.lanes.flatMap((lane, number) => {
     const config = run.config.lanes?.[number] ?? lane;
     const { color, title } = agentOf(lane.agent);
     if (!lane.figures) return [];
     const own = run.kind === "race" ? { title: laneTitle(config), color: colorOf(number) ?? color } : { title, color };
-    return [{ ...lane, ...own, number, legs: legsInOrder(run, lane.figures.legs.length) }];
+    const { figures } = lane;
+    return [{ ...lane, figures, ...own, number, legs: legsInOrder(run, figures.legs.length) }];
   });
 }
 
-/** The moment of a lane that is shown, and the time that is drawn around it. */
+/**
+ * The moment of a lane that is shown, and the time that is drawn around it.
+ * @param {ShownLane} lane
+ * @param {boolean} isAround
+ * @param {{ from: number, to: number }} window
+ */
 function viewOf(lane, isAround, { from, to }) {
   const now = momentOf(lane.number);
   if (!isAround) return { now, low: from, high: to };
@@ -50,7 +69,10 @@ function viewOf(lane, isAround, { from, to }) {
   return { now, low: middle - BEFORE_S, high: middle + AFTER_S };
 }
 
-/** Drawings that do not depend on the moment are kept: it changes several times a second. */
+/**
+ * Drawings that do not depend on the moment are kept: it changes several times a second.
+ * @param {{ lanes: ShownLane[], known: GaitAnalysis }} props
+ */
 function Figures({ lanes, known }) {
   const isAround = !isWhole.value && known.part !== "evaluation";
   const from = Math.min(...lanes.map(({ figures }) => figures.from_s));
@@ -75,14 +97,24 @@ function Figures({ lanes, known }) {
   `;
 }
 
+/** @param {"practice" | "evaluation"} value */
+const choosePart = (value) => {
+  part.value = value;
+};
+/** @param {boolean} value */
+const chooseExtent = (value) => {
+  isWhole.value = value;
+};
+
+/** @param {{ shown: GaitAnalysis["part"] }} props */
 const Choices = ({ shown }) => html`
   <div class="walk-choices">
     ${shown !== "race" && html`
-      <${Segments} label="Part of the training" value=${shown} onValue=${(value) => (part.value = value)}
+      <${Segments} label="Part of the training" value=${shown} onValue=${choosePart}
         choices=${[["practice", "Practice"], ["evaluation", "Newest test"]]} />
     `}
     ${shown !== "evaluation" && html`
-      <${Segments} label="Time shown" value=${isWhole.value} onValue=${(value) => (isWhole.value = value)}
+      <${Segments} label="Time shown" value=${isWhole.value} onValue=${chooseExtent}
         choices=${[[false, "Around now"], [true, "Whole walk"]]} />
     `}
   </div>
@@ -92,10 +124,15 @@ const Choices = ({ shown }) => html`
 
 const BAR = 0.72;
 
-/** The bars of a leg as one path: a unit high, in seconds. */
+/**
+ * The bars of a leg as one path: a unit high, in seconds.
+ * @param {{ stance: Range[] }} one
+ * @param {number} row
+ */
 const barsOf = ({ stance }, row) =>
   stance.map(([from, to]) => `M${from} ${row + (1 - BAR) / 2}H${to}v${BAR}H${from}z`).join("");
 
+/** @param {{ lane: ShownLane, view: View, step_s: number }} props */
 function Footfalls({ lane, view, step_s }) {
   const { figures, title, color, legs } = lane;
   const { now, low, high } = view;
@@ -129,9 +166,13 @@ function Footfalls({ lane, view, step_s }) {
   `;
 }
 
+/** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 };
 
-/** Frame of the drawings over time; a click, or an arrow key for a step, seeks where that is allowed. */
+/**
+ * Frame of the drawings over time; a click, or an arrow key for a step, seeks where that is allowed.
+ * @param {{ lane: ShownLane, view: View, step_s: number, children: ComponentChildren }} props
+ */
 function Timeline({ lane, view, step_s, children }) {
   const { number, title, figures, recorded_to_s } = lane;
   const { now, low, high } = view;
@@ -140,10 +181,12 @@ function Timeline({ lane, view, step_s, children }) {
   if (!canSeek.value || now === null) {
     return html`<div class="walk-plot" role="img" aria-label=${`${label}: ${words}`}>${children}</div>`;
   }
+  /** @param {MouseEvent & { currentTarget: HTMLElement }} event */
   const onClick = ({ clientX, currentTarget }) => {
     const { left, width } = currentTarget.getBoundingClientRect();
     if (width > 0) seek(number, Math.min(low + ((high - low) * (clientX - left)) / width, recorded_to_s));
   };
+  /** @param {KeyboardEvent} event */
   const onKeyDown = (event) => {
     const steps = KEYS[event.key];
     if (!steps || event.ctrlKey || event.altKey || event.metaKey) return;
@@ -157,6 +200,7 @@ function Timeline({ lane, view, step_s, children }) {
   `;
 }
 
+/** @param {GaitFigures} figures @param {number} time @param {number} step_s */
 function wordsAt(figures, time, step_s) {
   const air = legsInTheAir(figures, time);
   const step = Math.max(1, Math.ceil(time / step_s - 1e-6));
@@ -164,7 +208,9 @@ function wordsAt(figures, time, step_s) {
   return `${time.toFixed(1)} s of robot time, step ${step}, ${feet}`;
 }
 
+/** @param {{ isAround: boolean, low: number, high: number }} props */
 function TimeAxis({ isAround, low, high }) {
+  /** @type {[number, string][]} */
   const marks = isAround
     ? [-3, -2, -1, 0, 1].map((s) => [s, s === 0 ? "now" : `${s < 0 ? "\u2212" : "+"}${Math.abs(s)}\u00a0s`])
     : ticks(high - low, 8).map((s) => [low + s, `${Number((low + s).toFixed(2))}\u00a0s`]);
@@ -181,7 +227,11 @@ function TimeAxis({ isAround, low, high }) {
 
 // ---- the body and the servos over time, all lanes in one strip
 
-/** The lines of a strip with their values in words; null where nothing of it was recorded. */
+/**
+ * The lines of a strip with their values in words; null where nothing of it was recorded.
+ * @param {ShownLane[]} lanes
+ * @param {Series} series
+ */
 function linesOf(lanes, series) {
   const { unit, decimals = 1 } = series;
   const lines = lanes.flatMap(({ figures, title, color }, index) => {
@@ -197,6 +247,7 @@ function linesOf(lanes, series) {
   return { lines, low, high, range: rangeInWords([low, high], decimals, unit) };
 }
 
+/** @param {{ series: Series, lines: Strip, views: View[], isAround: boolean }} props */
 function Line({ series: { name }, lines: { lines, low, high, range }, views, isAround }) {
   const shown = lines.map((line) => ({ ...line, view: views[line.index] }));
   // Around the present moment all lanes have theirs at one place.
@@ -211,7 +262,7 @@ function Line({ series: { name }, lines: { lines, low, high, range }, views, isA
         `)}
         ${cursors.map(({ index, color, view }) => html`
           <i key=${index} class=${isAround ? "now" : "now own"}
-            style=${{ left: percent(shareOf(view.now, view.low, view.high)), "--agent": color }}></i>
+            style=${{ left: percent(shareOf(view.now ?? NaN, view.low, view.high)), "--agent": color }}></i>
         `)}
       </div>
     </div>
@@ -223,6 +274,7 @@ function Line({ series: { name }, lines: { lines, low, high, range }, views, isA
 /** With more lanes there is no room beside the figures for what they mean. */
 const MAX_EXPLAINED = 3;
 
+/** @param {{ lanes: ShownLane[], from: number, to: number }} props */
 const Numbers = ({ lanes, from, to }) => html`
   <div class=${`scroller walk-figures ${lanes.length > MAX_EXPLAINED ? "many" : ""}`}
     tabindex="0" role="region" aria-label="Figures of the gait">
@@ -256,6 +308,7 @@ const Numbers = ({ lanes, from, to }) => html`
 
 const MAX_SWINGS = 40;
 
+/** @param {ShownLane[]} lanes */
 function rowsOf(lanes) {
   return lanes.flatMap(({ title, figures }) => figures.legs.map(({ leg, stance, duty_factor }) => {
     const swings = swingsOf(stance, figures);

@@ -11,6 +11,8 @@ import { bestMove, cellName, curve } from "../training.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { HexapodGlyph, html } from "./elements.js";
 
+/** @import { ActionValues, Run } from "../types.js" */
+
 // ---- the learning curve: distance in an evaluation against steps of practice, with greedy's distance
 
 /** With more, single points are not marked. */
@@ -32,7 +34,10 @@ export function LearningChart() {
   `;
 }
 
-/** Lines: greedy's and the best known distance, where one training continued another, what changed, what happened. */
+/**
+ * Lines: greedy's and the best known distance, where one training continued another, what changed, what happened.
+ * @param {NonNullable<typeof curve.value>} one
+ */
 const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run }) => [
   ...(greedy_m ? [greedyMark(greedy_m)] : []),
   ...(best_known_m === null ? [] : [bestKnownMark(best_known_m)]),
@@ -47,19 +52,22 @@ const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run })
   }),
 ];
 
+/** @param {number} y */
 const greedyMark = (y) => ({
   y, name: agentOf("greedy").title, color: agentOf("greedy").color, ink: "--dim", dash: [5, 5],
   text: `greedy, the line to beat: ${metres(y)}`,
 });
 
+/** @param {NonNullable<typeof curve.value>} one */
 function captionOf({ points, greedy_m, best_known_m }) {
   if (points.length < 2) return "Learning curve, without points so far.";
-  const last = points.at(-1);
+  const last = points[points.length - 1];
   const greedy = greedy_m ? `; greedy gets ${metres(greedy_m)}` : "";
   const best = best_known_m === null ? "" : `; best known ${metres(best_known_m)}`;
   return `Learning curve: ${metres(last.distance_m)} after ${whole(last.step)} steps${greedy}${best}.`;
 }
 
+/** @param {{ known: NonNullable<typeof curve.value> }} props */
 function Curve({ known }) {
   const { points, to, greedy_m, best_known_m, run } = known;
   const { color, title } = agentOf(run.config.agent ?? served().defaults.training.agent);
@@ -71,7 +79,10 @@ function Curve({ known }) {
   };
   const levels = [greedy_m ?? 0, best_known_m ?? 0];
   const changed = changesInWords(run.config.agent, known.changes);
-  const x = { axis: `practice of ${run.id}`, max: to, unit: "steps of practice", text: (step) => count(step, "step") };
+  const x = {
+    axis: `practice of ${run.id}`, max: to, unit: "steps of practice",
+    text: (/** @type {number} */ step) => count(step, "step"),
+  };
   const y = {
     min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest([...levels, ...distances], MIN_TOP_M),
     unit: "m", text: metres,
@@ -88,11 +99,12 @@ function Curve({ known }) {
   `;
 }
 
-/** Shows a step of the practice that is on stage; null if it cannot be. */
+/** Shows a step of the practice that is on stage; null if it cannot be. @param {{ run: Run, from: number }} one */
 function seekToStep({ run, from }) {
   const seek = seekIn(run.id);
   const { duration_s } = scene.value ?? {};
-  return seek && duration_s ? (step) => seek((Math.max(0, step - from) * duration_s) / run.config.steps) : null;
+  if (!seek || !duration_s) return null;
+  return (/** @type {number} */ step) => seek((Math.max(0, step - from) * duration_s) / run.config.steps);
 }
 
 // ---- the action values: one for each pair of legs and each place on the foot grid
@@ -118,6 +130,7 @@ export function ActionValues() {
   `;
 }
 
+/** @param {{ known: ActionValues }} props */
 function Values({ known }) {
   const { pairs, cell_names } = known;
   const gait = options.value?.gaits.find(({ name }) => name === shownRun.value?.config?.gait);
@@ -143,6 +156,7 @@ function Values({ known }) {
   `;
 }
 
+/** @param {{ known: ActionValues, pair: number, cell: number }} props */
 function Value({ known, pair, cell }) {
   const value = known.values_m[pair][cell];
   if (known.current[pair] === cell) return html`<td class="here">here</td>`;
@@ -171,7 +185,7 @@ const ValuesKey = () => html`
   </p>
 `;
 
-/** The learner's next move in words. */
+/** The learner's next move in words. @param {{ known: ActionValues }} props */
 function NextMove({ known }) {
   const { pairs, values_m, visits, lane, agent } = known;
   const best = bestMove(known);

@@ -4,7 +4,7 @@ import { chooseCaptions, overlap, passes, placeLabels } from "../labels.js";
 import { html } from "./elements.js";
 
 /** @import { Box } from "../labels.js" */
-/** @import { Line } from "../chart.js" */
+/** @import { Line, Mark } from "../chart.js" */
 
 /**
  * The plotting area in pixels, and the positions of values in it.
@@ -18,6 +18,8 @@ import { html } from "./elements.js";
  * @property {(x: number) => number} x
  * @property {(y: number) => number} y
  */
+
+/** The end of a line with its label, in pixels. @typedef {{ end?: string, x: number, y: number }} End */
 
 const FONT_FAMILY = "system-ui, sans-serif";
 const FONT_PX = 12;
@@ -58,10 +60,10 @@ export function roomFor(lines) {
 /** A colour, or the name of a custom property, as CSS has it. @param {string} color */
 export const cssColour = (color) => (color.startsWith("--") ? `var(${color})` : color);
 
-/** The straight lines, without their captions. */
+/** The straight lines, without their captions. @param {{ marks: Mark[], frame: Frame }} props */
 export const MarkLines = ({ marks, frame }) => marks.map(({ x, y, kind, color, dash, width }) => {
   const ends = x === undefined
-    ? { x1: frame.left, x2: frame.right, y1: frame.y(y), y2: frame.y(y) }
+    ? { x1: frame.left, x2: frame.right, y1: frame.y(y ?? NaN), y2: frame.y(y ?? NaN) }
     : { x1: frame.x(x), x2: frame.x(x), y1: frame.top, y2: frame.bottom };
   const style = color && {
     stroke: cssColour(color), strokeWidth: width ?? DEFAULT_MARK_PX, strokeDasharray: dash?.join(" "),
@@ -69,7 +71,10 @@ export const MarkLines = ({ marks, frame }) => marks.map(({ x, y, kind, color, d
   return html`<line class=${`mark ${kind ?? ""}`} ...${ends} style=${style} />`;
 });
 
-/** Captions of straight lines, as many as have room, and the ends of curves with their labels: those in the frame. */
+/**
+ * Captions of straight lines, as many as have room, and the ends of curves with their labels: those in the frame.
+ * @param {{ marks: Mark[], lines: Line[], curves: Line[], frame: Frame }} props
+ */
 export function LineLabels({ marks, lines, curves, frame }) {
   const { left, bottom, width } = frame;
   /** Above the axis, and up to the right edge. @type {Box} */
@@ -77,7 +82,7 @@ export function LineLabels({ marks, lines, curves, frame }) {
   const captioned = byImportance(marks.filter(({ text }) => text));
   const places = captioned.map((mark) => captionPlaces(frame, mark));
   const ends = lines.filter(({ end }) => end).map((line) => ({
-    ...line, x: frame.x(line.xs.at(-1)), y: frame.y(line.ys.at(-1)),
+    ...line, x: frame.x(line.xs.at(-1) ?? NaN), y: frame.y(Number(line.ys.at(-1))),
   }));
   const captions = chooseCaptions(places, bounds, covering(marks, curves, ends, frame));
   const labels = placeLabels(ends.map(endBox), captions.filter((box) => box !== null), bounds);
@@ -93,25 +98,41 @@ export function LineLabels({ marks, lines, curves, frame }) {
   `;
 }
 
-/** Horizontal lines before all, the first before the others; of vertical ones a later change tells more. */
+/**
+ * Horizontal lines before all, the first before the others; of vertical ones a later change tells more.
+ * @param {Mark[]} marks
+ */
 const byImportance = (marks) => [
   ...marks.filter(({ x }) => x === undefined), ...marks.filter(({ x }) => x !== undefined).reverse(),
 ];
 
+/** @param {{ text: string, box: Box, color: string }} props */
 const Label = ({ text, box: { left, top, height }, color }) => html`
   <text class="line-label" x=${left} y=${top + height / 2} style=${{ fill: cssColour(color) }}>${text}</text>
 `;
 
-/** Where the label of a line's end is wanted. @returns {Box} */
+/**
+ * Where the label of a line's end is wanted.
+ * @param {End} one
+ * @returns {Box}
+ */
 const endBox = ({ end, x, y }) =>
-  ({ left: x + TEXT_FROM_DOT_PX, top: y - LINE_PX / 2, width: widthOf(end), height: LINE_PX });
+  ({ left: x + TEXT_FROM_DOT_PX, top: y - LINE_PX / 2, width: widthOf(end ?? ""), height: LINE_PX });
 
-/** Counts what a box would cover: straight lines, curves and dots; labels half, since they can move. */
+/**
+ * Counts what a box would cover: straight lines, curves and dots; labels half, since they can move.
+ * @param {Mark[]} marks
+ * @param {Line[]} curves
+ * @param {End[]} ends
+ * @param {Frame} frame
+ */
 function covering(marks, curves, ends, frame) {
   const { left, right, top, bottom } = frame;
+  /** @type {[number, number][][]} */
   const straight = marks.map(({ x, y }) => (x === undefined
-    ? [[left, frame.y(y)], [right, frame.y(y)]]
+    ? [[left, frame.y(y ?? NaN)], [right, frame.y(y ?? NaN)]]
     : [[frame.x(x), top], [frame.x(x), bottom]]));
+  /** @type {[number, number][][]} */
   const paths = curves.map(({ xs, ys }) =>
     xs.flatMap((x, n) => (typeof ys[n] === "number" ? [[frame.x(x), frame.y(ys[n])]] : [])));
   const [dots, labels] = [ends.map(dotBox), ends.map(endBox)];
@@ -124,16 +145,26 @@ function covering(marks, curves, ends, frame) {
 /** Shares of the width at which a caption of a horizontal line may begin. */
 const SHARES = [0, 0.2, 0.4, 0.5, 0.6, 0.7, 0.8];
 
-/** Where the dot of a line's end is. @returns {Box} */
+/**
+ * Where the dot of a line's end is.
+ * @param {{ x: number, y: number }} one
+ * @returns {Box}
+ */
 const dotBox = ({ x, y }) =>
   ({ left: x - END_DOT_PX, top: y - END_DOT_PX, width: 2 * END_DOT_PX, height: 2 * END_DOT_PX });
 
-/** Where a caption may be: along its horizontal line, above it or below, or above its vertical one. @returns {Box[]} */
+/**
+ * Where a caption may be: along its horizontal line, above it or below, or above its vertical one.
+ * @param {Frame} frame
+ * @param {Mark} other
+ * @returns {Box[]}
+ */
 function captionPlaces(frame, { x, y, text }) {
-  const width = widthOf(text);
+  const width = widthOf(text ?? "");
   const height = CAPTION_PX;
   if (x === undefined) {
-    const tops = [frame.y(y) - height - 3, frame.y(y) + 3];
+    const level = frame.y(y ?? NaN);
+    const tops = [level - height - 3, level + 3];
     return SHARES.flatMap((share) => tops.map((top) => {
       const left = frame.left + share * (frame.right - frame.left) + TEXT_FROM_LINE_PX;
       return { left, top, width, height };

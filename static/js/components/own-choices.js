@@ -8,6 +8,8 @@ import { isActive } from "../selectors.js";
 import { scene } from "../store.js";
 import { html, Icon } from "./elements.js";
 
+/** @import { Run } from "../types.js" */
+
 export function OwnChoices() {
   const run = shownRun.value;
   const canReplay = run?.kind !== "experiment" && Boolean(run?.progress?.done);
@@ -21,7 +23,7 @@ export function OwnChoices() {
       ${ownRunId.value !== null && html`
         <button class="secondary compact" onClick=${closeReplay}>Back to the stage</button>
       `}
-      ${ownRunId.value === null && canReplay && html`
+      ${ownRunId.value === null && run && canReplay && html`
         <button class="secondary compact" onClick=${() => replay(run)}
           title="Play, seek and go step by step on this page only"><${Icon} name="replay" />Replay it here</button>
       `}
@@ -33,8 +35,10 @@ export function OwnChoices() {
   `;
 }
 
+/** @param {Run} run */
 const replay = (run) => openReplay(run.id, { time_s: scene.value?.time_s ?? 0, clock: clock.value });
 
+/** @param {{ run: Run }} props */
 const Files = ({ run }) => html`
   <details class="more">
     <summary>Download it</summary>

@@ -17,9 +17,13 @@ import { practisedSteps } from "../training.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { html, Icon } from "./elements.js";
 
+/** @import { Standing } from "../race.js" */
+/** @import { Run, Timeline } from "../types.js" */
+
 // ---- the scoreboard: ranks, distances, decision times and simulated transitions
 
 /** Number of steps that the look-ahead agents simulate. */
+/** @type {Record<string, number>} */
 const DEPTHS = { greedy: 1, "two-step": 2 };
 
 export function Scoreboard() {
@@ -55,6 +59,7 @@ function BranchWords() {
   `;
 }
 
+/** @param {{ rows: Standing[] }} props */
 function Board({ rows }) {
   const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
   return html`
@@ -95,6 +100,7 @@ function BestKnown() {
   `;
 }
 
+/** @param {{ row: Standing, longest: number }} props */
 const Lane = ({ row, longest }) => html`
   <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }}>
     <tr>
@@ -128,10 +134,12 @@ const Lane = ({ row, longest }) => html`
   </tbody>
 `;
 
-/** Distance of a lane that walks on after time-out; none once the show has ended there. */
+/** Distance of a lane that walks on after time-out; none once the show has ended there. @param {Standing} row */
 const distanceSoFar = (row) => (isOver.value ? null : row.distance_m);
 
+/** @param {{ spent: { walked: number, thought: number }, longest: number }} props */
 function TimeStrip({ spent: { walked, thought }, longest }) {
+  /** @param {number} seconds */
   const width = (seconds) => ({ width: `${(100 * seconds) / longest}%` });
   const label = `Walking ${clockTime(walked)}, thinking ${clockTime(thought)} (minutes:seconds)`;
   return html`
@@ -142,7 +150,7 @@ function TimeStrip({ spent: { walked, thought }, longest }) {
   `;
 }
 
-/** The values of the columns that a narrow screen has no room for. */
+/** The values of the columns that a narrow screen has no room for. @param {Standing} one */
 const factsOf = ({ decision_s, simulated }) =>
   [decision_s !== null && `${decision(decision_s)} a decision`, simulated !== null && `${whole(simulated)} simulated`]
     .filter(Boolean).join(", ");
@@ -150,17 +158,19 @@ const factsOf = ({ decision_s, simulated }) =>
 /** A robot that has turned less is said to walk straight [°]. */
 const MIN_TURN_DEG = 20;
 
-/** Whether it fell or turned. */
+/** Whether it fell or turned. @param {Standing} one */
 function postureOf({ fell_at_step, heading_deg }) {
   const fell = typeof fell_at_step === "number" && `fell at step ${whole(fell_at_step + 1)}`;
-  const turned = Math.abs(heading_deg ?? 0) > MIN_TURN_DEG &&
-    `turned ${Math.round(Math.abs(heading_deg))}° ${heading_deg > 0 ? "left" : "right"}`;
+  const turn = heading_deg ?? 0;
+  const turned = Math.abs(turn) > MIN_TURN_DEG &&
+    `turned ${Math.round(Math.abs(turn))}° ${turn > 0 ? "left" : "right"}`;
   return sentence([fell, turned].filter(Boolean).join(", "));
 }
 
-/** Model that a search plans with; empty if the agent does not search, or if nothing happens. */
+/** Model that a search plans with; empty if the agent does not search, or if nothing happens. @param {Standing} one */
 const planningModelOf = ({ plans_with }) => (plans_with ? `plans with the ${planningModelTitle(plans_with)}` : "");
 
+/** @param {Standing} row */
 function activityOf(row) {
   if (row.failure) return `Stopped: ${row.failure}`;
   if (row.isDone) {
@@ -175,15 +185,20 @@ function activityOf(row) {
   return row.step ? step : agentSummary(row.agent, row.training_id);
 }
 
+/** @param {{ agent: string }} one */
 const reasonForMarching = ({ agent }) =>
   learns(agent)
     ? "under 1 cm in ten steps: moves that undo each other still have the highest values. More practice changes that."
     : "under 1 cm in ten steps: no move that it simulates gains distance on this robot.";
 
-/** Decision rule of an agent, in a few words. */
+/**
+ * Decision rule of an agent, in a few words.
+ * @param {string} agent
+ * @param {string | null | undefined} trainingId
+ */
 function agentSummary(agent, trainingId) {
   if (learns(agent)) {
-    const training = runs.value.get(trainingId);
+    const training = runs.value.get(trainingId ?? "");
     return training
       ? `${count(practisedSteps(training), "step")} of practice, then looks up its table`
       : raceInView.value ? "Learns while it races" : "Practises, then looks up its table";
@@ -194,6 +209,7 @@ function agentSummary(agent, trainingId) {
   return `Simulates ${whole(simulated)} moves before each step`;
 }
 
+/** @param {Run | null} race */
 function startSentence(race) {
   if (!race) return "The lanes of the next race.";
   if (shownRun.value === race) {
@@ -255,6 +271,7 @@ const invitation = () =>
     ? "The lines start when the robots do."
     : "Each robot draws a line here as it walks.";
 
+/** @param {{ known: Timeline, time: number }} props */
 function Lines({ known, time }) {
   const longest = Math.max(...known.lanes.map(({ total_s }) => total_s));
   const until = Math.min(time, longest);
@@ -264,18 +281,19 @@ function Lines({ known, time }) {
     const name = laneTitle(configs[number] ?? lane);
     return {
       name, end: name, color: agentOf(lane.agent).color, xs: shown.map(([t]) => t), ys: shown.map(([, d]) => d),
-      at: (t) => (t > until ? null : distanceAt(lane.points, t)),
+      at: (/** @type {number} */ t) => (t > until ? null : distanceAt(lane.points, t)),
     };
   });
   const best_m = raceInView.value?.best_known_m ?? null;
-  const far = Math.max(known.finish_line_m, best_m ?? 0, ...lanes.map(({ ys }) => ys.at(-1)));
+  const far = Math.max(known.finish_line_m, best_m ?? 0, ...lanes.map(({ ys }) => ys.at(-1) ?? NaN));
   const ends = lanes.map(({ name, ys }) => `${name} ${metres(ys.at(-1))}`).join(", ");
   const best = best_m === null ? "" : `; best known ${metres(best_m)}`;
   const caption = `The race after ${Math.round(until)} seconds: ${ends}${best}.`;
   const last = keptEnd(`${known.id} ${known.clock}`, lastMoment(known, until, longest));
   const moments = momentsOf(until, last);
   const x = {
-    axis: `race ${known.id}`, max: last, unit: "race time, s", text: (seconds) => `${seconds.toFixed(1)}\u00a0s`,
+    axis: `race ${known.id}`, max: last, unit: "race time, s",
+    text: (/** @type {number} */ seconds) => `${seconds.toFixed(1)}\u00a0s`,
   };
   return html`
     <${Chart} name="the race" label=${caption} x=${x} lines=${lanes} marks=${marksOf(known, until, best_m)}
@@ -290,26 +308,44 @@ function Lines({ known, time }) {
 /** The end of the time axis, of one race under one clock. */
 let longestAxis = { key: "", until: 0 };
 
-/** The largest end that an axis had: seeking back does not shorten it. */
+/**
+ * The largest end that an axis had: seeking back does not shorten it.
+ * @param {string} key
+ * @param {number} until
+ */
 function keptEnd(key, until) {
   if (longestAxis.key !== key || longestAxis.until < until) longestAxis = { key, until };
   return longestAxis.until;
 }
 
-/** The moments at which the crosshair stops: each half second, in a long race fewer, and the one that is shown. */
+/**
+ * The moments at which the crosshair stops: each half second, in a long race fewer, and the one that is shown.
+ * @param {number} until
+ * @param {number} last
+ */
 function momentsOf(until, last) {
   const step = Math.max(0.5, Math.ceil(last / MAX_MOMENTS));
   const even = Array.from({ length: Math.floor(last / step) + 1 }, (_, n) => n * step);
   return [...new Set([...even, until])].sort((a, b) => a - b);
 }
 
-/** Where the time axis ends. */
+/**
+ * Where the time axis ends.
+ * @param {Timeline} one
+ * @param {number} until
+ * @param {number} longest
+ */
 function lastMoment({ first_finish_s }, until, longest) {
   const planned = first_finish_s ? Math.min(1.3 * first_finish_s, longest) : Math.min(longest, FIRST_VIEW_S);
   return Math.max(until, planned, 1);
 }
 
-/** The finish line, the best known walk, and time-out once it is past. */
+/**
+ * The finish line, the best known walk, and time-out once it is past.
+ * @param {Timeline} one
+ * @param {number} until
+ * @param {number | null} best_m
+ */
 function marksOf({ finish_line_m, first_finish_s }, until, best_m) {
   /** @type {object[]} */
   const marks = [{ y: finish_line_m, color: "--finish", text: "finish line" }];

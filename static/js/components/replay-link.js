@@ -3,7 +3,11 @@ import { replayAddress } from "../page.js";
 import { openReplay } from "../replay.js";
 import { html } from "./elements.js";
 
+/** @import { ComponentChildren } from "preact" */
+
+/** @param {{ id: string, ghost?: string | null, label?: string | null, children: ComponentChildren }} props */
 export function ReplayLink({ id, ghost = null, label = null, children }) {
+  /** @param {MouseEvent} event */
   const open = (event) => {
     // A click with a key opens the link in another tab.
     if (event.ctrlKey || event.metaKey || event.shiftKey) return;

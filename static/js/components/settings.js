@@ -20,7 +20,9 @@ import {
 } from "./fields.js";
 import { Disturbances, WorldPicker } from "./world.js";
 
-/** @import { Run } from "../types.js" */
+/** @import { Changed, Run, SettingOption, SettingValue, Toggled } from "../types.js" */
+/** @import { ComponentChildren } from "preact" */
+/** @import { MainSetting } from "../settings.js" */
 
 /** Maximum of the slider of the practice, less than the server accepts: any other number can be typed. */
 const PRACTICE = { min: 50, max: 2000, step: 50 };
@@ -34,16 +36,23 @@ export const Settings = () => html`
   </fieldset>
 `;
 
-/** Show the opened fields where the settings scroll inside their panel. */
+/**
+ * Show the opened fields where the settings scroll inside their panel.
+ * @param {{ target: HTMLDetailsElement }} event
+ */
 const showOpened = ({ target }) => {
-  const scroller = target.closest(".folded");
-  if (target.open) scroller?.scrollTo({ top: target.offsetTop - scroller.offsetTop });
+  const scroller = /** @type {HTMLElement | null} */ (target.closest(".folded"));
+  if (scroller && target.open) scroller.scrollTo({ top: target.offsetTop - scroller.offsetTop });
 };
 
-/** `fields` are those inside: one that is not valid is named by the summary. */
+/**
+ * `fields` are those inside: one that is not valid is named by the summary.
+ * @param {{ title: string, chosen: unknown[], fields: string[], isFirst?: boolean, children: ComponentChildren }} props
+ */
 function Group({ title, chosen, fields, isFirst = false, children }) {
   const [isOpen, setOpen] = useState(isFirst);
   const mistaken = fields.filter((field) => field in wrong.value).map(labelOf);
+  /** @param {Toggled} event */
   const onToggle = (event) => {
     if (event.target.open !== isOpen && !isFirst) showOpened(event);
     setOpen(event.target.open);
@@ -77,13 +86,14 @@ const TrainingGroup = () => html`
     <div class="sliders">
       <${Learner} />
       <${Slider} field="steps" ...${PRACTICE}
-        value=${form.value.steps} onValue=${(value) => setField("steps", value)} />
+        value=${form.value.steps} onValue=${(/** @type {number} */ value) => setField("steps", value)} />
       <${LearnerSettings} />
     </div>
     <div class="inline-fields">
       <div class="field">
         <label for="field-seed">${settingOf("seed").title}</label>
-        <${NumberField} field="seed" value=${form.value.seed} onValue=${(value) => setField("seed", value)} />
+        <${NumberField} field="seed" value=${form.value.seed}
+          onValue=${(/** @type {number} */ value) => setField("seed", value)} />
         <${Description} field="seed" />
       </div>
       <${SelectField} field="observation" label="Observation"
@@ -126,7 +136,7 @@ function LearnerSettings() {
 /** The pace or a live setting now: of the training that runs. @type {(run: Run, name: string) => any} */
 const rateNow = (run, name) => presentRates(run)[name] ?? run.config.settings[name] ?? run.config[name];
 
-/** Values that the next training starts with, where the one that runs has others. */
+/** Values that the next training starts with, where the one that runs has others. @param {{ run: Run }} props */
 function NextRates({ run }) {
   /** @type {Record<string, any>} */
   const values = form.value;
@@ -139,8 +149,12 @@ function NextRates({ run }) {
     ${" "}${words.join(", ")}.</p>`;
 }
 
-/** A setting of the form; of the training that runs, if it is live there. */
+/**
+ * A setting of the form; of the training that runs, if it is live there.
+ * @param {{ one: MainSetting, run: Run }} props
+ */
 function Chosen({ one: { name, setting, end }, run }) {
+  /** @param {number} value */
   const onValue = (value) => {
     setField(name, value);
     if (run) tune({ [name]: value });
@@ -153,20 +167,28 @@ function Chosen({ one: { name, setting, end }, run }) {
 /** Of a rate that follows from a schedule. */
 const SHOWN_DIGITS = 8;
 
-/** A setting of the training that runs with its present value, which the form does not keep. */
+/**
+ * A setting of the training that runs with its present value, which the form does not keep.
+ * @param {{ name: string, setting: SettingOption, run: Run }} props
+ */
 function Present({ name, setting, run }) {
   const { id, config } = run;
   const { step } = sliderOf(setting) ?? { step: 0 };
-  const scheduled = evaluations.value[id]?.at(-1)?.[name] ?? beginningOf(config.agent, name, config.settings);
+  const last = /** @type {Record<string, number> | undefined} */ (evaluations.value[id]?.at(-1));
+  const scheduled = last?.[name] ?? beginningOf(config.agent, name, config.settings);
   const rounded = step && typeof scheduled === "number"
     ? Number((Math.round(scheduled / step) * step).toPrecision(SHOWN_DIGITS))
     : scheduled;
   const value = presentRates(run)[name] ?? rounded;
+  /** @param {SettingValue} one */
   const onValue = (one) => tune({ [name]: one });
   return html`<${Row} name=${name} setting=${setting} value=${value} onValue=${onValue} isOfForm=${false} />`;
 }
 
-/** A slider for a number with both limits, else the setting's own control. */
+/**
+ * A slider for a number with both limits, else the setting's own control.
+ * @param {{ name: string, setting: SettingOption } & { [prop: string]: unknown }} props
+ */
 function Row({ name, setting, ...rest }) {
   const ends = kindOf(setting) === "number" ? sliderOf(setting) : null;
   return ends
@@ -271,12 +293,13 @@ function robotChoices() {
   return typeof robot === "string" ? presets : [...presets, [robot, robotTitle(robot)]];
 }
 
+/** @param {{ field: string, step: number }} props */
 function Figure({ field, step }) {
   return html`
     <div class="field">
       <label for=${`field-${field}`}>${fullTitle(settingOf(field))}</label>
       <${NumberField} field=${field} value=${form.value[field]} step=${step}
-        onValue=${(value) => setField(field, value)} />
+        onValue=${(/** @type {number} */ value) => setField(field, value)} />
       <${Description} field=${field} />
     </div>
   `;
@@ -286,6 +309,7 @@ function Pace() {
   const run = trainingInFields();
   const pace = run ? rateNow(run, "pace") : form.value.pace;
   const choices = PACES.some(([one]) => one === pace) ? PACES : [...PACES, [pace, `×${pace}`]];
+  /** @param {number} value */
   const onValue = (value) => {
     setField("pace", value);
     tune({ pace: value });
@@ -299,6 +323,7 @@ function Lanes() {
   const kept = wrong.value.lanes;
   const lanes = kept ? kept.text.split(",").map((name) => name.trim()) : form.value.lanes;
   const names = (options.value?.agents ?? []).map(({ name }) => name);
+  /** @param {string} name */
   const toggle = (name) => {
     const chosen = lanes.includes(name)
       ? lanes.filter((one) => one !== name)
@@ -324,7 +349,7 @@ function Lanes() {
   `;
 }
 
-/** The settings of a lane's agent: "Beam: width". */
+/** The settings of a lane's agent: "Beam: width". @param {{ agent: string }} props */
 const LaneFields = ({ agent }) =>
   Object.entries(laneSettings([agent])).map(([field, setting]) => {
     const title = `${agentOf(agent).title}: ${setting.title.toLowerCase()}`;
@@ -335,7 +360,7 @@ const Name = () => html`
   <div class="field wide">
     <label for="field-name">Name</label>
     <input type="text" ...${attributesOf("name")} value=${wrong.value.name?.text ?? form.value.name}
-      placeholder="optional" onInput=${({ target }) => enter("name", target.value)} />
+      placeholder="optional" onInput=${(/** @type {Changed} */ { target }) => enter("name", target.value)} />
     <${MistakeOf} field="name" />
     <${Description} field="name" />
   </div>

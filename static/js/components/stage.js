@@ -17,6 +17,9 @@ import { connection, runs, scene, stage } from "../store.js";
 import { html, Icon, Problem } from "./elements.js";
 import { Transport } from "./transport.js";
 
+/** @import { Message } from "../replay-frames.js" */
+/** @import { Scene } from "../types.js" */
+
 /** A frame that has not reported its status for so long is shown as it is. */
 const STATUS_TIMEOUT_MS = 12_000;
 
@@ -32,7 +35,7 @@ export function Stage() {
   const [address] = useState(() => `viewer/?view=${followed}&theme=${shownTheme.peek()}`);
 
   useEffect(() => {
-    const onMessage = ({ origin, source, data }) => {
+    const onMessage = (/** @type {MessageEvent} */ { origin, source, data }) => {
       if (origin !== location.origin || source !== frame.current?.contentWindow) return;
       if (data?.type === "hexapods:click" && !isPresenting.peek()) {
         clickedCell.value = { node: data.node, instance: data.instance, run_id: scene.peek()?.run_id ?? null };
@@ -43,7 +46,7 @@ export function Stage() {
       drawIn(send);
       drawHere.value = (messages) => send(messages);
     };
-    const send = (messages) =>
+    const send = (/** @type {Message[]} */ messages) =>
       frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, location.origin);
     addEventListener("message", onMessage);
     const timer = setTimeout(
@@ -169,15 +172,17 @@ const LEGS = ["M-16 0-44-14-56 18", "M-10 6-34 0-42 34", "M-6 8-16 12-20 42"];
 const LOADING = "The robots walk to the start line…";
 const LATER = "The picture comes when there is room; numbers and charts are live.";
 /** Status of the frame that has no place → the reason. */
+/** @type {Record<string, string>} */
 const REFUSALS = {
   "full": `Many are watching already. ${LATER}`,
   "address full": `Many are watching from this network already. ${LATER}`,
   "place taken": `Another viewer took this slot. ${LATER}`,
 };
 
-/** Whether a status of the frame says that it has no place. */
+/** Whether a status of the frame says that it has no place. @param {string} status */
 const isRefused = (status) => status in REFUSALS;
 
+/** @param {{ x: number, color: string }} props */
 const Robot = ({ x, color }) => html`
   <g transform=${`translate(${x} 0)`} style=${{ color }}>
     <ellipse class="shadow" cx="0" cy="40" rx="62" ry="9" />
@@ -186,6 +191,7 @@ const Robot = ({ x, color }) => html`
   </g>
 `;
 
+/** @param {{ status: string }} props */
 function StagePlaceholder({ status }) {
   const robots = form.value.lanes.slice(0, LANES_X.length);
   return html`
@@ -264,7 +270,7 @@ function SceneChips() {
   `;
 }
 
-/** Key of the ghosts: the run they are of, and their distances. */
+/** Key of the ghosts: the run they are of, and their distances. @param {{ ghosts: Scene["ghost_lanes"] }} props */
 function GhostChip({ ghosts }) {
   const run = runs.value.get(ghostId.value ?? "");
   const title = run ? run.name || sentence(run.kind) : "another run";
@@ -280,6 +286,7 @@ function WorldChip() {
   return words.length > 0 && html`<p class="chip disturbance">${sentence(words.join(", "))}</p>`;
 }
 
+/** @param {{ now: Scene }} props */
 function SpeedChip({ now }) {
   if (stage.value?.playing === false && !stage.value.ended && now?.kind !== "idle") {
     return html`<p class="chip">${sentence(playbackName.value)} paused</p>`;

@@ -14,6 +14,8 @@ import { options, scene, stage } from "../store.js";
 import { choicesOf, clockTitle } from "../titles.js";
 import { html, Icon, Problem } from "./elements.js";
 
+/** @import { Changed, Clock, ReplayMark, Scene } from "../types.js" */
+
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
 
 export function Transport() {
@@ -69,6 +71,7 @@ const BackToStage = () => html`
   </button>
 `;
 
+/** @param {{ direction: 1 | -1, label: string, icon: string }} props */
 const StepButton = ({ direction, label, icon }) => html`
   <button class="quiet square" onClick=${() => stepReplay(direction)} aria-label=${label} title=${label}>
     <${Icon} name=${icon} />
@@ -85,15 +88,16 @@ const MARKS = {
   "evaluation": "Evaluation",
 };
 
-/** Text of a mark, such as "Greedy crosses the line". */
+/** Text of a mark, such as "Greedy crosses the line". @param {ReplayMark} one */
 function markTitle({ kind, lane, step, distance_m }) {
   const names = (shownRun.value?.config?.lanes ?? []).map((one) => agentOf(one.agent).title);
-  if (kind === "evaluation") return `Evaluation after ${count(step, "step")}: ${metres(distance_m)}`;
+  if (kind === "evaluation") return `Evaluation after ${count(step ?? 0, "step")}: ${metres(distance_m ?? NaN)}`;
   if (kind === "disturbance") {
     const run = shownRun.value;
-    const words = run ? conditionsInWords(conditionsAt(disturbancesOf(run), step, run.config.robot)) : [];
+    const at = step ?? 0;
+    const words = run ? conditionsInWords(conditionsAt(disturbancesOf(run), at, run.config.robot)) : [];
     const what = sentence(words.join(", ")) || "As built again";
-    return names.length > 1 ? `${what}: ${names[lane]}, step ${step + 1}` : `${what}, step ${step + 1}`;
+    return names.length > 1 ? `${what}: ${names[lane ?? -1]}, step ${at + 1}` : `${what}, step ${at + 1}`;
   }
   if (lane === null) return MARKS[kind];
   return `${names[lane] ?? "The robot"} ${MARKS[kind]}`;
@@ -103,6 +107,7 @@ function markTitle({ kind, lane, step, distance_m }) {
 function Marks() {
   const marks = plan.value?.marks ?? [];
   if (!marks.length) return null;
+  /** @param {{ target: HTMLSelectElement }} event */
   const jump = ({ target }) => {
     if (target.value !== "") setStage({ time_s: marks[Number(target.value)].time_s, playing: false });
     target.value = "";
@@ -125,6 +130,7 @@ function OwnSeek() {
   const known = plan.value;
   const end = endTime.value;
   const time = replayTime.value;
+  /** @param {number} time_s */
   const placeOf = (time_s) => `${(100 * time_s) / end}%`;
   if (!known) return html`<span class="seek"><span class="num">${clockTime(time)}</span></span>`;
   return html`
@@ -133,7 +139,7 @@ function OwnSeek() {
       <span class="slider">
         <input type="range" min="0" max=${end} step="0.01" value=${time} style=${{ "--share": placeOf(time) }}
           aria-label="Moment of your replay" aria-valuetext=${`${clockTime(time)} of ${clockTime(end)}`}
-          onInput=${({ target }) => seekReplay(Number(target.value))} />
+          onInput=${(/** @type {Changed} */ { target }) => seekReplay(Number(target.value))} />
         <span class="marks" aria-hidden="true">
           ${known.marks.map(({ kind, time_s }) => html`<i class=${kind} style=${{ left: placeOf(time_s) }}></i>`)}
         </span>
@@ -152,16 +158,18 @@ function EndAtTimeOut() {
   return html`
     <label class="check end-at-time-out" title="For every page: end with the photo finish, which settles the ranking">
       <input type="checkbox" name="end_at_time_out" checked=${stage.value?.end_at_time_out ?? true}
-        onChange=${({ target }) => endAtTimeOut(target.checked)} />
+        onChange=${(/** @type {Changed} */ { target }) => endAtTimeOut(target.checked)} />
       End at time-out
     </label>
   `;
 }
 
+/** @param {Scene | null} now */
 const isOneLaneLeft = (now) =>
   now?.kind === "race" && now.phase !== "finished" && now.lanes?.length > 1 && now.duration_s &&
   now.lanes.filter(({ done, halted }) => !done && !halted).length === 1;
 
+/** @param {{ now: Scene }} props */
 function Seek({ now }) {
   if (ownRunId.value !== null) return html`<${OwnSeek} />`;
   if (!now || now.kind === "idle") return html`<span class="seek"></span>`;
@@ -176,6 +184,7 @@ function Seek({ now }) {
   }
   const computed = isComputing ? `, computed up to ${clockTime(computed_s)}` : "";
   const words = `${clockTime(time_s)}${now.duration_s ? ` of ${clockTime(end)}` : ""}${computed}`;
+  /** @param {{ target: HTMLInputElement }} event */
   const seek = ({ target }) => setStage({ time_s: Math.min(Number(target.value), computed_s) });
   const places = { "--share": `${(100 * time_s) / end}%`, "--computed": `${(100 * computed_s) / end}%` };
   return html`
@@ -196,8 +205,19 @@ function Seek({ now }) {
   `;
 }
 
-/** `isSelfEvident`: the values say what they are, so the label is only for screen readers. */
+/**
+ * `isSelfEvident`: the values say what they are, so the label is only for screen readers.
+ * @param {object} props
+ * @param {string} props.label
+ * @param {boolean} [props.isSelfEvident]
+ * @param {string} props.name
+ * @param {() => string} props.getValue
+ * @param {[string, string][]} props.choices
+ * @param {(value: string) => unknown} props.onValue
+ * @param {string} props.title
+ */
 function Choice({ label, isSelfEvident = false, name, getValue, choices, onValue, title }) {
+  /** @param {{ target: HTMLSelectElement }} event */
   const change = async ({ target }) => {
     await onValue(target.value);
     // A choice that was refused is undone.
@@ -217,13 +237,14 @@ function Choice({ label, isSelfEvident = false, name, getValue, choices, onValue
 
 function Follow() {
   const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
-  const robots = lanes.map((lane, n) => [String(n + 1), `Follow ${lane.name ?? agentOf(lane.agent).title}`]);
+  const robots = lanes.map((lane, n) =>
+    [String(n + 1), `Follow ${"name" in lane ? lane.name : agentOf(lane.agent).title}`]);
   const choices = [["leader", "Follow leader"], ...robots, ["free", "Free camera"]];
   if (!choices.some(([one]) => one === view.value)) choices.push([view.value, `lane ${view.value}`]);
   return html`
     <${Choice} label="Follow" isSelfEvident name="follow" getValue=${() => view.value} choices=${choices}
       title="The robot that your camera follows; keys 1 to 8, 0 for a free camera"
-      onValue=${(value) => (view.value = value)} />
+      onValue=${(/** @type {string} */ value) => (view.value = value)} />
   `;
 }
 
@@ -238,7 +259,7 @@ function Speed() {
   return html`
     <${Choice} label="Speed" isSelfEvident name="speed" getValue=${getSpeed} choices=${choices}
       title=${isOwn ? "On this page" : "For every page"}
-      onValue=${(value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
+      onValue=${(/** @type {string} */ value) => setStage({ speed: value === "time-lapse" ? value : Number(value) })} />
   `;
 }
 
@@ -247,6 +268,7 @@ function ClockChoice() {
   return html`
     <${Choice} label="Clock" isSelfEvident name="clock" getValue=${() => clock.value}
       title=${`${sentence(clockTitle(clock.value))}. ${about}`}
-      choices=${choicesOf(options.value?.clocks, clockTitle)} onValue=${(value) => setStage({ clock: value })} />
+      choices=${choicesOf(options.value?.clocks, clockTitle)}
+      onValue=${(/** @type {Clock} */ value) => setStage({ clock: value })} />
   `;
 }

@@ -14,6 +14,8 @@ import { messageOf } from "../titles.js";
 import { DotStrip } from "./dot-strip.js";
 import { html } from "./elements.js";
 
+/** @import { WhatIfAnswer, WhatIfHalf } from "../types.js" */
+
 const HEADROOM = 1.06;
 
 /** Folded on a phone, and while a run needs the room, unless it was opened. */
@@ -24,6 +26,7 @@ export function WhatIf() {
     isPanelOpen.value = isOpen;
   }, [isOpen]);
   if (!form.value.lanes.some(learns)) return null;
+  /** @param {MouseEvent} event */
   const onClick = (event) => {
     event.preventDefault();
     setChoice(!isOpen);
@@ -45,6 +48,7 @@ const teaser = () => {
 
 const hasMistakes = () => Object.keys(mistakes.value).length > 0;
 
+/** @param {{ onContinue: (() => unknown) | null }} props */
 function Comparison({ onContinue }) {
   const known = answer.value;
   const isOld = isComputing.value || isTooLong.value || hasMistakes() || (known && !isCurrent.value);
@@ -60,6 +64,7 @@ function Comparison({ onContinue }) {
   `;
 }
 
+/** @param {{ title: string, half: WhatIfHalf, known: WhatIfAnswer, far: number }} props */
 function Half({ title, half, known, far }) {
   if (!half) {
     return html`<div class="tried"><p><span>${title}</span></p><div class="no-dots" aria-hidden="true"></div></div>`;
@@ -78,6 +83,7 @@ function Half({ title, half, known, far }) {
   `;
 }
 
+/** @param {string} title @param {WhatIfHalf} other @param {WhatIfAnswer} known */
 function captionOf(title, { distances_m, iqm_m, walkers }, { seeds: tried, greedy_m }) {
   const [low, high] = [Math.min(...distances_m), Math.max(...distances_m)];
   return [
@@ -86,6 +92,7 @@ function captionOf(title, { distances_m, iqm_m, walkers }, { seeds: tried, greed
   ].join(" ");
 }
 
+/** @param {{ known: WhatIfAnswer, far: number }} props */
 const Axis = ({ known, far }) => html`
   <p class="tried-axis dim" aria-hidden="true">
     <span>0 m</span>
@@ -94,7 +101,10 @@ const Axis = ({ known, far }) => html`
   </p>
 `;
 
-/** State of the answer: a hint for reading it, that one is computed, or why there is none; always two lines high. */
+/**
+ * State of the answer: a hint for reading it, that one is computed, or why there is none; always two lines high.
+ * @param {{ known: WhatIfAnswer | null }} props
+ */
 function Status({ known }) {
   if (hasMistakes()) {
     return html`<p class="what-if-words" role="status">Settings that are not valid are not tried.</p>`;
@@ -125,6 +135,7 @@ function Status({ known }) {
 /** By whether the sliders are read only. */
 const FIRST_WORDS = { false: "Move a slider: each seed becomes a dot.", true: "Each seed becomes a dot." };
 
+/** @param {{ isFirst: boolean }} props */
 const Request = ({ isFirst }) => html`
   <p class="what-if-words dim">
     <span>${isFirst ? FIRST_WORDS[`${isReadOnly.value}`] : "The settings have changed."}</span>
@@ -132,13 +143,16 @@ const Request = ({ isFirst }) => html`
   </p>
 `;
 
-/** Continue the training of the matching table with these rates; the panel stays open and keeps the focus. */
+/**
+ * Continue the training of the matching table with these rates; the panel stays open and keeps the focus.
+ * @param {{ onContinue: (() => unknown) | null }} props
+ */
 function Continue({ onContinue }) {
   const table = matchingTable.value;
   if (!table) return null;
   const onClick = () => {
     if (!canStart.value) return;
-    onContinue();
+    onContinue?.();
     continueTraining(table);
   };
   return html`

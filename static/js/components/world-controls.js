@@ -13,52 +13,18 @@ import { azimuthsOf } from "../robots.js";
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
-import { html, pointAt, Problem } from "./elements.js";
+import { html, Problem } from "./elements.js";
 import { Description, NumberField, SettingRow, Slider } from "./fields.js";
+import { LegPicker } from "./leg-picker.js";
 
-// ---- the drawn hexapod, forward up; each leg is a button
+/** @import { Changed, Disturbance, DisturbanceKind, FieldOption, Run, RunConfig, SettingValue } from "../types.js" */
+/** @import { Toggled } from "../types.js" */
+/** @import { ComponentChildren } from "preact" */
 
-const FOOT = 37;
-const HIP = 13;
-const KNEE = 24;
-
-/**
- * @param {object} props
- * @param {number[]} props.azimuths of the legs from forward [°]
- * @param {Map<number, string>} props.states what happened to legs, by their numbers
- * @param {(leg: number) => void} props.onLeg
- * @param {boolean} [props.isDisabled]
- * @param {string} [props.describedBy]
- * @param {(leg: number) => string} props.verbOf what a press does to a leg: "Repair"
- */
-export function LegPicker({ azimuths, states, onLeg, isDisabled = false, describedBy, verbOf }) {
-  const legs = azimuths.map((azimuth, n) => ({ azimuth, leg: n + 1, state: states.get(n + 1) }));
-  return html`
-    <div class="leg-picker" role="group" aria-label="Legs, seen from above"
-      aria-describedby=${describedBy}>
-      <svg viewBox="-50 -50 100 100" aria-hidden="true">
-        ${legs.map(({ azimuth, leg, state }) => html`
-          <path key=${leg} class=${`drawn-leg ${classOf(state)}`}
-            d=${`M${pointAt(azimuth, HIP)} L${pointAt(azimuth, KNEE)} L${pointAt(azimuth, FOOT)}`} />
-        `)}
-        <circle class="body" r=${HIP} /><path class="forward" d="M0-8 6 2H-6z" />
-      </svg>
-      ${legs.map(({ azimuth, leg, state }) => {
-        const [x, y] = pointAt(azimuth, FOOT).map((part) => `${50 + Number(part)}%`);
-        return html`
-          <button key=${leg} type="button" style=${{ left: x, top: y }} aria-pressed=${state ? "true" : "false"}
-            aria-disabled=${isDisabled ? "true" : undefined} title=${`${verbOf(leg)} leg ${leg}`}
-            aria-label=${`Leg ${leg}${state ? `, ${state}` : ""}`} onClick=${() => !isDisabled && onLeg(leg)}>
-            ${leg}
-          </button>
-        `;
-      })}
-    </div>
-  `;
-}
-
-/** A leg is drawn by the last thing that happened to it. */
-export const classOf = (state) => (state ? state.split(" ").at(-1) : "");
+/** @typedef {{ kind: string, [field: string]: SettingValue }} Wish */
+/** Takes a disturbance without its step. @typedef {(disturbance: Disturbance) => unknown} OnDisturb */
+/** @typedef {DisturbanceKind & { size: string }} SizedKind */
+/** @typedef {Pick<RunConfig, "robot" | "gait" | "simulator">} Walk */
 
 // ---- what a press on a leg does
 
@@ -67,21 +33,22 @@ const legKinds = () => served().disturbances.filter(({ fields }) => fields.legs 
 
 const NO_OWN_FIELDS = ["leg", "at_step", "until_step"];
 
-/** The fields of a kind beside the leg and the steps. */
+/** The fields of a kind beside the leg and the steps. @param {DisturbanceKind | undefined} kind */
 const ownFieldsOf = (kind) =>
   Object.entries(kind?.fields ?? {}).filter(([name, field]) => !field.is_list && !NO_OWN_FIELDS.includes(name));
 
-/** A kind with the first values of its own fields. */
+/** A kind with the first values of its own fields. @param {string} name */
 function firstWish(name) {
   const first = firstFields(name);
   return { kind: name, ...Object.fromEntries(ownFieldsOf(kindNamed(name)).map(([field]) => [field, first[field]])) };
 }
 
+/** @param {{ id: string, wish: Wish, onWish: (wish: Wish) => void }} props */
 const LegWish = ({ id, wish, onWish }) => html`
   <div class="leg-wish">
     <label for=${`${id}-leg-kind`}>A press on a leg</label>
     <select id=${`${id}-leg-kind`} aria-describedby=${`${id}-leg-help`}
-      onChange=${({ target }) => onWish(firstWish(target.value))}>
+      onChange=${(/** @type {Changed} */ { target }) => onWish(firstWish(target.value))}>
       ${legKinds().map(({ name, title }) => html`
         <option value=${name} selected=${name === wish.kind}>${title}</option>
       `)}
@@ -90,16 +57,21 @@ const LegWish = ({ id, wish, onWish }) => html`
   </div>
 `;
 
-/** The joint and its angle, the share of the torque. */
+/**
+ * The joint and its angle, the share of the torque.
+ * @param {{ id: string, wish: Wish, onWish: (wish: Wish) => void }} props
+ */
 function WishFields({ id, wish, onWish }) {
   const kind = kindNamed(wish.kind);
+  /** @param {string} name @param {SettingValue} value */
   const take = (name, value) => onWish(withinRanges(kind?.fields ?? {}, { ...wish, [name]: value }));
   return ownFieldsOf(kind).map(([name, setting]) => html`
     <${OwnField} key=${`${wish.kind} ${name}`} name=${`${id}-${name}`} setting=${fieldBeside(setting, wish)}
-      value=${wish[name]} onValue=${(value) => take(name, value)} />
+      value=${wish[name]} onValue=${(/** @type {SettingValue} */ value) => take(name, value)} />
   `);
 }
 
+/** @param {{ name: string, setting: FieldOption } & { [prop: string]: unknown }} props */
 function OwnField({ name, setting, ...rest }) {
   const ends = kindOf(setting) === "number" ? sliderOf(setting) : null;
   return ends
@@ -107,7 +79,7 @@ function OwnField({ name, setting, ...rest }) {
     : html`<${SettingRow} name=${name} setting=${setting} ...${rest} isOfForm=${false} />`;
 }
 
-/** Values for what must be given: those of a named world, else the first valid ones. */
+/** Values for what must be given: those of a named world, else the first valid ones. @param {string} kind */
 export function firstFields(kind) {
   const example = served().worlds.flatMap(({ disturbances }) => disturbances).find((one) => one.kind === kind);
   if (example) return example;
@@ -115,6 +87,7 @@ export function firstFields(kind) {
   return Object.fromEntries(needed.map(([name, field]) => [name, firstValue(field)]));
 }
 
+/** @param {FieldOption} field */
 function firstValue(field) {
   if (field.is_list) return [1];
   if (field.choices.length) return field.choices[0];
@@ -124,40 +97,58 @@ function firstValue(field) {
 
 // ---- sliders for the size of a disturbance: slope, friction, payload, a push; below it, its other numbers
 
-/** Kinds of disturbances of more than a leg, as the server lists them. */
-const kindsWithSize = () => served().disturbances.filter(({ size, fields }) => size && !fields.legs);
+/** @param {DisturbanceKind} kind @returns {kind is SizedKind} */
+const hasSize = (kind) => Boolean(kind.size) && !kind.fields.legs;
 
-/** A place is exact, and no seed is near another: such numbers are typed. */
+/** Kinds of disturbances of more than a leg, as the server lists them. */
+const kindsWithSize = () => served().disturbances.filter(hasSize);
+
+/** A place is exact, and no seed is near another: such numbers are typed. @param {FieldOption} field */
 const isTyped = (field) => field.is_required || field.is_whole;
 
 const PAUSE_MS = 500;
 
+/** @param {number} value @param {{ min: number, max: number }} other */
 const shareIn = (value, { min, max }) => ({ "--share": `${(100 * (value - min)) / (max - min)}%` });
 
-/** Action of its button. */
+/** Action of its button. @type {Record<string, string>} */
 const PRESS_WORDS = { [PUSH]: "Push it", patch: "Lay it" };
 
-/** Whether it waits for its button: a push, and what has no size at which nothing happens. */
-const isPressed = ({ name, nothing }) => name === PUSH || nothing === null;
+/**
+ * Whether it waits for its button: a push, and what has no size at which nothing happens.
+ * @param {DisturbanceKind} one
+ */
+const isPressed = ({ lasts, nothing }) => !lasts || nothing === null;
 
 /**
  * The values of a kind as they hold, with what is being changed. A change takes effect when the slider, or its key,
  * has been let go: a run has only so many disturbances.
+ * @param {SizedKind} kind
+ * @param {[string, FieldOption][]} others
+ * @param {Disturbance[]} conditions
+ * @param {OnDisturb} onDisturb
  */
 function useValues(kind, others, conditions, onDisturb) {
-  const [draft, setDraft] = useState(/** @type {Record<string, number>} */ ({}));
+  const [draft, setDraft] = useState(/** @type {Record<string, number | null>} */ ({}));
   const timer = useRef(/** @type {ReturnType<typeof setTimeout> | undefined} */ (undefined));
   const held = conditions.find((other) => other.kind === kind.name);
   const begin = kind.nothing === null ? firstFields(kind.name) : held;
-  const values = { ...begin, ...draft };
+  const values = /** @type {Record<string, number | null | undefined>} */ ({ ...begin, ...draft });
+  /** @param {Record<string, number | null | undefined>} chosen */
   const send = async (chosen) => {
     clearTimeout(timer.current);
     const given = [kind.size, ...others.map(([other]) => other)].filter((one) => chosen[one] !== undefined);
-    await onDisturb({ kind: kind.name, ...Object.fromEntries(given.map((one) => [one, chosen[one]])) });
+    const wanted = { kind: kind.name, ...Object.fromEntries(given.map((one) => [one, chosen[one] ?? null])) };
+    await onDisturb(/** @type {Disturbance} */ (wanted));
     if (!isPressed(kind)) setDraft({});
   };
+  /** @param {string} name @param {number | null} value */
   const change = (name, value) => setDraft({ ...draft, [name]: value });
-  /** A direction alone is no disturbance. */
+  /**
+   * A direction alone is no disturbance.
+   * @param {string} name
+   * @param {number | null} value
+   */
   const finish = (name, value) => {
     const chosen = { ...values, [name]: value };
     clearTimeout(timer.current);
@@ -168,6 +159,7 @@ function useValues(kind, others, conditions, onDisturb) {
   return { values, change, finish, send };
 }
 
+/** @param {{ kind: SizedKind, conditions: Disturbance[], config: Walk, onDisturb: OnDisturb }} props */
 function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb }) {
   const field = kind.fields[kind.size];
   const others = ownFieldsOf(kind).filter(([other]) => other !== kind.size);
@@ -180,9 +172,10 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb 
   const at = value ?? nothing ?? ends.min;
   const isBuilt = typeof kind.nothing === "string";
   const words = value === null && isBuilt ? "as built" : withUnit(at, field.unit);
+  /** @param {string} name */
   const handlers = (name) => ({
-    onInput: ({ target }) => change(name, Number(target.value)),
-    onChange: ({ target }) => finish(name, Number(target.value)),
+    onInput: (/** @type {Changed} */ { target }) => change(name, Number(target.value)),
+    onChange: (/** @type {Changed} */ { target }) => finish(name, Number(target.value)),
   });
   return html`
     <div class="slider disturb">
@@ -207,6 +200,7 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb 
       const more = {
         id: `${id}-${name}`, of: kind.title, setting, value: values[name] ?? setting.default, isDisabled,
       };
+      /** @param {number | null} given */
       const onValue = (given) => {
         change(name, given);
         finish(name, given);
@@ -218,7 +212,10 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb 
   `;
 }
 
-/** A number of a disturbance that is typed. */
+/**
+ * A number of a disturbance that is typed.
+ * @param {{ id: string, of: string, setting: FieldOption, isDisabled: boolean } & { [prop: string]: unknown }} props
+ */
 const OtherNumber = ({ id, of, setting, isDisabled, ...rest }) => html`
   <div class="slider disturb other">
     <label for=${`field-${id}`}><span class="sr-only">${of}: </span>${setting.title}</label>
@@ -229,6 +226,15 @@ const OtherNumber = ({ id, of, setting, isDisabled, ...rest }) => html`
   </div>
 `;
 
+/**
+ * @param {object} props
+ * @param {string} props.id
+ * @param {string} props.of
+ * @param {FieldOption} props.setting
+ * @param {number | null} props.value
+ * @param {boolean} props.isDisabled
+ * @param {Record<string, (event: { target: HTMLInputElement }) => unknown>} props.handlers
+ */
 function OtherSlider({ id, of, setting, value: given, isDisabled, handlers }) {
   const value = given ?? 0;
   const ends = sliderOf(setting) ?? { min: 0, max: 1, step: 0.01 };
@@ -251,7 +257,7 @@ const TYPED_STEP = 0.01;
 
 // ---- both together
 
-/** Why legs of a simulator's robot cannot be broken; empty if they can. */
+/** Why legs of a simulator's robot cannot be broken; empty if they can. @param {string} simulator */
 function reasonAgainst(simulator) {
   if (isSimulated("limp", simulator)) return "";
   const known = served().disturbances.filter(({ simulators }) => simulators.includes(simulator));
@@ -259,18 +265,29 @@ function reasonAgainst(simulator) {
   return `The ideal simulator has no ground and no servos: only ${titles} can happen there.`;
 }
 
-/** `conditions`: what holds; `onDisturb` takes a disturbance without its step. */
+/**
+ * `conditions`: what holds; `onDisturb` takes a disturbance without its step.
+ * @param {object} props
+ * @param {string} props.id
+ * @param {Walk} props.config
+ * @param {Disturbance[]} props.conditions
+ * @param {OnDisturb} props.onDisturb
+ * @param {(words: string[]) => ComponentChildren} props.sentenceOf
+ * @param {ComponentChildren} props.children
+ */
 function WorldControls({ id, config, conditions, onDisturb, sentenceOf, children }) {
   const { robot, gait, simulator } = config;
   const [wish, setWish] = useState(() => firstWish(legKinds()[0].name));
   const reason = reasonAgainst(simulator);
-  const meant = (leg) => pressed(conditions, leg, wish);
+  /** @param {number} leg */
+  const meant = (leg) => /** @type {Disturbance} */ (pressed(conditions, leg, wish));
   const now = conditionsInWords(conditions);
   return html`
     <div class="break">
       <${LegPicker} azimuths=${azimuthsOf(robot, gait, served().gaits)} states=${legStates(conditions)}
-        isDisabled=${Boolean(reason)} describedBy=${`${id}-words`} onLeg=${(leg) => onDisturb(meant(leg))}
-        verbOf=${(leg) => (meant(leg).kind === "repair" ? "Repair" : "Break")} />
+        isDisabled=${Boolean(reason)} describedBy=${`${id}-words`}
+        onLeg=${(/** @type {number} */ leg) => onDisturb(meant(leg))}
+        verbOf=${(/** @type {number} */ leg) => (meant(leg).kind === "repair" ? "Repair" : "Break")} />
       <div class="break-words">
         <p id=${`${id}-words`} role="status">${sentenceOf(now)}</p>
         ${reason
@@ -296,11 +313,12 @@ function WorldControls({ id, config, conditions, onDisturb, sentenceOf, children
 export function LiveWorld() {
   const run = liveTraining.value;
   if (!run) return null;
+  /** @param {string[]} now */
   const words = (now) => (now.length ? html`<b>Now:</b> ${now.join(", ")}` : "Nothing has happened to this robot.");
   return html`
     <section class="world-now" aria-label="Disturbances now">
       <${WorldControls} id="live" config=${run.config} conditions=${conditionsNow(run)} sentenceOf=${words}
-        onDisturb=${(one) => disturb(run, one)} />
+        onDisturb=${(/** @type {Disturbance} */ one) => disturb(run, one)} />
       <${Problem} at="disturb" />
     </section>
   `;
@@ -314,27 +332,31 @@ export const Branch = () => heldRace.value && html`<${BranchOf} key=${heldRace.v
 /** Kept while the replay goes on to another moment. */
 const isBranchOpen = signal(false);
 
+/** @param {{ race: Run }} props */
 function BranchOf({ race }) {
-  const [chosen, setChosen] = useState(/** @type {any[]} */ ([]));
+  const [chosen, setChosen] = useState(/** @type {Disturbance[]} */ ([]));
   const { config } = race;
   // At the end nothing is left to walk: the middle is offered.
   const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
   const before = conditionsAt(disturbancesOf(race), from - 1, config.robot);
   const conditions = conditionsAt([...before, ...chosen].map((one) => ({ ...one, at_step: 0 })), 0, config.robot);
+  /** @param {string[]} now */
   const words = (now) => {
     const pushes = chosen.filter(({ kind }) => kind === PUSH).length ? ["a push"] : [];
     return html`<b>From step ${from}:</b> ${[...now, ...pushes].join(", ") || "as it was"}`;
   };
+  /** @param {Toggled & { currentTarget: EventTarget }} event */
+  const onToggle = ({ target, currentTarget }) => target === currentTarget && (isBranchOpen.value = target.open);
   const start = () => {
     isBranchOpen.value = false;
     branchRace(race, from - 1, chosen);
   };
   return html`
     <details class="more branch" open=${isBranchOpen.value}
-      onToggle=${({ target, currentTarget }) => target === currentTarget && (isBranchOpen.value = target.open)}>
+      onToggle=${onToggle}>
       <summary>Disturb this race</summary>
       <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}
-        onDisturb=${(one) => setChosen((all) => chosenWith(all, one, before, config.robot))}>
+        onDisturb=${(/** @type {Disturbance} */ one) => setChosen((all) => chosenWith(all, one, before, config.robot))}>
         <button type="button" class="secondary" disabled=${!chosen.length || pending.value.branch} onClick=${start}>
           Race on from ${stepShown.value === null ? `step ${from}` : "here"}
         </button>

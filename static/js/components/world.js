@@ -6,7 +6,10 @@ import { fullTitle } from "../settings.js";
 import { served } from "../store.js";
 import { html } from "./elements.js";
 import { Description, MistakeOf } from "./fields.js";
-import { classOf, firstFields, LegPicker } from "./world-controls.js";
+import { classOf, LegPicker } from "./leg-picker.js";
+import { firstFields } from "./world-controls.js";
+
+/** @import { Changed, Disturbance, FieldOption } from "../types.js" */
 
 // ---- named worlds
 
@@ -15,13 +18,18 @@ const LEGS_X = [30, 19, 7, -7, -19, -30];
 const GROUND_Y = 15;
 const ROUGH = "M-36 15l5-4 5 5 6-7 6 6 5-4 5 5 6-6 6 5 5-5 6 6 5-4 6 4";
 
-/** A world from the side: the robot on its ground, drawn by its disturbances. */
+/**
+ * A world from the side: the robot on its ground, drawn by its disturbances.
+ * @param {{ disturbances: Disturbance[] }} props
+ */
 export function WorldPicture({ disturbances }) {
+  /** @param {string} kind */
   const of = (kind) => disturbances.find((one) => one.kind === kind);
   const states = legStates(disturbances);
   const weak = of("weak");
   const [noise, payload, patch, friction] = ["sensor-noise", "payload", "patch", "friction"].map(of);
-  const turned = of("slope") ? `rotate(${-Math.min(20, 1.5 * of("slope").degrees)})` : undefined;
+  const slope = of("slope");
+  const turned = slope ? `rotate(${-Math.min(20, 1.5 * Number(slope.degrees))})` : undefined;
   const body = weak ? 6 : 0;
   return html`
     <svg class="world-picture" viewBox="-38 -22 76 44" aria-hidden="true">
@@ -40,7 +48,7 @@ export function WorldPicture({ disturbances }) {
         })}
         <rect class="side-body" x="-15" y=${body - 4} width="30" height="9" rx="4.5" />
         ${payload && html`
-          <rect class="load" x=${payload.x_m > 0 ? 1 : -5} y=${body - 14} width="10" height="10" rx="1" />
+          <rect class="load" x=${Number(payload.x_m) > 0 ? 1 : -5} y=${body - 14} width="10" height="10" rx="1" />
         `}
       </g>
     </svg>
@@ -70,6 +78,7 @@ export const WorldPicker = () => html`
 
 // ---- disturbances, each with its step
 
+/** @param {string[]} texts */
 const setDisturbances = (texts) => setField("disturb", texts);
 
 /** Disturbances to come, each with its fields; a text of a link that is no disturbance stands as it is. */
@@ -77,6 +86,7 @@ export function Disturbances() {
   const texts = form.value.disturb;
   const worlds = served().worlds.filter(({ disturbances }) => disturbances.length);
   const at_step = Math.floor(form.value.race_steps / 2);
+  /** @param {{ target: HTMLSelectElement }} event */
   const add = ({ target }) => {
     const [what, name] = target.value.split(" ");
     const added = what === "world"
@@ -93,7 +103,7 @@ export function Disturbances() {
       </p>
       ${texts.map((text, number) => html`
         <${DisturbanceRow} key=${number} text=${text} number=${number}
-          onText=${(changed) => setDisturbances(texts.map((one, n) => (n === number ? changed : one)))}
+          onText=${(/** @type {string} */ changed) => setDisturbances(texts.with(number, changed))}
           onRemove=${() => setDisturbances(texts.filter((_, n) => n !== number))} />
       `)}
       <select class="add" aria-label="Add a disturbance" onChange=${add}>
@@ -109,13 +119,16 @@ export function Disturbances() {
   `;
 }
 
+/** @param {{ text: string, number: number, onText: (text: string) => unknown, onRemove: () => unknown }} props */
 function DisturbanceRow({ text, number, onText, onRemove }) {
   const { kind: name, fields } = splitText(text);
   const kind = kindNamed(name);
   const mistake = mistakeInText(text, form.value.simulator);
   const { robot, gait } = form.value;
+  /** @param {string} field */
   const given = (field) => fields.find(([one]) => one === field || one === shortName(field))?.[1] ?? "";
   const legs = given("legs").split(",").map(Number).filter(Boolean);
+  /** @param {number} leg */
   const toggle = (leg) => {
     const chosen = legs.includes(leg) ? legs.filter((one) => one !== leg) : [...legs, leg].sort((a, b) => a - b);
     onText(withField(text, "legs", chosen.join(",")));
@@ -133,11 +146,11 @@ function DisturbanceRow({ text, number, onText, onRemove }) {
           ${kind.fields.legs && html`
             <${LegPicker} azimuths=${azimuthsOf(robot, gait, served().gaits)} onLeg=${toggle}
               states=${new Map(legs.map((leg) => [leg, words]))}
-              verbOf=${(leg) => (legs.includes(leg) ? "Leave out" : "Add")} />
+              verbOf=${(/** @type {number} */ leg) => (legs.includes(leg) ? "Leave out" : "Add")} />
           `}
           ${Object.entries(kind.fields).filter(([, field]) => !field.is_list).map(([field, setting]) => html`
             <${DisturbanceField} key=${field} id=${`disturbance-${number}-${field}`} field=${field} setting=${setting}
-              value=${given(field)} onValue=${(value) => onText(withField(text, field, value))} />
+              value=${given(field)} onValue=${(/** @type {string} */ value) => onText(withField(text, field, value))} />
           `)}
         </div>
       `}
@@ -148,15 +161,24 @@ function DisturbanceRow({ text, number, onText, onRemove }) {
 
 /** Steps are counted from 1 here, and from 0 in texts; the last step is the one before `until`. */
 const AT = "at_step";
+/** @type {Record<string, string>} */
 const TITLES = { at_step: "From step", until_step: "To step" };
 const WHOLE = /^\d+$/;
 
+/**
+ * @param {object} props
+ * @param {string} props.id
+ * @param {string} props.field
+ * @param {FieldOption} props.setting
+ * @param {string} props.value
+ * @param {(value: string) => unknown} props.onValue
+ */
 function DisturbanceField({ id, field, setting, value, onValue }) {
   const title = TITLES[field] ?? fullTitle(setting);
   if (setting.choices.length) {
     return html`
       <label class="disturbance-field" for=${id}>${title}
-        <select id=${id} title=${setting.help} onChange=${({ target }) => onValue(target.value)}>
+        <select id=${id} title=${setting.help} onChange=${(/** @type {Changed} */ { target }) => onValue(target.value)}>
           ${setting.choices.map((one) => html`<option value=${one} selected=${one === value}>${one}</option>`)}
         </select>
       </label>
@@ -165,6 +187,7 @@ function DisturbanceField({ id, field, setting, value, onValue }) {
   const isAt = field === AT;
   const shown = isAt && (value === "" || WHOLE.test(value)) ? String(Number(value) + 1) : value;
   const placeholder = field === "until_step" ? "the end" : String(setting.default ?? "");
+  /** @param {{ target: HTMLInputElement | HTMLSelectElement }} event */
   const take = ({ target }) => {
     const typed = target.value.trim().replaceAll(":", "");
     onValue(isAt && WHOLE.test(typed) ? String(Number(typed) - 1) : typed);

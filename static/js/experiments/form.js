@@ -17,9 +17,8 @@ import { options, served } from "../store.js";
 export const experiments = computed(() =>
   (options.value?.experiments ?? []).map((kind) => {
     // The settings have the defaults of the agents that are chosen.
-    const { settings: _, ...defaults } = kind.defaults;
-    const robots = defaults.robots.map((robot) => presetOf(robot) ?? "");
-    return { ...kind, defaults: { ...defaults, name: "", robots } };
+    const { settings: _, robots, ...defaults } = /** @type {ExperimentValues} */ (kind.defaults);
+    return { ...kind, defaults: { ...defaults, name: "", robots: robots.map((robot) => presetOf(robot) ?? "") } };
   }),
 );
 

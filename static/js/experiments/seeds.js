@@ -134,7 +134,7 @@ function bySetting(trials) {
  * @returns {Setting[]}
  */
 export function repeatable({ settings, worlds = [] }) {
-  const models = new Map(worlds.map((/** @type {Setting} */ { key, plans_with }) => [key, plans_with]));
+  const models = new Map(worlds.map(({ key, plans_with }) => [key, plans_with]));
   return settings.filter(({ blocks, n }) => blocks <= 1 && n > 0)
     .map((one) => ({ ...one, plans_with: models.get(one.key) ?? null }));
 }

@@ -10,6 +10,8 @@ import { Policies } from "./policies.js";
 import { RaceThem } from "./race-them.js";
 import { Results, Settings } from "./tables.js";
 
+/** @import { Compared } from "../../compare.js" */
+
 followCompared();
 
 export function Compare() {
@@ -69,6 +71,7 @@ function TooFew() {
     `;
 }
 
+/** @param {{ one: Compared }} props */
 function ComparedRun({ one }) {
   const { id, letter, title, run, problem } = one;
   return html`
@@ -92,10 +95,14 @@ function ComparedRun({ one }) {
   `;
 }
 
-/** A replay of the first run with this one's robots as ghosts, or of this one with the first's. */
+/**
+ * A replay of the first run with this one's robots as ghosts, or of this one with the first's.
+ * @param {{ one: Compared }} props
+ */
 function GhostLink({ one }) {
   const [first] = comparable.value;
-  if (!first?.run || first.id === one.id || first.run.kind !== one.run.kind || !first.run.progress.done) return null;
+  if (!first?.run || !one.run || first.id === one.id) return null;
+  if (first.run.kind !== one.run.kind || !first.run.progress.done) return null;
   const [shown, ghost] = isActive(one.run) ? [one, first] : [first, one];
   if (isActive(ghost.run)) return null;
   const words = `${shown.letter} with ${ghost.letter} as ghost`;

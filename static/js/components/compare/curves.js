@@ -5,6 +5,9 @@ import { largest } from "../../scale.js";
 import { Chart } from "../charts.js";
 import { html } from "../elements.js";
 
+
+/** @typedef {typeof comparedCurves.value} Comparison */
+
 const MIN_TOP_M = 0.1;
 const HEADROOM = 1.16;
 
@@ -20,20 +23,24 @@ export function Curves() {
   `;
 }
 
+/** @param {Comparison["shown"][number]["curve"]} curve */
+const lastOf = ({ points }) => points[points.length - 1];
+
+/** @param {{ shown: Comparison["shown"] }} props */
 function CurvesChart({ shown }) {
   const lines = shown.map(({ one, curve }) => ({
     name: `${one.letter}: ${one.title}`, color: one.color, dash: one.dash, xs: curve.points.map(({ step }) => step),
     ys: curve.points.map(({ distance_m }) => distance_m),
-    end: `${one.letter} ${metres(curve.points.at(-1).distance_m)}`,
+    end: `${one.letter} ${metres(lastOf(curve).distance_m)}`,
   }));
   const distances = lines.flatMap(({ ys }) => ys);
   const xs = [...new Set(lines.flatMap((line) => line.xs))].sort((a, b) => a - b);
-  const ends = shown.map(({ one, curve: { points } }) =>
-    `${one.letter} ${metres(points.at(-1).distance_m)} after ${whole(points.at(-1).step)}`);
+  const ends = shown.map(({ one, curve }) =>
+    `${one.letter} ${metres(lastOf(curve).distance_m)} after ${whole(lastOf(curve).step)}`);
   const x = {
     axis: `practice of ${shown.map(({ one }) => one.id).join(" ")}`,
     max: Math.max(...shown.map(({ curve }) => curve.to)), unit: "steps of practice",
-    text: (step) => count(step, "step"),
+    text: (/** @type {number} */ step) => count(step, "step"),
   };
   const y = {
     min: -largest(distances.map((one) => -one), 0), max: HEADROOM * largest(distances, MIN_TOP_M),

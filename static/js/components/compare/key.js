@@ -1,7 +1,9 @@
 // Number, colour and title of a compared run in charts and tables.
 import { html } from "../elements.js";
 
-/** Its line in the charts: colour and dashes. */
+/** @import { Compared } from "../../compare.js" */
+
+/** Its line in the charts: colour and dashes. @param {{ one: Compared }} props */
 export const Key = ({ one: { color, dash, letter } }) => html`
   <span class="run-key" style=${{ "--agent": color }}>
     <svg width="28" height="8" aria-hidden="true">

@@ -8,6 +8,9 @@ import { fineMillimetres, moveInWords, stateCells, stateInWords } from "../../st
 import { html } from "../elements.js";
 import { Key } from "./key.js";
 
+/** @import { DifferentState, WholeTable } from "../../compare-policies.js" */
+/** @import { Changed, FootCells } from "../../types.js" */
+
 const FIRST_ROWS = 12;
 
 /** The two that were chosen; null takes the first two. */
@@ -41,7 +44,8 @@ export function Policies() {
 }
 
 function Choice() {
-  const choose = (number) => ({ target }) => {
+  /** @param {number} number */
+  const choose = (number) => (/** @type {Changed} */ { target }) => {
     const ids = two.value.map(({ id }) => id);
     // Choosing the other one exchanges them.
     if (ids[1 - number] === target.value) ids[1 - number] = ids[number];
@@ -87,6 +91,7 @@ function Answered() {
   return html`<${Differences} tables=${[one, other]} />`;
 }
 
+/** @param {{ tables: WholeTable[] }} props */
 function Differences({ tables }) {
   const [isAll, setAll] = useState(false);
   const [a, b] = two.value;
@@ -109,6 +114,7 @@ function Differences({ tables }) {
   `;
 }
 
+/** @param {{ shown: DifferentState[], grid: FootCells }} props */
 const States = ({ shown, grid }) => html`
   <div class="scroller" tabindex="0" role="region" aria-label="States in which the best moves differ">
     <table class="side-by-side states">

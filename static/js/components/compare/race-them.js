@@ -4,6 +4,9 @@ import { isOperator } from "../../selectors.js";
 import { conditionsOfRace, obstacle, raceThem } from "../../table-race.js";
 import { html, Problem } from "../elements.js";
 
+/** @import { Run } from "../../types.js" */
+
+/** @param {{ runs: Run[] }} props */
 export function RaceThem({ runs }) {
   if (!isOperator.value || runs.length < 2) return null;
   const problem = obstacle(runs);

@@ -4,6 +4,9 @@ import { comparable, comparedResults, comparedSettings } from "../../compare.js"
 import { html } from "../elements.js";
 import { Key } from "./key.js";
 
+/** @import { Changed } from "../../types.js" */
+/** @import { Row } from "../../compare.js" */
+
 const isOnlyDifferent = signal(false);
 
 export const Results = () => html`
@@ -24,7 +27,7 @@ export function Settings() {
         <span class="dim">${different.length} of ${rows.length} differ</span>
         <label class="check">
           <input type="checkbox" checked=${isOnlyDifferent.value}
-            onChange=${({ target }) => (isOnlyDifferent.value = target.checked)} />
+            onChange=${(/** @type {Changed} */ { target }) => (isOnlyDifferent.value = target.checked)} />
           Only differences
         </label>
       </div>
@@ -35,7 +38,7 @@ export function Settings() {
   `;
 }
 
-/** `isMarked`: rows that differ are marked. */
+/** `isMarked`: rows that differ are marked. @param {{ label: string, rows: Row[], isMarked?: boolean }} props */
 const Columns = ({ label, rows, isMarked = false }) => html`
   <div class="scroller" tabindex="0" role="region" aria-label=${`${label} side by side`}>
     <table class="side-by-side" style=${{ "--columns": comparable.value.length }}>

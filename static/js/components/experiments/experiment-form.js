@@ -18,12 +18,14 @@ import { EstimateNote, goToField, Held, html, Icon, Mistake, Problem, UnknownPar
 import { helpFor } from "../fields.js";
 import { WorldPicture } from "../world.js";
 
-/** @import { SettingValue } from "../../types.js" */
+/** @import { Changed, ExperimentValue, SettingOption, SettingValue } from "../../types.js" */
+/** @import { ComponentChildren } from "preact" */
 
-/** Folded on a phone once there is a report. */
+/** Folded on a phone once there is a report. @param {{ isFirst: boolean }} props */
 export function ExperimentForm({ isFirst }) {
   const [isOpen, setOpen] = useState(false);
   const isFolded = isNarrow.value && !isFirst;
+  /** @param {{ target: HTMLDetailsElement }} event */
   const onToggle = ({ target }) => isFolded && setOpen(target.open);
   return html`
     <section class="panel experiment-form" aria-labelledby="new-experiment">
@@ -39,6 +41,7 @@ export function ExperimentForm({ isFirst }) {
 /**
  * Fields of the grid that the chosen experiment takes: first the practice and the settings of the chosen agents,
  * the others further down.
+ * @param {boolean} isMain
  */
 function gridOf(isMain) {
   const main = ["steps", ...Object.keys(agentSettings.value)].filter(takesField);
@@ -85,12 +88,12 @@ function StartButton() {
     <${EstimateNote} words=${experimentEstimate} />
     ${isHeld && html`
       <${Held} id="held-experiment" mistakes=${mistakes.value} nameOf=${nameOf}
-        onField=${(field) => goToField(`experiment-${field}`)} />
+        onField=${(/** @type {string} */ field) => goToField(`experiment-${field}`)} />
     `}
   `;
 }
 
-/** A field's name as this form shows it. */
+/** A field's name as this form shows it. @param {string} field */
 const nameOf = (field) => (field === "seed" ? FIRST_SEED : fieldTitle(field));
 const FIRST_SEED = "First seed";
 
@@ -110,7 +113,10 @@ const Cards = () => html`
   </fieldset>
 `;
 
-/** Fields that are combined: one value each, or several. */
+/**
+ * Fields that are combined: one value each, or several.
+ * @param {{ fields: string[], children: ComponentChildren }} props
+ */
 const Grid = ({ fields, children }) => fields.length > 0 && html`
   <fieldset class="grid-fields">
     <legend class=${fields.length > 1 ? "" : "sr-only"}>Every combination of</legend>
@@ -151,7 +157,8 @@ function placeSummary() {
 const SimulatorField = () => html`
   <div class="field">
     <label for="experiment-simulator">Simulator</label>
-    <select ...${attributesOf("simulator")} onChange=${({ target }) => setField("simulator", target.value)}>
+    <select ...${attributesOf("simulator")}
+      onChange=${(/** @type {Changed} */ { target }) => setField("simulator", target.value)}>
       ${wrong.value.simulator && html`
         <option value="" selected disabled>${wrong.value.simulator.text || "(empty)"}: not valid</option>
       `}
@@ -170,7 +177,8 @@ const NameField = () => html`
   <div class="field">
     <label for="experiment-name">Name</label>
     <input type="text" ...${attributesOf("name")} placeholder="optional"
-      value=${wrong.value.name?.text ?? values.value.name} onInput=${({ target }) => enter("name", target.value)} />
+      value=${wrong.value.name?.text ?? values.value.name}
+      onInput=${(/** @type {Changed} */ { target }) => enter("name", target.value)} />
     <${MistakeOf} field="name" />
     <${Help} field="name" />
   </div>
@@ -178,25 +186,29 @@ const NameField = () => html`
 
 // ---- what is not valid, and why
 
-/** The attributes of a field's control: its id, whether it is marked, and what describes it. */
+/** The attributes of a field's control: its id, whether it is marked, and what describes it. @param {string} field */
 const attributesOf = (field) => ({
   id: `experiment-${field}`,
   "aria-invalid": wrong.value[field] || refusedFields("experiment").includes(field) ? "true" : undefined,
   "aria-describedby": wrong.value[field] ? `wrong-${field} about-${field}` : `about-${field}`,
 });
 
+/** @param {{ field: string }} props */
 const MistakeOf = ({ field }) => html`<${Mistake} id=${`wrong-${field}`}>${wrong.value[field]?.mistake}<//>`;
 
 // ---- help: a sentence below each field
 
+/** @param {{ field: string }} props */
 const Help = ({ field }) => html`<p class="sentence" id=${`about-${field}`}>${helpFor(field)}</p>`;
 
 // ---- a choice of several out of a few; with none the start is held
 
-/** `choices`: [value, title]. */
+/** `choices`: [value, title]. @param {{ field: string, label: string, choices: [string, string][] }} props */
 function CheckList({ field, label, choices }) {
   const chosen = /** @type {string[]} */ (wrong.value[field]?.text.split(",") ?? values.value[field]);
+  /** @param {string} name */
   const toggle = (name) => {
+    /** @param {string} one */
     const isChosen = (one) => (one === name ? !chosen.includes(one) : chosen.includes(one));
     enter(field, choices.map(([one]) => one).filter(isChosen).join(","));
   };
@@ -229,7 +241,9 @@ function worldsChosen() {
 
 function Worlds() {
   const { named, others } = worldsChosen();
+  /** @param {string} name */
   const toggle = (name) => {
+    /** @param {string} one */
     const isChosen = (one) => (one === name ? !named.includes(one) : named.includes(one));
     enter("worlds", [...served().worlds.map((one) => one.name).filter(isChosen), ...others].join(","));
   };
@@ -253,10 +267,14 @@ function Worlds() {
   `;
 }
 
-/** Worlds without a name, as on the command line. The typed text stays while it means the same. */
+/**
+ * Worlds without a name, as on the command line. The typed text stays while it means the same.
+ * @param {{ named: string[], others: string }} props
+ */
 function OtherWorlds({ named, others }) {
   const [draft, setDraft] = useState("");
   const isKept = splitWorlds(draft).join("; ") === others;
+  /** @param {{ target: HTMLInputElement }} event */
   const onInput = ({ target }) => {
     setDraft(target.value);
     enter("worlds", [...named, target.value].join(","));
@@ -277,9 +295,11 @@ const ToleranceField = () => html`
 
 // ---- text fields: a whole number, or a list of values; what is typed stays as it is
 
+/** @param {{ field: string, label: string, text: string, inputmode: string, placeholder?: string }} props */
 function TypedField({ field, label, text, inputmode, placeholder = undefined }) {
   const [draft, setDraft] = useState(/** @type {string | null} */ (null));
   const isKept = draft !== null && String(parse(field, draft).value) === String(values.value[field]);
+  /** @param {{ target: HTMLInputElement }} event */
   const onInput = ({ target }) => {
     setDraft(target.value);
     enter(field, target.value);
@@ -295,14 +315,18 @@ function TypedField({ field, label, text, inputmode, placeholder = undefined }) 
   `;
 }
 
-/** One whole number. */
+/** One whole number. @param {{ field: string, label: string }} props */
 const CountField = ({ field, label }) => html`
   <${TypedField} field=${field} label=${label} text=${String(values.value[field])} inputmode="numeric" />
 `;
 
+/** @param {ExperimentValue} list */
 const joined = (list) => /** @type {SettingValue[]} */ (list).join(", ");
 
-/** One value of a setting, or several; none where each agent has its own default. */
+/**
+ * One value of a setting, or several; none where each agent has its own default.
+ * @param {{ field: string, setting: SettingOption }} props
+ */
 function ValuesField({ field, setting }) {
   const isOwn = joined(defaults.value[field]) === "";
   return html`

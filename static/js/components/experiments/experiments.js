@@ -12,6 +12,8 @@ import { ExperimentForm } from "./experiment-form.js";
 import { StripKey } from "./report-tools.js";
 import { Report } from "./report.js";
 
+/** @import { Run } from "../../types.js" */
+
 export function Experiments() {
   const run = chosenRun.value;
   const isOffline = connection.value === "reconnecting";
@@ -68,9 +70,11 @@ const Older = () => html`
   <div class="older"><button class="secondary" onClick=${experimentList.loadMore}>Show older experiments</button></div>
 `;
 
+/** @param {{ run: Run }} props */
 function Row({ run }) {
   const isChosen = chosenRun.value?.id === run.id;
   const pace = paceOf(run);
+  /** @param {MouseEvent} event */
   const choose = (event) => {
     event.preventDefault();
     wantedRun.value = run.id;
@@ -107,6 +111,7 @@ const OPERATOR_WORDS =
   "Choose an experiment and press the button. Its report fills here while trials end; it can be paused and resumed.";
 const SPECTATOR_WORDS = "No experiment has been run here. The report of the first one will fill here.";
 
+/** @param {{ points: number[], published: number, y: number }} props */
 const Sketch = ({ points, published, y }) => html`
   <line class="rule" x1="0" x2="100%" y1=${y} y2=${y} />
   ${points.map((x, n) => html`<circle cx=${`${x}%`} cy=${y + SCATTER_PX[n % 3]} r="4" />`)}

@@ -10,10 +10,14 @@ import { Chart } from "../charts.js";
 import { html } from "../elements.js";
 import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, PlaceWords, UnitSwitch } from "./report-tools.js";
 
+/** @import { Line } from "../../chart.js" */
+/** @import { CurveOfSetting, Summary } from "../../types.js" */
+
+/** @param {{ known: Summary }} props */
 export function FigureFour({ known }) {
   const curves = known.curves.filter(({ steps }) => steps.length > 0);
   const places = placesOf(curves);
-  const [chosen, setChosen] = useState(null);
+  const [chosen, setChosen] = useState(/** @type {string | null} */ (null));
   if (!places.length) return null;
   const place = places.find(({ key }) => key === chosen) ?? places[0];
   const here = curves.filter((one) => placeOf(one) === place.key).map(toUnit);
@@ -44,21 +48,33 @@ export function FigureFour({ known }) {
   `;
 }
 
-/** The lines of references of a curve's gait that are known, in the unit that is shown. */
+/** References of a curve's gait. @typedef {{ greedy: number | null, best: number | null }} Levels */
+/**
+ * A curve in the unit that is shown, with its references.
+ * @typedef {Line & Pick<CurveOfSetting, "agent" | "gait" | "walkers" | "best_known_m"> & Levels} ShownCurve
+ */
+
+/**
+ * The lines of references of a curve's gait that are known, in the unit that is shown.
+ * @param {Levels} one
+ */
 const levelsOf = ({ greedy, best }) => [
   { name: agentOf("greedy").title, kind: "greedy", value: greedy },
   { name: "Best known", kind: "best-known", value: best },
-].filter(({ value }) => value !== null);
+].flatMap(({ value, ...level }) => (value === null ? [] : [{ ...level, value }]));
 
-/** One of each kind. */
+/** One of each kind. @param {ShownCurve[]} curves */
 const keyOf = (curves) => [...new Map(curves.flatMap(levelsOf).map((one) => [one.kind, one])).values()];
 
+/** @param {ShownCurve} one */
 const lastOf = ({ ys }) => shown(ys.at(-1));
+/** @param {{ agent: string }} one */
 const titleOf = ({ agent }) => agentOf(agent).title;
 
+/** @param {{ gait: string, curves: ShownCurve[], axes: Pick<Parameters<typeof Chart>[0], "x" | "y"> }} props */
 function Gait({ gait, curves, axes }) {
   const levels = levelsOf(curves[0]);
-  const ends = curves.map((one) => `${titleOf(one)} ${lastOf(one)} after ${count(one.xs.at(-1), "step")}`);
+  const ends = curves.map((one) => `${titleOf(one)} ${lastOf(one)} after ${count(one.xs.at(-1) ?? 0, "step")}`);
   const lines = levels.map(({ name, value }) => `; ${name.toLowerCase()} ${shown(value)}`);
   const label = `${gaitTitle(gait)}: ${ends.join(", ")}${lines.join("")}`;
   const walkers = curves.length === 1 ? walkersOf(curves[0]) : "";
@@ -73,11 +89,16 @@ function Gait({ gait, curves, axes }) {
   `;
 }
 
-const walkersOf = ({ walkers }) => (Number.isFinite(walkers.at(-1)) ? `, ${percentage(walkers.at(-1))} walk` : "");
+/** @param {{ walkers: (number | null)[] }} one */
+const walkersOf = ({ walkers }) => {
+  const last = walkers.at(-1) ?? null;
+  return last === null ? "" : `, ${percentage(last)} walk`;
+};
 
-/** A curve as a line of a chart, in the chosen unit. */
+/** A curve as a line of a chart, in the chosen unit. @type {(one: CurveOfSetting) => ShownCurve} */
 function toUnit(one) {
   const factor = factorOf(one) ?? 0;
+  /** @param {(number | null)[]} list */
   const all = (list) => list.map((value) => inUnit(value, factor));
   return {
     ...one,

@@ -9,6 +9,10 @@ import { agentTitle, fieldTitle, gaitTitle, observationTitle, robotTitle, varied
 import { DotStrip } from "../dot-strip.js";
 import { html } from "../elements.js";
 
+/** @import { ClaimView, Finding, NarrativeSection, PooledView, Setting } from "../../types.js" */
+/** @import { Interval } from "../../types.js" */
+/** @import { Summary, VersusView, WallLane } from "../../types.js" */
+
 // ---- all gaits together: how near learners come to greedy, how many walk, how often they beat it at time-out
 
 const BEATS_GREEDY = "Beats it at time-out";
@@ -24,6 +28,7 @@ const POOLED_COLUMNS = [
 const MARKS = [{ value: 1, kind: "greedy" }, { value: 0.5, kind: "half" }];
 const POOLED_VERDICTS = { yes: "more often than not", no: "less often than not", "not established": "not established" };
 
+/** @param {{ known: Summary }} props */
 export function AtAGlance({ known }) {
   const pooled = (known.pooled ?? []).filter(({ relative }) => relative);
   const points = useMemo(() => pooled.map((one) => pointsOf(known, one)), [known]);
@@ -54,9 +59,10 @@ export function AtAGlance({ known }) {
   `;
 }
 
+/** @param {{ one: PooledView, varied: string[], points: number[], high: number, isRaced: boolean }} props */
 function PooledRow({ one, varied, points, high, isRaced }) {
-  const { iqm, low } = one.relative;
-  const interval = low === null ? null : `${Math.round(100 * low)} – ${percentage(one.relative.high)}`;
+  const { iqm, low, high: end } = /** @type {Interval} */ (one.relative);
+  const interval = low === null || end === null ? null : `${Math.round(100 * low)} – ${percentage(end)}`;
   const label = `${points.length} seeds, typically ${percentage(iqm)} of greedy’s distance`;
   return html`
     <tr role="row">
@@ -68,8 +74,8 @@ function PooledRow({ one, varied, points, high, isRaced }) {
       <td role="cell" data-label="Interquartile mean" class="num">
         <b>${percentage(iqm)}</b>${interval && html`<br /><span class="dim">${interval}</span>`}
       </td>
-      <td role="cell" data-label="Share that walks" class="num">${percentage(one.walkers.share)}</td>
-      <td role="cell" data-label="Reach greedy" class="num">${percentage(one.reaches_greedy.share)}</td>
+      <td role="cell" data-label="Share that walks" class="num">${percentage(one.walkers?.share ?? NaN)}</td>
+      <td role="cell" data-label="Reach greedy" class="num">${percentage(one.reaches_greedy?.share ?? NaN)}</td>
       ${isRaced && html`
         <td role="cell" data-label=${BEATS_GREEDY} class="num"><${Beats} beats=${one.beats_greedy} /></td>
       `}
@@ -77,14 +83,20 @@ function PooledRow({ one, varied, points, high, isRaced }) {
   `;
 }
 
+/** @param {{ beats: PooledView["beats_greedy"] }} props */
 const Beats = ({ beats }) =>
   beats ? html`${percentage(beats.share)}<br /><span class="dim">${POOLED_VERDICTS[beats.verdict]}</span>` : "–";
 
 /** Fields that have words of their own in the name of a row. */
 const NAMED_APART = ["agent", "observation", "robot", "steps"];
 
-/** The fields in which a row differs from the others. */
+/**
+ * The fields in which a row differs from the others.
+ * @param {PooledView} one
+ * @param {string[]} varied
+ */
 function nameOf(one, varied) {
+  /** @param {string} field */
   const differs = (field) => varied.includes(field);
   const agent = [
     differs("agent") && agentTitle(one.agent),
@@ -98,9 +110,14 @@ function nameOf(one, varied) {
   return [...agent, ...place, ...own].filter(Boolean).join(", ");
 }
 
-/** Every seed of the gaits that were pooled, as shares of greedy's distance. */
+/**
+ * Every seed of the gaits that were pooled, as shares of greedy's distance.
+ * @param {Summary} one
+ * @param {PooledView} one
+ */
 function pointsOf({ settings, parameters }, one) {
   const greedy = greedyTotals(settings);
+  /** @param {Setting} setting */
   const isPooled = (setting) =>
     setting.role === "learner" && placeOf(setting) === placeOf(one) &&
     ["agent", ...parameters].every((field) => setting[field] === one[field]);
@@ -115,6 +132,7 @@ function pointsOf({ settings, parameters }, one) {
 const VERSUS_VERDICTS = { yes: "better", no: "worse", "not established": "not established" };
 const VERSUS_COLUMNS = ["Place", "First", "Second", "Chance", "The first is"];
 
+/** @param {{ known: Summary }} props */
 export const Versus = ({ known }) => known.versus?.length > 0 && html`
   <section class="panel versus" aria-labelledby="versus">
     <h2 id="versus">Learners against each other</h2>
@@ -128,9 +146,10 @@ export const Versus = ({ known }) => known.versus?.length > 0 && html`
   </section>
 `;
 
+/** @param {{ one: VersusView }} props */
 function VersusRow({ one }) {
   const place = [observationTitle(one.observation), robotTitle(one.robot).toLowerCase(), `${whole(one.steps)} steps`];
-  const interval = one.low === null ? "" : `${percentage(one.low)} – ${percentage(one.high)}`;
+  const interval = one.low === null || one.high === null ? "" : `${percentage(one.low)} – ${percentage(one.high)}`;
   return html`
     <tr>
       <th scope="row">${gaitTitle(one.gait)}, <span class="dim">${place.join(", ")}</span></th>
@@ -143,6 +162,7 @@ function VersusRow({ one }) {
 
 // ---- the paper's claims with verdicts over all seeds, in each case that was tried
 
+/** @type {Record<string, string[]>} */
 const VERDICTS = {
   holds: ["holds", "✓", "Holds"],
   "does not hold": ["fails", "✕", "Does not hold"],
@@ -150,6 +170,7 @@ const VERDICTS = {
   depends: ["mixed", "±", "Depends"],
 };
 
+/** @param {{ claims: ClaimView[], isComplete: boolean }} props */
 export const Claims = ({ claims, isComplete }) => claims.length > 0 && html`
   <section class="panel claims" aria-labelledby="claims">
     <h2 id="claims">The paper’s claims over all seeds</h2>
@@ -158,6 +179,7 @@ export const Claims = ({ claims, isComplete }) => claims.length > 0 && html`
   </section>
 `;
 
+/** @param {{ claim: string, criterion: string, verdict: string, evidence: string, where: Finding[] }} props */
 function Claim({ claim, criterion, verdict, evidence, where }) {
   const hasCases = where.length > 1;
   return html`
@@ -178,10 +200,12 @@ function Claim({ claim, criterion, verdict, evidence, where }) {
   `;
 }
 
+/** @param {{ label: string, verdict: string, evidence: string }} props */
 const Case = ({ label, verdict, evidence }) => html`
   <li><${Verdict} verdict=${verdict} /><p><b>${label}</b> <span class="dim">${evidence}</span></p></li>
 `;
 
+/** @param {{ verdict: string }} props */
 function Verdict({ verdict }) {
   const [kind, sign, word] = VERDICTS[verdict] ?? ["open", "?", verdict];
   return html`<p class=${`verdict ${kind}`}><span aria-hidden="true">${sign}</span>${word}</p>`;
@@ -189,6 +213,7 @@ function Verdict({ verdict }) {
 
 // ---- conclusions in prose, written by the server from this run's numbers
 
+/** @param {{ parts: NarrativeSection[] }} props */
 export const Narrative = ({ parts }) => parts.length > 0 && html`
   <section class="panel narrative" aria-label="Findings">
     ${parts.map(({ heading, text }) => html`
@@ -200,6 +225,7 @@ export const Narrative = ({ parts }) => parts.length > 0 && html`
 
 // ---- races under the real clock: decisions cost the time measured on the machine, not the paper's price
 
+/** @param {{ timed: Summary["timed"] }} props */
 export function FairClocks({ timed }) {
   if (!timed.length) return null;
   const agents = timed[0].lanes.map(({ agent }) => agent);
@@ -225,6 +251,7 @@ export function FairClocks({ timed }) {
   `;
 }
 
+/** @param {{ race: Summary["timed"][number] }} props */
 const Race = ({ race }) => html`
   <tr>
     <th scope="row">
@@ -235,6 +262,7 @@ const Race = ({ race }) => html`
   </tr>
 `;
 
+/** @param {{ lane: WallLane }} props */
 function Lane({ lane }) {
   const distance = metres(lane.finished_distance_m);
   const perDecision = decision(lane.decision_s / served().defaults.race.steps);

@@ -6,9 +6,14 @@ import { options, served } from "../../store.js";
 import { observationTitle, robotTitle } from "../../titles.js";
 import { html, Segments } from "../elements.js";
 
+/** @import { Described, Place } from "../../types.js" */
+/** @import { ComponentChildren } from "preact" */
+
 // ---- the place: observation, robot and foot grid; hidden where there is only one
 
+/** @param {Place} place @param {Place[]} places */
 const titleOf = (place, places) => {
+  /** @param {keyof Place} field */
   const differs = (field) => new Set(places.map((one) => one[field])).size > 1;
   const parts = [
     observationTitle(place.observation),
@@ -19,15 +24,17 @@ const titleOf = (place, places) => {
   return sentence(parts.filter(Boolean).join(", "));
 };
 
+/** @param {Described[] | undefined} list @param {string} name */
 const descriptionOf = (list, name) => list?.find((one) => one.name === name)?.description ?? "";
 
-/** The observation and the robot of a place, explained. */
+/** The observation and the robot of a place, explained. @param {{ place: Place }} props */
 export function PlaceWords({ place: { observation, robot } }) {
   const about = descriptionOf(options.value?.observations, observation);
   const words = [`${sentence(observationTitle(observation))}:`, about, descriptionOf(options.value?.robots, robot)];
   return html`<p class="dim">${words.filter(Boolean).join(" ")}</p>`;
 }
 
+/** @param {{ places: Place[], value: number, onValue: (value: string) => unknown }} props */
 export function PlaceSwitch({ places, value, onValue }) {
   if (places.length < 2) return null;
   const choices = places.map((one) => [one.key, titleOf(one, places)]);
@@ -35,12 +42,16 @@ export function PlaceSwitch({ places, value, onValue }) {
 }
 
 export const UnitSwitch = () => html`
-  <${Segments} label="Unit of distances" choices=${UNITS} value=${unit.value} onValue=${(one) => (unit.value = one)} />
+  <${Segments} label="Unit of distances" choices=${UNITS} value=${unit.value}
+    onValue=${(/** @type {string} */ one) => (unit.value = one)} />
 `;
 
 const TYPICAL = html`
   <line class="interval" x1="2" x2="18" y1="8" y2="8" /><line class="typical" x1="10" x2="10" y1="3" y2="13" />
 `;
+/** @typedef {"seed" | "typical" | "greedy" | "best-known" | "published"} SignName */
+
+/** @type {Record<SignName, [string, ComponentChildren]>} */
 const SIGNS = {
   seed: ["one seed", html`<circle class="dot-of-seed" cx="10" cy="8" r="3.5" />`],
   typical: ["interquartile mean, 95 % interval", TYPICAL],
@@ -49,12 +60,13 @@ const SIGNS = {
   published: ["the paper", html`<path class="mark published" d="M10 2 16 8 10 14 4 8z" />`],
 };
 
+/** @param {{ name: SignName }} props */
 const Sign = ({ name }) => html`
   <span><svg class="dots" width="20" height="16" aria-hidden="true">${SIGNS[name][1]}</svg>${SIGNS[name][0]}</span>
 `;
 
-/** The legend of a dot strip. */
-export const StripKey = ({ signs = Object.keys(SIGNS), color }) => html`
+/** The legend of a dot strip. @param {{ signs?: SignName[], color: string | undefined }} props */
+export const StripKey = ({ signs = /** @type {SignName[]} */ (Object.keys(SIGNS)), color }) => html`
   <p class="strip-key" style=${color && { "--agent": color }}>${signs.map((name) => html`<${Sign} name=${name} />`)}</p>
 `;
 
@@ -80,7 +92,10 @@ export const LevelKey = ({ levels }) => levels.map(({ kind, name }) => html`
   </span>
 `);
 
-/** The colours of agents, and what else a chart has. */
+/**
+ * The colours of agents, and what else a chart has.
+ * @param {{ agents: string[], children: ComponentChildren }} props
+ */
 export const AgentKey = ({ agents, children }) => html`
   <p class="strip-key">
     ${agents.map(agentOf).map(({ color, title }) => html`

@@ -14,10 +14,11 @@ import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
 import { Worlds } from "./worlds.js";
 
-/** @import { Summary } from "../../types.js" */
+/** @import { Run, State, Summary, Verb } from "../../types.js" */
 
 const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable, league: Worlds, recovery: Worlds };
 
+/** @param {{ run: Run }} props */
 export function Report({ run }) {
   const known = summary.value;
   // Progress changes several times a second, the summary seldom.
@@ -30,6 +31,7 @@ export function Report({ run }) {
   `;
 }
 
+/** @param {{ known: Summary }} props */
 function Findings({ known }) {
   const Figure = FIGURES[known.experiment];
   return html`
@@ -45,6 +47,7 @@ function Findings({ known }) {
   `;
 }
 
+/** @type {Partial<Record<State, string>>} */
 const WORDS = {
   queued: "Waiting in the queue.",
   running: "Waiting for the first trials. Agents that look ahead come first, then one seed after the other.",
@@ -52,6 +55,7 @@ const WORDS = {
   failed: "No trial was completed.",
 };
 
+/** @param {{ run: Run }} props */
 const Waiting = ({ run }) => html`
   <section class="panel waiting" aria-label="Report">
     <div class="no-rows" aria-hidden="true">${[0, 1, 2, 3].map(() => html`<i></i>`)}</div>
@@ -61,6 +65,7 @@ const Waiting = ({ run }) => html`
 
 // ---- the head: the experiment's state, its actions and its downloads
 
+/** @param {{ run: Run }} props */
 function ReportHead({ run }) {
   const pace = paceOf(run);
   const isUnderWay = isActive(run) || run.state === "interrupted";
@@ -85,12 +90,14 @@ function ReportHead({ run }) {
   `;
 }
 
+/** @type {Partial<Record<State, string>>} */
 const NOTES = {
   paused: "Paused. Finished trials are kept, and no core is used.",
   stopped: "Stopped. The report covers the completed trials. Resume to run only the rest.",
   interrupted: "The server ended before the experiment did. Finished trials are kept; resume to run only the rest.",
 };
 
+/** @param {{ run: Run }} props */
 function Note({ run }) {
   if (run.state === "failed") {
     return html`
@@ -104,6 +111,7 @@ function Note({ run }) {
   return html`<p class="notice">${NOTES[run.state]} ${run.state === "stopped" && run.error}</p>`;
 }
 
+/** @param {{ run: Run }} props */
 function Actions({ run }) {
   if (!isOperator.value) return null;
   return html`
@@ -116,12 +124,14 @@ function Actions({ run }) {
   `;
 }
 
+/** @param {{ run: Run, verb: Verb, icon: string, title: string }} props */
 const CommandButton = ({ run, verb, icon, title }) => html`
   <button class="secondary compact" disabled=${pending.value[run.id]} onClick=${() => command(run, verb)}>
     <${Icon} name=${icon} />${title}
   </button>
 `;
 
+/** @param {{ run: Run }} props */
 function DeleteButton({ run }) {
   const [isSure, setSure] = useState(false);
   const onClick = () => (isSure ? deleteExperiment(run) : setSure(true));
@@ -132,6 +142,7 @@ function DeleteButton({ run }) {
   `;
 }
 
+/** @param {{ run: Run }} props */
 function Downloads({ run }) {
   const files = run.result?.files ?? [];
   const figures = files.filter((name) => /\.(png|svg|pdf)$/.test(name));
@@ -149,16 +160,19 @@ function Downloads({ run }) {
   `;
 }
 
+/** @param {{ run: Run }} props */
 const ReportLink = ({ run }) => html`
   <a class="report-link" href=${reportAddress(run)} target="_blank" rel="noopener">Open the report</a>
 `;
 
+/** @param {{ run: Run, name: string }} props */
 const Figure = ({ run, name }) => html`
   <li><a href=${fileAddress(run, name)} download>${name.split("/").at(-1)}</a></li>
 `;
 
 // ---- trials without a distance, with the reasons
 
+/** @param {{ trials: Summary["trials"] }} props */
 function LeftOut({ trials }) {
   const aside = trials.set_aside ?? [];
   const failures = trials.failures ?? [];
@@ -187,6 +201,7 @@ function LeftOut({ trials }) {
 
 // ---- what is needed to repeat it: seeds, versions, machine and time
 
+/** @param {(string | 0 | false | null | undefined)[]} parts */
 const joined = (parts) => parts.filter(Boolean).join(", ");
 
 
@@ -203,6 +218,7 @@ const versionsOf = ({ versions = {} }) =>
 /** @param {Summary} known */
 const machineOf = ({ machine = {} }) => joined([machine.platform, machine.cores && count(machine.cores, "core")]);
 
+/** @param {{ cost: Summary["cost"] }} one */
 const timeOf = ({ cost }) =>
   cost && joined([
     cost.wall_s && duration(cost.wall_s),
@@ -210,6 +226,7 @@ const timeOf = ({ cost }) =>
     cost.workers && count(cost.workers, "worker"),
   ]);
 
+/** @param {{ known: Summary }} props */
 function Making({ known }) {
   const { seeds, seed } = known.config;
   const rows = [

@@ -9,12 +9,17 @@ import { count, metres } from "../../format.js";
 import { isOperator } from "../../selectors.js";
 import { html, Problem } from "../elements.js";
 
+/** @import { Changed, Run, Setting, Summary, Toggled } from "../../types.js" */
+
+/** A trial, and the run here that repeats it. @typedef {NonNullable<ReturnType<typeof seedsOf>>[number]} SeedRow */
+
+/** @param {{ known: Summary }} props */
 export function Seeds({ known }) {
   const settings = repeatable(known);
   if (settings.length === 0) return null;
   return html`
     <section class="panel seeds" id="seeds" aria-labelledby="seeds-title">
-      <details open=${isOpen.value} onToggle=${({ target }) => (isOpen.value = target.open)}>
+      <details open=${isOpen.value} onToggle=${(/** @type {Toggled} */ { target }) => (isOpen.value = target.open)}>
         <summary><h2 id="seeds-title">One seed, run here</h2></summary>
         ${isOpen.value && html`
           <${Chosen} settings=${settings} parameters=${known.parameters} />
@@ -24,6 +29,7 @@ export function Seeds({ known }) {
   `;
 }
 
+/** @param {{ settings: Setting[], parameters: string[] }} props */
 function Chosen({ settings, parameters }) {
   const run = chosenRun.value;
   useEffect(() => followTrials(() => chosenRun.value), []);
@@ -33,6 +39,10 @@ function Chosen({ settings, parameters }) {
   const names = namesOf(settings, parameters);
   const seeds = run && seedsOf(run.id, key);
   const problem = run && problemOf(run.id);
+  /** @param {Changed} event */
+  const choose = ({ target }) => {
+    chosen.value = { setting: target.value, distance_m: null };
+  };
   return html`
     <p class="dim">
       A trial is repeated as a run of its own, to the last bit: with its learning curve, its table and its replay.
@@ -40,7 +50,7 @@ function Chosen({ settings, parameters }) {
     </p>
     <label class="choice">
       <span>Setting</span>
-      <select onChange=${({ target }) => (chosen.value = { setting: target.value, distance_m: null })}>
+      <select onChange=${choose}>
         ${settings.map((one) => html`
           <option value=${one.key} selected=${one.key === key}>${names.get(one.key)}</option>
         `)}
@@ -55,6 +65,7 @@ function Chosen({ settings, parameters }) {
   `;
 }
 
+/** @param {{ experiment: Run, seeds: SeedRow[], distance_m: number | null }} props */
 function Table({ experiment, seeds, distance_m }) {
   if (seeds.length === 0) return html`<p class="dim">No trial has finished yet.</p>`;
   return html`
@@ -71,6 +82,7 @@ function Table({ experiment, seeds, distance_m }) {
   `;
 }
 
+/** @param {{ experiment: Run, seed: SeedRow, isChosen: boolean }} props */
 function Seed({ experiment, seed, isChosen }) {
   const { key, number, distance_m, run } = seed;
   const row = useRef(/** @type {HTMLElement | null} */ (null));
@@ -83,7 +95,7 @@ function Seed({ experiment, seed, isChosen }) {
       <td class="num">${metres(distance_m)}</td>
       <td>
         <span class="row-actions">
-          ${hasReplay(run) && html`<a href=${`?run=${encodeURIComponent(run.id)}`}>Replay</a>`}
+          ${run && hasReplay(run) && html`<a href=${`?run=${encodeURIComponent(run.id)}`}>Replay</a>`}
           ${run && html`<a href=${`#runs?search=${encodeURIComponent(run.id)}`}>${run.state}</a>`}
           ${isOperator.value && html`
             <button class="secondary compact" disabled=${pending.value.trials}

@@ -11,10 +11,14 @@ import { DotStrip } from "../dot-strip.js";
 import { html, Segments } from "../elements.js";
 import { BestKnownWords, StripKey, UnitSwitch } from "./report-tools.js";
 
+/** @import { Setting, Summary } from "../../types.js" */
+
 const ORDERS = [["grid", "In the grid’s order"], ["best", "Farthest first"]];
 const MAX_ROWS = 60;
+/** @typedef {ReturnType<typeof measured>} Measured */
 const STRIP_TITLE = "Total distance in 50 steps, a dot for each seed";
 
+/** @param {{ known: Summary }} props */
 export function SweepTable({ known }) {
   const [order, setOrder] = useState("grid");
   const [isWhole, setWhole] = useState(false);
@@ -53,35 +57,47 @@ export function SweepTable({ known }) {
   `;
 }
 
+/** @param {Measured} a @param {Measured} b */
 const byDistance = (a, b) => (b.typical?.iqm ?? -1) - (a.typical?.iqm ?? -1);
 
-/** The fields in which the settings differ; the gait where they do not. */
+/**
+ * The fields in which the settings differ; the gait where they do not.
+ * @param {Measured[]} rows
+ * @param {string[]} parameters
+ */
 function columnsOf(rows, parameters) {
   const fields = ["gait", "observation", "robot", "agent", ...parameters];
   const varied = variedFields(rows.map(({ setting }) => setting), fields);
   return varied.length ? varied : ["gait"];
 }
 
-/** Without greedy, which is a line in every row, unless there is nothing else. */
+/** Without greedy, which is a line in every row, unless there is nothing else. @param {Setting[]} settings */
 function shownSettings(settings) {
   const found = settings.filter(({ role, agent }) => role === "learner" || agent !== "greedy");
   return found.length ? found : settings;
 }
 
-/** A setting with its distances in the chosen unit. */
+/**
+ * A setting with its distances in the chosen unit.
+ * @param {Setting} setting
+ * @param {number | null} greedy_m
+ */
 function measured(setting, greedy_m) {
   const factor = factorOf({ ...setting, greedy_m });
   const total = factor === null ? null : setting.total;
+  /** @param {number | null | undefined} metres */
   const own = (metres) => inUnit(metres, factor);
+  const ofSeed = (/** @type {number} */ metres) => metres * (factor ?? NaN);
   return {
     setting,
-    points: (total?.points_m ?? []).map(own),
-    typical: total && { iqm: own(total.iqm_m), low: own(total.low_m), high: own(total.high_m) },
+    points: (total?.points_m ?? []).map(ofSeed),
+    typical: total && { iqm: ofSeed(total.iqm_m), low: own(total.low_m), high: own(total.high_m) },
     line: own(greedy_m),
     best: own(setting.best_known_m),
   };
 }
 
+/** @param {{ columns: string[] }} props */
 const Head = ({ columns }) => html`
   <thead role="rowgroup">
     <tr role="row">
@@ -94,12 +110,17 @@ const Head = ({ columns }) => html`
   </thead>
 `;
 
-/** Varied settings, with their values: "Sarsa(λ), α 0.1". */
+/**
+ * Varied settings, with their values: "Sarsa(λ), α 0.1".
+ * @param {Setting} setting
+ * @param {string[]} columns
+ */
 const nameOf = (setting, columns) =>
   columns.filter((field) => setting[field] !== null && setting[field] !== undefined)
     .map((field) => (isNamedByValue(field) ? "" : `${fieldTitle(field)}\u00a0`) + valueTitle(field, setting[field]))
     .join(", ");
 
+/** @param {{ row: Measured, columns: string[], high: number }} props */
 function Row({ row, columns, high }) {
   const { setting, typical, best } = row;
   return html`
@@ -119,18 +140,20 @@ function Row({ row, columns, high }) {
   `;
 }
 
+/** @param {{ row: Measured, high: number }} props */
 function Strip({ row: { setting, points, typical, line, best }, high }) {
   const known = best === null ? "" : `, best known ${shown(best)}`;
-  const label = `${count(points.length, "seed")}, typically ${shown(typical.iqm)}, greedy ${shown(line)}${known}`;
+  const label = `${count(points.length, "seed")}, typically ${shown(typical?.iqm)}, greedy ${shown(line)}${known}`;
   const marks = [{ value: line, kind: "greedy" }, { value: best, kind: "best-known" }]
     .filter(({ value }) => value !== null);
   return html`
     <${DotStrip} label=${label} points=${points} high=${high} typical=${typical} marks=${marks}
       color=${agentOf(setting.agent).color} axis=${shown}
-      onDot=${(n) => showSeed(setting, setting.total.points_m[n])} />
+      onDot=${(/** @type {number} */ n) => showSeed(setting, setting.total?.points_m[n] ?? NaN)} />
   `;
 }
 
+/** @param {{ typical: Measured["typical"] }} props */
 const Typical = ({ typical }) => html`
   <b>${shown(typical?.iqm)}</b>${typical && typical.low !== null && html`
     <br /><span class="dim">${bare(typical.low)} – ${bare(typical.high)}</span>

@@ -10,15 +10,25 @@ import { DotStrip } from "../dot-strip.js";
 import { html } from "../elements.js";
 import { BestKnownWords, PlaceSwitch, PlaceWords, StripKey, UnitSwitch } from "./report-tools.js";
 
+/** @import { Distances, Place, Setting, Summary } from "../../types.js" */
+
+/** @type {[Distance, string, string][]} */
 const DISTANCES = [
   ["finished", "At time-out", "Distance at time-out: when the first lane has used its 50 steps"],
   ["total", "Total", "Distance after 50 steps of its own"],
 ];
+/** @typedef {"finished" | "total"} Distance */
+/** @typedef {ReturnType<typeof gaitsOf>[number]} GaitSettings */
+/**
+ * Factors of the unit for this run's distances and for the paper's, the end of the axis, and the best known distance.
+ * @typedef {{ ours: number | null, paper: number | null, high: number, best: number | null }} Measure
+ */
 const REFERENCES = ["greedy", "two-step"];
 
+/** @param {{ known: Summary }} props */
 export function TableOne({ known }) {
   const places = placesOf(known.settings);
-  const [chosen, setChosen] = useState(null);
+  const [chosen, setChosen] = useState(/** @type {string | null} */ (null));
   const place = places.find(({ key }) => key === chosen) ?? places[0];
   const gaits = gaitsOf(known.settings, place.key);
   const high = highest(gaits, place);
@@ -44,6 +54,7 @@ export function TableOne({ known }) {
   `;
 }
 
+/** @param {{ learners: Setting[] }} props */
 const Head = ({ learners }) => html`
   <thead role="rowgroup">
     <tr role="row">
@@ -58,15 +69,20 @@ const Head = ({ learners }) => html`
   </thead>
 `;
 
-/** Of a gait in a place [m]. */
+/** Of a gait in a place [m]. @param {GaitSettings} one */
 const bestKnownOf = ({ learners, references }) => (learners[0] ?? references.greedy)?.best_known_m ?? null;
 
-/** Factors from metres to the chosen unit: for this run's distances, and for the paper's. */
+/**
+ * Factors from metres to the chosen unit: for this run's distances, and for the paper's.
+ * @param {Setting | null | undefined} greedy
+ * @param {Place} place
+ */
 const factorsOf = (greedy, place) => ({
   ours: factorOf({ ...place, greedy_m: greedy?.total?.mean_m ?? null }),
   paper: factorOf({ ...place, greedy_m: greedy?.published?.total_m ?? null }),
 });
 
+/** @param {{ gait: GaitSettings, place: Place, high: number }} props */
 function Gait({ gait: found, place, high }) {
   const { gait, learners, references } = found;
   const factors = factorsOf(references.greedy, place);
@@ -94,11 +110,20 @@ function Gait({ gait: found, place, high }) {
   `;
 }
 
-/** It is a distance after 50 steps, and has none at time-out. */
+/**
+ * It is a distance after 50 steps, and has none at time-out.
+ * @param {Distance} distance
+ * @param {{ best: number | null }} other
+ */
 const bestOf = (distance, { best }) => (distance === "total" ? best : null);
+/** @param {Distance} distance @param {{ best: number | null }} measure */
 const bestWords = (distance, measure) => html`<b>${shown(bestOf(distance, measure))}</b>`;
 
-/** The end of all axes, so that strips can be compared. */
+/**
+ * The end of all axes, so that strips can be compared.
+ * @param {GaitSettings[]} gaits
+ * @param {Place} place
+ */
 function highest(gaits, place) {
   const ends = gaits.flatMap((gait) => {
     const { learners, references: { greedy } } = gait;
@@ -112,6 +137,7 @@ function highest(gaits, place) {
 }
 
 const TIME_OUT = "At time-out: under the paper clock, when the first lane has used its steps.";
+/** @type {Record<string, string>} */
 const NOTES = {
   m: `Metres over 50 steps. ${TIME_OUT}`,
   h: `h is half the side of the foot grid. ${TIME_OUT}`,
@@ -120,32 +146,41 @@ const NOTES = {
 
 // ---- cells: the seeds of this run as a strip, and the paper's value
 
-/** `measure`: {ours, paper, high, best}: factors of the unit, the end of the axis, and the best known distance. */
+/**
+ * `measure`: {ours, paper, high, best}: factors of the unit, the end of the axis, and the best known distance.
+ * @param {{ setting: Setting, distance: Distance, greedy: Setting | null, measure: Measure }} props
+ */
 function LearnerCell({ setting, distance, greedy, measure }) {
   const label = `${agentOf(setting.agent).title}, ${count(setting.steps, "step")}`;
   if (!setting[distance] || measure.ours === null) return html`<${EmptyCell} label=${label} />`;
   const shares = inUnits({ setting, distance, greedy, measure });
   const { typical, points, printed, marks } = shares;
+  const show = (/** @type {number} */ n) => showSeed(setting, setting.total?.points_m[n] ?? NaN);
   return html`
     <td role="cell" class="learner" data-label=${label}>
       <p class="cell-words num"><b>${shown(typical.iqm)}</b> <span class="dim">${intervalOf(typical)}</span></p>
       <${DotStrip} label=${captionOf(shares)} points=${points} high=${measure.high} typical=${typical} marks=${marks}
         color=${agentOf(setting.agent).color} axis=${shown}
-        onDot=${distance === "total" ? (n) => showSeed(setting, setting.total.points_m[n]) : null} />
+        onDot=${distance === "total" ? show : null} />
       <${Published} value=${printed} quantile=${setting.published?.[`${distance}_quantile`] ?? null} />
     </td>
   `;
 }
 
+/** @param {{ label: string }} props */
 const EmptyCell = ({ label }) => html`
   <td role="cell" data-label=${label} class="learner empty-cell">
     <span class="dim">waiting for its first seed</span>
   </td>
 `;
 
-/** The distances of a cell in the chosen unit. */
+/**
+ * The distances of a cell in the chosen unit.
+ * @param {{ setting: Setting, distance: Distance, greedy: Setting | null, measure: Measure }} one
+ */
 function inUnits({ setting, distance, greedy, measure }) {
-  const ours = setting[distance];
+  const ours = /** @type {Distances} */ (setting[distance]);
+  /** @param {number | null | undefined} metres */
   const own = (metres) => inUnit(metres, measure.ours);
   const line = own(greedy?.[distance]?.mean_m ?? null);
   const printed = inUnit(setting.published?.[`${distance}_m`] ?? null, measure.paper);
@@ -158,13 +193,15 @@ function inUnits({ setting, distance, greedy, measure }) {
     best,
     printed,
     marks: marks.filter(({ value }) => value !== null),
-    points: ours.points_m.map(own),
+    points: ours.points_m.map((metres) => metres * (measure.ours ?? NaN)),
     typical: { iqm: own(ours.iqm_m), low: own(ours.low_m), high: own(ours.high_m) },
   };
 }
 
+/** @param {{ low: number | null, high: number | null }} one */
 const intervalOf = ({ low, high }) => (low === null ? "" : `${bare(low)} – ${bare(high)}`);
 
+/** @param {ReturnType<typeof inUnits>} one */
 function captionOf({ points, typical, line, best, printed }) {
   const interval = intervalOf(typical);
   const lowest = -largest(points.map((one) => -one), -Infinity);
@@ -177,13 +214,17 @@ function captionOf({ points, typical, line, best, printed }) {
   ].filter(Boolean).join("; ");
 }
 
+/** @param {{ value: number | null, quantile: number | null }} props */
 function Published({ value, quantile }) {
   if (value === null) return null;
   const above = quantile === null ? "" : `, above ${percentage(quantile)} of seeds`;
   return html`<p class="printed dim num">paper ${shown(value)}${above}</p>`;
 }
 
-/** Agents that look ahead do the same with every seed. */
+/**
+ * Agents that look ahead do the same with every seed.
+ * @param {{ title: string, setting: Setting | null, distance: Distance, measure: Measure }} props
+ */
 function ReferenceCell({ title, setting, distance, measure }) {
   const ours = inUnit(setting?.[distance]?.mean_m ?? null, measure.ours);
   const printed = inUnit(setting?.published?.[`${distance}_m`] ?? null, measure.paper);

@@ -12,19 +12,27 @@ import { Chart } from "../charts.js";
 import { html, Segments } from "../elements.js";
 import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
 
+/** @import { Interval, ScoredCurve, Summary, Until, WorldView } from "../../types.js" */
+/** @import { ComponentChildren } from "preact" */
+
+/** In the unit that is shown, if it has one. @typedef {{ [Part in keyof Interval]: number | null }} MaybeInterval */
+
 const NOMINAL = "nominal";
 
 /** Question of each experiment. */
+/** @type {Record<string, string>} */
 const TITLES = { league: "Distances by agent and world", recovery: "Recovery by agent and disturbance" };
+/** @type {Record<string, string>} */
 const STEPS_OF = { league: "steps of practice", recovery: "steps after it happened" };
 
+/** @param {{ known: Summary }} props */
 export function Worlds({ known }) {
   const entries = known.worlds ?? [];
-  const worlds = [...new Set(entries.map(({ world }) => world))];
-  const [wantedWorld, setWorld] = useState(null);
-  const [wantedPlace, setPlace] = useState(null);
+  const worlds = [...new Set(entries.map(({ world }) => /** @type {string} */ (world)))];
+  const [wantedWorld, setWorld] = useState(/** @type {string | null} */ (null));
+  const [wantedPlace, setPlace] = useState(/** @type {string | null} */ (null));
   if (!entries.length) return null;
-  const world = worlds.includes(wantedWorld) ? wantedWorld : worlds[0];
+  const world = wantedWorld !== null && worlds.includes(wantedWorld) ? wantedWorld : worlds[0];
   const inWorld = entries.filter((one) => one.world === world);
   const places = placesOf(inWorld);
   const place = places.find(({ key }) => key === wantedPlace) ?? places[0];
@@ -65,14 +73,14 @@ export function Worlds({ known }) {
 
 // ---- the lines of references
 
-/** [field of an entry, kind of line, name] */
+/** @type {() => ["greedy_m" | "greedy_nominal_m" | "best_known_m", string, string][]} */
 const knownLevels = () => [
   ["greedy_m", "greedy", "Greedy"],
   ["greedy_nominal_m", "nominal", `Greedy, ${planningModelTitle(NOMINAL)}`],
   ["best_known_m", "best-known", "Best known"],
 ];
 
-/** The references that are known, in the unit that is shown. */
+/** The references that are known, in the unit that is shown. @param {WorldView} entry */
 const levelsOf = (entry) =>
   knownLevels().flatMap(([field, kind, name]) => {
     const value = inUnit(entry[field], factorOf(entry));
@@ -81,17 +89,22 @@ const levelsOf = (entry) =>
 
 // ---- one chart per gait
 
-/** Names of entries: of one agent several, if the experiment practises for several numbers of steps. */
+/**
+ * Names of entries: of one agent several, if the experiment practises for several numbers of steps.
+ * @param {WorldView} one
+ * @param {Summary} other
+ */
 const nameOf = ({ agent, plans_with, steps, role }, { config }) => [
   agentTitle(agent), plans_with && planningModelTitle(plans_with),
   role === "learner" && config.steps.length > 1 && count(steps, "step"),
 ].filter(Boolean).join(", ");
 
+/** @param {{ gait: string, entries: WorldView[], known: Summary }} props */
 function Gait({ gait, entries, known }) {
   const curves = entries.filter(({ curve }) => curve).map((one) => toUnit(one, known));
   const levels = levelsOf(entries[0]);
   const marks = asMarks(levels);
-  const ends = curves.map(({ name, ys, xs }) => `${name} ${shown(ys.at(-1))} after ${count(xs.at(-1), "step")}`);
+  const ends = curves.map(({ name, ys, xs }) => `${name} ${shown(ys.at(-1))} after ${count(xs.at(-1) ?? 0, "step")}`);
   const lines = levels.map(({ name, value }) => `${name.toLowerCase()} ${shown(value)}`);
   const label = `${gaitTitle(gait)}: ${[...ends, ...lines].join(", ")}`;
   return html`
@@ -106,6 +119,7 @@ function Gait({ gait, entries, known }) {
   `;
 }
 
+/** @param {WorldView[]} entries */
 function seedsOf(entries) {
   const numbers = entries.filter(({ role }) => role === "learner").map(({ n }) => n);
   if (!numbers.length) return "no learner yet";
@@ -113,10 +127,12 @@ function seedsOf(entries) {
   return least === most ? count(most, "seed") : `${whole(least)} to ${count(most, "seed")}`;
 }
 
+/** @param {WorldView} one @param {Summary} known */
 function toUnit(one, known) {
   const factor = factorOf(one);
+  /** @param {(number | null)[]} list */
   const all = (list) => list.map((value) => inUnit(value, factor));
-  const { steps, iqm_m, low_m, high_m } = one.curve;
+  const { steps, iqm_m, low_m, high_m } = /** @type {ScoredCurve} */ (one.curve);
   return {
     name: nameOf(one, known), color: agentOf(one.agent).color, xs: steps, ys: all(iqm_m), low: all(low_m),
     high: all(high_m), dots: true,
@@ -125,23 +141,28 @@ function toUnit(one, known) {
 
 // ---- all worlds beside each other: the share of the best known walk, in the end
 
-/** Of the best known walk; of greedy's where none is known. */
+/** Of the best known walk; of greedy's where none is known. @param {WorldView} one */
 const shareIn = ({ of_best_known, of_greedy, best_known_m }) =>
   (best_known_m === null ? of_greedy : of_best_known)?.iqm ?? null;
 
+/** @param {number[]} values */
 const meanOf = (values) => (values.length ? values.reduce((sum, one) => sum + one, 0) / values.length : null);
 
+/** @param {{ entries: WorldView[], worlds: string[], known: Summary }} props */
 function Overview({ entries, worlds, known }) {
   const names = [...new Set(entries.map((one) => nameOf(one, known)))];
+  /** @param {string} name @param {string} world */
   const meanIn = (name, world) => meanOf(
     entries.filter((one) => one.world === world && nameOf(one, known) === name).map(shareIn)
       .filter((share) => share !== null),
   );
   const rows = names.map((name) => ({ name, shares: worlds.map((world) => meanIn(name, world)) }));
   const best = worlds.map((_, n) => largest(rows.map(({ shares }) => shares[n] ?? -Infinity), -Infinity));
+  /** @param {string} world */
   const ofGreedy = (world) => entries.some((one) => one.world === world && one.best_known_m === null);
   const title = "All worlds: share of the best known distance";
-  const overall = ({ shares }) => meanOf(shares.filter(Number.isFinite)) ?? 0;
+  /** @param {{ shares: (number | null)[] }} one */
+  const overall = ({ shares }) => meanOf(shares.filter((share) => share !== null)) ?? 0;
   rows.sort((a, b) => overall(b) - overall(a));
   return html`
     <section class="panel worlds" aria-labelledby="all-worlds">
@@ -175,48 +196,72 @@ function Overview({ entries, worlds, known }) {
 
 // ---- one table per gait, the farthest first
 
-/** A value with its interval below it; a dash without one. */
+/**
+ * A value with its interval below it; a dash without one.
+ * @param {MaybeInterval | null} one
+ * @param {(value: number) => string} words
+ * @param {(value: number) => string} bareWords
+ */
 const valueOf = (one, words, bareWords) => one && one.iqm !== null && html`
   <b>${words(one.iqm)}</b>${one.low !== null && html`
-    <br /><span class="dim">${bareWords(one.low)} – ${bareWords(one.high)}</span>
+    <br /><span class="dim">${bareWords(one.low)} – ${bareWords(one.high ?? NaN)}</span>
   `}
 `;
 
+/** @param {MaybeInterval | null} interval @param {WorldView} entry */
 function distanceOf(interval, entry) {
   const factor = factorOf(entry);
+  /** @param {number | null} value */
   const own = (value) => inUnit(value, factor);
   return interval && valueOf({ iqm: own(interval.iqm), low: own(interval.low), high: own(interval.high) }, shown, bare);
 }
 
+/** @param {MaybeInterval | null} interval */
 const shareOf = (interval) => valueOf(interval, percentage, (share) => percentage(share).replace(/[^\d\u2212]/g, ""));
 
+/** @param {Until | null} until */
 const untilOf = (until) => until && html`
   <b>${until.median_steps === null ? "not reached" : whole(until.median_steps)}</b>
   <br /><span class="dim">reached by ${percentage(until.reached)}</span>
 `;
 
-/** The value of a curve at one of its places, as an interval. */
+/**
+ * The value of a curve at one of its places, as an interval.
+ * @param {ScoredCurve | null} curve
+ * @param {number} place
+ */
 const atPlace = (curve, place) =>
-  curve && { iqm: curve.iqm_m.at(place), low: curve.low_m.at(place), high: curve.high_m.at(place) };
+  curve && { iqm: curve.iqm_m[place], low: curve.low_m[place], high: curve.high_m[place] };
 
+/** @typedef {{ title: string, words?: string, cell: (entry: WorldView) => ComponentChildren }} Column */
+
+/** @type {Column[]} */
 const SHARES = [
   { title: "Of greedy", cell: ({ of_greedy }) => shareOf(of_greedy) },
   { title: "Of best known", cell: ({ of_best_known }) => shareOf(of_best_known) },
 ];
 
-/** Columns: title, explanation, and the cell of an entry. */
+/**
+ * Columns: title, explanation, and the cell of an entry.
+ * @param {Summary} one
+ * @param {WorldView[]} entries
+ * @returns {Column[]}
+ */
 function columnsOf({ experiment }, entries) {
   const learner = entries.find(({ curve }) => curve);
   const share = (learner?.until_greedy ?? learner?.until_best_known)?.of;
+  /** @type {Column[]} */
   const until = share ? [
     { title: `Steps to ${percentage(share)} of greedy`, words: UNTIL, cell: (one) => untilOf(one.until_greedy) },
     { title: `To ${percentage(share)} of best known`, words: UNTIL, cell: (one) => untilOf(one.until_best_known) },
   ] : [];
+  /** @type {Column} */
   const mean = {
     title: "Mean", words: "Over the practice: the area under the curve divided by its steps",
     cell: (one) => distanceOf(one.mean_m, one),
   };
-  const last = whole(learner?.curve.steps.at(-1) ?? 0);
+  const last = whole(learner?.curve?.steps.at(-1) ?? 0);
+  /** @type {Column} */
   const distance = {
     title: experiment === "recovery" ? `After ${last}` : "Distance", words: "In 50 steps, at the last evaluation",
     cell: (one) => distanceOf(one.distance, one),
@@ -235,15 +280,19 @@ function columnsOf({ experiment }, entries) {
 
 const UNTIL = "Median over the seeds of the steps until an evaluation reaches it; below, the share of seeds that do";
 
+/** @param {{ title: string, value: ComponentChildren }} props */
 const Cell = ({ title, value }) => html`
   <td role="cell" data-label=${title} class=${`num ${value ? "" : "no-value"}`}>${value || "–"}</td>
 `;
 
-/** The best known walk as the first row: what is possible. */
+/** The best known walk as the first row: what is possible. @param {{ entry: WorldView, columns: Column[] }} props */
 function BestKnown({ entry, columns }) {
   const { best_known_m, greedy_m } = entry;
   const only = { iqm: best_known_m, low: null, high: null };
-  const cells = { Distance: distanceOf(only, entry), "Of greedy": greedy_m && percentage(best_known_m / greedy_m) };
+  /** @type {Record<string, ComponentChildren>} */
+  const cells = {
+    Distance: distanceOf(only, entry), "Of greedy": greedy_m && percentage(Number(best_known_m) / greedy_m),
+  };
   return html`
     <tr role="row" class="best-known">
       <th role="rowheader" scope="row">Best known</th>
@@ -254,6 +303,7 @@ function BestKnown({ entry, columns }) {
   `;
 }
 
+/** @param {{ gait: string, entries: WorldView[], known: Summary }} props */
 function Table({ gait, entries, known }) {
   const columns = columnsOf(known, entries).filter(({ cell }) => entries.some(cell));
   const sorted = [...entries].sort((a, b) => b.distance.iqm - a.distance.iqm);

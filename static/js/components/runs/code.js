@@ -6,6 +6,8 @@ import { getCode } from "../../api.js";
 import { messageOf } from "../../titles.js";
 import { html, Segments } from "../elements.js";
 
+/** @import { Run } from "../../types.js" */
+
 /** The run whose code is shown; null while the dialog is closed. */
 const shown = signal(/** @type {import("../../types.js").Run | null} */ (null));
 
@@ -16,6 +18,7 @@ const FORMS = [["command", "Command line"], ["python", "Python"]];
 
 export const CodeDialog = () => shown.value && html`<${Dialog} run=${shown.value} key=${shown.value.id} />`;
 
+/** @param {{ run: Run }} props */
 function Dialog({ run }) {
   const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
   const [form, setForm] = useState("command");
@@ -26,6 +29,7 @@ function Dialog({ run }) {
     getCode(run.id).then(setCode, (failure) => setError(messageOf(failure)));
   }, []);
   const close = () => (shown.value = null);
+  /** @param {MouseEvent} event */
   const onBackdrop = ({ target }) => target === dialog.current && close();
   return html`
     <dialog class="help code" ref=${dialog} onClose=${close} onClick=${onBackdrop} aria-labelledby="code-title">
@@ -47,7 +51,10 @@ function Dialog({ run }) {
   `;
 }
 
-/** Copies a text; says so on itself, since a message of the page is under the dialog. */
+/**
+ * Copies a text; says so on itself, since a message of the page is under the dialog.
+ * @param {{ text: string }} props
+ */
 function CopyButton({ text }) {
   const [words, setWords] = useState("Copy");
   const onClick = async () => setWords((await copy(text, "Code copied.")) ? "Copied" : "Select it to copy it");

@@ -17,8 +17,13 @@ import { ReplayLink } from "../replay-link.js";
 import { edit, Name, Notes, Tags } from "./annotations.js";
 import { showCode } from "./code.js";
 
+/** @import { AnyRun } from "../../runs.js" */
+/** @import { DamagedRun, ExportOption, Run } from "../../types.js" */
+
+/** @param {{ run: AnyRun }} props */
 export const RunRow = ({ run }) => html`<${"damaged" in run ? DamagedRow : Row} run=${run} />`;
 
+/** @param {{ run: Run }} props */
 function Row({ run }) {
   const title = titleOf(run);
   const gait = run.kind === "experiment" ? "" : gaitTitle(run.config.gait);
@@ -41,10 +46,15 @@ function Row({ run }) {
   `;
 }
 
+/** @param {Run} run */
 const titleOf = (run) => (run.kind === "experiment" ? runTitle(run) : run.name || sentence(run.kind));
 
-/** Selects the run; a click with Shift selects all from the one before to it. */
+/**
+ * Selects the run; a click with Shift selects all from the one before to it.
+ * @param {{ run: AnyRun, title: string }} props
+ */
 function Box({ run, title }) {
+  /** @param {MouseEvent & { target: HTMLInputElement }} event */
   const onClick = ({ target, shiftKey }) => setSelected(run.id, target.checked, shiftKey);
   return html`
     <label class="run-box">
@@ -54,6 +64,7 @@ function Box({ run, title }) {
   `;
 }
 
+/** @param {{ run: Run }} props */
 const StateOf = ({ run: { state, queue_position } }) => html`
   <p class=${`state ${state}`}>
     <span class="dot" aria-hidden="true"></span>${state}${queue_position
@@ -62,6 +73,7 @@ const StateOf = ({ run: { state, queue_position } }) => html`
   </p>
 `;
 
+/** @param {Run} run */
 function summaryOf(run) {
   const { config } = run;
   const { robot, simulator, agent } = served().defaults.training;
@@ -75,8 +87,10 @@ function summaryOf(run) {
   return [learner, ...own, ...place, ...joinedBySteps(disturbancesOf(run)).map(inTime)].filter(Boolean).join(" · ");
 }
 
+/** @param {Run["config"]} one */
 const ofRace = ({ lanes, steps }) => [listed(lanes.map(laneTitle)), count(steps, "step")];
 
+/** @param {Run} run */
 function ofTraining(run) {
   const { config, progress, state } = run;
   const total = count(config.steps, "step");
@@ -88,6 +102,7 @@ function ofTraining(run) {
   ];
 }
 
+/** @param {{ run: Run }} props */
 function Outcome({ run }) {
   const { kind, result } = run;
   if (kind === "experiment") return html`<span class="dim">${paceOf(run).label}</span>`;
@@ -110,6 +125,7 @@ function Outcome({ run }) {
 
 // ---- what can be done with it
 
+/** @param {{ run: Run }} props */
 function Actions({ run }) {
   const isPending = pending.value[run.id];
   const canResume = run.can_resume && run.state !== "paused";
@@ -134,6 +150,7 @@ function Actions({ run }) {
   `;
 }
 
+/** @param {{ run: Run }} props */
 function Menu({ run }) {
   const [isSure, setSure] = useState(false);
   return html`
@@ -168,6 +185,7 @@ function Menu({ run }) {
 }
 
 /** Have a file computed; the menu says so until it is there, or why there is none stands in the row. */
+/** @param {{ run: Run, file: ExportOption }} props */
 function RenderButton({ run, file }) {
   const [isRendering, setRendering] = useState(false);
   const onClick = async () => {
@@ -182,6 +200,7 @@ function RenderButton({ run, file }) {
   `;
 }
 
+/** @param {{ run: Run }} props */
 function Downloads({ run }) {
   const hasEnded = !isActive(run);
   const hasBegun = run.progress.done > 0 || run.result;
@@ -195,6 +214,7 @@ function Downloads({ run }) {
 
 // ---- a run that the server cannot read: what is known of it, the reason, and its deletion
 
+/** @param {{ run: DamagedRun }} props */
 function DamagedRow({ run }) {
   const title = run.name || `A ${run.kind ?? "run"} that cannot be read`;
   return html`
@@ -213,6 +233,7 @@ function DamagedRow({ run }) {
   `;
 }
 
+/** @param {{ run: AnyRun }} props */
 function DeleteButton({ run }) {
   const [isSure, setSure] = useState(false);
   const onClick = () => (isSure ? deleteRun(run) : setSure(true));

@@ -12,6 +12,8 @@ import { CodeDialog } from "./code.js";
 import { RunRow } from "./row.js";
 import { Selection } from "./selection.js";
 
+/** @import { Changed } from "../../types.js" */
+
 const KINDS = [["", "All"], ["training", "Trainings"], ["race", "Races"], ["experiment", "Experiments"]];
 const STATES = ["running", "paused", "queued", "finished", "stopped", "failed", "interrupted"]
   .map((state) => [state, state]);
@@ -52,21 +54,24 @@ function Head() {
     <div class="runs-head">
       <h2 id="runs-title">Runs</h2>
       ${isOperator.value && html`<${ImportButton} />`}
-      <${Segments} label="Kind" choices=${KINDS} value=${kind} onValue=${(value) => setFilters({ kind: value })} />
+      <${Segments} label="Kind" choices=${KINDS} value=${kind}
+        onValue=${(/** @type {string} */ value) => setFilters({ kind: value })} />
       <${Choice} label="State" choices=${[["", "any state"], ...STATES]} value=${state}
-        onValue=${(value) => setFilters({ state: value })} />
-      <${Choice} label="Order" choices=${SORTS} value=${sort} onValue=${(value) => setFilters({ sort: value })} />
+        onValue=${(/** @type {string} */ value) => setFilters({ state: value })} />
+      <${Choice} label="Order" choices=${SORTS} value=${sort}
+        onValue=${(/** @type {string} */ value) => setFilters({ sort: value })} />
       <input class="search" type="search" aria-label="Search names, ids, tags and notes"
         placeholder="Name, id, tag or note" maxlength=${served().limits.name[1]} value=${search}
-        onInput=${({ target }) => setFilters({ search: target.value })} />
+        onInput=${(/** @type {Changed} */ { target }) => setFilters({ search: target.value })} />
     </div>
   `;
 }
 
+/** @param {{ label: string, choices: [string, string][], value: string, onValue: (value: string) => unknown }} props */
 const Choice = ({ label, choices, value, onValue }) => html`
   <label class="choice">
     <span class="sr-only">${label}</span>
-    <select onChange=${({ target }) => onValue(target.value)}>
+    <select onChange=${(/** @type {Changed} */ { target }) => onValue(target.value)}>
       ${choices.map(([one, title]) => html`<option value=${one} selected=${one === value}>${title}</option>`)}
     </select>
   </label>
@@ -132,8 +137,9 @@ function More() {
 // ---- import, by a button and by dropping files anywhere
 
 function ImportButton() {
+  /** @param {{ target: HTMLInputElement }} event */
   const onChange = ({ target }) => {
-    importFiles([...target.files]);
+    importFiles([...target.files ?? []]);
     // So that the same file can be chosen again.
     target.value = "";
   };
@@ -164,6 +170,7 @@ const Imports = () => html`
 function useDrop() {
   const [isDragging, setDragging] = useState(false);
   useEffect(() => {
+    /** @param {DragEvent} event */
     const hasFiles = (event) => isOperator.peek() && event.dataTransfer?.types.includes("Files");
     /** @type {Record<string, (event: any) => unknown>} */
     const listeners = {
@@ -190,14 +197,18 @@ function useDrop() {
 
 // ---- keys in the list, while the box of a run has the focus
 
+/** @type {Record<string, number>} */
 const STEPS = { ArrowDown: 1, ArrowUp: -1 };
 
-/** Up and down go to the next run, with Shift they select it too; Ctrl+A selects all, Escape none. */
+/**
+ * Up and down go to the next run, with Shift they select it too; Ctrl+A selects all, Escape none.
+ * @param {KeyboardEvent & { target: HTMLInputElement, currentTarget: HTMLElement }} event
+ */
 function moveByKey(event) {
   const { key, target, shiftKey } = event;
   if (!target.matches(".run-box input")) return;
   if (key in STEPS) {
-    const boxes = [...event.currentTarget.querySelectorAll(".run-box input")];
+    const boxes = /** @type {HTMLInputElement[]} */ ([...event.currentTarget.querySelectorAll(".run-box input")]);
     const next = boxes[boxes.indexOf(target) + STEPS[key]];
     if (next && shiftKey) {
       setSelected(target.value, true);

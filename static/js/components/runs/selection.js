@@ -12,6 +12,8 @@ import { served } from "../../store.js";
 import { html, Problem } from "../elements.js";
 import { RaceThem } from "../compare/race-them.js";
 
+/** @import { Changed } from "../../types.js" */
+
 export function Selection() {
   const { length } = selected.value;
   const isAll = length === shownRuns.value.length;
@@ -51,6 +53,7 @@ function CompareThem() {
 
 function TagThem() {
   const [tag, setTag] = useState("");
+  /** @param {Event} event */
   const submit = async (event) => {
     event.preventDefault();
     if (tag.trim() && (await tagSelected(tag))) setTag((now) => (now === tag ? "" : now));
@@ -58,7 +61,8 @@ function TagThem() {
   return html`
     <form class="in-place" onSubmit=${submit}>
       <input type="text" aria-label="Tag for the selected runs" placeholder="Add a tag"
-        maxlength=${served().limits.tag[1]} value=${tag} onInput=${({ target }) => setTag(target.value)} />
+        maxlength=${served().limits.tag[1]} value=${tag}
+          onInput=${(/** @type {Changed} */ { target }) => setTag(target.value)} />
       <button class="secondary compact" disabled=${pending.value.selection}>Tag</button>
     </form>
   `;

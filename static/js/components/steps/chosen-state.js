@@ -5,6 +5,9 @@ import { moveInWords, stateInWords } from "../../steps.js";
 import { messageOf } from "../../titles.js";
 import { html } from "../elements.js";
 
+/** @import { ChosenState } from "../../posture.js" */
+/** @import { FootCells } from "../../types.js" */
+
 /**
  * @param {object} props
  * @param {import("../../posture.js").ChosenState | null} props.chosen
@@ -37,6 +40,7 @@ const isGhostShown = () => ghost.value.answer !== null && whyNoGhost.value === n
 /** On a narrow page the scene is always in view. */
 const showScene = () => document.querySelector(".stage")?.scrollIntoView({ block: "nearest" });
 
+/** @param {ChosenState | null} chosen @param {FootCells} grid */
 function wordsOf(chosen, grid) {
   if (!chosen) return "A click puts a ghost of the robot into that state, in the scene.";
   if (chosen.from === "scene") return `Clicked in the scene: ${moveInWords(chosen.move, grid)}.`;

@@ -5,12 +5,15 @@ import { comparedNumber, fineMillimetres, moveInWords, ruleNumber, stateInWords 
 import { percent, shareOf, valueColours } from "../../scale.js";
 import { html } from "../elements.js";
 
+/** @import { Belief, Explanation, FootCells, Move, ValueUpdate } from "../../types.js" */
+
 /** Products are not broken over two lines. @param {string} text */
 const unbroken = (text) => text.replaceAll(" · ", "\u00a0·\u00a0");
 
 const MAX_MOVES = 6;
 const SHORTEST_BAR = 0.02;
 
+/** @param {{ told: Explanation }} props */
 export function ExplainedStep({ told }) {
   return html`
     <div class="told">
@@ -21,6 +24,7 @@ export function ExplainedStep({ told }) {
   `;
 }
 
+/** @param {{ told: Explanation }} props */
 function Happened({ told }) {
   const { reward_m } = told;
   const visits = triesOf(told, told.action);
@@ -36,13 +40,19 @@ function Happened({ told }) {
   `;
 }
 
-/** Number of trials of a move there; null where they are not counted. */
+/**
+ * Number of trials of a move there; null where they are not counted.
+ * @param {Explanation} one
+ * @param {Move} other
+ */
 const triesOf = ({ visits }, [pair, cell]) => visits?.[pair]?.[cell] ?? null;
 
+/** @param {number} visits */
 const times = (visits) => (visits === 1 ? "once" : count(visits, "time"));
 
 // ---- why this move
 
+/** @param {{ told: Explanation }} props */
 function Choice({ told }) {
   const { choice, search, unexplained } = told;
   if (search) return html`<${Search} told=${told} />`;
@@ -63,10 +73,12 @@ function Choice({ told }) {
   `;
 }
 
+/** @param {string} text */
 const sentenceOf = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}${/[.!]$/.test(text) ? "" : "."}`;
 
+/** @param {{ told: Explanation }} props */
 function Search({ told }) {
-  const { sentences, futures, compares } = told.search;
+  const { sentences, futures, compares } = /** @type {NonNullable<Explanation["search"]>} */ (told.search);
   const rows = futures.map(({ action, return_m, reward_m, steps, sequences }) => ({
     move: action, score: return_m,
     note: `${fineMillimetres(reward_m)} at once; ${count(sequences, "sequence")} of ${count(steps, "step")}`,
@@ -80,21 +92,25 @@ function Search({ told }) {
   `;
 }
 
-/** The moves with the highest scores, and the one that was made. */
+/** The moves with the highest scores, and the one that was made. @param {{ told: Explanation }} props */
 function Scores({ told }) {
-  const { scores, criterion } = told.choice;
+  const { scores, criterion } = /** @type {NonNullable<Explanation["choice"]>} */ (told.choice);
   const rows = scores.flatMap((row, pair) => row.map((score, cell) => ({
     move: [pair, cell], score, note: triesOf(told, [pair, cell]) === 0 ? "never tried" : "",
   })));
   return html`<${Ranking} told=${told} caption=${criterion} rows=${rows.filter(({ score }) => score !== null)} />`;
 }
 
+/** @typedef {{ move: Move, score: number, note: string }} RankedMove */
+
+/** @param {{ told: Explanation, caption: string, rows: RankedMove[] }} props */
 function Ranking({ told, caption, rows }) {
   const all = rows.toSorted((a, b) => b.score - a.score);
+  /** @param {{ move: Move }} one */
   const isMade = ({ move }) => move[0] === told.action[0] && move[1] === told.action[1];
   const first = all.slice(0, MAX_MOVES);
   const shown = first.some(isMade) ? first : [...first.slice(0, -1), ...all.filter(isMade)];
-  const [high, low] = [all[0].score, all.at(-1).score];
+  const [high, low] = [all[0].score, all[all.length - 1].score];
   return html`
     <table class="scores">
       <caption class="dim">${sentenceOf(caption)}</caption>
@@ -115,6 +131,7 @@ function Ranking({ told, caption, rows }) {
   `;
 }
 
+/** @param {number} score @param {number} low @param {number} high */
 const barOf = (score, low, high) => ({
   width: percent(Math.max(SHORTEST_BAR, shareOf(score, low, high))),
   background: valueColours(score, low, high).background,
@@ -122,6 +139,7 @@ const barOf = (score, low, high) => ({
 
 // ---- the update
 
+/** @param {{ told: Explanation }} props */
 function Update({ told }) {
   const { update } = told;
   if (!update && !told.choice) return null;
@@ -139,6 +157,7 @@ function Update({ told }) {
   `;
 }
 
+/** @param {{ update: ValueUpdate, stored: number | null }} props */
 function Rule({ update, stored }) {
   const { rule, numbers, terms, before, after, is_exact } = update;
   return html`
@@ -164,11 +183,13 @@ function Rule({ update, stored }) {
   `;
 }
 
+/** @param {number} value @param {number | null} deviation @param {string} unit */
 const withDeviation = (value, deviation, unit) => {
   const text = unit === "m" ? fineMillimetres(value) : ruleNumber(value);
   return deviation === null ? text : `${text} ± ${fineMillimetres(deviation)}`;
 };
 
+/** @param {{ beliefs: Belief[] }} props */
 const Beliefs = ({ beliefs }) => html`
   <table class="beliefs">
     <caption class="dim">Its model of this step</caption>
@@ -185,6 +206,7 @@ const Beliefs = ({ beliefs }) => html`
   </table>
 `;
 
+/** @param {{ others: NonNullable<Explanation["update"]>["others"], grid: FootCells }} props */
 const Others = ({ others, grid }) => html`
   <details class="fold">
     <summary>${count(others.count, "further update")} of ${count(others.values_changed, "value")}</summary>

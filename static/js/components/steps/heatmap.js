@@ -9,6 +9,9 @@ import { keepInView, theme } from "../../page.js";
 import { html } from "../elements.js";
 import { ChosenStateNote } from "./chosen-state.js";
 
+/** @import { StateTable } from "../../types.js" */
+/** @import { ChosenState } from "../../posture.js" */
+
 const ROW_PX = 12;
 const GAP_PX = 2;
 const HATCH_PX = 6;
@@ -16,6 +19,7 @@ const DOT_PX = 2;
 const PAGE_ROWS = 10;
 
 /** @typedef {{ row: number, column: number }} Place */
+/** @typedef {PointerEvent & { currentTarget: HTMLElement }} OnGrid */
 
 /** @type {Record<string, (place: Place, last: Place) => Partial<Place>>} */
 const KEYS = {
@@ -29,6 +33,7 @@ const KEYS = {
   End: (_, last) => ({ column: last.column }),
 };
 
+/** @param {number} value @param {number} last */
 const clamped = (value, last) => Math.min(Math.max(value, 0), last);
 
 /**
@@ -50,12 +55,17 @@ export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
   const at = read ?? held ?? { row: marked ?? 0, column: column ?? 0 };
   const place = { row: clamped(at.row, last.row), column: clamped(at.column, last.column) };
   const words = cellInWords(shown, place.row, place.column);
+  /** @param {Place} one */
   const choose = (one) => onChoose(stateCells(shown.first + one.row, shown), moveOf(one.column, shown));
+  /** @param {Event & { currentTarget: HTMLElement }} event */
   const giveUp = (event) => {
-    event.currentTarget.closest(".heat").querySelector("[role=grid]").focus({ preventScroll: true });
+    /** @type {HTMLElement | null | undefined} */
+    const grid = event.currentTarget.closest(".heat")?.querySelector("[role=grid]");
+    grid?.focus({ preventScroll: true });
     setRead(null);
     onGiveUp();
   };
+  /** @param {KeyboardEvent & { currentTarget: HTMLElement }} event */
   const onKeyDown = (event) => {
     if (event.key !== "Escape" || !chosen) return;
     event.preventDefault();
@@ -77,7 +87,11 @@ export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {
   `;
 }
 
-/** The row of a state; null where it is not among those that are shown. */
+/**
+ * The row of a state; null where it is not among those that are shown.
+ * @param {number[] | null} cells
+ * @param {StateTable} shown
+ */
 function rowOf(cells, shown) {
   if (cells === null) return null;
   const row = stateIndex(cells, shown.cell_names.length) - shown.first;
@@ -87,6 +101,18 @@ function rowOf(cells, shown) {
 /**
  * The cells, with frames around the state that is looked at, the move made there, the cell that is read, and the state
  * that was chosen.
+ * @param {object} props
+ * @param {StateTable} props.shown
+ * @param {Place} props.last
+ * @param {Place} props.place
+ * @param {ReturnType<typeof cellInWords>} props.words
+ * @param {(place: Place | null) => void} props.onPlace
+ * @param {(place: Place) => void} props.onChoose
+ * @param {boolean} props.isChosen
+ * @param {ChosenState | null} props.chosen
+ * @param {Place | null} props.held
+ * @param {number | null} props.marked
+ * @param {number | null} props.column
  */
 function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, held, marked, column }) {
   const scroller = useRef(/** @type {HTMLElement | null} */ (null));
@@ -100,6 +126,7 @@ function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, 
     const heatmap = scroller.current?.closest(".heat");
     if (chosen?.from === "scene" && heatmap) keepInView(heatmap, "nearest");
   }, [heldRow, held?.column, chosen?.from]);
+  /** @param {KeyboardEvent} event */
   const onKeyDown = (event) => {
     if (event.key === "Enter") onChoose(place);
     const next = placeByKey(event, place, last);
@@ -134,7 +161,12 @@ function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, 
   `;
 }
 
-/** The place that a key goes to; null gives the choice up, and undefined is for another key. */
+/**
+ * The place that a key goes to; null gives the choice up, and undefined is for another key.
+ * @param {KeyboardEvent} event
+ * @param {Place} place
+ * @param {Place} last
+ */
 function placeByKey({ key, ctrlKey, altKey, metaKey }, place, last) {
   if (ctrlKey || altKey || metaKey) return undefined;
   if (key === "Escape") return null;
@@ -144,7 +176,14 @@ function placeByKey({ key, ctrlKey, altKey, metaKey }, place, last) {
   return { row: clamped(next.row, last.row), column: clamped(next.column, last.column) };
 }
 
+/**
+ * @param {Place} last
+ * @param {(place: Place | null) => void} onPlace
+ * @param {(place: Place) => void} onChoose
+ * @param {boolean} isHeld
+ */
 function pointerHandlers(last, onPlace, onChoose, isHeld) {
+  /** @param {OnGrid} event */
   const placeAt = ({ currentTarget, clientX, clientY }) => {
     const { left, top, width, height } = currentTarget.getBoundingClientRect();
     return width > 0 && height > 0 ? {
@@ -152,14 +191,17 @@ function pointerHandlers(last, onPlace, onChoose, isHeld) {
       column: clamped(Math.floor(((clientX - left) / width) * (last.column + 1)), last.column),
     } : null;
   };
+  /** @param {OnGrid} event */
   const read = (event) => {
     const place = placeAt(event);
     if (place) onPlace(place);
   };
+  /** @param {OnGrid} event */
   const choose = (event) => {
     const place = placeAt(event);
     if (place) onChoose(place);
   };
+  /** @param {OnGrid} event */
   const leave = ({ pointerType, currentTarget }) => {
     // A finger that is lifted leaves the cell until another is touched.
     if (pointerType === "mouse" && (isHeld || document.activeElement !== currentTarget)) onPlace(null);
@@ -167,8 +209,10 @@ function pointerHandlers(last, onPlace, onChoose, isHeld) {
   return { onPointerMove: read, onPointerDown: read, onPointerLeave: leave, onClick: choose };
 }
 
+/** @param {Place} one */
 const idOf = ({ row, column }) => `heat-${row}-${column}`;
 
+/** @param {HTMLElement | null} scroller @param {number} row */
 function scrollTo(scroller, row) {
   if (!scroller) return;
   const top = row * ROW_PX;
@@ -178,8 +222,12 @@ function scrollTo(scroller, row) {
   }
 }
 
-/** A frame around a cell, or without a column around a row. */
+/**
+ * A frame around a cell, or without a column around a row.
+ * @param {{ name: string, row: number, column?: number | null, last: Place }} props
+ */
 function Frame({ name, row, column = null, last }) {
+  /** @param {number} part @param {number} all */
   const share = (part, all) => `${(100 * part) / (all + 1)}%`;
   const across = column === null
     ? { left: 0, width: "100%" }
@@ -187,12 +235,14 @@ function Frame({ name, row, column = null, last }) {
   return html`<i class=${name} style=${{ top: `${row * ROW_PX}px`, height: `${ROW_PX}px`, ...across }}></i>`;
 }
 
+/** @param {{ shown: StateTable }} props */
 const Columns = ({ shown }) => html`
   <div class="heat-columns dim" aria-hidden="true">
     ${shown.pairs.map((legs) => html`<span>Legs ${legs.join(" + ")}</span>`)}
   </div>
 `;
 
+/** @param {{ shown: StateTable }} props */
 function Cells({ shown }) {
   const canvas = useRef(/** @type {HTMLCanvasElement | null} */ (null));
   const [width, setWidth] = useState(0);
@@ -214,7 +264,12 @@ function Cells({ shown }) {
   return html`<canvas ref=${canvas} aria-hidden="true"></canvas>`;
 }
 
-/** Moves never tried are hatched, as in the table of one state; the best move of a state has a dot. */
+/**
+ * Moves never tried are hatched, as in the table of one state; the best move of a state has a dot.
+ * @param {HTMLCanvasElement} canvas
+ * @param {StateTable} shown
+ * @param {number} width
+ */
 function draw(canvas, shown, width) {
   const rows = shown.values.length;
   const columns = shown.values[0].length;
@@ -223,7 +278,7 @@ function draw(canvas, shown, width) {
   const context = canvas.getContext("2d");
   if (!context || !width) return;
   context.scale(scale, scale);
-  const colour = coloursOf(canvas.parentElement);
+  const colour = coloursOf(canvas.parentElement ?? canvas);
   const [sunk, line, dim] = [colour("--sunk"), colour("--line"), colour("--dim")];
   const hatch = hatched(context, sunk, line);
   const { low, high } = valueRange(shown);
@@ -233,6 +288,7 @@ function draw(canvas, shown, width) {
     for (let column = 0; column < columns; column += 1) {
       const left = (column * width) / columns;
       const right = ((column + 1) * width) / columns - (column % cellsOfPair === cellsOfPair - 1 ? GAP_PX : 0.5);
+      /** @type {[number, number, number, number]} */
       const box = [left, row * ROW_PX, right - left, ROW_PX - 1];
       const kind = cellKind(shown, row, column);
       if (kind === "stays") {
@@ -252,6 +308,7 @@ function draw(canvas, shown, width) {
   }
 }
 
+/** @param {CanvasRenderingContext2D} context @param {string} ground @param {string} stroke */
 function hatched(context, ground, stroke) {
   const tile = document.createElement("canvas");
   Object.assign(tile, { width: HATCH_PX, height: HATCH_PX });
@@ -270,6 +327,7 @@ function hatched(context, ground, stroke) {
   return context.createPattern(tile, "repeat") ?? ground;
 }
 
+/** @param {{ shown: StateTable }} props */
 function Key({ shown }) {
   const { low, high } = valueRange(shown);
   const { tried, all } = triedMoves(shown);
@@ -288,10 +346,10 @@ function Key({ shown }) {
   `;
 }
 
-/** A function that resolves custom properties, which a canvas does not. */
+/** A function that resolves custom properties, which a canvas does not. @param {Element} host */
 function coloursOf(host) {
   const probe = document.createElement("span");
-  return (name) => {
+  return (/** @type {string} */ name) => {
     host.append(probe);
     probe.style.color = `var(${name})`;
     const found = getComputedStyle(probe).color;

@@ -14,6 +14,9 @@ import { html, Icon, Segments } from "../elements.js";
 import { ExplainedStep } from "./explanation.js";
 import { Heatmap } from "./heatmap.js";
 
+/** @import { Moment } from "../../steps.js" */
+/** @import { StateTable } from "../../types.js" */
+
 export function Steps() {
   useEffect(followMoment, []);
   useEffect(followChosenState, []);
@@ -30,11 +33,13 @@ export function Steps() {
 
 // ---- which step
 
+/** @param {{ at: Moment }} props */
 function Navigator({ at }) {
   const { step } = at;
   const last = lastStep.value;
   const lanes = scene.value?.lanes ?? [];
   const followed = ownStage.value === null ? "stage" : "replay";
+  /** @param {{ target: HTMLInputElement }} event */
   const onInput = ({ target }) => {
     const number = Number(target.value);
     if (Number.isInteger(number) && number >= 1 && number <= last) chooseStep(number);
@@ -42,7 +47,7 @@ function Navigator({ at }) {
   return html`
     <div class="steps-bar">
       ${lanes.length > 1 && html`
-        <${Segments} label="Lane" value=${at.lane} onValue=${(lane) => (chosenLane.value = lane)}
+        <${Segments} label="Lane" value=${at.lane} onValue=${(/** @type {number} */ lane) => (chosenLane.value = lane)}
           choices=${lanes.map(({ lane, name }) => [lane, name])} />
       `}
       <div class="stepper" role="group" aria-label="Step">
@@ -64,7 +69,7 @@ function Navigator({ at }) {
   `;
 }
 
-/** Show this step on the stage: practice takes as long for each of its steps. */
+/** Show this step on the stage: practice takes as long for each of its steps. @param {{ step: number }} props */
 function ShowOnStage({ step }) {
   const { duration_s, lanes = [] } = scene.value ?? {};
   if (!duration_s || !lanes[0]?.steps) return null;
@@ -77,6 +82,7 @@ function ShowOnStage({ step }) {
 
 // ---- its explanation
 
+/** @param {{ at: Moment }} props */
 function Explained({ at }) {
   const { answer, error, again } = explanation.value;
   const { step, run_id, lane } = at;
@@ -97,12 +103,14 @@ const Waiting = () => html`
   <p role="status"><span class="spinner" aria-hidden="true"></span> The learner is built again…</p>
 `;
 
+/** @param {{ error: Error | null, again: boolean }} props */
 const Trouble = ({ error, again }) => error && (again
   ? html`<p class="dim" role="status"><span class="spinner" aria-hidden="true"></span> ${messageOf(error)}</p>`
   : html`<p class="problem" role="alert"><span>${messageOf(error)}</span></p>`);
 
 // ---- the whole table
 
+/** @param {{ at: Moment }} props */
 function WholeTable({ at }) {
   const { answer, error, again } = table.value;
   const wanted = tableMoment.value;
@@ -118,12 +126,14 @@ function WholeTable({ at }) {
   `;
 }
 
+/** @param {{ wanted: typeof tableMoment.value }} props */
 const TableTime = ({ wanted }) => wanted && html`
   <span class="dim">
     ${wanted.step === null ? "at the end of its practice" : `before step ${whole(wanted.step + 1)}`}
   </span>
 `;
 
+/** @param {{ at: Moment, shown: StateTable }} props */
 function TableOfStates({ at, shown }) {
   const told = explanation.value.answer;
   const seen = told?.run_id === at.run_id ? told : null;
@@ -143,9 +153,11 @@ function TableOfStates({ at, shown }) {
   `;
 }
 
+/** @param {{ shown: StateTable }} props */
 function Parts({ shown }) {
   const rows = shown.values.length;
   const end = shown.first + rows;
+  /** @param {number} first */
   const to = (first) => () => {
     firstState.value = Math.max(0, first);
   };

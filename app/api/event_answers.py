@@ -1,0 +1,185 @@
+"""Response models of `/events`: the data of each server-sent event; see `answers`."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from app.api.answers import (
+    Answer,
+    Count,
+    ExperimentView,
+    RaceView,
+    Settings,
+    StageView,
+    TrainingView,
+)
+from app.api.recorded_answers import Evaluation
+from app.storage.run import Kind, State
+from hexapods.runs.clocks import Clock
+
+
+class DamagedRunView(Answer):
+    """A run that cannot be read, and why. It can be deleted."""
+
+    id: str
+    kind: Kind | None
+    name: str | None
+    state: State | None
+    created_at: datetime | None
+    damaged: str
+
+
+AnyRunView = TrainingView | RaceView | ExperimentView | DamagedRunView
+
+
+class SceneLane(Answer):
+    """A lane at the moment that the stage shows; `halted` if its run ended before it was done."""
+
+    lane: Count
+    agent: str
+    name: str
+    color: str
+    distance_m: float
+    step: Count
+    steps: Count
+    thinking: bool
+    futures: Count
+    futures_total: Count
+    done: bool = Field(description="whether it has used all its steps, or failed")
+    halted: bool
+    crossed: bool
+    rank: int
+    marching: bool
+    failure: str | None
+
+
+class GhostView(Answer):
+    """A robot in the state after an earlier evaluation."""
+
+    step: Count
+    distance_m: float
+
+
+class GhostLane(GhostView):
+    """A robot of another run that is shown as a ghost."""
+
+    lane: Count
+    name: str
+
+
+class NextAction(Answer):
+    """An action: the leg pair, and the cell to which it moves."""
+
+    pair: Count
+    cell: Count
+
+
+class SceneActionValues(Answer):
+    """Action values of a learner in its present state."""
+
+    agent: str
+    lane: Count
+    pairs: list[tuple[int, int]]
+    cell_names: list[str]
+    cells_m: list[tuple[float, float]]
+    values_m: list[list[float | None]] = Field(
+        description="by leg pair and cell; null where the foot already stands"
+    )
+    visits: list[list[float | None]]
+    current: list[int] = Field(description="the cell of each leg pair")
+    next: NextAction | None
+    low: float
+    high: float
+
+
+class SceneView(Answer):
+    """The moment of a run that the stage shows, without poses."""
+
+    run_id: str | None
+    kind: Literal["idle", "training", "race"]
+    phase: str
+    time_s: float
+    duration_s: float | None
+    computed_s: float = Field(description="time of the run up to which it is computed")
+    time_out_s: float | None
+    ended: bool
+    shown_speed: float
+    playing: bool
+    clock: Clock
+    replay: bool
+    label: str
+    lanes: list[SceneLane]
+    ghosts: list[GhostView]
+    ghost_lanes: list[GhostLane]
+    action_values: SceneActionValues | None
+
+
+class SnapshotView(Answer):
+    """State of the server when the stream begins: the newest runs, or the one that is followed."""
+
+    version: str
+    role: Literal["operator", "spectator"]
+    viewers: Count
+    runs: list[AnyRunView]
+    stage: StageView
+    scene: SceneView
+    evaluations: list[Evaluation] = Field(default_factory=list)
+
+
+class DeletedRun(Answer):
+    """A run that was deleted."""
+
+    id: str
+
+
+class EvaluationEvent(Evaluation):
+    """An evaluation of a training that runs."""
+
+    run_id: str
+
+
+class ReferenceEvent(Answer):
+    """Distances [m] of greedy and of the best known walk on the robot of a training."""
+
+    run_id: str
+    greedy_distance_m: float
+    best_known_m: float | None
+
+
+class RatesEvent(Answer):
+    """A change of a training's pace and live settings; what stayed is left out."""
+
+    run_id: str
+    step: Count
+    pace: float | Literal["max"] | None = None
+    settings: Settings = Field(default_factory=dict)
+
+
+class SummaryEvent(Answer):
+    """The summary of an experiment has a new number of trials."""
+
+    run_id: str
+    done: Count
+    total: Count
+
+
+class ViewersEvent(Answer):
+    """The number of pages that watch the stage."""
+
+    count: Count
+
+
+class EventBodies(Answer):
+    """Data of each server-sent event, by the event's name."""
+
+    snapshot: SnapshotView
+    run: AnyRunView
+    run_deleted: Annotated[DeletedRun, Field(alias="run-deleted")]
+    evaluation: EvaluationEvent
+    reference: ReferenceEvent
+    rates: RatesEvent
+    stage: StageView
+    scene: SceneView
+    summary: SummaryEvent
+    viewers: ViewersEvent

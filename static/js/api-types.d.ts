@@ -1,0 +1,1846 @@
+// Written by `make page-types` from the API's response models (app/api/*answers.py).
+
+/**
+ * Value of an action, [pair, cell], in a state, which is the cell of each pair.
+ */
+export interface ActionValue {
+  state: number[];
+  action: [number, number];
+  value: number;
+  visits: number;
+}
+/**
+ * An agent, with its constructor's settings and those that can change during a training.
+ */
+export interface AgentOption {
+  name: string;
+  title: string;
+  description: string;
+  learns: boolean;
+  /**
+   * whether it plans with a simulator: takes `plans_with`
+   */
+  searches: boolean;
+  needs_practice: boolean;
+  keeps_learning: boolean;
+  color: string;
+  settings: {
+    [k: string]: SettingOption;
+  };
+  live_settings: {
+    [k: string]: SettingOption;
+  };
+}
+/**
+ * Declaration of a setting: the labels, limits and default of its form control.
+ */
+export interface SettingOption {
+  title: string;
+  symbol: string | null;
+  quantity: string | null;
+  unit: string | null;
+  help: string;
+  /**
+   * the valid values, in words
+   */
+  valid: string;
+  minimum: number | null;
+  maximum: number | null;
+  /**
+   * whether the minimum itself is not valid
+   */
+  excludes_minimum: boolean;
+  /**
+   * whether the maximum itself is not valid
+   */
+  excludes_maximum: boolean;
+  is_number: boolean;
+  is_boolean: boolean;
+  is_whole: boolean;
+  /**
+   * the valid words, if only certain words are valid
+   */
+  choices: string[];
+  /**
+   * the titles of these words, in their order
+   */
+  choice_titles: string[];
+  default: number | string | boolean | null;
+  /**
+   * whether it may change while a training runs
+   */
+  is_live: boolean;
+}
+/**
+ * A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run.
+ */
+export interface Announcement {
+  run_id: string;
+  in_s: number;
+}
+/**
+ * A share of the seeds, and the verdict whether it exceeds one half.
+ */
+export interface Beats {
+  share: number;
+  low: number | null;
+  high: number | null;
+  verdict: "yes" | "no" | "not established";
+}
+/**
+ * Beliefs of a model, before and after the step.
+ */
+export interface BeliefView {
+  name: string;
+  unit: string;
+  before: number;
+  after: number;
+  deviation_before: number | null;
+  deviation_after: number | null;
+}
+/**
+ * The race and the step at which a race branches off.
+ */
+export interface BranchView {
+  race_id: string;
+  step: number;
+}
+/**
+ * A change while it ran, and the step after which it applies; what stayed is left out.
+ */
+export interface Change {
+  step: number;
+  pace?: number | "max" | null;
+  /**
+   * settings of the agent, by name
+   */
+  settings?: {
+    [k: string]: number | string | boolean | null;
+  };
+  disturbance?: DisturbanceView | null;
+}
+/**
+ * Disturbance from a step on; the fields of its kind are further members, by name.
+ */
+export interface DisturbanceView {
+  kind: string;
+  at_step: number;
+  [k: string]: number | string | boolean | number[] | null;
+}
+/**
+ * Why an action was chosen, why no other, and when another would have been.
+ */
+export interface ChoiceView {
+  /**
+   * the best by its scores, a random one, or one that is not known yet
+   */
+  kind: "exploited" | "explored" | "unknown";
+  /**
+   * what its scores are
+   */
+  criterion: string;
+  /**
+   * by leg pair and cell [m]; null where it could not be chosen
+   */
+  scores: (number | null)[][];
+  best: [number, number][];
+  runner_up: [number, number] | null;
+  /**
+   * score of the action, less that of the runner-up
+   */
+  margin_m: number | null;
+  /**
+   * probability of a random action
+   */
+  epsilon: number | null;
+  /**
+   * random number that was compared with it
+   */
+  draw: number | null;
+  /**
+   * of this action in this state
+   */
+  probability: number;
+  sentences: string[];
+}
+/**
+ * Verdict on one of the paper's claims.
+ */
+export interface ClaimVerdict {
+  id: string;
+  verdict: "holds" | "does not hold" | "not established" | "depends";
+}
+/**
+ * A claim of the paper, with its verdict and the evidence.
+ */
+export interface ClaimView {
+  id: string;
+  claim: string;
+  criterion: string;
+  verdict: "holds" | "does not hold" | "not established" | "depends";
+  evidence: string;
+  where: Finding[];
+}
+/**
+ * Verdict on a claim in one case.
+ */
+export interface Finding {
+  observation: "measured" | "commanded" | "planned";
+  robot: string;
+  label: string;
+  verdict: "holds" | "does not hold" | "not established" | "depends";
+  evidence: string;
+}
+/**
+ * A run as commands for a shell, and as a Python program.
+ */
+export interface CodeView {
+  command: string;
+  python: string;
+}
+/**
+ * Computing time of an experiment [s], trials per second, and workers.
+ */
+export interface Cost {
+  wall_s: number;
+  compute_s: number;
+  trials_per_s: number | null;
+  workers: number;
+}
+/**
+ * Interquartile means over the seeds at some steps, with 95 % intervals [m].
+ */
+export interface Curve {
+  steps: number[];
+  iqm_m: number[];
+  low_m: (number | null)[];
+  high_m: (number | null)[];
+  mean_m: number[];
+}
+/**
+ * Learning curve of a setting: distances after each block of practice [m].
+ */
+export interface CurveOfSetting {
+  steps_per_episode: number | null;
+  observation: "measured" | "commanded" | "planned";
+  robot: string;
+  world?: string;
+  agent: string;
+  steps: number[];
+  blocks: number;
+  divisions: number;
+  grid_side_m: number;
+  half_side_m: number;
+  key: string;
+  gait: string;
+  greedy_m: number | null;
+  best_known_m?: number | null;
+  iqm_m: number[];
+  low_m: (number | null)[];
+  high_m: (number | null)[];
+  mean_m: number[];
+  walkers: (number | null)[];
+  points_m: number[][];
+  [k: string]:
+    | number
+    | string
+    | boolean
+    | null
+    | "measured"
+    | "commanded"
+    | "planned"
+    | number[]
+    | (number | null)[]
+    | number[][]
+    | undefined;
+}
+/**
+ * A learning curve with its references: greedy's distance, and the best known one [m].
+ *
+ * Both are of the world as it is now; the best known is null where it was not computed.
+ */
+export interface CurveView {
+  evaluations: Evaluation[];
+  greedy_distance_m: number | null;
+  best_known_m: number | null;
+}
+/**
+ * Evaluation of a training: the distance walked [m] after `step` steps of practice.
+ */
+export interface Evaluation {
+  step: number;
+  distance_m: number;
+  epsilon: number;
+}
+/**
+ * The sequence of steps that the walk repeats at its end, at least three times.
+ *
+ * `first_step` is counted from 0; `actions` are [pair, cell]; `advance_m` is of one period.
+ */
+export interface CycleView {
+  steps: number;
+  period_s: number;
+  first_step: number;
+  repeats: number;
+  advance_m: number;
+  actions: [number, number][];
+}
+/**
+ * A run that cannot be read, and why. It can be deleted.
+ */
+export interface DamagedRunView {
+  id: string;
+  kind: ("training" | "race" | "experiment") | null;
+  name: string | null;
+  state: ("queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted") | null;
+  created_at: string | null;
+  damaged: string;
+}
+/**
+ * Default request bodies of a training and of a race, and the number of seeds of a what-if.
+ */
+export interface DefaultsView {
+  training: TrainingDefaults;
+  race: RaceDefaults;
+  what_if: WhatIfDefaults;
+}
+/**
+ * Default request body of a training.
+ */
+export interface TrainingDefaults {
+  agent: string;
+  robot: string;
+  simulator: "mujoco" | "kinematic";
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
+  [k: string]: unknown;
+}
+/**
+ * Default request body of a race.
+ */
+export interface RaceDefaults {
+  steps: number;
+  seed: number;
+  lanes: LaneDefaults[];
+}
+/**
+ * Default request body of a lane.
+ */
+export interface LaneDefaults {
+  agent: string;
+  [k: string]: unknown;
+}
+/**
+ * The number of seeds of a what-if.
+ */
+export interface WhatIfDefaults {
+  seeds: number;
+}
+/**
+ * A run that was deleted.
+ */
+export interface DeletedRun {
+  id: string;
+}
+/**
+ * Ids of the runs that were deleted, and those that could not be.
+ */
+export interface DeletedView {
+  deleted: string[];
+  kept: KeptRun[];
+}
+/**
+ * A run that could not be deleted, and why.
+ */
+export interface KeptRun {
+  id: string;
+  reason: string;
+}
+/**
+ * An option of a form, with its name on the page and a one-sentence description.
+ */
+export interface Described {
+  name: string;
+  title: string;
+  description: string;
+}
+/**
+ * Distances of the seeds, their mean, median, interquartile mean and 95 % interval [m].
+ */
+export interface Distances {
+  points_m: number[];
+  mean_m: number;
+  median_m: number;
+  iqm_m: number;
+  low_m: number | null;
+  high_m: number | null;
+}
+/**
+ * A kind of disturbance, with its fields and the simulators that know it.
+ */
+export interface DisturbanceOption {
+  name: string;
+  title: string;
+  description: string;
+  fields: {
+    [k: string]: FieldOption;
+  };
+  /**
+   * the field that says how much happens
+   */
+  size: string | null;
+  /**
+   * the size at which nothing happens: a number, or the robot's part that has it
+   */
+  nothing: number | string | null;
+  /**
+   * whether it holds until another of the same thing
+   */
+  lasts: boolean;
+  /**
+   * fields that tell, beside the kind, what it changes; each leg is one thing
+   */
+  identified_by: string[];
+  /**
+   * part of a leg to which it happens; empty for all of it
+   */
+  part: string[];
+  simulators: string[];
+}
+/**
+ * Declaration of a field of a disturbance; of a list, that of each of its values.
+ */
+export interface FieldOption {
+  title: string;
+  symbol: string | null;
+  quantity: string | null;
+  unit: string | null;
+  help: string;
+  /**
+   * the valid values, in words
+   */
+  valid: string;
+  minimum: number | null;
+  maximum: number | null;
+  /**
+   * whether the minimum itself is not valid
+   */
+  excludes_minimum: boolean;
+  /**
+   * whether the maximum itself is not valid
+   */
+  excludes_maximum: boolean;
+  is_number: boolean;
+  is_boolean: boolean;
+  is_whole: boolean;
+  /**
+   * the valid words, if only certain words are valid
+   */
+  choices: string[];
+  /**
+   * the titles of these words, in their order
+   */
+  choice_titles: string[];
+  default: number | string | boolean | null;
+  /**
+   * whether it may change while a training runs
+   */
+  is_live: boolean;
+  is_list: boolean;
+  is_required: boolean;
+  /**
+   * narrower limits by the choice of another field
+   */
+  ranges: RangesView | null;
+}
+/**
+ * Limits of a field by what is chosen in another: (low, high) of each choice.
+ */
+export interface RangesView {
+  field: string;
+  ranges: {
+    [k: string]: [number, number];
+  };
+}
+/**
+ * Estimated duration of a run here once it has a core [s].
+ */
+export interface EstimateView {
+  seconds: number;
+}
+/**
+ * An evaluation of a training that runs.
+ */
+export interface EvaluationEvent {
+  step: number;
+  distance_m: number;
+  epsilon: number;
+  run_id: string;
+}
+/**
+ * Data of each server-sent event, by the event's name.
+ */
+export interface EventBodies {
+  snapshot: SnapshotView;
+  run: TrainingView | RaceView | ExperimentView | DamagedRunView;
+  "run-deleted": DeletedRun;
+  evaluation: EvaluationEvent;
+  reference: ReferenceEvent;
+  rates: RatesEvent;
+  stage: StageView;
+  scene: SceneView;
+  summary: SummaryEvent;
+  viewers: ViewersEvent;
+}
+/**
+ * State of the server when the stream begins: the newest runs, or the one that is followed.
+ */
+export interface SnapshotView {
+  version: string;
+  role: "operator" | "spectator";
+  viewers: number;
+  runs: (TrainingView | RaceView | ExperimentView | DamagedRunView)[];
+  stage: StageView;
+  scene: SceneView;
+  evaluations?: Evaluation[];
+}
+/**
+ * A training.
+ */
+export interface TrainingView {
+  id: string;
+  name: string;
+  state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
+  can_resume: boolean;
+  queue_position: number | null;
+  progress: ProgressView;
+  eta_s: number | null;
+  error: string | null;
+  tags: string[];
+  notes: string;
+  created_at: string;
+  started_at: string | null;
+  ended_at: string | null;
+  kind: "training";
+  config: TrainingConfigView;
+  result: TrainingResult | null;
+  greedy_distance_m: number | null;
+  changes: Change[];
+}
+/**
+ * Progress: steps of a training or of all lanes of a race; trials of an experiment.
+ */
+export interface ProgressView {
+  done: number;
+  total: number;
+}
+/**
+ * Config of a training.
+ */
+export interface TrainingConfigView {
+  gait: string | GaitParts;
+  robot: RobotView;
+  simulator: "mujoco" | "kinematic";
+  divisions: number;
+  grid_side_m: number;
+  tolerance: number;
+  disturbances: DisturbanceView[];
+  steps: number;
+  seed: number;
+  observation: "measured" | "commanded" | "planned";
+  steps_per_episode: number;
+  evaluate_every: number;
+  pace: number | "max";
+  agent: string;
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
+  continue_from: string | null;
+}
+/**
+ * A custom gait; members that were not given are absent.
+ */
+export interface GaitParts {
+  right_leg: number;
+  left_leg: number;
+  symmetry?: "origin" | "vertical";
+  pairs?: [number, number][];
+}
+/**
+ * A preset, and by name the numeric parameters that override it.
+ */
+export interface RobotView {
+  preset: "stiff" | "compliant" | "slippery";
+  legs?: LegView[];
+  [k: string]: number | "stiff" | "compliant" | "slippery" | LegView[] | undefined;
+}
+/**
+ * The mount of a leg: its direction [°] and its distance from the body's middle [m].
+ */
+export interface LegView {
+  azimuth_deg: number;
+  radius_m: number;
+}
+/**
+ * Final distance [m] of the agent and of the greedy reference, and the Q-table's hash.
+ *
+ * Both walked in the world as it was at the end. `fell_at_step` is the first step of practice,
+ * counted from 0, in which the robot fell.
+ */
+export interface TrainingResult {
+  distance_m: number | null;
+  greedy_distance_m?: number | null;
+  best_known_m?: number | null;
+  q_table_sha256?: string | null;
+  fell_at_step?: number | null;
+}
+/**
+ * A race. `best_known_m` is null where it was not computed, or something happens in between.
+ */
+export interface RaceView {
+  id: string;
+  name: string;
+  state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
+  can_resume: boolean;
+  queue_position: number | null;
+  progress: ProgressView;
+  eta_s: number | null;
+  error: string | null;
+  tags: string[];
+  notes: string;
+  created_at: string;
+  started_at: string | null;
+  ended_at: string | null;
+  kind: "race";
+  config: RaceConfigView;
+  result: RaceResult | null;
+  best_known_m: number | null;
+  waiting_for: string[];
+}
+/**
+ * Config of a race.
+ */
+export interface RaceConfigView {
+  gait: string | GaitParts;
+  robot: RobotView;
+  simulator: "mujoco" | "kinematic";
+  divisions: number;
+  grid_side_m: number;
+  tolerance: number;
+  disturbances: DisturbanceView[];
+  lanes: LaneView[];
+  steps: number;
+  seed: number;
+  branch_from: BranchView | null;
+}
+/**
+ * A lane of a race, with the id of the training whose Q-table it uses.
+ *
+ * The settings of an agent with training are those of the training.
+ */
+export interface LaneView {
+  agent: string;
+  keep_learning: boolean;
+  /**
+   * model that it plans with; null if it does not search
+   */
+  plans_with: ("world" | "start" | "nominal") | null;
+  /**
+   * whether `plans_with` was left out
+   */
+  plans_with_by_default: boolean;
+  observation: "measured" | "commanded" | "planned";
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
+  training_id: string | null;
+}
+/**
+ * Result of a race, by lane.
+ *
+ * `shared_machine`: whether other runs computed beside it, which slows its wall clock.
+ */
+export interface RaceResult {
+  /**
+   * @maxItems 6
+   */
+  lanes:
+    | []
+    | [LaneResult]
+    | [LaneResult, LaneResult]
+    | [LaneResult, LaneResult, LaneResult]
+    | [LaneResult, LaneResult, LaneResult, LaneResult]
+    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult]
+    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult, LaneResult];
+  shared_machine?: boolean;
+}
+/**
+ * Result of a lane. Deterministic except for `decision_s` and the `wall` clock.
+ *
+ * A lane that did not take all its steps has no total distance, and its failure as the reason.
+ * `trained_robot` is set if its table was learned on another robot. `plans_with` is what its
+ * search knew, null if it does not search. `fell_at_step` is counted from 0, null if it did not
+ * fall; `heading_deg` is its heading at the end: 0 along the track, and 90 to the left.
+ */
+export interface LaneResult {
+  agent: string;
+  training_id?: string | null;
+  trained_robot?: {
+    [k: string]: unknown;
+  } | null;
+  steps: number;
+  total_distance_m: number | null;
+  failure: string | null;
+  decision_s: number;
+  simulated_transitions: number;
+  clocks: LaneFigures;
+  plans_with?: ("world" | "start" | "nominal") | null;
+  fell_at_step?: number | null;
+  heading_deg?: number | null;
+}
+/**
+ * Figures of a lane under each clock.
+ */
+export interface LaneFigures {
+  paper: FiguresUnderClock;
+  wall: FiguresUnderClock;
+  free: FiguresUnderClock;
+}
+/**
+ * Figures of a lane under one clock; lanes are ranked by the distance at time-out.
+ *
+ * Without a time-out, as of a race that was stopped before, there are no ranks.
+ */
+export interface FiguresUnderClock {
+  finished_distance_m: number | null;
+  elapsed_s: number;
+  crossed_s: number | null;
+  rank: number | null;
+}
+/**
+ * An experiment.
+ */
+export interface ExperimentView {
+  id: string;
+  name: string;
+  state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
+  can_resume: boolean;
+  queue_position: number | null;
+  progress: ProgressView;
+  eta_s: number | null;
+  error: string | null;
+  tags: string[];
+  notes: string;
+  created_at: string;
+  started_at: string | null;
+  ended_at: string | null;
+  kind: "experiment";
+  config: ExperimentConfigView;
+  result: ExperimentResult | null;
+  workers: number | null;
+}
+/**
+ * Config of an experiment; each element of the lists' Cartesian product is a setting.
+ */
+export interface ExperimentConfigView {
+  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
+  seeds: number;
+  seed: number;
+  agents: string[];
+  gaits: (string | GaitParts)[];
+  observations: ("measured" | "commanded" | "planned")[];
+  robots: RobotView[];
+  simulator: "mujoco" | "kinematic";
+  steps: number[];
+  /**
+   * values of the agents' settings, by name
+   */
+  settings: {
+    [k: string]: (number | string | boolean | null)[];
+  };
+  steps_per_episode: number[];
+  divisions: number[];
+  grid_side_m: number[];
+  blocks: number;
+  worlds?: string[];
+  tolerance?: number;
+}
+/**
+ * Result of an experiment; `files` are those of its report.
+ *
+ * `shared_machine`: whether other runs computed beside it, which slows what is timed.
+ */
+export interface ExperimentResult {
+  trials: TrialCounts;
+  /**
+   * @maxItems 1000
+   */
+  claims: ClaimVerdict[];
+  /**
+   * @maxItems 128
+   */
+  files: string[];
+  shared_machine?: boolean;
+}
+/**
+ * Number of trials by outcome.
+ */
+export interface TrialCounts {
+  done: number;
+  total: number;
+  failed: number;
+  set_aside: number;
+}
+/**
+ * State of the stage, which shows one run to all viewers.
+ */
+export interface StageView {
+  run_id: string | null;
+  kind: "idle" | "training" | "race";
+  /**
+   * `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is at time-out; `showing`: it has ended, its picture has not; `ended`: both have
+   */
+  phase: "empty" | "live" | "decided" | "showing" | "ended";
+  /**
+   * why the run is on stage: it was `started`, a person has `chosen` it, the server replays it (`automatic`), or it was shown last before the server's start (`restored`)
+   */
+  origin: "none" | "started" | "chosen" | "automatic" | "restored";
+  time_s: number;
+  playing: boolean;
+  speed: number | "time-lapse";
+  clock: "paper" | "wall" | "free";
+  end_at_time_out: boolean;
+  replay: boolean;
+  live: boolean;
+  ended: boolean;
+  next_run_id: string | null;
+  holder: string | null;
+  announced: Announcement | null;
+}
+/**
+ * The moment of a run that the stage shows, without poses.
+ */
+export interface SceneView {
+  run_id: string | null;
+  kind: "idle" | "training" | "race";
+  phase: string;
+  time_s: number;
+  duration_s: number | null;
+  /**
+   * time of the run up to which it is computed
+   */
+  computed_s: number;
+  time_out_s: number | null;
+  ended: boolean;
+  shown_speed: number;
+  playing: boolean;
+  clock: "paper" | "wall" | "free";
+  replay: boolean;
+  label: string;
+  lanes: SceneLane[];
+  ghosts: GhostView[];
+  ghost_lanes: GhostLane[];
+  action_values: SceneActionValues | null;
+}
+/**
+ * A lane at the moment that the stage shows; `halted` if its run ended before it was done.
+ */
+export interface SceneLane {
+  lane: number;
+  agent: string;
+  name: string;
+  color: string;
+  distance_m: number;
+  step: number;
+  steps: number;
+  thinking: boolean;
+  futures: number;
+  futures_total: number;
+  /**
+   * whether it has used all its steps, or failed
+   */
+  done: boolean;
+  halted: boolean;
+  crossed: boolean;
+  rank: number;
+  marching: boolean;
+  failure: string | null;
+}
+/**
+ * A robot in the state after an earlier evaluation.
+ */
+export interface GhostView {
+  step: number;
+  distance_m: number;
+}
+/**
+ * A robot of another run that is shown as a ghost.
+ */
+export interface GhostLane {
+  step: number;
+  distance_m: number;
+  lane: number;
+  name: string;
+}
+/**
+ * Action values of a learner in its present state.
+ */
+export interface SceneActionValues {
+  agent: string;
+  lane: number;
+  pairs: [number, number][];
+  cell_names: string[];
+  cells_m: [number, number][];
+  /**
+   * by leg pair and cell; null where the foot already stands
+   */
+  values_m: (number | null)[][];
+  visits: (number | null)[][];
+  /**
+   * the cell of each leg pair
+   */
+  current: number[];
+  next: NextAction | null;
+  low: number;
+  high: number;
+}
+/**
+ * An action: the leg pair, and the cell to which it moves.
+ */
+export interface NextAction {
+  pair: number;
+  cell: number;
+}
+/**
+ * Distances [m] of greedy and of the best known walk on the robot of a training.
+ */
+export interface ReferenceEvent {
+  run_id: string;
+  greedy_distance_m: number;
+  best_known_m: number | null;
+}
+/**
+ * A change of a training's pace and live settings; what stayed is left out.
+ */
+export interface RatesEvent {
+  run_id: string;
+  step: number;
+  pace?: number | "max" | null;
+  /**
+   * settings of the agent, by name
+   */
+  settings?: {
+    [k: string]: number | string | boolean | null;
+  };
+}
+/**
+ * The summary of an experiment has a new number of trials.
+ */
+export interface SummaryEvent {
+  run_id: string;
+  done: number;
+  total: number;
+}
+/**
+ * The number of pages that watch the stage.
+ */
+export interface ViewersEvent {
+  count: number;
+}
+/**
+ * An experiment, with the fields of its request body and their defaults.
+ */
+export interface ExperimentOption {
+  name: string;
+  title: string;
+  description: string;
+  fields: string[];
+  grid: string[];
+  defaults: {
+    [k: string]: unknown;
+  };
+  /**
+   * by simulator: the defaults that are others there
+   */
+  simulator_defaults: {
+    [k: string]: {
+      [k: string]: unknown;
+    };
+  };
+  /**
+   * the agents that it can compare
+   */
+  agents: string[];
+}
+/**
+ * Page of experiments.
+ */
+export interface ExperimentPage {
+  next_cursor: string | null;
+  items: ExperimentView[];
+}
+/**
+ * An explained step.
+ */
+export interface ExplanationView {
+  pairs: number[][];
+  cells_m: [number, number][];
+  cell_names: string[];
+  run_id: string;
+  lane: number | null;
+  step: number;
+  agent: string;
+  /**
+   * Items: cell of the foot grid; 0 is home
+   */
+  observation: number[];
+  /**
+   * leg pair and cell to which it moves, both from 0 on
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  action: [number, number];
+  reward_m: number;
+  next_observation: number[] | null;
+  /**
+   * how often each move had been tried here before, by leg pair and cell
+   */
+  visits: (number | null)[][] | null;
+  choice: ChoiceView | null;
+  /**
+   * null if it learned nothing from it
+   */
+  update: UpdateView | null;
+  /**
+   * null if it does not search
+   */
+  search: SearchView | null;
+  /**
+   * why the choice is not explained
+   */
+  unexplained: string | null;
+}
+/**
+ * Update of the learner's values by a step.
+ */
+export interface UpdateView {
+  summary: string;
+  direct: ValueUpdateView | null;
+  /**
+   * the value in the end, as planning may change it again
+   */
+  stored: number | null;
+  others: OtherUpdates;
+  beliefs: BeliefView[];
+}
+/**
+ * Update of one value: the rule gives the value after it, to the last bit.
+ */
+export interface ValueUpdateView {
+  /**
+   * Items: cell of the foot grid; 0 is home
+   */
+  observation: number[];
+  /**
+   * leg pair and cell to which it moves, both from 0 on
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  action: [number, number];
+  move: string;
+  rule: string;
+  /**
+   * the rule with rounded numbers put in
+   */
+  numbers: string;
+  terms: TermView[];
+  before: number;
+  after: number;
+  /**
+   * whether the rule was checked and gives `after`
+   */
+  is_exact: boolean;
+}
+/**
+ * A number in a rule.
+ */
+export interface TermView {
+  symbol: string;
+  value: number;
+  meaning: string;
+}
+/**
+ * Further updates by the same step: planned ones, and those of earlier steps.
+ */
+export interface OtherUpdates {
+  count: number;
+  values_changed: number;
+  largest: ValueUpdateView[];
+}
+/**
+ * Simulations of a search, with the outcome of each future; its action comes first.
+ */
+export interface SearchView {
+  compares: string;
+  transitions: number;
+  futures: FutureView[];
+  sentences: string[];
+}
+/**
+ * Finding of a search about an action.
+ */
+export interface FutureView {
+  /**
+   * leg pair and cell to which it moves, both from 0 on
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  action: [number, number];
+  /**
+   * of the step, as simulated
+   */
+  reward_m: number;
+  /**
+   * what the search compared
+   */
+  return_m: number;
+  /**
+   * simulated ones that begin with it
+   */
+  sequences: number;
+  /**
+   * how far these look ahead
+   */
+  steps: number;
+}
+/**
+ * A type of file that a race or training which has ended can be exported as.
+ */
+export interface ExportOption {
+  title: string;
+  /**
+   * below `/api/v1/runs/{run_id}/`
+   */
+  address: string;
+  /**
+   * of the request; POST is for operators only
+   */
+  method: "GET" | "POST";
+  ending: string;
+  /**
+   * the command that installs what the server lacks; null if it lacks nothing
+   */
+  install: string | null;
+}
+/**
+ * Figures of a walk in the window.
+ *
+ * `distance_m` is along the direction that the robot faced at first; a body length is the
+ * diameter of the torso.
+ */
+export interface GaitFiguresView {
+  from_s: number;
+  to_s: number;
+  distance_m: number;
+  speed_m_s: number;
+  speed_body_lengths_s: number;
+  /**
+   * mean of all legs
+   */
+  duty_factor: number;
+  mass_kg: number;
+  legs: LegGaitView[];
+  /**
+   * null if the walk has no limit cycle
+   */
+  cycle: CycleView | null;
+  posture: PostureView;
+  /**
+   * null if it was not recorded
+   */
+  effort: ServoEffortView | null;
+}
+/**
+ * Footfalls of a leg: when its foot is on the ground, [from s, to s], and the share of that.
+ */
+export interface LegGaitView {
+  leg: number;
+  stance: [number, number][];
+  duty_factor: number;
+}
+/**
+ * The torso over time: its centre's height over flat ground, pitch and roll.
+ *
+ * Pitch is positive with the front up, roll with the left side up. Ranges are of all recorded
+ * poses, which in a long window are more than the samples.
+ */
+export interface PostureView {
+  time_s: number[];
+  height_m: number[];
+  pitch_deg: number[];
+  roll_deg: number[];
+  height_range_m: [number, number];
+  pitch_range_deg: [number, number];
+  roll_range_deg: [number, number];
+}
+/**
+ * Torque, positive mechanical work and cost of transport of the servos.
+ *
+ * Samples of `torque_nm` are the largest torque of any servo since the sample before, those of
+ * `power_w` the mean power of all. `cost_of_transport` is energy by weight and distance, null
+ * without distance. Losses in motors and electronics are not simulated.
+ */
+export interface ServoEffortView {
+  time_s: number[];
+  torque_nm: number[];
+  power_w: number[];
+  largest_torque_nm: number;
+  torque_limit_nm: number;
+  energy_j: number;
+  mean_power_w: number;
+  cost_of_transport: number | null;
+}
+/**
+ * A robot's walk; `figures` are null if nothing of it lies in the window.
+ */
+export interface GaitLaneView {
+  agent: string;
+  recorded_from_s: number;
+  recorded_to_s: number;
+  figures: GaitFiguresView | null;
+  /**
+   * why there are neither torque nor energy, in a sentence
+   */
+  no_effort: string | null;
+}
+/**
+ * A gait, with the directions of its legs [°] and the pairs of legs that move together.
+ */
+export interface GaitOption {
+  name: string;
+  title: string;
+  description: string;
+  forward_deg: number;
+  azimuths_deg: number[];
+  pairs: [number, number][];
+}
+/**
+ * Gait analysis of a race, lane by lane, or of a training.
+ */
+export interface GaitView {
+  part: "race" | "practice" | "evaluation";
+  /**
+   * duration of a step
+   */
+  step_s: number;
+  lanes: GaitLaneView[];
+}
+/**
+ * Status and version of the server.
+ */
+export interface HealthView {
+  status: "ok" | "ready";
+  version: string;
+}
+/**
+ * Runs that were imported, in the order of their archive.
+ */
+export interface ImportedView {
+  items: (TrainingView | RaceView | ExperimentView)[];
+}
+/**
+ * Interquartile mean with its 95 % interval, which is null with too few seeds.
+ */
+export interface Interval95 {
+  iqm: number;
+  low: number | null;
+  high: number | null;
+}
+/**
+ * Machine on which the experiment ran; empty before its start.
+ */
+export interface Machine {
+  platform?: string;
+  cores?: number | null;
+}
+/**
+ * A short text under a heading.
+ */
+export interface NarrativeSection {
+  heading: string;
+  text: string;
+}
+/**
+ * Options, defaults, limits and help texts of all forms.
+ */
+export interface OptionsView {
+  version: string;
+  gaits: GaitOption[];
+  robots: RobotOption[];
+  agents: AgentOption[];
+  worlds: WorldOption[];
+  disturbances: DisturbanceOption[];
+  simulators: Described[];
+  observations: Described[];
+  clocks: Described[];
+  experiments: ExperimentOption[];
+  defaults: DefaultsView;
+  settings: {
+    [k: string]: SettingOption;
+  };
+  /**
+   * [lowest, highest]; `settings` says which of them are not valid themselves
+   */
+  limits: {
+    [k: string]: [number | null, number | null];
+  };
+  help: {
+    [k: string]: string;
+  };
+  /**
+   * files of a recorded walk
+   */
+  exports: ExportOption[];
+}
+/**
+ * A robot preset.
+ */
+export interface RobotOption {
+  name: string;
+  title: string;
+  description: string;
+  robot: RobotView;
+  /**
+   * parts in whose place a disturbance puts another value, as they were built
+   */
+  built: {
+    [k: string]: number;
+  };
+}
+/**
+ * A named world, with what happens in it.
+ */
+export interface WorldOption {
+  name: string;
+  title: string;
+  description: string;
+  disturbances: DisturbanceView[];
+}
+/**
+ * Results of a setting, pooled over its gaits, with the best known as a share of greedy's.
+ */
+export interface PooledView {
+  steps_per_episode: number | null;
+  observation: "measured" | "commanded" | "planned";
+  robot: string;
+  world?: string;
+  agent: string;
+  steps: number;
+  blocks: number;
+  divisions: number;
+  grid_side_m: number;
+  half_side_m: number;
+  relative: Interval95 | null;
+  relative_finished: Interval95 | null;
+  of_best_known?: Interval95 | null;
+  walkers: SharedBy | null;
+  beats_greedy: Beats | null;
+  beats_greedy_total: Beats | null;
+  reaches_greedy: SharedBy | null;
+  gaits: string[];
+  n: number;
+  best_known_relative?: number | null;
+  [k: string]:
+    | number
+    | string
+    | boolean
+    | null
+    | "measured"
+    | "commanded"
+    | "planned"
+    | Interval95
+    | SharedBy
+    | Beats
+    | string[]
+    | undefined;
+}
+/**
+ * A share of the seeds with its 95 % interval.
+ */
+export interface SharedBy {
+  share: number;
+  low: number | null;
+  high: number | null;
+}
+/**
+ * Value printed in the paper [m], and its quantile among the seeds.
+ */
+export interface PublishedView {
+  total_m: number | null;
+  finished_m: number | null;
+  total_quantile: number | null;
+  finished_quantile: number | null;
+}
+/**
+ * Q-table: all legal actions in all states; `cells` are the (x, y) of each cell [m].
+ */
+export interface QTableView {
+  gait: string | GaitParts;
+  divisions: number;
+  grid_side_m: number;
+  cells: [number, number][];
+  values: ActionValue[];
+}
+/**
+ * Page of races.
+ */
+export interface RacePage {
+  next_cursor: string | null;
+  items: RaceView[];
+}
+/**
+ * Why a trial has no result, with its key and its description in words.
+ */
+export interface Reason {
+  key: string;
+  label?: string | null;
+  reason: string;
+}
+/**
+ * A lane of a recording; `rest_qpos` are the joint positions before the first step.
+ */
+export interface RecordedLane {
+  agent: string;
+  training_id: string | null;
+  failure: string | null;
+  rest_qpos: number[];
+  steps: RecordedStep[];
+}
+/**
+ * A recorded step, with the joint positions `qpos` at `time_s` since the motion began.
+ */
+export interface RecordedStep {
+  step: number;
+  observation: number[];
+  action: [number, number];
+  reward_m: number;
+  distance_m: number;
+  transitions: number;
+  decision_s: number;
+  time_s: number[];
+  qpos: number[][];
+}
+/**
+ * Recording of a race, sufficient to replay it.
+ */
+export interface RecordingView {
+  steps: number;
+  lanes: RecordedLane[];
+}
+/**
+ * Something that happened in a run, as a point on its timeline.
+ */
+export interface ReplayMark {
+  kind: "time-out" | "crossing" | "fall" | "disturbance" | "evaluation";
+  time_s: number;
+  /**
+   * from 0; null if it concerns all lanes
+   */
+  lane: number | null;
+  /**
+   * that begins then, or in which a robot fell, from 0
+   */
+  step: number | null;
+  /**
+   * that an evaluation reached
+   */
+  distance_m: number | null;
+}
+/**
+ * Plan by which a page plays a run by itself; times are the run's own [s].
+ */
+export interface ReplayView {
+  run_id: string;
+  /**
+   * of the run whose lanes are shown as ghosts
+   */
+  ghost_id: string | null;
+  kind: "training" | "race";
+  /**
+   * that times a race; null for a training
+   */
+  clock: ("paper" | "wall" | "free") | null;
+  /**
+   * whether the run will record no more
+   */
+  complete: boolean;
+  /**
+   * null while it is not known
+   */
+  duration_s: number | null;
+  /**
+   * intervals that can be shown; of a long practice the first and newest steps
+   */
+  recorded_s: [number, number][];
+  /**
+   * for each lane, of its recorded steps
+   */
+  step_ends_s: number[][];
+  marks: ReplayMark[];
+  /**
+   * time between two frames of level 0
+   */
+  frame_s: number;
+  /**
+   * number of frames in a segment
+   */
+  segment_frames: number;
+  /**
+   * each level has half as many frames as the one below
+   */
+  lowest_level: number;
+  highest_level: number;
+}
+/**
+ * Page of runs of every kind.
+ */
+export interface RunPage {
+  next_cursor: string | null;
+  items: (TrainingView | RaceView | ExperimentView)[];
+}
+/**
+ * Results of a setting over its seeds.
+ */
+export interface SettingView {
+  steps_per_episode: number | null;
+  observation: "measured" | "commanded" | "planned";
+  robot: string;
+  world?: string;
+  agent: string;
+  steps: number;
+  blocks: number;
+  divisions: number;
+  grid_side_m: number;
+  half_side_m: number;
+  relative: Interval95 | null;
+  relative_finished: Interval95 | null;
+  of_best_known?: Interval95 | null;
+  walkers: SharedBy | null;
+  beats_greedy: Beats | null;
+  beats_greedy_total: Beats | null;
+  reaches_greedy: SharedBy | null;
+  key: string;
+  role: "learner" | "reference";
+  gait: string;
+  n: number;
+  failed: number;
+  total: Distances | null;
+  finished: Distances | null;
+  elapsed_s: number | null;
+  published: PublishedView | null;
+  best_known_m?: number | null;
+  [k: string]:
+    | number
+    | string
+    | boolean
+    | null
+    | "measured"
+    | "commanded"
+    | "planned"
+    | Interval95
+    | SharedBy
+    | Beats
+    | "learner"
+    | "reference"
+    | Distances
+    | PublishedView
+    | undefined;
+}
+/**
+ * Spectators' address with its QR code, or the reason why there is none.
+ */
+export interface SpectatorsView {
+  address: string | null;
+  /**
+   * SVG image as a data URI
+   */
+  qr_code: string | null;
+  reason: string;
+  watching: number;
+}
+/**
+ * Number of trials by outcome, with the reasons of those that failed or were set aside.
+ */
+export interface SummaryCounts {
+  done: number;
+  total: number;
+  failed: number;
+  failures?: Reason[];
+  set_aside: Reason[];
+}
+/**
+ * Summary of an experiment's trials so far.
+ */
+export interface SummaryView {
+  format: number;
+  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
+  config: ExperimentConfigView;
+  versions: {
+    [k: string]: string;
+  };
+  machine: Machine;
+  trials: SummaryCounts;
+  cost: Cost | null;
+  /**
+   * names of what is varied beside place and agent
+   */
+  parameters: string[];
+  settings: SettingView[];
+  pooled: PooledView[];
+  curves: CurveOfSetting[];
+  versus: VersusView[];
+  timed: TimedView[];
+  worlds?: WorldView[];
+  claims: ClaimView[];
+  story: NarrativeSection[];
+}
+/**
+ * Probability that agent `a` walks farther than agent `b`, with its 95 % interval.
+ */
+export interface VersusView {
+  steps_per_episode: number | null;
+  gait: string;
+  observation: "measured" | "commanded" | "planned";
+  robot: string;
+  world?: string;
+  steps: number;
+  blocks: number;
+  divisions: number;
+  grid_side_m: number;
+  half_side_m: number;
+  a: string;
+  b: string;
+  probability: number;
+  low: number | null;
+  high: number | null;
+  verdict: "yes" | "no" | "not established";
+  [k: string]:
+    | number
+    | string
+    | boolean
+    | null
+    | "measured"
+    | "commanded"
+    | "planned"
+    | "yes"
+    | "no"
+    | "not established"
+    | undefined;
+}
+/**
+ * A race that was measured by the wall clock.
+ */
+export interface TimedView {
+  gait: string;
+  observation: "measured" | "commanded" | "planned";
+  robot: string;
+  lanes: WallLane[];
+}
+/**
+ * A lane of a race that was measured by the wall clock.
+ */
+export interface WallLane {
+  agent: string;
+  decision_s: number;
+  finished_distance_m: number;
+  elapsed_s: number;
+  rank: number;
+}
+/**
+ * An agent in a world of a league or recovery, and the walks of its references [m].
+ */
+export interface WorldView {
+  steps_per_episode: number | null;
+  observation: "measured" | "commanded" | "planned";
+  robot: string;
+  world?: string;
+  agent: string;
+  steps: number;
+  blocks: number;
+  divisions: number;
+  grid_side_m: number;
+  half_side_m: number;
+  key: string;
+  role: "learner" | "reference";
+  gait: string;
+  plans_with: ("world" | "start" | "nominal") | null;
+  n: number;
+  greedy_m: number | null;
+  greedy_nominal_m: number | null;
+  best_known_m: number | null;
+  distance: Interval95;
+  of_greedy: Interval95 | null;
+  of_best_known: Interval95 | null;
+  curve: Curve | null;
+  mean_m: Interval95 | null;
+  until_greedy: Until | null;
+  until_best_known: Until | null;
+  earned: Curve | null;
+  [k: string]:
+    | number
+    | string
+    | boolean
+    | null
+    | "measured"
+    | "commanded"
+    | "planned"
+    | "learner"
+    | "reference"
+    | "world"
+    | "start"
+    | "nominal"
+    | Interval95
+    | Curve
+    | Until
+    | undefined;
+}
+/**
+ * Steps until a share (`of`) of a reference's distance; null if most seeds never get there.
+ */
+export interface Until {
+  of: number;
+  median_steps: number | null;
+  reached: number;
+  low: number | null;
+  high: number | null;
+}
+/**
+ * Values, visits and best actions of states: a row a state, in the order of their cells.
+ */
+export interface TableView {
+  pairs: number[][];
+  cells_m: [number, number][];
+  cell_names: string[];
+  step: number;
+  /**
+   * number of all states
+   */
+  states: number;
+  first: number;
+  /**
+   * action values [m], pair by pair; null where illegal
+   */
+  values: (number | null)[][];
+  /**
+   * how often each was tried; a value without a try is no estimate
+   */
+  visits: (number | null)[][];
+  best: [number, number][];
+}
+/**
+ * A lane's distance over time: points are [s, m], decision intervals are [from s, to s].
+ *
+ * Of a lane of more than 2,000 steps, `stride` steps together are told as one: it decides on all
+ * of them, then walks.
+ */
+export interface TimelineLane {
+  agent: string;
+  training_id: string | null;
+  color: string;
+  /**
+   * that it has taken so far
+   */
+  steps: number;
+  /**
+   * number of steps told as one; 1 in all but long races
+   */
+  stride: number;
+  points: [number, number][];
+  thinking: [number, number][];
+  futures: number[];
+  crossed_s: number | null;
+  total_s: number;
+  failure: string | null;
+}
+/**
+ * Timeline of a race under one clock.
+ */
+export interface TimelineView {
+  clock: "paper" | "wall" | "free";
+  steps: number;
+  finish_line_m: number;
+  first_finish_s: number | null;
+  lanes: TimelineLane[];
+}
+/**
+ * Page of trainings.
+ */
+export interface TrainingPage {
+  next_cursor: string | null;
+  items: TrainingView[];
+}
+/**
+ * Result of a trial; `distances_m` after each block.
+ */
+export interface TrialFigures {
+  distances_m: number[];
+  finished_distance_m: number | null;
+  elapsed_s: number | null;
+  transitions: number;
+  wall: WallLane[] | null;
+  failure: string | null;
+  earned_m?: number[];
+}
+/**
+ * A trial; its key is the setting, `#` and the seed's number.
+ */
+export interface TrialRow {
+  key: string;
+  result: TrialFigures | null;
+  set_aside: string | null;
+  compute_s: number;
+}
+/**
+ * The trials so far.
+ */
+export interface TrialsView {
+  trials: TrialRow[];
+}
+/**
+ * Result of 30 seeds with these settings: their distances [m] and interquartile mean.
+ */
+export interface WhatIfHalf {
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
+  steps_per_episode: number;
+  distances_m: number[];
+  walkers: number;
+  iqm_m: number;
+}
+/**
+ * Result of a what-if: the chosen settings compared with the defaults.
+ */
+export interface WhatIfView {
+  seeds: number;
+  greedy_m: number;
+  chosen: WhatIfHalf;
+  default: WhatIfHalf;
+  compute_s: number;
+}
