@@ -105,8 +105,8 @@ def main():
     result = finish_training(learner, config)
     options.out.write_bytes(to_bytes(snapshot(learner, config)))
     print(
-        f"After {options.steps:,} steps it walks {result['distance_m']:.2f} m, "
-        f"greedy {result['greedy_distance_m']:.2f} m. The network is in {options.out}."
+        f"After {options.steps:,} steps it walks {result.distance_m:.2f} m, "
+        f"greedy {result.greedy_distance_m:.2f} m. The network is in {options.out}."
     )
 
 

@@ -91,12 +91,13 @@ def client(served: Serving) -> Iterator[httpx2.Client]:
 def test_openapi_describes_its_settings(client: httpx2.Client) -> None:
     schemas = client.get("/openapi.json").json()["components"]["schemas"]
     fields = schemas["WandererTraining"]["properties"]
-    assert (fields["optimism"]["minimum"], fields["optimism"]["maximum"]) == (0, 5)
-    assert fields["optimism"]["default"] == 0.5
-    assert "First guess of a value." in fields["optimism"]["description"]
+    settings = schemas["WandererSettings"]["properties"]
+    assert (settings["optimism"]["minimum"], settings["optimism"]["maximum"]) == (0, 5)
+    assert settings["optimism"]["default"] == 0.5
+    assert "First guess of a value." in settings["optimism"]["description"]
     assert fields["agent"]["const"] == "wanderer"
-    assert "patience" in schemas["ChangeBody"]["properties"]
-    assert "optimism" in schemas["ExperimentBody"]["properties"]
+    assert "patience" in schemas["LiveSettings"]["properties"]
+    assert "optimism" in schemas["SettingLists"]["properties"]
 
 
 def test_options_list_its_settings(client: httpx2.Client) -> None:
@@ -123,10 +124,10 @@ def test_the_command_line_has_options_for_its_settings(command: str) -> None:
 
 
 def test_a_value_out_of_its_limits_is_refused(client: httpx2.Client) -> None:
-    answer = client.post("/api/v1/trainings", json=_body(optimism=6))
+    answer = client.post("/api/v1/trainings", json=_body(settings={"optimism": 6}))
     assert answer.status_code == 422
     assert answer.json()["errors"] == [
-        {"field": "optimism", "detail": "optimism must be a number from 0 to 5."}
+        {"field": "settings.optimism", "detail": "settings.optimism must be a number from 0 to 5."}
     ]
 
 
@@ -134,7 +135,7 @@ def test_a_sweep_tries_its_values(client: httpx2.Client) -> None:
     body = {
         "experiment": "sweep",
         "agents": ["wanderer"],
-        "optimism": [0, 1],
+        "settings": {"optimism": [0, 1]},
         "seeds": 1,
         "steps": 20,
         "workers": 1,
@@ -142,7 +143,7 @@ def test_a_sweep_tries_its_values(client: httpx2.Client) -> None:
         "gaits": ["left-right-origin"],
     }
     run = client.post("/api/v1/experiments", json=body).json()
-    assert run["config"]["optimism"] == [0, 1]
+    assert run["config"]["settings"]["optimism"] == [0, 1]
     _until(client, run, "finished")
     summary = client.get(f"/api/v1/experiments/{run['id']}/summary").json()
     tried = [one["optimism"] for one in summary["settings"] if one["agent"] == "wanderer"]
@@ -163,7 +164,7 @@ def test_the_page_changes_it_during_a_training(
     def changed() -> bool:
         (run, *_) = client.get("/api/v1/trainings").json()["items"]
         return run["config"]["agent"] == "wanderer" and any(
-            change.get("patience") == 0.75 for change in run["changes"]
+            change.get("settings", {}).get("patience") == 0.75 for change in run["changes"]
         )
 
     dashboard.eventually(changed, "the change is in the training")
@@ -175,11 +176,12 @@ def test_the_page_changes_it_during_a_training(
 def test_a_checkpoint_keeps_its_settings_over_a_kill(tmp_path: Path) -> None:
     first = Serving(tmp_path)
     with httpx2.Client(base_url=first.address, timeout=60, trust_env=False) as client:
-        body = _body(optimism=3, patience=0.5, steps=5000, pace=20, evaluate_every=0)
+        settings = {"optimism": 3, "patience": 0.5}
+        body = _body(settings=settings, steps=5000, pace=20, evaluate_every=0)
         run = client.post("/api/v1/trainings", json=body).json()
         _until(client, run, "running")
         path = f"/api/v1/trainings/{run['id']}"
-        client.patch(path, json={"patience": 0.75})
+        client.patch(path, json={"settings": {"patience": 0.75}})
         at = client.get(path).json()["progress"]["done"]
         while client.get(path).json()["progress"]["done"] < at + 100:
             time.sleep(0.1)
@@ -194,12 +196,12 @@ def test_a_checkpoint_keeps_its_settings_over_a_kill(tmp_path: Path) -> None:
             table = client.get(f"{path}/q-table?format=npz").content
     finally:
         second.stop()
-    assert ended["config"]["optimism"] == 3
-    assert [change["patience"] for change in ended["changes"] if "patience" in change] == [0.75]
+    assert ended["config"]["settings"]["optimism"] == 3
+    assert [c["settings"]["patience"] for c in ended["changes"] if "settings" in c] == [0.75]
     (tmp_path / "q.npz").write_bytes(table)
     with np.load(tmp_path / "q.npz") as arrays:
         assert arrays["agent.own"].tolist() == [3, 0.75]
-        assert json.loads(str(arrays["meta"]))["config"]["optimism"] == 3
+        assert json.loads(str(arrays["meta"]))["config"]["settings"]["optimism"] == 3
 
 
 def _body(**fields: Any) -> dict[str, Any]:

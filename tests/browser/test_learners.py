@@ -133,7 +133,7 @@ def test_a_sweep_varies_the_settings_of_its_agents(dashboard: Dashboard, server:
     expect(page.locator(".report-head .state")).to_have_text("finished")
 
     [run] = dashboard.get("/api/v1/experiments")["items"]
-    assert run["config"]["trace_decay"] == [0.5, 0.9]
+    assert run["config"]["settings"]["trace_decay"] == [0.5, 0.9]
     assert run["progress"] == {"done": 7, "total": 7}
     table = page.get_by_role("table").filter(has_text="Total distance")
     expect(table.get_by_role("columnheader", name="Agent, λ", exact=True)).to_be_visible()

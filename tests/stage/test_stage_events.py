@@ -14,7 +14,7 @@ from app.stage.stage import Stage
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
-from app.storage.run import LIVE, NOT_ENDED, QUEUED, Run
+from app.storage.run import LIVE, NOT_ENDED, QUEUED, DamagedRun, Run
 from hexapods.domain.errors import HexapodError
 from tests.storage.queries import recorded_queries
 from tests.storage.stores import experiment, race, training
@@ -93,7 +93,8 @@ def test_event_from_before_a_run_was_shown_does_not_undo_what_was_read(follower:
 def test_run_that_became_unreadable_leaves_the_stage(follower: Follower) -> None:
     run = follower.running("a")
     follower.stage.set(run_id=run.id)
-    follower.publish(replace(run, eta_s=float("nan")))
+    damaged = DamagedRun(id=run.id, kind=run.kind, damaged="its result cannot be read")
+    follower.bus.publish("run", run_view(damaged), run.id)
     assert follower.watch(1) is None
 
 

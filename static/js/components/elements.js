@@ -261,3 +261,46 @@ export function Loaded({ name, load }) {
     ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
     : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`;
 }
+
+// ---- a drawn hexapod, forward up, each leg of which is a button
+
+/** Distances from the middle, of 50. */
+const PICKER = { hip: 13, knee: 24, foot: 37 };
+
+/**
+ * @param {object} props
+ * @param {number[]} props.azimuths of the legs from forward [°]
+ * @param {Map<number, string>} props.states what happened to legs, by their numbers
+ * @param {(leg: number) => void} props.onLeg
+ * @param {boolean} [props.isDisabled]
+ * @param {string} [props.describedBy]
+ * @param {(leg: number) => string} props.verbOf what a press does to a leg: "Repair"
+ */
+export function LegPicker({ azimuths, states, onLeg, isDisabled = false, describedBy, verbOf }) {
+  const legs = azimuths.map((azimuth, n) => ({ azimuth, leg: n + 1, state: states.get(n + 1) }));
+  return html`
+    <div class="leg-picker" role="group" aria-label="Legs, seen from above"
+      aria-describedby=${describedBy}>
+      <svg viewBox="-50 -50 100 100" aria-hidden="true">
+        ${legs.map(({ azimuth, leg, state }) => html`
+          <path key=${leg} class=${`drawn-leg ${classOf(state)}`}
+            d=${`M${[PICKER.hip, PICKER.knee, PICKER.foot].map((radius) => pointAt(azimuth, radius)).join(" L")}`} />
+        `)}
+        <circle class="body" r=${PICKER.hip} /><path class="forward" d="M0-8 6 2H-6z" />
+      </svg>
+      ${legs.map(({ azimuth, leg, state }) => {
+        const [x, y] = pointAt(azimuth, PICKER.foot).map((part) => `${50 + Number(part)}%`);
+        return html`
+          <button key=${leg} type="button" style=${{ left: x, top: y }} aria-pressed=${state ? "true" : "false"}
+            aria-disabled=${isDisabled ? "true" : undefined} title=${`${verbOf(leg)} leg ${leg}`}
+            aria-label=${`Leg ${leg}${state ? `, ${state}` : ""}`} onClick=${() => !isDisabled && onLeg(leg)}>
+            ${leg}
+          </button>
+        `;
+      })}
+    </div>
+  `;
+}
+
+/** A leg is drawn by the last thing that happened to it. @param {string | undefined} state */
+export const classOf = (state) => (state ? state.split(" ").at(-1) : "");

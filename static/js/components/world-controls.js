@@ -13,9 +13,8 @@ import { azimuthsOf } from "../robots.js";
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
-import { html, Problem } from "./elements.js";
+import { html, LegPicker, Problem } from "./elements.js";
 import { Description, NumberField, SettingRow, Slider } from "./fields.js";
-import { LegPicker } from "./leg-picker.js";
 
 /** @import { Changed, Disturbance, DisturbanceKind, FieldOption, Run, RunConfig, SettingValue } from "../types.js" */
 /** @import { Toggled } from "../types.js" */

@@ -4,9 +4,8 @@ import { form, mistakeInText, setField, wrong } from "../form.js";
 import { azimuthsOf } from "../robots.js";
 import { fullTitle } from "../settings.js";
 import { served } from "../store.js";
-import { html } from "./elements.js";
+import { classOf, html, LegPicker } from "./elements.js";
 import { Description, MistakeOf } from "./fields.js";
-import { classOf, LegPicker } from "./leg-picker.js";
 import { firstFields } from "./world-controls.js";
 
 /** @import { Changed, Disturbance, FieldOption } from "../types.js" */
