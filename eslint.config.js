@@ -11,6 +11,18 @@ export default [
     languageOptions: { globals: globals.browser },
   },
   {
+    // The page's address and history are read and written in one place.
+    files: ["static/js/**/*.js"],
+    ignores: ["static/js/page-state.js", "static/js/offline/**"],
+    rules: {
+      "no-restricted-globals": ["error", "history"],
+      "no-restricted-syntax": ["error",
+        "Identifier[name='location']:not(MemberExpression[property.name='origin'] > Identifier)",
+        "Literal[value=/^(popstate|hashchange)$/]",
+      ],
+    },
+  },
+  {
     files: ["static/viewer/*.js"],
     languageOptions: { sourceType: "script" },
   },

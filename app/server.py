@@ -14,6 +14,7 @@ from types import FrameType
 import uvicorn
 from fastapi import APIRouter, FastAPI
 from starlette.routing import BaseRoute
+from starlette.websockets import WebSocket
 
 from app.api import (
     archives,
@@ -43,6 +44,7 @@ from app.api.memory_limit import BodyLimit, HeldBodies
 from app.api.middleware import SecurityHeaders
 from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit, what_if_limiter
+from app.api.stage_paths import StagePaths, stage_of
 from app.api.starts import start_routes
 from app.api.unfinished import Unfinished
 from app.api.wellformed import WellFormed
@@ -50,7 +52,6 @@ from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.file_renderer import FileRenderer
-from app.jobs.fork_server import start_fork_server
 from app.jobs.jobs import Jobs
 from app.jobs.process_pool import ProcessPool
 from app.jobs.stopping import Stopping
@@ -60,22 +61,21 @@ from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
 from app.settings import Settings
 from app.stage.playback import Replays
-from app.stage.stage import Stage
+from app.stage.roles import Roles
 from app.storage.database.opening import open_store
 from app.storage.database.store import RunStore
 from app.storage.errors import OwnershipLost
 from app.storage.idempotency import Idempotency
 from app.storage.recordings import Recordings
 from app.storage.server_lock import write_address_file
-from app.storage.sessions import Sessions
 from app.viewer.replay_frames import ReplayFrames
-from app.viewer.service import ViewerService, viewer_routes
 from app.viewer.session import websocket_options
+from app.viewer.shared_stage import SharedStage
+from app.viewer.viewer_page import viewer_routes
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
 from hexapods import __version__, assets
-from hexapods.domain.errors import HexapodError
-from hexapods.processes import return_freed_memory
+from hexapods.processes import return_freed_memory, start_fork_server
 from hexapods.runs.config import usable_agents
 
 _logger = logging.getLogger(__name__)
@@ -84,6 +84,8 @@ SWITCH_S = 0.001
 """Python's switch interval [s]: shorter than its 5 ms, for the event loop's latency."""
 _TICKS_PER_S = 10
 """Frequency of uvicorn's main loop [1/s]."""
+_PRELOADED = ["app.cli", "app.jobs.worker", "hexapods.physics.mujoco_simulator"]
+"""What jobs and pools import: the program that started them, and what is imported late."""
 _DESCRIPTION = (
     "Hexapods that learn to walk, and race against look-ahead search. Errors are problem "
     "documents (RFC 9457), and each says what is valid; requests that prefer text/html get a page."
@@ -91,7 +93,7 @@ _DESCRIPTION = (
 
 
 def create_app(settings: Settings, store: RunStore) -> FastAPI:
-    """Build the application; its lifespan starts and stops jobs, stage and viewer hub.
+    """Build the application; its lifespan starts and stops jobs and stages.
 
     Args:
         settings: settings of the server.
@@ -99,16 +101,15 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     """
     recordings, bus = Recordings(store), RunMetrics()
     stopping = Stopping()
-    stage_service = Stage(store, recordings, bus)
-    viewer = ViewerService(
-        stage_service,
+    shared = SharedStage(
+        store,
+        recordings,
         bus,
-        max_viewers=settings.max_viewers,
-        max_per_address=settings.viewers_per_address,
-        stopping=stopping,
+        roles=Roles(settings.token, store.sessions, is_public=settings.spectators == "public"),
+        viewer_slots=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     jobs = Jobs(
-        store, recordings, bus, on_queued=stage_service.offer, niceness=settings.job_niceness
+        store, recordings, bus, on_queued=shared.stage.offer, niceness=settings.job_niceness
     )
     app = FastAPI(
         title="Racing Hexapods",
@@ -119,7 +120,6 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         docs_url=None,
         redoc_url=None,
     )
-    app.state.viewer = viewer
     replays = ReplayFrames(Replays(store, recordings), stopping)
     app.state.services = Services(
         settings=settings,
@@ -127,12 +127,9 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         recordings=recordings,
         bus=bus,
         jobs=jobs,
-        stage=stage_service,
+        stages=[shared],
         idempotency=Idempotency(store),
         agents=usable_agents(),
-        audience=lambda: viewer.hub.counters,
-        ready=lambda: _unready_reason(jobs, store),
-        recorded_stream=viewer.recorded_stream,
         replays=replays,
         renderer=FileRenderer(check=stopping.check),
         what_if=WhatIf(ProcessPool()),
@@ -144,7 +141,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     )
     app.state.work_slots = WorkSlots()
     app.state.metrics = monitoring.registry_of(app.state.services)
-    _add_routes(app, viewer, app.state.services.agents)
+    _add_routes(app, app.state.services.agents)
     problems.install(app)
     contract.install(app, app.state.services.agents, settings)
     # The middleware that is added last runs first.
@@ -154,19 +151,23 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     app.add_middleware(HeldBodies)
     what_ifs = app.state.services.what_if_limiter
     app.add_middleware(RateLimit, settings=settings, what_ifs=what_ifs)
-    sessions = None if settings.token is None else Sessions(store.sessions, settings.token)
-    app.add_middleware(TokenGuard, settings=settings, sessions=sessions)
+    app.add_middleware(TokenGuard, settings=settings)
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(Unfinished)
     app.add_middleware(ProblemPages)
+    app.add_middleware(StagePaths, stages=app.state.services.stages)
     app.add_middleware(WellFormed)
     app.add_middleware(SecurityHeaders)
     return app
 
 
-def _add_routes(app: FastAPI, viewer: ViewerService, agents: tuple[str, ...]) -> None:
+def _add_routes(app: FastAPI, agents: tuple[str, ...]) -> None:
     app.router.routes += _api_routes(agents)
-    app.router.routes += [*viewer_routes(viewer.hub), *pages.page_routes(assets.static_dir())]
+    app.router.routes += [*viewer_routes(_serve_viewer), *pages.page_routes(assets.static_dir())]
+
+
+async def _serve_viewer(websocket: WebSocket) -> None:
+    await stage_of(websocket.scope).hub.serve(websocket)
 
 
 @cache
@@ -186,24 +187,13 @@ def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
     return tuple(router.routes)
 
 
-def _unready_reason(jobs: Jobs, store: RunStore) -> str | None:
-    """Return why runs cannot be started, in a sentence; None if they can."""
-    if (reason := jobs.health_problem()) is not None:
-        return reason
-    try:
-        store.check_disk_space()
-        store.check_writable()
-        store.list(limit=1)
-    except HexapodError as error:
-        return f"No run can be started: {error}."
-    return None
-
-
 @contextlib.asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     services: Services = app.state.services
-    await asyncio.to_thread(services.stage.restore)
-    async with app.state.viewer:
+    await asyncio.to_thread(services.stages[0].stage.restore)
+    async with contextlib.AsyncExitStack() as opened:
+        for shared in services.stages:
+            await opened.enter_async_context(shared)
         services.jobs.open()
         try:
             yield
@@ -238,7 +228,7 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
     settings.prepare_data()
     # Of all files that this process and its children create: no other user may open them.
     os.umask(0o077)
-    start_fork_server()
+    start_fork_server(_PRELOADED)
     return_freed_memory()
     sys.setswitchinterval(SWITCH_S)
     connections = connection_table(settings, raise_file_limit())
@@ -311,8 +301,9 @@ class _Server(uvicorn.Server):
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         # uvicorn waits for all connections: an event stream would not end by itself, and a video or
         # an export not in time.
-        self._app.state.services.bus.close()
-        await self._app.state.viewer.hub.stop()
+        services: Services = self._app.state.services
+        services.bus.close()
+        await asyncio.gather(*(shared.close() for shared in services.stages))
         await _end_long_requests(self._app)
         await super().shutdown(sockets)
 

@@ -10,7 +10,7 @@ from hexapods.agents import registry
 from hexapods.agents.registry import AgentClass
 from hexapods.domain.disturbances import Disturbance, as_text, disturbance, parse_disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.gait import GaitSpec, read_gait
 from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.runs.config import WalkingProblem
@@ -102,26 +102,6 @@ def read_walk(given: Mapping[str, Any], like: WalkingProblem | None = None) -> d
     if "world" in walk:
         walk["world"] = read_world(walk["world"])
     return walk
-
-
-def read_gait(given: GaitLike) -> str | GaitSpec:
-    """Return a gait; of one that is given by its legs, its specification.
-
-    Raises:
-        InvalidInput: if it is none.
-    """
-    if isinstance(given, str | GaitSpec):
-        return given
-    if not isinstance(given, Mapping):
-        _refuse("gait", f"one of {', '.join(NAMED_GAITS)}, a mapping or a Gait", given)
-    if set(given) - {one.name for one in fields(GaitSpec)} or not {"right_leg", "left_leg"} <= {
-        *given
-    }:
-        raise InvalidInput(
-            "a gait needs right_leg and left_leg, and either symmetry or pairs; "
-            f"not {', '.join(map(str, sorted(given))) or 'nothing'}"
-        )
-    return GaitSpec(**given)
 
 
 def read_robot(given: RobotLike) -> Robot:

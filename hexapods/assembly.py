@@ -17,15 +17,13 @@ from hexapods.domain.observation import Observation
 from hexapods.domain.settings import complete
 from hexapods.domain.simulator import Simulator
 from hexapods.domain.world import UNDISTURBED, World
-from hexapods.runs.best_known import best_known_m
 from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings
 from hexapods.runs.lane import LaneConfig, check_lane
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.rebuilding import LoggedSensors, RebuiltLearner
-from hexapods.runs.results import TrainingResult
 from hexapods.runs.seeding import EVALUATION, LEARNING, RACING, SENSING, generator
 from hexapods.runs.tables import Checkpoint, check_fits, continue_from, load_agent
-from hexapods.runs.training import Learner, evaluate, measure_baseline
+from hexapods.runs.training import Learner
 from hexapods.runs.walker import Sensors, SimulatorExpand, Walker
 
 _NOT_OFFERED = ("settings", "world", "tolerance")
@@ -185,7 +183,7 @@ def _agent_without_robot(
         raise InvalidInput(
             f"{agent_name} plans with a simulator, and what it simulated was not recorded"
         )
-    problem = Problem(walk.resolved_gait.pairs, walk.grid.cells)
+    problem = Problem(walk.resolved_gait.groups, walk.grid.cells)
     own = {"rng": rng, "problem": problem, "explore": explore, "observe": sensors}
     return registry.build(agent_class, {**offered, **own})
 
@@ -286,28 +284,6 @@ def _offered_in(config: RaceConfig, lane: LaneConfig) -> Mapping[str, Any]:
     return _offered_by(training)
 
 
-def finish_training(
-    learner: Learner, config: TrainingConfig, measure_reference: bool = True
-) -> TrainingResult:
-    """Return the result of a training: an evaluation, its references, the hash of the Q-table.
-
-    Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
-    """
-    distance = evaluate(learner, config, learner.epsilon).distance_m
-    conditions = learner.conditions(config.steps)
-    is_measured = learner.greedy_distance_m is not None and learner.measured_in == conditions
-    if measure_reference and not is_measured:
-        measure_baseline(learner, config, conditions)
-    agent, is_known = learner.walker.agent, is_measured or measure_reference
-    return TrainingResult(
-        distance_m=distance,
-        greedy_distance_m=learner.greedy_distance_m if is_known else None,
-        best_known_m=best_known_m(config, conditions),
-        q_table_sha256=agent.table.sha256() if isinstance(agent, Tabular) else None,
-        fell_at_step=learner.fell_at_step,
-    )
-
-
 def _walker(
     simulator: Simulator[Any],
     agent_name: str,
@@ -331,7 +307,9 @@ def _walker(
     arguments = {
         **offered,
         "rng": rng,
-        "problem": Problem(simulator.gait.pairs, simulator.grid.cells, simulator.gait.azimuths_deg),
+        "problem": Problem(
+            simulator.gait.groups, simulator.grid.cells, simulator.gait.azimuths_deg
+        ),
         "explore": explore,
         "expand": expand,
         "observe": sensors,

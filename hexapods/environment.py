@@ -31,9 +31,9 @@ WALK_ID = "RacingHexapods/Walk-v0"
 class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
     """Gymnasium environment of a walking hexapod, with the rewards of a training.
 
-    - Observation: `MultiDiscrete`, the observed cell of the foot grid of each leg pair.
-    - Action: `Discrete`, pair × cells + cell: move that pair to that cell. `info["action_mask"]`
-      marks the legal actions, as `action_space.sample(mask)` expects. Sending a pair to its
+    - Observation: `MultiDiscrete`, the observed cell of the foot grid of each group of legs.
+    - Action: `Discrete`, group × cells + cell: move that group to that cell. `info["action_mask"]`
+      marks the legal actions, as `action_space.sample(mask)` expects. Sending a group to its
       observed cell is illegal in the walking problem: it is carried out as a no-op with reward 0,
       which counts as a step.
     - Reward: displacement of the torso's centre in the robot's forward direction [m], as the
@@ -80,9 +80,9 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         self._simulator = build_simulator(walk)
         self._observation = observation
         self._state: WalkState = self._simulator.rest()
-        self._cells, pairs = len(walk.grid), len(walk.resolved_gait.pairs)
-        self.observation_space = spaces.MultiDiscrete([self._cells] * pairs)
-        self.action_space = spaces.Discrete(pairs * self._cells)
+        self._cells, groups = len(walk.grid), len(walk.resolved_gait.groups)
+        self.observation_space = spaces.MultiDiscrete([self._cells] * groups)
+        self.action_space = spaces.Discrete(groups * self._cells)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

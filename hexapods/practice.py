@@ -20,7 +20,7 @@ from hexapods.arguments import (
     read_disturbance,
     read_walk,
 )
-from hexapods.assembly import build_learner, finish_training
+from hexapods.assembly import build_learner
 from hexapods.domain.checks import check_whole
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.observation import Observation
@@ -34,6 +34,7 @@ from hexapods.runs.config import (
     training_config,
 )
 from hexapods.runs.records import Evaluated, TrainingRecord
+from hexapods.runs.results import training_result
 from hexapods.runs.tables import check_fits, load_agent, snapshot
 from hexapods.trainings import CurvePoint, Table, Training, learned_by, read_table
 
@@ -239,7 +240,7 @@ class Practice(Iterator[TrainingRecord]):
         Before the end its reference distance is known only if it was measured already.
         """
         learner, config = self._learner, self.config
-        result = finish_training(learner, config, measure_reference=learner.step == config.steps)
+        result = training_result(learner, config, measure_reference=learner.step == config.steps)
         return Training(config, snapshot(learner, config), tuple(self._curve), result)
 
     def __next__(self) -> TrainingRecord:

@@ -1,41 +1,279 @@
-"""Worker processes: name, priority, SIGINT, groups, death with the parent, whether stopped."""
+"""Processes that compute for this one: how each starts, is set up, watched and killed.
+
+On Linux they are forks of one process, the fork server of `multiprocessing`, which has imported
+what they need: a fork starts in some hundredths of the time, and shares that memory. Elsewhere,
+where the libraries that are used do not all survive a fork, each is started anew.
+"""
 
 import ctypes
 import multiprocessing
 import os
 import signal
 import sys
+import tempfile
 import threading
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import suppress
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from functools import cache
+from multiprocessing import connection, forkserver, resource_tracker
+from multiprocessing.connection import Connection
+from multiprocessing.context import ForkServerContext, SpawnContext
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 STALLED_S = 8.0
-"""A worker process stopped by a signal (SIGSTOP) for longer is killed: it would never be done."""
+"""A process stopped by a signal (SIGSTOP) for longer is killed: it would never be done."""
+LOST = 255
+"""Exit code that `multiprocessing` gives a process when the fork server has ended, not it."""
+_START_S = 5.0
+"""Time in which a process starts although the fork server has just ended."""
+_RETRY_S, _CONTINUED_EVERY_S = 0.1, 0.5
+_FROZEN_S = 5.0
+"""After a longer time between two looks this process was stopped itself."""
+_END_S = 5.0
 _PR_SET_PDEATHSIG, _PR_SET_NAME = 1, 15
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
 _RETURNED_BYTES = 1 << 20
 
 
-def set_up_process(niceness: int) -> None:
-    """Name this process, lower its priority, ignore SIGINT, and die with the parent.
+@dataclass(frozen=True, kw_only=True)
+class SetUp:
+    """What a process does before anything else.
 
-    It leads a group of its own, so that it can be killed with the processes that it starts.
+    Attributes:
+        name: shown by `top` and `ps -o comm`.
+        niceness: added to the nice value.
+        leads_group: whether it leads a group of its own, so that it can be killed with the
+            processes that it starts. One that does not is stopped and continued by the terminal.
+        environment: variables that are set, since a fork server has those of its own start.
+    """
+
+    name: str
+    niceness: int = 0
+    leads_group: bool = True
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+    def apply(self) -> None:
+        """Set this process up; it ignores SIGINT, and ends with the process that started it."""
+        set_process_name(self.name)
+        with suppress(OSError):
+            os.nice(self.niceness)
+        # Ctrl-C goes to the terminal's whole process group; who starts processes ends them itself.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        _end_with_parent()
+        if self.leads_group:
+            os.setpgrp()
+        os.environ.update(self.environment)
+        tempfile.tempdir = None  # a fork server may have looked for the folder already
+
+
+class Child:
+    """A process that calls one function, and a pipe to it.
+
+    Attributes:
+        pipe: this end of the pipe, once it is started.
+        pid: process id; None before the start and after the end.
+        is_killed: whether `kill` was called.
+    """
+
+    pipe: Connection
+    _process: BaseProcess
+
+    def __init__(self, target: Callable[[Connection], None], set_up: SetUp) -> None:
+        """Start nothing yet.
+
+        Args:
+            target: function of a module, called in the process with its end of the pipe.
+            set_up: done before.
+        """
+        self._target, self._set_up = target, set_up
+        self.is_killed = False
+        self._looked_s = 0.0
+        self._stopped_since_s: float | None = None
+        self.pid: int | None = None
+
+    def start(self) -> None:
+        """Start the process.
+
+        Raises:
+            OSError: if the system cannot create another process.
+        """
+        deadline_s = time.monotonic() + _START_S
+        with _sigint_blocked():
+            while not self._has_started():
+                if time.monotonic() > deadline_s:
+                    raise OSError("the process that forks others has ended")
+                time.sleep(_RETRY_S)
+        self.pid = self._process.pid
+        if self.is_killed:
+            self.kill()
+
+    def wait(self, timeout_s: float | None = None) -> bool:
+        """Wait until it has sent something, or has exited; False if it did neither in this time.
+
+        After an exit `pipe.poll()` says whether there is something that it has sent before.
+        """
+        return bool(connection.wait([self.pipe, self._process.sentinel], timeout_s))
+
+    def stopped_s(self) -> float:
+        """Return for how long it was seen stopped by a signal such as SIGSTOP [s], else 0.
+
+        To be asked every few seconds: the time in which this process was stopped is not counted.
+        """
+        now_s, looked_s = time.monotonic(), self._looked_s
+        self._looked_s = now_s
+        if self.pid is None or not _is_stopped(self.pid):
+            self._stopped_since_s = None
+            return 0.0
+        if self._stopped_since_s is None or now_s - looked_s > _FROZEN_S:
+            self._stopped_since_s = now_s
+        return now_s - self._stopped_since_s
+
+    def memory_bytes(self) -> int:
+        """Return its resident memory; Linux only, else 0."""
+        try:
+            pages = int(Path(f"/proc/{self.pid}/statm").read_bytes().split()[1])
+        except OSError:  # it has exited, or this is not Linux
+            return 0
+        return pages * os.sysconf("SC_PAGE_SIZE")
+
+    def kill(self) -> None:
+        """Kill it (SIGKILL) and its group: at once, or as soon as it starts."""
+        self.is_killed = True
+        with suppress(ValueError):  # it has ended
+            if self.pid is not None and self._process.is_alive():
+                _kill_group(self.pid)
+                self._process.kill()  # it may have no group yet
+
+    def end(self) -> int | None:
+        """Wait for its exit, a moment unless it was killed; then kill it, and all of its group.
+
+        Returns:
+            its exit code: negative after a signal, `LOST` if the fork server ended; None if it was
+            not started.
+        """
+        if self.pid is None:
+            return None
+        self._process.join(_END_S)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+        _kill_group(self.pid)  # what it started and did not end
+        self.pid, code = None, self._process.exitcode
+        self._process.close()
+        return code
+
+    def _has_started(self) -> bool:
+        """Start it; False if the fork server has ended, and the next attempt may start a new one.
+
+        That does, as soon as the end can be seen by the id of the process, not only by its socket.
+        """
+        context = process_context()
+        self.pipe, other_end = context.Pipe()
+        arguments = self._target, self._set_up, other_end
+        self._process = context.Process(target=_run, args=arguments, name=self._set_up.name)
+        try:
+            self._process.start()
+        except (EOFError, ConnectionError):
+            self.pipe.close()  # the fork server may have forked before it ended
+            return False
+        finally:
+            # The exit is then the end of the pipe, unless a process that it started holds that too.
+            other_end.close()
+        return True
+
+
+def _run(target: Callable[[Connection], None], set_up: SetUp, pipe: Connection) -> None:
+    set_up.apply()
+    target(pipe)
+
+
+def process_context() -> ForkServerContext | SpawnContext:
+    """Return the `multiprocessing` context that creates processes."""
+    if sys.platform != "linux":
+        return multiprocessing.get_context("spawn")
+    _start_watch()
+    return multiprocessing.get_context("forkserver")
+
+
+def start_fork_server(preloaded: Sequence[str]) -> None:
+    """Let the fork server begin to import modules, if it does not run yet; Linux only.
 
     Args:
-        niceness: added to the nice value.
+        preloaded: names of modules that most processes need.
+
+    Raises:
+        OSError: if the system cannot create a process.
     """
-    set_process_name(multiprocessing.current_process().name)
-    with suppress(OSError):
-        os.nice(niceness)
-    # Ctrl-C goes to the terminal's whole process group; the server shuts its workers down itself.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if sys.platform == "linux":
+        forkserver.set_forkserver_preload(list(preloaded))
+        with _sigint_blocked():
+            forkserver.ensure_running()
+
+
+@cache
+def _start_watch() -> None:
+    """Continue a fork server that was stopped by a signal for `_CONTINUED_EVERY_S` (SIGCONT).
+
+    While it is stopped, starting or joining a process blocks.
+    """
+
+    def watch() -> None:
+        stopped: int | None = None
+        while True:
+            time.sleep(_CONTINUED_EVERY_S)
+            # No public attribute has it.
+            pid = vars(forkserver._forkserver)["_forkserver_pid"]  # noqa: SLF001
+            is_stopped = pid is not None and _is_stopped(pid)
+            if is_stopped and pid == stopped:
+                with suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGCONT)
+            stopped = pid if is_stopped else None
+
+    threading.Thread(target=watch, name="fork server's watch", daemon=True).start()
+
+
+@contextmanager
+def _sigint_blocked() -> Iterator[None]:
+    """Let processes started meanwhile not be ended by Ctrl-C before they are set up.
+
+    A process inherits the signal mask of the thread that starts it.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    # Starting the resource tracker unblocks SIGINT, so that it must be running beforehand.
+    resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def die_with_parent() -> None:
+    """Let the kernel kill this process when the thread that started it ends; Linux only."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that started it does, however that ends."""
     die_with_parent()
-    os.setpgrp()
+
+    def watch() -> None:
+        # PR_SET_PDEATHSIG tells of the fork server, misses a death before the call, is of Linux.
+        parent = multiprocessing.parent_process()
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
-def kill_group(pid: int) -> None:
+def _kill_group(pid: int) -> None:
     """Kill the processes of a group that still run (SIGKILL), if it exists.
 
     Args:
@@ -46,7 +284,7 @@ def kill_group(pid: int) -> None:
         os.killpg(pid, signal.SIGKILL)
 
 
-def is_stopped(pid: int) -> bool:
+def _is_stopped(pid: int) -> bool:
     """Whether a signal such as SIGSTOP has stopped a process; Linux only, else False."""
     try:
         status = Path(f"/proc/{pid}/stat").read_bytes()
@@ -54,50 +292,6 @@ def is_stopped(pid: int) -> bool:
         return False
     # The state follows the name, which is in parentheses and may contain any.
     return status.rpartition(b") ")[2][:1] == b"T"
-
-
-def die_with_parent() -> None:
-    """Let the kernel kill this process when the thread that started it ends; Linux only."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
-
-
-def end_with_parent() -> None:
-    """Let this worker of a pool end when the process that uses the pool does, however that ends."""
-    die_with_parent()
-
-    def watch() -> None:
-        # PR_SET_PDEATHSIG misses a process that died before the call, and is of Linux.
-        parent = multiprocessing.parent_process()
-        if parent is not None:
-            parent.join()
-            os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
-
-
-def worker_processes(pool: ProcessPoolExecutor) -> list[BaseProcess]:
-    """Return the processes of a pool that run."""
-    # Private, since a pool offers no way to kill its processes before Python 3.14.
-    found: list[BaseProcess] = list((pool._processes or {}).values())  # noqa: SLF001
-    return [process for process in found if process.is_alive()]
-
-
-def kill_workers(pool: ProcessPoolExecutor) -> None:
-    """Kill the processes of a pool (SIGKILL), and those of their groups."""
-    for process in worker_processes(pool):
-        if process.pid is not None:
-            kill_group(process.pid)
-        process.kill()  # it may have no group of its own
-
-
-def memory_used_bytes(pid: int) -> int:
-    """Return the resident memory of a process; Linux only, else 0."""
-    try:
-        pages = int(Path(f"/proc/{pid}/statm").read_bytes().split()[1])
-    except OSError:  # it has exited, or this is not Linux
-        return 0
-    return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 def return_freed_memory() -> None:

@@ -11,9 +11,8 @@ import os
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, Unpack, cast
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 
@@ -34,15 +33,15 @@ from hexapods.arguments import (
 from hexapods.assembly import build_walkers
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
 from hexapods.runs.best_known import best_known_in_race_m
 from hexapods.runs.clocks import Clock, check_clock
 from hexapods.runs.config import RACE_STEPS, SimulatorName, agent_settings
-from hexapods.runs.config_json import as_json, config_from_json
 from hexapods.runs.lane import LaneConfig, PlanningModel, lane_config, observation_of
 from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.race_file import race_arrays, race_recording, recording_sha256
+from hexapods.runs.race_file import race_arrays, race_recording
 from hexapods.runs.racing import record_race
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import RaceResult, race_result
@@ -125,10 +124,10 @@ class Race:
         """The farthest walk known of this robot, gait and world [m]; None if none is."""
         return best_known_in_race_m(self.config)
 
-    @cached_property
-    def recording_sha256(self) -> str:
+    @property
+    def recording_sha256(self) -> str | None:
         """Hash of all steps without the times of decisions: the same wherever the race repeats."""
-        return recording_sha256(self.recording)
+        return self.result.recording_sha256
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write config and recording to an `.npz` file, which `load` reads.
@@ -140,7 +139,7 @@ class Race:
             InvalidInput: if it is no path.
             OSError: if the file cannot be written.
         """
-        arrays = race_arrays(self.recording) | {CONFIG: np.array(json.dumps(as_json(self.config)))}
+        arrays = race_arrays(self.recording) | {CONFIG: np.array(json.dumps(to_json(self.config)))}
         buffer, target = io.BytesIO(), path_of(path, "a file")
         np.savez(buffer, **arrays, **{_DIGEST: np.array(digest_of(arrays))})  # type: ignore[arg-type]
         write_atomically(target, buffer.getvalue())
@@ -283,7 +282,7 @@ def race_from_bytes(data: bytes, name: str) -> Race:
         digest = arrays.pop(_DIGEST, None)  # earlier versions wrote none
         if digest is not None and str(digest) != digest_of(arrays):
             raise DamagedFile(f"{name} is damaged: its contents do not match its checksum")
-        config = cast(RaceConfig, config_from_json(json.loads(str(arrays.pop(CONFIG)))))
+        config = from_json(RaceConfig, json.loads(str(arrays.pop(CONFIG))))
         recording = race_recording(arrays)
         return Race(config, recording, race_result(recording, config))
     except DamagedFile:

@@ -22,11 +22,11 @@ from hexapods.arguments import (
     check_callable,
     given_of,
     plain,
-    read_gait,
     read_robot,
     values_of,
 )
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import read_gait
 from hexapods.domain.observation import Observation
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config

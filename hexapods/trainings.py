@@ -12,9 +12,9 @@ from hexapods.agents.registry import AgentClass
 from hexapods.arguments import agent_name
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import DamagedFile, InvalidInput, TableMismatch
+from hexapods.domain.records import from_json
 from hexapods.files import path_of, write_atomically
 from hexapods.runs.config import TrainingConfig
-from hexapods.runs.config_json import config_from_json
 from hexapods.runs.results import TrainingResult
 from hexapods.runs.tables import Checkpoint, from_bytes, load_agent, to_bytes
 
@@ -177,14 +177,12 @@ def training_from_bytes(data: bytes, name: str) -> Training:
     """
     checkpoint = from_bytes(data, name)
     try:
-        config = config_from_json(checkpoint.meta["config"])
+        config = from_json(TrainingConfig, checkpoint.meta["config"])
         curve = tuple(CurvePoint(*point) for point in checkpoint.meta.get("curve", ()))
         fields = checkpoint.meta.get("result")
         result = None if fields is None else TrainingResult(**fields)
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFile(f"{name} does not say how it was learned: {error}") from error
-    if not isinstance(config, TrainingConfig):
-        raise DamagedFile(f"{name} is not that of a training")
     return Training(config, checkpoint, curve, result)
 
 

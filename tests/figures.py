@@ -6,11 +6,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from app.jobs.fork_server import process_context
 from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.observation import Observation
 from hexapods.domain.robot import robot
 from hexapods.domain.types import FloatArray
+from hexapods.processes import process_context
 from hexapods.runs.config import TrainingConfig, training_config
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig

@@ -56,7 +56,7 @@ def test_simulator_is_that_of_the_config() -> None:
         assert simulator.robot is made
         assert len(simulator.grid) == 9
         assert simulator.grid.side_m == 0.03
-        assert simulator.gait.pairs == ((1, 3), (8, 4), (7, 5), (2, 6))
+        assert simulator.gait.groups == ((1, 3), (8, 4), (7, 5), (2, 6))
 
 
 @pytest.mark.parametrize("simulator", ["mujoco", "kinematic"])
@@ -142,7 +142,7 @@ def test_user_supplied_agent_trains_and_races() -> None:
 
     assert isinstance(learner.walker.agent, own_agents.Restless)
     assert isinstance(walker.agent, own_agents.Restless)
-    assert walker.agent.problem.pairs == ((1, 4), (2, 5), (3, 6))
+    assert walker.agent.problem.groups == ((1, 4), (2, 5), (3, 6))
     assert walker.agent.problem.cells_m.shape == (5, 2)
 
 
@@ -204,8 +204,8 @@ def test_a_seed_draws_the_robot_that_all_lanes_walk_with() -> None:
     action = walkers[0].legal[0]
     foreseen = []
     for walker in walkers:
-        assert walker._expand is not None
-        (node,), _ = walker._expand([walker._expand.here], [action])
+        assert walker.expand is not None
+        (node,), _ = walker.expand([walker.expand.here], [action])
         assert isinstance(node, FutureNode)
         foreseen.append(node.state.distance_m)
     ends = [walker.carry_out(action).state for walker in walkers]

@@ -54,7 +54,7 @@ def test_each_step_equals_that_of_a_training_to_the_last_bit(settings: dict[str,
     for record in train(build_learner(config), config):
         if isinstance(record, StepTaken):
             assert tuple(observation) == record.observation
-            number = record.action.pair * len(config.grid) + record.action.cell
+            number = record.action.group * len(config.grid) + record.action.cell
             assert info["action_mask"][number] == 1
             observation, reward_m, _, _, info = walk.step(number)
             assert (reward_m, info["distance_m"]) == (record.reward_m, record.distance_m)

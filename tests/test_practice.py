@@ -9,12 +9,13 @@ import pytest
 
 import hexapods as hx
 from hexapods.arguments import plain_values, read_walk
-from hexapods.assembly import build_learner, finish_training
+from hexapods.assembly import build_learner
 from hexapods.domain.disturbances import Limp
 from hexapods.domain.errors import TableMismatch
 from hexapods.domain.robot import robot
 from hexapods.runs.config import training_config
 from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.results import training_result
 from hexapods.runs.training import train
 from tests.own_agents import Restless
 
@@ -30,7 +31,7 @@ def test_it_is_the_training_of_the_loop() -> None:
     done = hx.train("q-learning", gait="left-right-vertical", seed=7, alpha=0.2, **QUICK)
 
     assert done.config == config
-    assert done.result == finish_training(learner, config)
+    assert done.result == training_result(learner, config)
     assert done.distance_m == done.curve[-1].distance_m
     assert [point.step for point in done.curve] == [50, 60]
 
@@ -218,7 +219,7 @@ def test_it_shows_itself() -> None:
         ({"world": "swamp"}, "unknown world 'swamp'"),
         ({"world": ["ice"]}, r'ice is a world .*: write world="ice", or \["friction:value=0.1'),
         ({"on_record": 3}, "on_record is a function that is called, not 3"),
-        ({"gait": 3}, "gait is one of left-right-origin, .* a mapping or a Gait, not 3"),
+        ({"gait": 3}, "gait is one of left-right-origin, .* or its legs, not 3"),
         ({"gait": {"right_leg": 1.5, "left_leg": 2, "symmetry": "origin"}}, "whole .* not 1.5"),
         ({"table": "a\0"}, "a table is given by its path"),
         ({"world": None}, "world is one of flat, .*, a list of disturbances or a World, not None"),

@@ -63,8 +63,8 @@ def test_one_value_is_a_list_of_one() -> None:
 @pytest.mark.parametrize(
     ("given", "reason"),
     [
-        ({"gaits": 3}, "gait is one of left-right-origin, .* a mapping or a Gait, not 3"),
-        ({"gaits": [["left-right-origin"]]}, r"a Gait, not \['left"),
+        ({"gaits": 3}, "gait is one of left-right-origin, .* or its legs, not 3"),
+        ({"gaits": [["left-right-origin"]]}, r"or its legs, not \['left"),
         ({"robots": [3]}, "robot is stiff or .* a mapping or a Robot, not 3"),
         ({"agents": [3]}, "by its name or its class, not as 3"),
         ({"seeds": None}, "seeds must not be None; leave it out for its default"),

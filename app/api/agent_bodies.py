@@ -8,9 +8,10 @@ from pydantic import Field, GetCoreSchemaHandler, create_model
 from pydantic_core import core_schema
 
 from app.api.descriptions import VALID
-from app.api.experiment_body import ExperimentBody, one_or_more
-from app.api.fields import Declared, SettingsBody, TaggedUnion
+from app.api.experiment_body import ExperimentBody
+from app.api.fields import Declared, OneOrMore, SettingsBody, TaggedUnion, record_fields
 from app.api.schemas import (
+    WALK,
     BranchBody,
     ChangeBody,
     LaneBody,
@@ -20,9 +21,10 @@ from app.api.schemas import (
 )
 from hexapods.agents.registry import learns
 from hexapods.domain.settings import REQUIRED, DeclaredSetting
-from hexapods.experiments.config import settings_by_name
-from hexapods.runs.config import TrainingConfig, agent_settings, changeable_settings
-from hexapods.runs.race_config import MAX_LANES
+from hexapods.experiments.config import ExperimentConfig, settings_by_name
+from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings, changeable_settings
+from hexapods.runs.lane import LANE_FIELDS, LaneConfig
+from hexapods.runs.race_config import MAX_LANES, RaceConfig
 from hexapods.shows.scene_spec import PAPERS_LANES
 
 
@@ -89,7 +91,9 @@ def _practice_body(agent: str) -> type[PracticeBody]:
         for name, one in agent_settings(agent).items()
     }
     settings = _settings_body(f"{_camel_case(agent)}Settings", fields)
-    return create_model(f"{_camel_case(agent)}Practice", __base__=PracticeBody, settings=settings)
+    own = record_fields(TrainingConfig, {*WALK, "world", "seed", "agent", "settings"})
+    name = f"{_camel_case(agent)}Practice"
+    return create_model(name, __base__=PracticeBody, settings=settings, **own)
 
 
 def _settings_body(name: str, fields: Mapping[str, Any]) -> tuple[type[SettingsBody], Any]:
@@ -106,6 +110,7 @@ def _training_body(agent: str, practice: type[PracticeBody]) -> type[TrainingBod
         __base__=(practice, TrainingBody),  # type: ignore[arg-type]
         __doc__=TrainingBody.__doc__,
         agent=agent_field,
+        **record_fields(WalkingProblem, {"world"}),
     )
     return model
 
@@ -125,6 +130,7 @@ def _lane_body(agent: str, practice: type[PracticeBody]) -> type[LaneBody]:
         __doc__=LaneBody.__doc__,
         agent=(_literal(agent), ...),
         settings=_settings_body(name, settings),
+        **record_fields(LaneConfig, {"agent", "settings"}, optional=LANE_FIELDS),
         **(training if learns(agent) else {}),
     )
 
@@ -141,17 +147,22 @@ def _race_body(lanes: Mapping[str, type[LaneBody]]) -> type[RaceBody]:
     limits = Field(min_length=1, max_length=MAX_LANES, description=VALID["lanes"])
     lane = Annotated[LaneBody, TaggedUnion(lanes, "agent", "agent")]
     kind = Annotated[list[lane], limits]
-    fields: dict[str, Any] = {"lanes": (kind, Field(default_factory=papers_lanes))}
+    fields = record_fields(RaceConfig, {"world", "lanes", "branch_from"})
+    fields["lanes"] = (kind, Field(default_factory=papers_lanes))
     return create_model("RaceBody", __base__=RaceBody, __doc__=RaceBody.__doc__, **fields)
 
 
 def _experiment_body(agents: Sequence[str]) -> type[ExperimentBody]:
     fields: dict[str, Any] = {
-        name: (one_or_more(_field(declared)), None)
+        name: (OneOrMore[_field(declared)], None)  # type: ignore[misc]  # it is made here
         for name, declared in settings_by_name(agents).items()
     }
     doc, settings = ExperimentBody.__doc__, _settings_body("SettingLists", fields)
-    return create_model("ExperimentBody", __base__=ExperimentBody, __doc__=doc, settings=settings)
+    own = record_fields(
+        ExperimentConfig, {"experiment", "settings", "blocks"}, optional={"tolerance"}
+    )
+    name = "ExperimentBody"
+    return create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)
 
 
 def _change_body(agents: Sequence[str]) -> type[ChangeBody]:

@@ -7,6 +7,7 @@ Services build responses from plain types, which are sent unvalidated; these mod
 time only to describe them. Tests validate real responses against the models.
 """
 
+from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Literal
 
@@ -14,17 +15,16 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.stage.state_machine import Origin, Phase
 from app.storage.run import State
-from hexapods.domain.observation import Observation
-from hexapods.domain.robot import PRESETS
+from hexapods.domain.disturbances import AnyDisturbance
 from hexapods.domain.settings import Value
-from hexapods.experiments.config import ExperimentName
+from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.clocks import Clock
-from hexapods.runs.config import SimulatorName
-from hexapods.runs.lane import PlanningModel
+from hexapods.runs.config import TrainingConfig
+from hexapods.runs.lane import LaneConfig, PlanningModel
+from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.results import RaceResult, TrainingResult
 
-Preset = Annotated[str, Field(json_schema_extra={"enum": list(PRESETS)})]
 Count = Annotated[int, Field(ge=0)]
 
 
@@ -34,129 +34,36 @@ class Answer(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class LegView(Answer):
-    """The mount of a leg: its direction [°] and its distance from the body's middle [m]."""
-
-    azimuth_deg: float
-    radius_m: float
-
-
-class RobotView(BaseModel):
-    """A preset, and by name the numeric parameters that override it."""
-
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, float]
-
-    preset: Preset
-    legs: list[LegView] = Field(default_factory=list)
-
-
-class GaitParts(Answer):
-    """A custom gait; members that were not given are absent."""
-
-    right_leg: int
-    left_leg: int
-    symmetry: Literal["origin", "vertical"] = "origin"
-    pairs: list[tuple[int, int]] = Field(default_factory=list)
-
-
-Gait = str | GaitParts
-
-
-class DisturbanceView(Answer):
-    """Disturbance from a step on; the fields of its kind are further members, by name."""
-
-    model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Value | list[int]]
-
-    kind: str
-    at_step: Annotated[int, Field(ge=0)]
-
-
-class WalkView(Answer):
-    """The walking problem: gait, robot, simulator and foot grid."""
-
-    gait: Gait
-    robot: RobotView
-    simulator: SimulatorName
-    divisions: int
-    grid_side_m: float
-    tolerance: float
-    disturbances: list[DisturbanceView]
-
-
 Settings = Annotated[dict[str, Value], Field(description="settings of the agent, by name")]
 
 
-class TrainingConfigView(WalkView):
+@dataclass(frozen=True, kw_only=True)
+class TrainingConfigView(TrainingConfig):
     """Config of a training."""
 
-    steps: int
-    seed: int
-    observation: Observation
-    steps_per_episode: int
-    evaluate_every: int
-    pace: float | Literal["max"]
-    agent: str
-    settings: Settings
     continue_from: str | None
 
 
-class LaneView(Answer):
+@dataclass(frozen=True, kw_only=True)
+class LaneView(LaneConfig):
     """A lane of a race, with the id of the training whose Q-table it uses.
 
     The settings of an agent with training are those of the training.
     """
 
-    agent: str
-    keep_learning: bool
     plans_with: Annotated[
         PlanningModel | None,
         Field(description="model that it plans with; null if it does not search"),
     ]
     plans_with_by_default: Annotated[bool, Field(description="whether `plans_with` was left out")]
-    observation: Observation
-    settings: Settings
     training_id: str | None
 
 
-class BranchView(Answer):
-    """The race and the step at which a race branches off."""
-
-    race_id: str
-    step: Annotated[int, Field(ge=0)]
-
-
-class RaceConfigView(WalkView):
+@dataclass(frozen=True, kw_only=True)
+class RaceConfigView(RaceConfig):
     """Config of a race."""
 
-    lanes: list[LaneView]
-    steps: int
-    seed: int
-    branch_from: BranchView | None
-
-
-class ExperimentConfigView(Answer):
-    """Config of an experiment; each element of the lists' Cartesian product is a setting."""
-
-    experiment: ExperimentName
-    seeds: int
-    seed: int
-    agents: list[str]
-    gaits: list[Gait]
-    observations: list[Observation]
-    robots: list[RobotView]
-    simulator: SimulatorName
-    steps: list[int]
-    settings: Annotated[
-        dict[str, list[Value]], Field(description="values of the agents' settings, by name")
-    ]
-    steps_per_episode: list[int]
-    divisions: list[int]
-    grid_side_m: list[float]
-    blocks: int
-    worlds: list[str] = Field(default_factory=lambda: ["flat"])
-    tolerance: float = 0.0
+    lanes: tuple[LaneView, ...]
 
 
 class ProgressView(Answer):
@@ -190,7 +97,7 @@ class Change(Answer):
     step: Count
     pace: float | Literal["max"] | None = None
     settings: Settings = Field(default_factory=dict)
-    disturbance: DisturbanceView | None = None
+    disturbance: AnyDisturbance | None = None
 
 
 class TrainingView(RunView):
@@ -217,9 +124,13 @@ class ExperimentView(RunView):
     """An experiment."""
 
     kind: Literal["experiment"]
-    config: ExperimentConfigView
+    config: ExperimentConfig
     result: ExperimentResult | None
     workers: int | None
+
+
+AnyRunView = Annotated[TrainingView | RaceView | ExperimentView, Field(discriminator="kind")]
+"""A run of any kind."""
 
 
 class Page(Answer):
@@ -250,7 +161,7 @@ class ExperimentPage(Page):
 class RunPage(Page):
     """Page of runs of every kind."""
 
-    items: list[TrainingView | RaceView | ExperimentView]
+    items: list[AnyRunView]
 
 
 class CodeView(Answer):
@@ -277,7 +188,7 @@ class DeletedView(Answer):
 class ImportedView(Answer):
     """Runs that were imported, in the order of their archive."""
 
-    items: list[TrainingView | RaceView | ExperimentView]
+    items: list[AnyRunView]
 
 
 class Announcement(Answer):

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import ExperimentView, ImportedView, RaceView, TrainingView
+from app.api.answers import AnyRunView, ImportedView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.formats import attachment
@@ -74,10 +74,9 @@ def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep
     runs = start_request.import_runs(
         services, lambda key: import_runs(store, body, ids, agents, "the archive", key=key)
     )
-    views = [run_view(run) for run in runs]
-    for view in views:
-        services.bus.publish("run", view, view["id"])
-    return JSONResponse({"items": views}, 201)
+    for run in runs:
+        services.bus.publish_run(run)
+    return JSONResponse({"items": [run_view(run) for run in runs]}, 201)
 
 
 @router.post(
@@ -85,7 +84,7 @@ def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep
     status_code=201,
     tags=["trainings", "races", "experiments"],
     summary="Import an archive of one run",
-    response_model=TrainingView | RaceView | ExperimentView,
+    response_model=AnyRunView,
     responses=answers(201, headers=LOCATION),
     openapi_extra=takes_file("application/octet-stream"),
 )
@@ -102,7 +101,7 @@ def import_archive(
     run = start_request.start(
         services, lambda key: import_run(store, body, ids, agents, "the archive", key=key)
     )
-    services.bus.publish("run", run_view(run), run.id)
+    services.bus.publish_run(run)
     location = request.url_for(f"get_{run.kind}", run_id=run.id).path
     return JSONResponse(run_view(run), 201, {"Location": location})
 

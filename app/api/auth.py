@@ -1,13 +1,6 @@
-"""Token and session authentication, which gives each request the role operator or spectator.
-
-Spectators have read access, and may ask what-ifs; operators may also start, change, stop and delete
-runs.
-"""
+"""Token and session authentication, which gives each request its role on the stage."""
 
 import asyncio
-import hashlib
-import hmac
-from typing import Literal
 from urllib.parse import parse_qsl, urlencode
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -17,14 +10,13 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.cookies import SessionCookie
 from app.api.problems import problem
 from app.api.rate_limit import is_what_if, too_many
+from app.api.stage_paths import path_of, stage_of
 from app.limits.addresses import client_of
 from app.limits.connections import Connection
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
-from app.storage.sessions import Sessions
+from app.stage.roles import Roles
 from hexapods.domain.errors import HexapodError
-
-Role = Literal["operator", "spectator"]
 
 _READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 PUBLIC_PATHS = ("/healthz", "/readyz")
@@ -39,25 +31,17 @@ _AUTH_HINT = (
 class TokenGuard:
     """Authentication middleware: authorises every request and websocket by its role.
 
-    Without a token in the settings every client is operator; the server then binds to loopback
-    only. An operator's browser has a session, whose id is in a cookie. Wrong tokens and wrong
-    session ids of an address draw on the same token bucket. The right ones are let in even when it
-    is empty, or others at an operator's address could lock them out: they are too long to be
-    guessed (`MIN_TOKEN_LENGTH`), and the limit bounds the load. Paths without a route are guarded
-    too.
+    `Roles` of the stage decide on it. Without a token every client is operator; the server then
+    binds to loopback only. An operator's browser has a session, whose id is in a cookie. Wrong
+    tokens and wrong session ids of an address draw on the same token bucket. The right ones are let
+    in even when it is empty, or others at an operator's address could lock them out: they are too
+    long to be guessed (`MIN_TOKEN_LENGTH`), and the limit bounds the load. Paths without a route
+    are guarded too.
     """
 
-    def __init__(self, app: ASGIApp, settings: Settings, sessions: Sessions | None) -> None:
-        """Wrap an app.
-
-        Args:
-            app: the guarded app.
-            settings: its `token`, `spectators` and `public_url` are used.
-            sessions: store of open operator sessions; None without a token.
-        """
+    def __init__(self, app: ASGIApp, settings: Settings) -> None:
+        """Wrap an app, inside `StagePaths`; of the settings it uses `public_url`."""
         self._app = app
-        self._token, self._sessions = settings.token, sessions
-        self._is_public = settings.token is None or settings.spectators == "public"
         self._wrong_guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._is_https = (settings.public_url or "").startswith("https:")
 
@@ -66,25 +50,24 @@ class TokenGuard:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        headers = Headers(scope=scope)
+        headers, roles = Headers(scope=scope), stage_of(scope).roles
         if _has_token_parameter(scope):
-            response = await self._open_session(scope, headers)
+            response = await self._open_session(scope, headers, roles)
             await response(scope, receive, send)
             return
-        role: Role = "operator"
-        cookie = self._cookie(scope, headers)
-        if not self._is_operator(headers, cookie):
-            role = "spectator"
-            wrong = [credential for credential in (_bearer(headers), cookie.value) if credential]
+        cookie, bearer = self._cookie(scope, headers), _bearer(headers)
+        role = roles.of(bearer, cookie.value)
+        if role == "spectator":
+            wrong = [credential for credential in (bearer, cookie.value) if credential]
             wait_s = max((self._wrong_guesses.take(client_of(scope)) for _ in wrong), default=0.0)
             if cookie.value:
                 send = _expiring_cookie(cookie, send)
             if wait_s > 0:
                 await _too_many_guesses(scope, wait_s)(scope, receive, send)
                 return
-        if role == "operator" or self._is_open_to_spectators(scope):
-            scope.setdefault("state", {})["role"] = role
-            if role == "operator" and self._token is not None:
+        if role == "operator" or _is_open_to_spectators(scope, roles):
+            scope["state"]["role"] = role
+            if role == "operator" and roles.needs_token:
                 _mark_authenticated(scope)
             await self._app(scope, receive, send)
         elif scope["type"] == "websocket":
@@ -92,26 +75,11 @@ class TokenGuard:
         else:
             await _unauthorized(f"This needs the operator: {_AUTH_HINT}.")(scope, receive, send)
 
-    def _is_operator(self, headers: Headers, cookie: SessionCookie) -> bool:
-        if self._token is None or self._sessions is None:
-            return True
-        if _equal_in_constant_time(_bearer(headers), self._token):
-            return True
-        return bool(cookie.value) and self._sessions.is_open(cookie.value)
-
     def _cookie(self, scope: Scope, headers: Headers) -> SessionCookie:
-        return SessionCookie(headers, self._is_https or scope["scheme"] in ("https", "wss"))
+        is_secure = self._is_https or scope["scheme"] in ("https", "wss")
+        return SessionCookie(headers, is_secure, scope["root_path"])
 
-    def _is_open_to_spectators(self, scope: Scope) -> bool:
-        changes = scope["type"] == "http" and scope["method"] not in _READ_METHODS
-        if changes and not is_what_if(scope):
-            return False
-        path: str = scope["path"]
-        # The page's files are public; the data they show is not.
-        is_open = path == "/" or path in PUBLIC_PATHS or path.startswith(_PUBLIC_FOLDERS)
-        return self._is_public or is_open
-
-    async def _open_session(self, scope: Scope, headers: Headers) -> Response:
+    async def _open_session(self, scope: Scope, headers: Headers, roles: Roles) -> Response:
         """Open a session for the token of `/?token=…`, and redirect to the address without it."""
         items = _query(scope)
         rest = urlencode([(name, value) for name, value in items if name != "token"])
@@ -119,19 +87,29 @@ class TokenGuard:
         # Relative, so that it is valid behind a proxy that serves the app under a prefix.
         response = RedirectResponse(f"?{rest}" if rest else "./", 303)
         response.headers["Cache-Control"] = "no-store"
-        if self._token is None or self._sessions is None:
+        if not roles.needs_token:
             return response
-        if not _equal_in_constant_time(given, self._token):
+        if not roles.is_token(given):
             wait_s = self._wrong_guesses.take(client_of(scope))
             if wait_s > 0:
                 return _too_many(wait_s)
             return _unauthorized("This is not the server's token; look at what its start printed.")
         try:
-            session_id = await asyncio.to_thread(self._sessions.open)
+            session_id = await asyncio.to_thread(roles.open_session)
         except HexapodError as error:
             return problem(503, f"No session can be kept: {error}.", headers={"Retry-After": "10"})
         response.headers.append("Set-Cookie", self._cookie(scope, headers).set_header(session_id))
         return response
+
+
+def _is_open_to_spectators(scope: Scope, roles: Roles) -> bool:
+    changes = scope["type"] == "http" and scope["method"] not in _READ_METHODS
+    if changes and not is_what_if(scope):
+        return False
+    path = path_of(scope)
+    # The page's files are public; the data they show is not.
+    is_open = path == "/" or path in PUBLIC_PATHS or path.startswith(_PUBLIC_FOLDERS)
+    return roles.is_public or is_open
 
 
 def _mark_authenticated(scope: Scope) -> None:
@@ -142,7 +120,7 @@ def _mark_authenticated(scope: Scope) -> None:
 
 
 def _has_token_parameter(scope: Scope) -> bool:
-    if scope["type"] != "http" or scope["path"] != "/" or scope["method"] not in ("GET", "HEAD"):
+    if scope["type"] != "http" or path_of(scope) != "/" or scope["method"] not in ("GET", "HEAD"):
         return False
     return any(name == "token" for name, _ in _query(scope))
 
@@ -182,9 +160,3 @@ async def _refuse_websocket(scope: Scope, receive: Receive, send: Send) -> None:
 
 def _unauthorized(detail: str) -> Response:
     return problem(401, detail, headers={"WWW-Authenticate": 'Bearer realm="Racing Hexapods"'})
-
-
-def _equal_in_constant_time(one: str, other: str) -> bool:
-    """Compare in constant time, against timing attacks; by hash, which hides the lengths, too."""
-    hashes = [hashlib.sha256(text.encode("utf-8", "surrogateescape")) for text in (one, other)]
-    return hmac.compare_digest(*(text_hash.digest() for text_hash in hashes))

@@ -13,13 +13,15 @@ from starlette.datastructures import Headers
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.auth import PUBLIC_PATHS, Role
+from app.api.auth import PUBLIC_PATHS
 from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
 from app.api.rate_limit import export_load, is_encoding, is_spectators_what_if, too_many
+from app.api.stage_paths import path_of
 from app.limits.addresses import client_of
 from app.limits.connections import set_client
 from app.limits.fair_semaphore import FairSemaphore, NotAdmitted
+from app.stage.roles import Role
 from app.storage.errors import Busy
 
 Work = Literal["probe", "what-if", "encoding", "download", "analysis", "other"]
@@ -95,7 +97,7 @@ class WorkSlots:
 
 def work_of(scope: Scope) -> Work:
     """Return the kind of work of a request; to be called inside `TokenGuard`."""
-    if scope["path"] in PUBLIC_PATHS:
+    if path_of(scope) in PUBLIC_PATHS:
         return "probe"
     if is_spectators_what_if(scope):
         return "what-if"
@@ -103,9 +105,9 @@ def work_of(scope: Scope) -> Work:
         return "encoding"
     if scope["method"] not in _READ_METHODS:
         return "other"
-    if export_load(scope) == "stream" or _DOWNLOAD.fullmatch(scope["path"]) is not None:
+    if export_load(scope) == "stream" or _DOWNLOAD.fullmatch(path_of(scope)) is not None:
         return "download"
-    return "other" if _OF_A_RUN.fullmatch(scope["path"]) is None else "analysis"
+    return "other" if _OF_A_RUN.fullmatch(path_of(scope)) is None else "analysis"
 
 
 class ConcurrencyLimit(HttpMiddleware):

@@ -11,27 +11,29 @@ NAME = "hexapods_operator"
 class SessionCookie:
     """The session cookie of a request.
 
-    Browsers send cookies to all ports of a host, so the name contains the port: two servers on one
-    machine do not overwrite each other's cookie. A secure cookie has the prefix `__Host-`, which
-    prevents other hosts and plain HTTP from setting it.
+    Browsers send cookies to all ports of a host, so the name contains the port and the path of the
+    stage: two servers on one machine do not overwrite each other's cookie, nor do two stages. A
+    secure cookie has the prefix `__Host-`, which prevents other hosts and plain HTTP from setting
+    it, and is for all paths.
 
     Attributes:
         name: of the cookie.
         value: session id that the client sent; "" without a cookie.
     """
 
-    def __init__(self, headers: Headers, is_secure: bool) -> None:
+    def __init__(self, headers: Headers, is_secure: bool, path: str) -> None:
         """Parse it from the headers of a request.
 
         Args:
             headers: of the request.
             is_secure: whether browsers use HTTPS.
+            path: of the stage.
         """
         port = headers.get("host", "").rpartition("]")[2].rpartition(":")[2]
         if not (port.isascii() and port.isdigit()):
             port = "443" if is_secure else "80"
         self._is_secure = is_secure
-        self.name = f"{'__Host-' if is_secure else ''}{NAME}_{port}"
+        self.name = f"{'__Host-' if is_secure else ''}{NAME}_{port}{path.replace('/', '_')}"
         self.value = cookie_parser("; ".join(headers.getlist("cookie"))).get(self.name, "")
 
     def set_header(self, session_id: str) -> str:

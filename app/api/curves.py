@@ -17,10 +17,10 @@ _VALUES_PER_CHUNK = 500
 class Rows(Protocol):
     """A Q-table whose rows can be iterated, in memory or in its file."""
 
-    pairs: int
+    groups: int
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Yield (state, values, visits) in order; both arrays (pairs, cells), NaN where illegal."""
+        """Yield (state, values, visits) in order; arrays (groups, cells), NaN where illegal."""
 
 
 def as_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
@@ -49,10 +49,10 @@ def table_as_json(table: Rows, meta: Mapping[str, Any]) -> Iterator[str]:
     for rows in _chunks(table):
         entries = (
             json.dumps(
-                {"state": state, "action": [pair, cell], "value": value, "visits": visits},
+                {"state": state, "action": [group, cell], "value": value, "visits": visits},
                 allow_nan=False,
             )
-            for state, pair, cell, value, visits in rows
+            for state, group, cell, value, visits in rows
         )
         yield separator + ",\n".join(entries)
         separator = ",\n"
@@ -60,13 +60,13 @@ def table_as_json(table: Rows, meta: Mapping[str, Any]) -> Iterator[str]:
 
 
 def table_as_csv(table: Rows) -> Iterator[str]:
-    """Yield the values of all legal actions as CSV: state's cells, pair, cell, value, visits."""
-    cells = [f"state_{pair}" for pair in range(table.pairs)]
+    """Yield the values of all legal actions as CSV: state's cells, group, cell, value, visits."""
+    cells = [f"state_{group}" for group in range(table.groups)]
     yield ",".join([*cells, "action_pair", "action_cell", "value", "visits"]) + "\r\n"
     for rows in _chunks(table):
         yield "".join(
-            ",".join(map(str, (*state, pair, cell, value, visits))) + "\r\n"
-            for state, pair, cell, value, visits in rows
+            ",".join(map(str, (*state, group, cell, value, visits))) + "\r\n"
+            for state, group, cell, value, visits in rows
         )
 
 
@@ -76,9 +76,9 @@ _Row = tuple[tuple[int, ...], int, int, float, int]
 def _chunks(table: Rows) -> Iterator[list[_Row]]:
     chunk: list[_Row] = []
     for state, values, visits in table.rows():
-        for pair, cell in np.argwhere(~np.isnan(values)).tolist():
-            value, count = float(values[pair, cell]), int(visits[pair, cell])
-            chunk.append((state, pair, cell, value, count))
+        for group, cell in np.argwhere(~np.isnan(values)).tolist():
+            value, count = float(values[group, cell]), int(visits[group, cell])
+            chunk.append((state, group, cell, value, count))
         if len(chunk) >= _VALUES_PER_CHUNK:
             yield chunk
             chunk = []

@@ -1,14 +1,15 @@
-"""FastAPI dependencies of routes: the services, the client's role, a start request."""
+"""FastAPI dependencies of routes: the services, the stage, the client's role, a start request."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Any, NamedTuple, Protocol
+from threading import Lock
+from typing import Annotated, NamedTuple
 
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
-from app.api.auth import Role
 from app.api.descriptions import VALID
+from app.api.stage_paths import stage_of
 from app.cache import BytesCache
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
@@ -19,55 +20,15 @@ from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
-from app.stage.stage import Stage
+from app.stage.roles import Role
 from app.storage.database.store import RunStore
 from app.storage.idempotency import Idempotency, Import, Start
 from app.storage.recordings import Recordings
 from app.storage.run import MAX_KEY_LENGTH, Run
+from app.viewer.replay_frames import ReplayFrames
+from app.viewer.shared_stage import SharedStage
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
-from hexapods.domain.types import Cells
-from hexapods.exports.export_format import EncodedReplay
-from hexapods.runs.clocks import Clock
-from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.recording import LaneRecording
-from hexapods.shows.race_show import Original
-
-StreamEncoder = Callable[[RaceConfig, Sequence[LaneRecording], str, Clock, Original | None], bytes]
-"""Encodes a race's lanes as a recorded stream for viser: with the race's name, under a clock, and
-with the race from which it branched off, if any."""
-
-
-class HubCounters(Protocol):
-    """Counters of the viewer hub: connected viewers, frames sent and frames coalesced."""
-
-    viewers: int
-    frames_sent: int
-    frames_merged: int
-
-
-class FrameEncoder(Protocol):
-    """Encodes the frames of runs: see `app.viewer.replay_frames`."""
-
-    def plan(self, run_id: str, clock: Clock, ghost_id: str | None) -> dict[str, Any]:
-        """Return what a page needs to play a run."""
-
-    def scene(self, run_id: str, ghost_id: str | None) -> bytes:
-        """Return the scene at the start of a run."""
-
-    def moment(self, run_id: str, clock: Clock, time_s: float, ghost_id: str | None) -> bytes:
-        """Return the frame at a time."""
-
-    def segment(
-        self, run_id: str, clock: Clock, level: int, number: int, ghost_id: str | None
-    ) -> bytes:
-        """Return the frames of a segment."""
-
-    def posture(self, run_id: str, clock: Clock, time_s: float, lane: int, cells: Cells) -> bytes:
-        """Return a ghost of a lane's robot in a state."""
-
-    def encoded(self, run_id: str, clock: Clock) -> EncodedReplay:
-        """Return all frames of a run, each encoded when it is asked for."""
 
 
 @dataclass(frozen=True)
@@ -76,19 +37,18 @@ class Services:
 
     Attributes:
         settings: settings of the server.
-        store, recordings, bus, jobs, stage, idempotency: the services of these names.
+        store, recordings, bus, jobs, idempotency: the services of these names.
+        stages: all stages, the first of which has the path "".
         agents: names of the agents that were registered at server start.
-        audience: returns the counters of the viewer hub.
-        ready: returns why runs cannot be started, in a sentence; None if they can.
         what_if: computes what-ifs.
         explanations: explains steps, and shows tables of any moment.
         estimates: estimates how long runs would take.
-        recorded_stream: encodes a race's recording as a recorded stream for viser.
-        replays: encodes frames of runs for pages that play them by themselves.
+        replays: encodes runs for pages that play them by themselves.
         renderer: renders large files, such as videos.
         stopping: ends what takes long in threads when the server stops.
         what_if_limiter: limits what-ifs of spectators, by their number and time.
-        listeners: slots of event streams.
+        listeners: slots of event streams, of all stages.
+        stream_lock: held while a race is encoded as a recorded stream for viser.
         exports: memory budget of exports that clients are still reading.
         analyses: gait analyses and timelines, which all pages that watch a run request at once.
     """
@@ -98,13 +58,10 @@ class Services:
     recordings: Recordings
     bus: RunMetrics
     jobs: Jobs
-    stage: Stage
+    stages: list[SharedStage]
     idempotency: Idempotency
     agents: tuple[str, ...]
-    audience: Callable[[], HubCounters]
-    ready: Callable[[], str | None]
-    recorded_stream: StreamEncoder
-    replays: FrameEncoder
+    replays: ReplayFrames
     renderer: FileRenderer
     what_if: WhatIf
     explanations: Explanations
@@ -112,14 +69,16 @@ class Services:
     stopping: Stopping
     what_if_limiter: RateLimiter
     listeners: ClientSlots["EventListener"]
+    stream_lock: Lock = field(default_factory=Lock)
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
     analyses: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
 
 
 class EventListener:
-    """A client of the event stream; `close` ends its stream, if one is open."""
+    """A client of the event stream, with its role; `close` ends its stream, if one is open."""
 
-    def __init__(self) -> None:
+    def __init__(self, role: Role) -> None:
+        self.role = role
         self.close: Callable[[], None] = lambda: None
 
 
@@ -149,6 +108,10 @@ def _services(request: Request) -> Services:
     return services
 
 
+def _stage(request: Request) -> SharedStage:
+    return stage_of(request.scope)
+
+
 def _role(request: Request) -> Role:
     role: Role = request.state.role
     return role
@@ -175,5 +138,7 @@ async def _start_request(
 
 
 ServicesDep = Annotated[Services, Depends(_services)]
+StageDep = Annotated[SharedStage, Depends(_stage)]
+"""The stage that the request's path is about."""
 StartRequestDep = Annotated[StartRequest, Depends(_start_request)]
 RoleDep = Annotated[Role, Depends(_role)]

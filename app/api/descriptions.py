@@ -18,7 +18,7 @@ from hexapods.runs.clocks import CLOCKS
 from hexapods.runs.config import SIMULATORS, TrainingConfig
 from hexapods.runs.gait_analysis import MAX_WINDOW_S
 from hexapods.runs.lane import LaneConfig
-from hexapods.runs.race_config import MAX_LANES
+from hexapods.runs.race_config import BRANCH_STEPS, MAX_LANES
 from hexapods.shows import show
 from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL
 
@@ -39,6 +39,7 @@ VALID: Mapping[str, str] = {
         for name, setting in export.settings.items()
     },
     **{name: setting.valid for name, setting in declared_fields(TrainingConfig).items()},
+    **{name: setting.valid for name, setting in declared_fields(LaneConfig).items()},
     "name": NAMES,
     "gait": f"{_one_of(NAMED_GAITS)}, or {{right_leg, left_leg, and symmetry or pairs}}",
     "right_leg": "a leg's number, from 1 on",
@@ -64,9 +65,7 @@ VALID: Mapping[str, str] = {
     ),
     "branch_from": "an object: race_id, and step, how many steps of that race are repeated",
     "race_id": "the id of a race",
-    "branch_from.step": (
-        "a whole number from 0 to the steps that the race has taken; at least one must be left"
-    ),
+    "branch_from.step": BRANCH_STEPS,
     "step": "a whole number, the steps that the run has taken at most",
     "lane": "a whole number, the number of a lane of the race, from 0 on",
     "cells": "a cell of the foot grid for each pair of legs, from 0 on, such as 0,3,1",
@@ -81,8 +80,6 @@ VALID: Mapping[str, str] = {
         f"a list of at most {MAX_DISTURBANCES}, each {{kind, at_step, until_step}} and the fields "
         f"of its kind: {', '.join(disturbances.KINDS)}"
     ),
-    "plans_with": declared_fields(LaneConfig)["plans_with"].valid,
-    "keep_learning": declared_fields(LaneConfig)["keep_learning"].valid,
     "run_id": "the id of a run",
     "id": f"the id of a run; up to {MAX_RUNS} of them as id=…&id=…",
     "ghost": "the id of another run of the same kind that has ended",

@@ -7,12 +7,10 @@ from pydantic import Field
 
 from app.api.answers import (
     Answer,
+    AnyRunView,
     Count,
-    ExperimentView,
-    RaceView,
     Settings,
     StageView,
-    TrainingView,
 )
 from app.api.recorded_answers import Evaluation
 from app.storage.run import Kind, State
@@ -30,7 +28,7 @@ class DamagedRunView(Answer):
     damaged: str
 
 
-AnyRunView = TrainingView | RaceView | ExperimentView | DamagedRunView
+ListedRunView = AnyRunView | DamagedRunView
 
 
 class SceneLane(Answer):
@@ -121,7 +119,7 @@ class SnapshotView(Answer):
     version: str
     role: Literal["operator", "spectator"]
     viewers: Count
-    runs: list[AnyRunView]
+    runs: list[ListedRunView]
     stage: StageView
     scene: SceneView
     evaluations: list[Evaluation] = Field(default_factory=list)
@@ -174,7 +172,7 @@ class EventBodies(Answer):
     """Data of each server-sent event, by the event's name."""
 
     snapshot: SnapshotView
-    run: AnyRunView
+    run: ListedRunView
     run_deleted: Annotated[DeletedRun, Field(alias="run-deleted")]
     evaluation: EvaluationEvent
     reference: ReferenceEvent

@@ -8,12 +8,14 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.api.contract import sends_events
-from app.api.deps import EventListener, RoleDep, Services, ServicesDep
+from app.api.deps import EventListener, RoleDep, Services, ServicesDep, StageDep
 from app.api.descriptions import VALID
 from app.limits.addresses import client_of
 from app.limits.client_slots import NoFreeSlot, Refusal
+from app.stage.roles import Role
 from app.storage.errors import Busy
 from app.storage.json_text import json_text
+from app.viewer.shared_stage import SharedStage
 from hexapods import __version__
 
 NEWEST_RUNS = 50
@@ -44,7 +46,7 @@ async def _client_slot(
     Raises:
         Busy: if no slot is free.
     """
-    listener = EventListener()
+    listener = EventListener(role)
     try:
         evicted = services.listeners.take(listener, client_of(request.scope), role == "operator")
     except NoFreeSlot as error:
@@ -65,7 +67,7 @@ async def _client_slot(
 )
 async def get_events(
     services: ServicesDep,
-    role: RoleDep,
+    shared: StageDep,
     run_id: Annotated[str | None, Depends(_existing_run_id)],
     listener: Annotated[EventListener, Depends(_client_slot)],
     last_event_id: Annotated[str | None, Header()] = None,
@@ -73,12 +75,14 @@ async def get_events(
     """Stream a `snapshot` event, then changes; with `run_id` only those of this run."""
     # Subscribe before reading, so that each change is in the snapshot or follows it.
     run_ids = None if run_id is None else {run_id}
-    subscription = services.bus.subscribe(run_ids, _event_id(last_event_id))
+    subscription = shared.channel.subscribe(run_ids, _event_id(last_event_id))
     listener.close = subscription.close
     try:
         id_before_read = services.bus.last_id
         # In a thread: the database and the stage's lock would block the event loop.
-        text, listed_ids = await run_in_threadpool(_snapshot, services, role, run_id)
+        text, listed_ids = await run_in_threadpool(
+            _snapshot, services, shared, listener.role, run_id
+        )
         # All events after this id follow: a client that reconnects with it misses none.
         since = str(subscription.since)
         yield ServerSentEvent(event="snapshot", id=since, raw_data=text, retry=RETRY_MS)
@@ -92,20 +96,22 @@ async def get_events(
             yield ServerSentEvent(event=event.event, id=str(event.id), raw_data=event.data)
     finally:
         # A client may disconnect before the first event.
-        services.bus.remove(subscription)
+        subscription.close()
 
 
-def _snapshot(services: Services, role: str, run_id: str | None) -> tuple[str, set[str]]:
+def _snapshot(
+    services: Services, shared: SharedStage, role: Role, run_id: str | None
+) -> tuple[str, set[str]]:
     """Return the snapshot as JSON, and the ids of the runs in it."""
     store = services.store
     runs = store.list(limit=NEWEST_RUNS).items if run_id is None else [store.find(run_id)]
     snapshot: dict[str, Any] = {
         "version": __version__,
         "role": role,
-        "viewers": services.audience().viewers,
+        "viewers": shared.hub.counters.viewers,
         "runs": [services.jobs.view(run) for run in runs],
-        "stage": services.stage.state(),
-        "scene": services.stage.scene(),
+        "stage": shared.stage.state(),
+        "scene": shared.stage.scene(),
     }
     if run_id is not None:
         snapshot["evaluations"] = store.evaluations(run_id)

@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.answers import Answer, Count, ExperimentConfigView
+from app.api.answers import Answer, Count
 from hexapods.domain.observation import Observation
 from hexapods.domain.settings import Value
-from hexapods.experiments.config import ExperimentName
+from hexapods.experiments.config import ExperimentConfig, ExperimentName
 from hexapods.runs.lane import PlanningModel
 
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -304,7 +304,7 @@ class SummaryView(Answer):
 
     format: int
     experiment: ExperimentName
-    config: ExperimentConfigView
+    config: ExperimentConfig
     versions: dict[str, str]
     machine: Machine
     trials: SummaryCounts

@@ -1,5 +1,6 @@
 """Routes of experiments: summary, trials, report and its files."""
 
+import json
 from typing import Annotated, Any, Literal
 
 from fastapi import Path, Query, Request
@@ -12,13 +13,15 @@ from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.formats import attachment, file_response, negotiated
 from app.api.runs import RunPath, accepted, find, run_routes
 from app.api.schemas import TrialBody
-from app.storage.artifact_file import ArtifactFile
+from app.storage.artifact_file import ArtifactFile, chunks
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
-from app.storage.run import NOT_ENDED, Run, config_as_json
+from app.storage.run import NOT_ENDED, Run
 from app.storage.stored_trials import trials_as_csv
-from hexapods.experiments.config import REPORT, SUMMARY, ExperimentConfig
+from hexapods.domain.records import to_json
+from hexapods.experiments.config import REPORT, SUMMARY, SUMMARY_FORMAT, ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
+from hexapods.runs.version_1 import nested_config
 
 REPORT_POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
@@ -42,6 +45,9 @@ _FILE_SCHEMAS: dict[str, dict[str, Any]] = {
     "application/pdf": BINARY,
 }
 
+_FIRST_FORMAT = b'{"format": 1,'
+"""How a summary of a version before 0.2 begins."""
+
 router = run_routes("experiment")
 
 
@@ -52,7 +58,12 @@ def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     summary = services.store.open_artifact(run_id, SUMMARY)
     if summary is None:
         return JSONResponse(_empty_summary(run))
-    return file_response(summary, "application/json")
+    if summary.read_at(0, len(_FIRST_FORMAT)) != _FIRST_FORMAT:
+        return file_response(summary, "application/json")
+    stored = json.loads(b"".join(chunks(summary)))
+    return JSONResponse(
+        {**stored, "format": SUMMARY_FORMAT, "config": nested_config(stored["config"])}
+    )
 
 
 @router.get(
@@ -147,9 +158,9 @@ def _empty_summary(run: Run) -> dict[str, Any]:
     )
     config = _config(run)
     return {
-        "format": 1,
+        "format": SUMMARY_FORMAT,
         "experiment": config.experiment,
-        "config": config_as_json(config),
+        "config": to_json(config),
         "versions": {},
         "machine": {},
         "trials": {"done": 0, "total": run.total, "failed": 0, "set_aside": []},

@@ -9,6 +9,7 @@ from starlette.responses import Response
 
 from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import ServicesDep
+from app.api.fields import Declared
 from app.api.formats import attachment, negotiated
 from app.api.runs import RunPath
 from app.exports.stored_walks import source_of
@@ -40,7 +41,10 @@ def _query_of(one: ExportFormat) -> Callable[..., _Query]:
         annotations["format"] = (Annotated[Literal[one.endings] | None, Query()], None)
     for name, setting in one.settings.items():
         query = Query(description=f"{setting.about.title}. {setting.about.help}")
-        annotations[name] = (Annotated[setting.annotation, query], setting.default)
+        annotations[name] = (
+            Annotated[Any, Declared(setting, is_text=True), query],
+            setting.default,
+        )
     for name, (annotation, default) in annotations.items():
         parameters.append(
             Parameter(name, Parameter.KEYWORD_ONLY, annotation=annotation, default=default)

@@ -1,8 +1,9 @@
 """Field types and the base class of request bodies."""
 
 import json
-from collections.abc import Callable, Mapping
-from typing import Annotated, Any, Literal
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import MISSING, fields
+from typing import Annotated, Any, Optional, TypeVar, get_args, get_origin, get_type_hints
 
 from pydantic import (
     AfterValidator,
@@ -13,7 +14,6 @@ from pydantic import (
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     TypeAdapter,
-    WithJsonSchema,
     model_validator,
 )
 from pydantic.json_schema import JsonSchemaValue
@@ -21,8 +21,7 @@ from pydantic_core import PydanticCustomError, core_schema
 
 from app.api.descriptions import VALID
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.robot import AZIMUTH, MAX_LEGS, MIN_LEGS, MOUNT_RADIUS, PRESETS, RANGES
-from hexapods.domain.settings import DeclaredSetting, declared_fields
+from hexapods.domain.settings import DeclaredSetting, declare
 from hexapods.domain.text import (
     MAX_NAME,
     MAX_NOTES,
@@ -35,9 +34,7 @@ from hexapods.domain.text import (
     check_tags,
     invisible_ranges,
 )
-from hexapods.runs.config import TrainingConfig
-from hexapods.runs.lane import LaneConfig
-from hexapods.runs.race_config import MAX_ID, RaceConfig
+from hexapods.runs.race_config import MAX_ID
 
 
 def _checked_by(check: Callable[[Any], Any]) -> AfterValidator:
@@ -80,10 +77,13 @@ def number(**limits: Any) -> Any:
 
 
 class Declared:
-    """Annotation: validate and describe a request's field by the declaration of a setting."""
+    """Annotation: validate and describe a request's field by the declaration of a setting.
 
-    def __init__(self, setting: DeclaredSetting) -> None:
-        self._setting = setting
+    With `is_text` its value is text, as in the query of an address.
+    """
+
+    def __init__(self, setting: DeclaredSetting, is_text: bool = False) -> None:
+        self._setting, self._is_text = setting, is_text
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -100,6 +100,8 @@ class Declared:
 
     def _validate(self, value: Any) -> Any:
         try:
+            if self._is_text and isinstance(value, str):
+                return self._setting.parse(value)
             return self._setting.normalized(value)
         except InvalidInput as error:
             context = {"name": self._setting.name, "valid": self._setting.valid}
@@ -134,67 +136,69 @@ Notes = Annotated[
 ]
 RunId = Annotated[str, Field(min_length=1, max_length=MAX_ID)]
 
-_TRAINING, _RACE = declared_fields(TrainingConfig), declared_fields(RaceConfig)
-_LANE = declared_fields(LaneConfig)
-Steps = Annotated[int, Declared(_TRAINING["steps"])]
-RaceSteps = Annotated[int, Declared(_RACE["steps"])]
-StepsPerEpisode = Annotated[int, Declared(_TRAINING["steps_per_episode"])]
-EvaluateEvery = Annotated[int, Declared(_TRAINING["evaluate_every"])]
-Seed = Annotated[int, Declared(_TRAINING["seed"])]
-Divisions = Annotated[int, Declared(_TRAINING["divisions"])]
-GridSide = Annotated[float, Declared(_TRAINING["grid_side_m"])]
-Tolerance = Annotated[float, Declared(_TRAINING["tolerance"])]
-KeepLearning = Annotated[bool, Declared(_LANE["keep_learning"])]
-LaneObservation = Annotated[Any, Declared(_LANE["observation"])]
-PlansWith = Annotated[Any, Declared(_LANE["plans_with"])]
-Pace = Annotated[Literal["max"] | float, Declared(_TRAINING["pace"])]
+T = TypeVar("T")
+MAX_VALUES = 100
 
 
-def _numbers(ranges: dict[str, tuple[float, float]]) -> dict[str, Any]:
-    return {
-        name: {"type": "number", "minimum": low, "maximum": high}
-        for name, (low, high) in ranges.items()
-    }
+def _as_list(value: Any) -> Any:
+    return value if isinstance(value, list) or value is None else [value]
 
 
-_ROBOT_PARTS = {
-    "preset": {"enum": list(PRESETS)},
-    "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS, "multipleOf": 2},
-    "legs": {
-        "type": "array",
-        "minItems": MIN_LEGS,
-        "maxItems": MAX_LEGS,
-        "items": {
-            "type": "object",
-            "properties": _numbers({"azimuth_deg": AZIMUTH, "radius_m": MOUNT_RADIUS}),
-            "required": ["azimuth_deg"],
-            "additionalProperties": False,
-        },
-    },
-    **_numbers({"mount_radius_m": MOUNT_RADIUS, **RANGES}),
-}
-RobotBody = Annotated[
-    str | dict[str, Any],
-    # The domain validates the parts; the schema repeats its limits.
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "string", "enum": list(PRESETS)},
-                {
-                    "type": "object",
-                    "properties": _ROBOT_PARTS,
-                    "additionalProperties": False,
-                    "not": {
-                        "required": ["legs"],
-                        "anyOf": [{"required": ["n_legs"]}, {"required": ["mount_radius_m"]}],
-                    },
-                },
-            ],
-            "description": VALID["robot"],
-            "examples": ["stiff"],
-        }
-    ),
+class _ItemOrList:
+    """Adds to the JSON schema that a single item is accepted in place of a list."""
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        kinds = handler(schema)["anyOf"]
+        return {"anyOf": [kinds[0]["items"], *kinds]}
+
+
+OneOrMore = Annotated[
+    Annotated[
+        list[T], Field(min_length=1, max_length=MAX_VALUES, json_schema_extra={"uniqueItems": True})
+    ]
+    | None,
+    BeforeValidator(_as_list),
+    _ItemOrList(),
 ]
+"""A list of 1 to `MAX_VALUES` values; a single value is converted to a list."""
+
+
+def record_fields(
+    record: type, without: Collection[str] = (), optional: Collection[str] = ()
+) -> dict[str, Any]:
+    """Return fields of a record as those of a request's body, for `create_model`.
+
+    Args:
+        record: the dataclass; where it has a tuple, a body may have one value or a list.
+        without: names of fields that are left out.
+        optional: names of fields whose default is None, whatever it is in the record.
+    """
+    hints = get_type_hints(record, include_extras=True)
+    found: dict[str, Any] = {}
+    for one in fields(record):
+        if one.name in without:
+            continue
+        hint, default = hints[one.name], ... if one.default is MISSING else one.default
+        if one.default_factory is not MISSING:
+            default = one.default_factory()
+        if get_origin(hint) is tuple:
+            shape, default = OneOrMore[_shape(one.name, get_args(hint)[0])], None  # type: ignore[misc]
+        else:
+            shape = _shape(one.name, hint)
+        if one.name in optional:
+            shape, default = Optional[shape], None  # noqa: UP045  # of a type made here
+        found[one.name] = (Annotated[shape, Field(description=VALID.get(one.name))], default)
+    return found
+
+
+def _shape(name: str, annotation: Any) -> Any:
+    """Return the type of a field: of a declared setting with its limits and its error."""
+    try:
+        return Annotated[Any, Declared(declare(name, annotation))]
+    except TypeError:  # it is none
+        return annotation
 
 
 class Body(BaseModel):

@@ -9,11 +9,12 @@ by one hold little memory and are not limited.
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.auth import Role
 from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
+from app.api.stage_paths import path_of
 from app.limits.addresses import client_of
 from app.limits.memory_budget import MemoryBudget, Refusal
+from app.stage.roles import Role
 from app.storage.artifact_file import CHUNK_BYTES
 
 MAX_BODY_BYTES = 1 << 20
@@ -31,7 +32,7 @@ class BodyLimit(HttpMiddleware):
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app with a counting `receive`; refuse with 413."""
-        limit = MAX_FILE_BYTES if scope["path"] in _FILE_ROUTES else MAX_BODY_BYTES
+        limit = MAX_FILE_BYTES if path_of(scope) in _FILE_ROUTES else MAX_BODY_BYTES
         refusal = problem(413, f"The request's body may have at most {limit:,} bytes here.")
         length = Headers(scope=scope).get("content-length", "")
         if length.isdigit() and int(length[:18]) > limit:

@@ -26,6 +26,7 @@ from app.api.problems import problem
 from app.events.damage import damage_count
 from app.storage.run import STATES
 from hexapods import __version__
+from hexapods.domain.errors import HexapodError
 
 router = APIRouter(tags=["health"])
 
@@ -39,10 +40,23 @@ async def get_health() -> Response:
 @router.get("/readyz", response_model=HealthView, summary="Readiness probe")
 def get_readiness(services: ServicesDep) -> Response:
     """Return 503 with the reason while something that runs need is unavailable."""
-    trouble = services.ready()
+    trouble = _unready_reason(services)
     if trouble is not None:
         return problem(503, trouble, headers={"Retry-After": "1"})
     return JSONResponse({"status": "ready", "version": __version__})
+
+
+def _unready_reason(services: Services) -> str | None:
+    """Return why runs cannot be started, in a sentence; None if they can."""
+    if (reason := services.jobs.health_problem()) is not None:
+        return reason
+    try:
+        services.store.check_disk_space()
+        services.store.check_writable()
+        services.store.list(limit=1)
+    except HexapodError as error:
+        return f"No run can be started: {error}."
+    return None
 
 
 @router.get(
@@ -75,7 +89,8 @@ class _ServicesCollector(Collector):
         self._damaged = damage_count(services.store)
 
     def collect(self) -> Iterable[Metric]:
-        services, counters = self._services, self._services.audience()
+        services = self._services
+        counters = [shared.hub.counters for shared in services.stages]
         counts = services.store.counts()
         runs = GaugeMetricFamily("hexapods_runs", "Runs that are kept, by state.", labels=["state"])
         for state in STATES:
@@ -97,13 +112,17 @@ class _ServicesCollector(Collector):
             "Robots' steps computed a second, over the last ten seconds.",
             services.bus.steps_per_s,
         )
-        yield GaugeMetricFamily("hexapods_viewers", "Who watches the stage.", counters.viewers)
+        yield GaugeMetricFamily(
+            "hexapods_viewers", "Who watches the stage.", sum(one.viewers for one in counters)
+        )
         yield CounterMetricFamily(
-            "hexapods_frames_sent", "Frames sent to viewers.", counters.frames_sent
+            "hexapods_frames_sent",
+            "Frames sent to viewers.",
+            sum(one.frames_sent for one in counters),
         )
         yield CounterMetricFamily(
             "hexapods_frames_merged",
             "Frames that a viewer got as a part of a later one, because it was behind.",
-            counters.frames_merged,
+            sum(one.frames_merged for one in counters),
         )
         yield InfoMetricFamily("hexapods", "The server.", {"version": __version__})

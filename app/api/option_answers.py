@@ -4,7 +4,9 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.answers import Answer, DisturbanceView, RobotView, Settings
+from app.api.answers import Answer, Settings
+from hexapods.domain.disturbances import AnyDisturbance
+from hexapods.domain.robot import AnyRobot
 from hexapods.domain.settings import Value
 from hexapods.runs.config import SimulatorName
 
@@ -28,7 +30,7 @@ class GaitOption(Described):
 class RobotOption(Described):
     """A robot preset."""
 
-    robot: RobotView
+    robot: AnyRobot
     built: dict[str, float] = Field(
         description="parts in whose place a disturbance puts another value, as they were built"
     )
@@ -112,7 +114,7 @@ class SettingOption(Answer):
 class WorldOption(Described):
     """A named world, with what happens in it."""
 
-    disturbances: list[DisturbanceView]
+    disturbances: list[AnyDisturbance]
 
 
 class RangesView(Answer):
@@ -125,6 +127,7 @@ class RangesView(Answer):
 class FieldOption(SettingOption):
     """Declaration of a field of a disturbance; of a list, that of each of its values."""
 
+    short: str = Field(description="its name in a text, such as `limp:legs=1,4:at=25`")
     is_list: bool
     is_required: bool
     ranges: RangesView | None = Field(description="narrower limits by the choice of another field")
@@ -143,6 +146,8 @@ class DisturbanceOption(Described):
         description="fields that tell, beside the kind, what it changes; each leg is one thing"
     )
     part: list[str] = Field(description="part of a leg to which it happens; empty for all of it")
+    repairs: bool = Field(description="whether it only ends what happened before")
+    adjective: str = Field(description="of a leg to which it has happened: limp, repaired")
     simulators: list[str]
 
 
@@ -153,6 +158,9 @@ class AgentOption(Described):
     searches: bool = Field(description="whether it plans with a simulator: takes `plans_with`")
     needs_practice: bool
     keeps_learning: bool
+    steps_ahead: int | None = Field(
+        description="of a look-ahead agent without settings: how many steps it simulates"
+    )
     color: str
     settings: dict[str, SettingOption]
     live_settings: dict[str, SettingOption]
@@ -189,4 +197,5 @@ class OptionsView(Answer):
         description="[lowest, highest]; `settings` says which of them are not valid themselves"
     )
     help: dict[str, str]
+    titles: dict[str, str] = Field(description="names of fields that are no declared settings")
     exports: list[ExportOption] = Field(description="files of a recorded walk")

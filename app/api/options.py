@@ -19,9 +19,17 @@ from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
 from hexapods import __version__
 from hexapods.agents.appearance import colors_of, description_of, title_of
-from hexapods.agents.registry import OURS, keeps_learning, learns, needs_practice, searches
+from hexapods.agents.registry import (
+    OURS,
+    find,
+    keeps_learning,
+    learns,
+    needs_practice,
+    searches,
+)
 from hexapods.domain import disturbances
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
+from hexapods.domain.records import to_json
 from hexapods.domain.robot import MAX_LEGS, PRESETS, Robot, as_mapping
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
@@ -37,7 +45,6 @@ from hexapods.experiments.config import (
     fields_of,
     settings_by_name,
 )
-from hexapods.experiments.config import as_json as experiment_as_json
 from hexapods.exports.registry import EXPORTS
 from hexapods.runs import best_known
 from hexapods.runs.clocks import CLOCK_TITLES
@@ -48,7 +55,6 @@ from hexapods.runs.config import (
     changeable_settings,
     training_config,
 )
-from hexapods.runs.config_json import as_json
 from hexapods.runs.gait_analysis import MAX_WINDOW_S
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
@@ -158,6 +164,26 @@ _HELP = {
     "trials": "Settings times seeds; agents that look ahead are tried once.",
     "workers": "How many trials are computed at once; by default one for each core.",
 }
+_FIELD_TITLES = {
+    "gait": "Gait",
+    "gaits": "Gaits",
+    "robot": "Robot",
+    "robots": "Robots",
+    "simulator": "Simulator",
+    "observations": "Observation",
+    "agent": "Learner",
+    "agents": "Agents",
+    "lanes": "Lanes",
+    "name": "Name",
+    "world": "World",
+    "worlds": "Worlds",
+    "disturb": "Disturbances",
+    "experiment": "Experiment",
+    "seeds": "Seeds",
+    "tags": "Tags",
+    "notes": "Notes",
+}
+"""Of the fields of all forms that are no declared settings."""
 # The limit of a race with the maximum number of lanes.
 _LANE_STEPS = Annotated[
     int, Ge(1), Le(MAX_RACE_STEPS // MAX_LANES), declared_fields(RaceConfig)["steps"].about
@@ -165,9 +191,7 @@ _LANE_STEPS = Annotated[
 _SETTINGS = {
     **declared_fields(TrainingConfig),
     "race_steps": declare("race_steps", _LANE_STEPS, RACE_STEPS),
-    "keep_learning": declared_fields(LaneConfig)["keep_learning"],
-    "plans_with": declared_fields(LaneConfig)["plans_with"],
-    "observation": declared_fields(LaneConfig)["observation"],
+    **declared_fields(LaneConfig),
 }
 """Declared settings that belong to no agent, by form field."""
 _LEGS = declare("legs", Annotated[int, Ge(1), Le(MAX_LEGS), disturbances.LEGS], REQUIRED)
@@ -209,6 +233,7 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "settings": {name: _setting(setting) for name, setting in settings.items()},
         "limits": _limits(settings),
         "help": {name: setting.about.help for name, setting in settings.items()} | _HELP,
+        "titles": _FIELD_TITLES,
         "exports": _exports(),
     }
 
@@ -220,7 +245,7 @@ def _gait(name: str) -> dict[str, Any]:
         "title": GAIT_TITLES[name],
         "forward_deg": gait.forward_deg,
         "azimuths_deg": gait.azimuths_deg,
-        "pairs": gait.pairs,
+        "pairs": gait.groups,
         "description": _GAITS[name],
     }
 
@@ -246,6 +271,7 @@ def _agents(names: Collection[str]) -> list[dict[str, Any]]:
             "searches": searches(name),
             "needs_practice": needs_practice(name),
             "keeps_learning": keeps_learning(name),
+            "steps_ahead": getattr(find(name), "steps_ahead", None),
             "color": color,
             "settings": {n: _setting(one) for n, one in agent_settings(name).items()},
             "live_settings": {
@@ -282,6 +308,8 @@ def _disturbances() -> list[dict[str, Any]]:
             "lasts": kind.lasts,
             "identified_by": kind.identified_by,
             "part": kind.part,
+            "repairs": kind.repairs,
+            "adjective": kind.adjective or name,
             "simulators": [one for one in _SIMULATORS if is_simulated(name, one)],
         }
         for name, kind in disturbances.KINDS.items()
@@ -298,12 +326,14 @@ def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]
     """Return the fields of a kind of disturbance, its own before the steps."""
     declared = declared_fields(kind)  # type: ignore[arg-type]  # of a class, not of an instance
     options = {}
+    short = {field: name for name, field in disturbances.SHORT.items()}
     for one in sorted(fields(kind), key=lambda field: field.name in ("at_step", "until_step")):
         setting = declared.get(one.name, _LEGS)
         is_list, is_required = setting is _LEGS, one.default is MISSING
         ranges = kind.ranges.get(one.name)
         options[one.name] = {
             **_setting(setting),
+            "short": short.get(one.name, one.name),
             "is_list": is_list,
             "is_required": is_required,
             "ranges": None if ranges is None else ranges._asdict(),
@@ -316,7 +346,7 @@ def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
     settings = settings_by_name(agents)
     options = []
     for name in EXPERIMENTS:
-        defaults = experiment_as_json(experiment_config(name, {}))
+        defaults = to_json(experiment_config(name, {}))
         others = _simulator_defaults(name, defaults)
         defaults["robots"] = [robot["preset"] for robot in defaults["robots"]]
         fields = [*fields_of(name), *(settings if name == "sweep" else ())]
@@ -342,9 +372,7 @@ def _simulator_defaults(
     return {
         simulator: {
             field: value
-            for field, value in experiment_as_json(
-                experiment_config(name, {"simulator": simulator})
-            ).items()
+            for field, value in to_json(experiment_config(name, {"simulator": simulator})).items()
             if field != "simulator" and value != defaults[field]
         }
         for simulator in _SIMULATORS
@@ -364,7 +392,7 @@ def _choice_titles(field: str) -> dict[str, str]:
 
 
 def _training_defaults() -> dict[str, Any]:
-    config = as_json(training_config(gait=next(iter(NAMED_GAITS))))
+    config = to_json(training_config(gait=next(iter(NAMED_GAITS))))
     return {**config, "robot": Robot().name}
 
 

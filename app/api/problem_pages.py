@@ -9,6 +9,7 @@ from starlette.types import Message, Receive, Scope, Send
 
 from app.api.middleware import HttpMiddleware
 from app.api.problems import MEDIA_TYPE
+from app.api.stage_paths import path_of
 from app.api.templates import render
 
 
@@ -52,7 +53,7 @@ def _prefers_html(headers: Headers) -> bool:
 def _page(start: Message, body: bytes, scope: Scope) -> HTMLResponse:
     status = HTTPStatus(start["status"])
     # Relative, so that it is valid behind a proxy that serves the app under a prefix.
-    home = "../" * max(scope["path"].count("/") - 1, 0) or "./"
+    home = "../" * max(path_of(scope).count("/") - 1, 0) or "./"
     page = render("problem.html", title=status.phrase, detail=json.loads(body)["detail"], home=home)
     response = HTMLResponse(page, status)
     for name, value in MutableHeaders(scope=start).items():

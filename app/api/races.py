@@ -20,6 +20,7 @@ from app.storage.artifact_file import ArtifactFile
 from app.storage.errors import Conflict
 from app.storage.run import NOT_ENDED, Run
 from hexapods.exports import recording_json
+from hexapods.exports.recorded_stream import recorded_stream
 from hexapods.runs.clocks import Clock
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
@@ -104,7 +105,9 @@ def _recorded_stream(
     name = f"film-{clock}.viser"
     while (stream := services.store.open_artifact(run.id, name)) is None:
         original = original_of(config, services.store, services.recordings)
-        encoded = services.recorded_stream(config, lanes, run.name, clock, original)
+        check = services.stopping.check
+        with services.stopping.holding(services.stream_lock):
+            encoded = recorded_stream(config, lanes, run.name, clock, original, check=check)
         services.store.put_artifact(run.id, name, encoded)
     return stream
 

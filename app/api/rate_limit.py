@@ -9,6 +9,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
+from app.api.stage_paths import path_of
 from app.limits.addresses import client_of
 from app.limits.token_bucket import RateLimiter
 from app.settings import PREFIX, Settings
@@ -81,7 +82,7 @@ def what_ifs_used_up(per_minute: int, wait_s: float) -> str:
 
 def is_what_if(scope: Scope) -> bool:
     """Whether a request asks for a what-if."""
-    return (scope["method"], scope["path"]) == ("POST", WHAT_IF)
+    return (scope["method"], path_of(scope)) == ("POST", WHAT_IF)
 
 
 def is_spectators_what_if(scope: Scope) -> bool:
@@ -100,14 +101,14 @@ def whole_seconds(wait_s: float) -> int:
 
 
 def _starts_work(scope: Scope) -> bool:
-    if scope["method"] == "POST" and _STARTS_NOTHING.fullmatch(scope["path"]) is None:
+    if scope["method"] == "POST" and _STARTS_NOTHING.fullmatch(path_of(scope)) is None:
         return True
     return is_encoding(scope)
 
 
 def export_load(scope: Scope) -> Load | None:
     """Return what an export costs that a request asks for; None if it asks for none."""
-    found = _OF_RUN.fullmatch(scope["path"])
+    found = _OF_RUN.fullmatch(path_of(scope))
     export = None if found is None else EXPORTS.get(found[1])
     return None if export is None else export.load
 
@@ -116,7 +117,7 @@ def is_encoding(scope: Scope) -> bool:
     """Whether a request asks for a file that takes seconds to minutes to encode."""
     if export_load(scope) == "encode":
         return True
-    if _RECORDING.fullmatch(scope["path"]) is None:
+    if _RECORDING.fullmatch(path_of(scope)) is None:
         return False
     # Decoded as the endpoint decodes it, so that percent-encoding cannot bypass the limit.
     return "viser" in QueryParams(scope["query_string"]).getlist("format")

@@ -4,7 +4,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.api.answers import Answer, Count, Gait
+from app.api.answers import Answer, Count
+from hexapods.domain.gait import AnyGait
 from hexapods.runs.clocks import Clock
 from hexapods.shows.show import MarkKind
 
@@ -40,7 +41,7 @@ class ActionValue(Answer):
 class QTableView(Answer):
     """Q-table: all legal actions in all states; `cells` are the (x, y) of each cell [m]."""
 
-    gait: Gait
+    gait: AnyGait
     divisions: int
     grid_side_m: float
     cells: list[tuple[float, float]]

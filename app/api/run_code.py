@@ -18,12 +18,11 @@ from app.storage.run import Run, world_of
 from hexapods.agents.registry import keeps_learning
 from hexapods.domain.disturbances import as_text
 from hexapods.domain.errors import HexapodError
+from hexapods.domain.records import to_json
 from hexapods.domain.robot import PRESETS
-from hexapods.domain.settings import Value
+from hexapods.domain.settings import Value, declared_fields
 from hexapods.experiments.config import ExperimentConfig, by_option, experiment_config, fields_of
-from hexapods.experiments.config import as_json as experiment_as_json
 from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings
-from hexapods.runs.config_json import as_json
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 
@@ -32,7 +31,7 @@ MAX_CONTINUED = 100
 downloaded."""
 _ALWAYS = ("gait", "steps", "seed", "seeds")
 """Arguments that are spelt out whatever their value."""
-_DEFAULTS = as_json(TrainingConfig(gait="left-right-origin"))
+_DEFAULTS = to_json(TrainingConfig(gait="left-right-origin"))
 _INHERITED = ("robot", "simulator", "divisions", "grid_side_m", "observation")
 """Arguments whose default in Python is that of the training that goes on, or races."""
 
@@ -173,10 +172,10 @@ class _Practices:
         """
         others = [self._configs[one] for one in rests_on]
         given: Arguments = {}
-        own = {k: v for k, v in as_json(config).items() if k in _DEFAULTS and k in _named(config)}
+        own = {k: v for k, v in to_json(config).items() if k in _DEFAULTS and k in _named(config)}
         for name, value in own.items():
             is_inherited = name in _INHERITED and any(
-                one is None or as_json(one)[name] != value for one in others
+                one is None or to_json(one)[name] != value for one in others
             )
             if name in _ALWAYS or value != _DEFAULTS[name] or is_inherited:
                 given[name] = value
@@ -224,13 +223,13 @@ def _differing_settings(agent: str, settings: Mapping[str, Value]) -> dict[str, 
 
 
 def _lane_arguments(lane: LaneConfig, is_practised: bool) -> Arguments:
-    given: Arguments = {}
-    if lane.keep_learning != _keeps_learning(lane.agent):
-        given["keep_learning"] = lane.keep_learning
-    if lane.plans_with is not None:
-        given["plans_with"] = lane.plans_with
-    if not is_practised and lane.observation != LaneConfig.observation:
-        given["observation"] = lane.observation
+    usual: Arguments = {"keep_learning": _keeps_learning(lane.agent)}
+    given = {
+        name: getattr(lane, name)
+        for name, one in declared_fields(LaneConfig).items()
+        if getattr(lane, name) != usual.get(name, one.default)
+        and not (is_practised and name == "observation")
+    }
     return {**given, **_differing_settings(lane.agent, lane.settings)}
 
 
@@ -347,13 +346,13 @@ def _part(value: Any) -> str:
 
 def _experiment_differences(config: ExperimentConfig) -> Arguments:
     """Return what differs from the defaults, of which some depend on simulator and agents."""
-    name, shown = config.experiment, by_option(experiment_as_json(config))
+    name, shown = config.experiment, by_option(to_json(config))
     chosen: Arguments = {"simulator": config.simulator}
     if "agents" in fields_of(name):
         chosen["agents"] = config.agents
-    usual = experiment_as_json(experiment_config(name, {}))
+    usual = to_json(experiment_config(name, {}))
     expected = {
-        **by_option(experiment_as_json(experiment_config(name, chosen))),
+        **by_option(to_json(experiment_config(name, chosen))),
         **{key: usual[key] for key in chosen},
         "experiment": name,
     }

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import (
+    AnyRunView,
     CodeView,
     DeletedView,
     ExperimentPage,
@@ -122,7 +123,7 @@ def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
 @router.get(
     "/{run_id}",
     summary="Get a run of any kind",
-    response_model=TrainingView | RaceView | ExperimentView,
+    response_model=AnyRunView,
 )
 def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
     """Return a run whose kind is not known."""
@@ -132,7 +133,7 @@ def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
 @router.patch(
     "/{run_id}",
     summary="Rename a run, or change its tags or notes",
-    response_model=TrainingView | RaceView | ExperimentView,
+    response_model=AnyRunView,
 )
 def annotate_run(services: ServicesDep, run_id: RunPath, body: AnnotationBody) -> Response:
     """Change them in any state of the run; tags and notes are replaced as a whole."""
@@ -143,7 +144,7 @@ def annotate_run(services: ServicesDep, run_id: RunPath, body: AnnotationBody) -
     "/{run_id}/again",
     status_code=202,
     summary="Start a run again with the same settings",
-    response_model=TrainingView | RaceView | ExperimentView,
+    response_model=AnyRunView,
     responses=answers(202, headers=LOCATION),
 )
 def run_again(

@@ -1,54 +1,34 @@
 """Request bodies as Pydantic models, each converted to the dataclass that a service takes."""
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, Tag, WithJsonSchema, model_validator
+from pydantic import ConfigDict, Field, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
 from app.api.descriptions import VALID
-from app.api.disturbance_body import Disturbances, Leg
 from app.api.fields import (
-    INTEGRAL,
     Body,
-    Divisions,
-    EvaluateEvery,
-    GridSide,
-    KeepLearning,
-    LaneObservation,
+    Declared,
     Name,
     Notes,
-    Pace,
-    PlansWith,
-    RaceSteps,
-    RobotBody,
     RunId,
-    Seed,
     SettingsBody,
-    Steps,
-    StepsPerEpisode,
     Tags,
-    Tolerance,
     given_settings,
     number,
 )
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
 from app.storage.run import ANNOTATIONS
+from hexapods.domain.disturbances import AnyDisturbance
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.gait import NAMED_GAITS, GaitSpec, Symmetry
-from hexapods.domain.observation import Observation
-from hexapods.domain.robot import robot
-from hexapods.domain.world import WORLDS, world_from
+from hexapods.domain.settings import declared_fields
+from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, world_from
 from hexapods.runs.clocks import Clock
-from hexapods.runs.config import (
-    RACE_STEPS,
-    SimulatorName,
-    TrainingConfig,
-    WalkingProblem,
-    training_config,
-)
-from hexapods.runs.race_config import MAX_RACE_STEPS, Branch
+from hexapods.runs.config import TrainingConfig, WalkingProblem, training_config
+from hexapods.runs.lane import LANE_FIELDS
+from hexapods.runs.race_config import Branch
 from hexapods.shows.show import MAX_SPEED, MIN_SPEED
 
 WorldName = Annotated[
@@ -58,52 +38,24 @@ WorldName = Annotated[
 ]
 
 
-class GaitBody(Body):
-    """A custom gait."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "oneOf": [
-                {"required": ["symmetry"], "properties": {"symmetry": {"type": "string"}}},
-                {"required": ["pairs"], "properties": {"pairs": {"type": "array"}}},
-            ]
-        }
-    )
-
-    right_leg: Leg
-    left_leg: Leg
-    symmetry: Symmetry | None = None
-    pairs: list[tuple[Leg, Leg]] | None = None
-
-    def spec(self) -> GaitSpec:
-        """Convert to the specification of the domain."""
-        pairs = None if self.pairs is None else tuple(self.pairs)
-        return GaitSpec(self.right_leg, self.left_leg, self.symmetry, pairs)
-
-
-def _gait_tag(value: Any) -> str:
-    return "its name" if isinstance(value, str) else "its parts"
-
-
-Gait = Annotated[
-    Annotated[str, Tag("its name"), WithJsonSchema({"type": "string", "enum": list(NAMED_GAITS)})]
-    | Annotated[GaitBody, Tag("its parts")],
-    Discriminator(_gait_tag),
-    Field(description=VALID["gait"]),
+Disturbances = Annotated[
+    list[AnyDisturbance],
+    Field(
+        max_length=MAX_DISTURBANCES,
+        description="Changes of the robot and the ground, by step.",
+    ),
 ]
+WALK = {one.name for one in fields(WalkingProblem)} - {"world"}
+_PRACTICE = {one.name for one in fields(TrainingConfig)}.difference(
+    WALK, ("world", "seed", "agent", "settings")
+)
 
 
 class WalkBody(Body):
-    """The walking problem: gait, robot, simulator and foot grid."""
+    """The walking problem; the fields of `WalkingProblem` are added to it."""
 
-    gait: Gait
-    robot: RobotBody = "stiff"
-    simulator: SimulatorName = WalkingProblem.simulator
-    divisions: Divisions = WalkingProblem.divisions
-    grid_side_m: GridSide = WalkingProblem.grid_side_m
-    tolerance: Tolerance = WalkingProblem.tolerance
     world: WorldName | None = None
-    disturbances: Annotated[Disturbances, Field(default_factory=list)]
+    disturbances: Disturbances = Field(default_factory=list)
 
     def walk(self) -> WalkingProblem:
         """Convert to the walking problem.
@@ -111,27 +63,18 @@ class WalkBody(Body):
         Raises:
             InvalidInput: if gait, robot or world is not valid.
         """
-        return WalkingProblem(
-            gait=self.gait.spec() if isinstance(self.gait, GaitBody) else self.gait,
-            robot=robot(self.robot),
-            simulator=self.simulator,
-            divisions=self.divisions,
-            grid_side_m=self.grid_side_m,
-            tolerance=self.tolerance,
-            world=world_from(self.world, (body.disturbance() for body in self.disturbances)),
-        )
+        world = world_from(self.world, self.disturbances)
+        return WalkingProblem(**{name: getattr(self, name) for name in WALK}, world=world)
 
 
 class PracticeBody(Body):
-    """Practice parameters of a training or of a race's lane."""
+    """Practice of a training or of a race's lane; fields of `TrainingConfig` are added to it."""
 
     name: Name | None = None
-    steps: Steps = TrainingConfig.steps
-    seed: Annotated[Seed | None, Field(description="0 by default; a lane takes the race's")] = None
-    observation: Observation = TrainingConfig.observation
-    steps_per_episode: StepsPerEpisode = TrainingConfig.steps_per_episode
-    evaluate_every: EvaluateEvery = TrainingConfig.evaluate_every
-    pace: Pace = TrainingConfig.pace
+    seed: Annotated[
+        Annotated[int, Declared(declared_fields(TrainingConfig)["seed"])] | None,
+        Field(description="0 by default; a lane takes the race's"),
+    ] = None
     continue_from: Annotated[RunId | None, Field(description=VALID["continue_from"])] = None
     settings: SettingsBody = Field(default_factory=SettingsBody)
 
@@ -146,9 +89,8 @@ class PracticeBody(Body):
                 "a training that continues another goes on with its generator: leave out seed, "
                 "or leave out continue_from"
             )
-        other_fields = {"name", "seed", "continue_from", "agent", *WalkBody.model_fields}
-        own = self.model_fields_set - other_fields - {"settings"}
-        given = {name: getattr(self, name) for name in own} | given_settings(self.settings)
+        given = {name: getattr(self, name) for name in self.model_fields_set & _PRACTICE}
+        given |= given_settings(self.settings)
         chosen_seed = seed if self.seed is None else self.seed
         config = training_config(**vars(walk), **given, seed=chosen_seed, agent=agent)
         return TrainingStart(config, self.name or None, self.continue_from)
@@ -171,38 +113,32 @@ class TrainingBody(PracticeBody, WalkBody):
 class LaneBody(Body):
     """A lane, with its agent's settings unless they are those of its training.
 
-    Q-learning and its like need `training_id`, `training`, or `keep_learning`.
+    Q-learning and its like need `training_id`, `training`, or `keep_learning`. The fields of
+    `LaneConfig` are added to it.
     """
 
     agent: str
     training_id: Annotated[RunId | None, Field(description=VALID["training_id"])] = None
     training: Annotated[PracticeBody | None, Field(description=VALID["training"])] = None
-    keep_learning: KeepLearning | None = None
-    plans_with: PlansWith | None = None
-    observation: LaneObservation | None = None
     settings: SettingsBody = Field(default_factory=SettingsBody)
 
     def start(self, walk: WalkingProblem, seed: int) -> LaneStart:
         """Convert to the request of the service."""
         practice = self.training
         training = None if practice is None else practice.practice(walk, self.agent, seed)
-        return LaneStart(
-            self.agent,
-            self.training_id,
-            training,
-            self.keep_learning,
-            self.plans_with,
-            given_settings(self.settings),
-            self.observation,
-        )
+        given = {
+            name: getattr(self, name) for name in LANE_FIELDS if getattr(self, name) is not None
+        }
+        settings = given_settings(self.settings)
+        return LaneStart(self.agent, self.training_id, training, given, settings)
 
 
 class RaceBody(WalkBody):
     """A race, by default of the paper's three lanes; its learners are trained first."""
 
     name: Name | None = None
-    steps: RaceSteps = RACE_STEPS
-    seed: Seed = 0
+    steps: int
+    seed: int
     lanes: list[LaneBody]
 
     def start(self) -> RaceStart:
@@ -218,43 +154,26 @@ class RaceBody(WalkBody):
         return RaceStart(walk, lanes, self.steps, self.seed, self.name or None)
 
 
-class BranchFrom(Body):
-    """A moment of a race."""
-
-    race_id: RunId
-    # The domain checks the number of steps that the race has taken.
-    step: Annotated[
-        int,
-        Field(strict=True, ge=0, lt=MAX_RACE_STEPS, description=VALID["branch_from.step"]),
-        INTEGRAL,
-    ]
-
-    def branch(self) -> Branch:
-        """Convert to the value of the domain."""
-        return Branch(self.race_id, self.step)
-
-
 class BranchBody(Body):
     """A race that repeats another up to a step; all else that it does not say is from there."""
 
     name: Name | None = None
-    branch_from: BranchFrom
-    disturbances: Annotated[Disturbances, Field(default_factory=list)]
+    branch_from: Branch
+    disturbances: Disturbances = Field(default_factory=list)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _begin_at_the_branch(cls, value: Any) -> Any:
+        """Let what happens begin at the branch by default."""
+        match value:
+            case {"branch_from": {"step": step}, "disturbances": [*given]}:
+                begun = [{"at_step": step, **x} if isinstance(x, dict) else x for x in given]
+                return {**value, "disturbances": begun}
+        return value
 
     def start(self) -> BranchStart:
-        """Convert to the request of the service: what happens, happens at the branch by default.
-
-        Raises:
-            InvalidInput: if a disturbance is not valid.
-        """
-        branch = self.branch_from.branch()
-        disturbances = [
-            body.disturbance()
-            if "at_step" in body.model_fields_set
-            else body.model_copy(update={"at_step": branch.step}).disturbance()
-            for body in self.disturbances
-        ]
-        return BranchStart(branch, disturbances, self.name or None)
+        """Convert to the request of the service."""
+        return BranchStart(self.branch_from, self.disturbances, self.name or None)
 
 
 def one_given(names: Iterable[str]) -> dict[str, Any]:
@@ -293,7 +212,7 @@ class ChangeBody(PatchBody):
         }
     )
 
-    pace: Pace | None = None
+    pace: Annotated[Any, Declared(declared_fields(TrainingConfig)["pace"])] | None = None
     settings: SettingsBody = Field(default_factory=SettingsBody)
 
     def changes(self) -> dict[str, Any]:

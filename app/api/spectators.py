@@ -8,7 +8,7 @@ from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import SpectatorsView
-from app.api.deps import Services, ServicesDep
+from app.api.deps import ServicesDep, StageDep
 from app.settings import PREFIX, Settings, is_loopback
 
 _WILDCARDS = ("0.0.0.0", "::")  # noqa: S104 - compared, not bound
@@ -26,17 +26,18 @@ router = APIRouter(prefix="/spectators", tags=["stage"])
 @router.get(
     "", response_model=SpectatorsView, summary="Get the spectators' address and their number"
 )
-def get_spectators(request: Request, services: ServicesDep) -> Response:
+def get_spectators(request: Request, services: ServicesDep, shared: StageDep) -> Response:
     """Return the address at which others watch, or why there is none, and its QR code."""
-    address = _address_for_others(request, services)
-    reason = _NEEDS_TOKEN if services.settings.spectators == "token" else _LOOPBACK_ONLY
+    is_public = shared.roles.is_public
+    address = _address_for_others(request, services.settings) if is_public else None
+    reason = _LOOPBACK_ONLY if is_public else _NEEDS_TOKEN
     answer = {
         "address": address,
         "qr_code": None
         if address is None
         else qr_code(address).svg_data_uri(border=2, light="#fff"),
         "reason": reason if address is None else "",
-        "watching": services.audience().viewers,
+        "watching": shared.hub.counters.viewers,
     }
     return JSONResponse(answer)
 
@@ -70,10 +71,7 @@ def local_address() -> str:
     return address
 
 
-def _address_for_others(request: Request, services: Services) -> str | None:
-    settings = services.settings
-    if settings.spectators == "token":
-        return None
+def _address_for_others(request: Request, settings: Settings) -> str | None:
     if settings.public_url is None:
         # The Host has been checked: by that name this client has reached the server.
         name = urlsplit(str(request.base_url)).hostname or ""

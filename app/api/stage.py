@@ -4,20 +4,20 @@ from fastapi import APIRouter
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import StageView
-from app.api.deps import ServicesDep
+from app.api.deps import StageDep
 from app.api.schemas import StageBody
 
 router = APIRouter(prefix="/stage", tags=["stage"])
 
 
 @router.get("", response_model=StageView, summary="Get the stage's state")
-def get_stage(services: ServicesDep) -> Response:
+def get_stage(shared: StageDep) -> Response:
     """Return the state of the stage: run, time, speed and clock."""
-    return JSONResponse(services.stage.state())
+    return JSONResponse(shared.stage.state())
 
 
 @router.put("", response_model=StageView, summary="Show a run, or change the stage's playback")
-def put_stage(services: ServicesDep, body: StageBody) -> Response:
+def put_stage(shared: StageDep, body: StageBody) -> Response:
     """Change the given fields; the others are unchanged."""
-    services.stage.set(**body.model_dump())
-    return JSONResponse(services.stage.state())
+    shared.stage.set(**body.model_dump())
+    return JSONResponse(shared.stage.state())

@@ -1,15 +1,15 @@
 """Routes of trainings: import, learning curve and Q-table."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from fastapi import Query, Request
+from fastapi import Body, Query, Request
+from pydantic import BeforeValidator
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from app.api import curves
-from app.api.answers import DisturbanceView, TrainingView
+from app.api.answers import TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
-from app.api.disturbance_body import AnyDisturbance
 from app.api.explanation_answers import TableView
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
@@ -22,7 +22,7 @@ from app.storage.errors import Conflict
 from app.storage.json_text import finite
 from app.storage.run import Run, world_of
 from app.storage.stored_tables import open_table, read_rows
-from hexapods.domain.disturbances import as_mapping
+from hexapods.domain.disturbances import AnyDisturbance, as_mapping
 from hexapods.domain.errors import InvalidInput
 from hexapods.runs import tables
 from hexapods.runs.best_known import best_known_m
@@ -56,23 +56,31 @@ def import_training(
     return JSONResponse(jobs.view(run), 201, {"Location": location})
 
 
+def _without_step(given: Any) -> Any:
+    if isinstance(given, dict) and "at_step" in given:
+        raise InvalidInput("it happens at the next step; leave out at_step")
+    return given
+
+
 @router.post(
     "/{run_id}/disturbances",
     status_code=202,
     summary="Disturb a running training",
-    response_model=DisturbanceView,
+    response_model=AnyDisturbance,
     responses=answers(202),
 )
-def disturb_training(services: ServicesDep, run_id: RunPath, body: AnyDisturbance) -> Response:
+def disturb_training(
+    services: ServicesDep,
+    run_id: RunPath,
+    body: Annotated[AnyDisturbance, BeforeValidator(_without_step), Body()],
+) -> Response:
     """Apply a disturbance from the next step on; return it with that step.
 
     Leave out `at_step`. A later disturbance of the same thing replaces an earlier one, and
     `repair` ends what happened to legs.
     """
     find(services, "training", run_id)
-    if "at_step" in body.model_fields_set:
-        raise InvalidInput("it happens at the next step; leave out at_step")
-    made = services.jobs.disturb(run_id, body.disturbance())
+    made = services.jobs.disturb(run_id, body)
     return JSONResponse(as_mapping(made), 202)
 
 

@@ -32,6 +32,7 @@ from app.storage.stored_recordings import (
     transitions_file,
 )
 from hexapods.domain.errors import DamagedFile, HexapodError
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.simulator import Motion
 from hexapods.domain.types import Action, Cells
 from hexapods.experiments.config import ExperimentConfig
@@ -217,7 +218,7 @@ def _check_transitions(config: WalkingProblem, files: Mapping[str, bytes]) -> No
         raise ValueError("some of its steps are missing")
     for number, name in enumerate(names):
         part = transitions(tables.read_arrays(files[name]))
-        part.check(len(config.resolved_gait.pairs), len(config.grid))
+        part.check(len(config.resolved_gait.groups), len(config.grid))
         if part.first != number * TRANSITIONS_PER_FILE or part.rewards_m.size == 0:
             raise ValueError("its steps do not follow each other")
         if part.rewards_m.size > TRANSITIONS_PER_FILE:
@@ -255,8 +256,8 @@ def _check_effort(motion: Motion) -> None:
 
 
 def _check_poses(qpos: NDArray[np.float32], walk: WalkingProblem) -> None:
-    """Check poses, (frames, 7 + joints): position, unit quaternion, three joint angles per leg."""
-    if qpos.shape[1:] != (7 + 3 * len(walk.robot.legs),) or not len(qpos):
+    """Check poses, (frames, 7 + joints): position, unit quaternion, joint angles."""
+    if qpos.shape[1:] != (legs_of(walk.robot).pose_size,) or not len(qpos):
         raise ValueError("its robot has other joints")
     # NaN is not below either.
     if qpos.dtype.kind != "f" or not (np.abs(qpos) < MAX_M).all():
@@ -268,14 +269,14 @@ def _check_poses(qpos: NDArray[np.float32], walk: WalkingProblem) -> None:
 def _check_choice(
     observation: Cells, action: Action, action_values: ActionValues | None, walk: WalkingProblem
 ) -> None:
-    pairs, cells = len(walk.resolved_gait.pairs), len(walk.grid)
-    if len(observation) != pairs or not _are_below(observation, cells):
+    groups, cells = len(walk.resolved_gait.groups), len(walk.grid)
+    if len(observation) != groups or not _are_below(observation, cells):
         raise ValueError("what it saw is on no foot grid")
-    if not _are_below([action.pair], pairs) or not _are_below([action.cell], cells):
+    if not _are_below([action.group], groups) or not _are_below([action.cell], cells):
         raise ValueError("what it did cannot be done")
     if action_values is not None:
         shapes = {np.shape(action_values.values), np.shape(action_values.visits)}
-        if shapes != {(pairs, cells)}:
+        if shapes != {(groups, cells)}:
             raise ValueError("what it knew is of another problem")
         # NaN marks impossible actions.
         if np.isinf(action_values.values).any() or np.isinf(action_values.visits).any():

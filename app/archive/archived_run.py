@@ -23,17 +23,15 @@ from app.storage.errors import Conflict
 from app.storage.run import (
     CONFIGS,
     NOT_ENDED,
+    RESULTS,
     Config,
     Kind,
     Run,
-    config_as_json,
-    result_as_json,
-    run_config_from_json,
-    untrusted_result,
     world_of,
 )
 from hexapods import __version__
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, check_tags
 from hexapods.experiments.config import MAX_WORKERS, ExperimentConfig
@@ -107,8 +105,8 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
     if run.state in NOT_ENDED:
         raise Conflict(f"{run.kind} {run.id} is {run.state}; stop it first", run.state)
     run_fields = {name: getattr(run, name) for name in _EndedRun.__struct_fields__}
-    run_fields["config"] = config_as_json(run.config)
-    run_fields["result"] = result_as_json(run.result)
+    run_fields["config"] = to_json(run.config)
+    run_fields["result"] = None if run.result is None else to_json(run.result)
     for name in ("tags", "notes"):
         if not run_fields[name]:
             del run_fields[name]  # as in earlier versions, which do not know them
@@ -163,9 +161,9 @@ def _run(fields: _EndedRun, agents: Collection[str], *, is_first: bool) -> Run:
     given, changes = _decode(fields.config, dict[str, Any]), fields.changes
     if is_first:
         given, changes = nested_config(given), [nested_change(one) for one in changes]
-    config = run_config_from_json(fields.kind, given)
-    if not isinstance(config, CONFIGS[fields.kind]) or fields.done > fields.total:
-        raise ValueError("its kind, its config and its progress do not fit together")
+    config = from_json(CONFIGS[fields.kind], given)
+    if fields.done > fields.total:
+        raise ValueError("its progress does not fit together")
     # Before `plan_of`, which imports the agents of an experiment.
     _check_agents(config, agents)
     if isinstance(config, TrainingConfig):
@@ -176,7 +174,10 @@ def _run(fields: _EndedRun, agents: Collection[str], *, is_first: bool) -> Run:
             raise ValueError("its total is not that of its trials")
     else:
         check_walk(config)
-    result = _decode(fields.result, Any) and untrusted_result(fields.kind, bytes(fields.result))
+    result = None
+    if _decode(fields.result, Any) is not None:
+        # No value is converted, and no other field is allowed.
+        result = from_json(RESULTS[fields.kind], bytes(fields.result), strict=True, extra="forbid")
     values = {name: getattr(fields, name) for name in fields.__struct_fields__}
     lanes = tuple(fields.lane_training_ids)
     values |= {

@@ -11,11 +11,11 @@ from hexapods.agents import registry
 from hexapods.agents.tabular import TabularAgent
 from hexapods.domain.disturbances import disturbance
 from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
+from hexapods.domain.records import from_json
 from hexapods.domain.settings import complete
 from hexapods.domain.world import world
 from hexapods.runs import seeding, tables
 from hexapods.runs.config import TrainingConfig, agent_settings, changeable_settings
-from hexapods.runs.config_json import config_from_json
 from hexapods.runs.tables import Checkpoint
 
 
@@ -62,8 +62,8 @@ def checked_table(
         meta = msgspec.convert(checkpoint.meta, TableMeta)
         if meta.agent != config.agent or meta.step > config.steps:
             raise ValueError("its step or agent is another than its training's")
-        pair, cell = meta.next_action or (0, 0)
-        if not (0 <= pair < len(config.resolved_gait.pairs) and 0 <= cell < len(config.grid)):
+        group, cell = meta.next_action or (0, 0)
+        if not (0 <= group < len(config.resolved_gait.groups) and 0 <= cell < len(config.grid)):
             raise ValueError("its next action is not on the grid")
         for change in meta.changes:
             check_change(change, config.agent)
@@ -122,14 +122,15 @@ def _training(config_data: Any, label: str) -> TrainingConfig:
     if not isinstance(config_data, Mapping):
         raise DamagedFile(f"{label} does not say what was trained")
     try:
-        config = config_from_json(config_data)
+        if "lanes" in config_data:
+            raise DamagedFile(f"{label} is of a race; give that of a training")
+        return from_json(TrainingConfig, config_data)
+    except DamagedFile:
+        raise
     except HexapodError as error:
         raise DamagedFile(f"{label} says of its training: {error}") from error
     except (KeyError, OverflowError, TypeError, ValueError, RecursionError) as error:
         raise DamagedFile(f"{label} does not say what was trained ({error})") from error
-    if not isinstance(config, TrainingConfig):
-        raise DamagedFile(f"{label} is of a race; give that of a training")
-    return config
 
 
 def _check_state(checkpoint: Checkpoint, agent: str, label: str) -> None:

@@ -9,10 +9,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from hexapods.arguments import read_gait as gait_of_legs
 from hexapods.domain.disturbances import KINDS, parse_disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.gait import read_gait as gait_of_legs
 from hexapods.domain.observation import OBSERVATIONS
 from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, Value, declared_fields

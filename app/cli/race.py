@@ -13,14 +13,13 @@ from app.cli.options import (
     walk_from,
 )
 from app.cli.terminal import progress, show_lanes
-from app.storage.run import result_as_json
 from hexapods.agents.registry import keeps_learning, needs_practice
 from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.records import to_json
 from hexapods.domain.settings import declared_fields
 from hexapods.races import Lane, Race, lane, race
 from hexapods.runs.clocks import CLOCKS, check_clock
 from hexapods.runs.config import agent_settings
-from hexapods.runs.config_json import as_json
 from hexapods.runs.gait_analysis import gait_figures, gait_summary, window_of
 from hexapods.runs.lane import LaneConfig, observation_of
 from hexapods.runs.race_config import RaceConfig
@@ -73,8 +72,8 @@ def run(options: argparse.Namespace) -> int:
         )
     if options.json:
         shown = {
-            "config": as_json(done.config),
-            "result": result_as_json(done.result),
+            "config": to_json(done.config),
+            "result": to_json(done.result),
             "gait": _gaits(done),
             "best_known_m": done.best_known_m,
             "recording_sha256": done.recording_sha256,

@@ -165,5 +165,6 @@ def show_lanes(race: Race, clock: Clock) -> None:
     title = "Ranked at time-out" if is_ranked else "No ranking: no lane used all its steps"
     head = ("lane", "at time-out", "total", "time", "a decision", "simulated transitions")
     show_table(f"{title}, {CLOCK_TITLES[clock]}", head, rows)
+    print(f"SHA-256 of its recording: {race.recording_sha256}")
     if race.best_known_m is not None:
         print(f"Best known, total: {race.best_known_m:.2f} m")

@@ -13,12 +13,11 @@ from app.cli.options import (
     walk_from,
 )
 from app.cli.terminal import progress
-from app.storage.run import result_as_json
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.records import to_json
 from hexapods.domain.settings import declared_fields
 from hexapods.practice import train
 from hexapods.runs.config import TrainingConfig, WalkingProblem
-from hexapods.runs.config_json import as_json
 from hexapods.runs.records import Evaluated, StepTaken, TrainingRecord
 from hexapods.trainings import Training, read_table
 
@@ -77,8 +76,8 @@ def run(options: argparse.Namespace) -> int:
         write_whole(options.out, training.to_bytes())
     if options.json:
         curve = [point._asdict() for point in training.curve]
-        result = result_as_json(training.result)
-        print(json.dumps({"config": as_json(training.config), "result": result, "curve": curve}))
+        result = to_json(training.result)
+        print(json.dumps({"config": to_json(training.config), "result": result, "curve": curve}))
     else:
         _print_result(options, training)
     return 0

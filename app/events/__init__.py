@@ -1,6 +1,7 @@
 """The event bus, and the JSON views, metrics and logs of runs.
 
-`bus` publishes events from any thread to any thread, with replay and coalescing.
+`bus` publishes events from any thread to any thread, with replay and coalescing; each stage
+has a channel on it.
 `run_view` serialises a run to the JSON of the API and the events.
 `run_metrics` is a bus that counts computed steps and logs changes of the runs' states.
 `damage` detects and counts stored runs that cannot be decoded or shown.

@@ -12,7 +12,9 @@ from collections import OrderedDict, deque
 from collections.abc import AsyncIterator, Callable, Container, Mapping
 from typing import Any, NamedTuple
 
+from app.events.run_view import run_view
 from app.storage.json_text import json_text
+from app.storage.run import AnyRun
 
 RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
@@ -29,13 +31,17 @@ class Event(NamedTuple):
         id: increasing number, for `Last-Event-ID`.
         event: its name.
         data: JSON, encoded once for all subscribers.
-        run_id: the run that it is about, or None.
+        run_id: id of the run that it is about, or None.
+        run: of a `run` event the run itself, for subscribers in this process.
+        channel: the channel to whose subscribers alone it goes; None for all channels.
     """
 
     id: int
     event: str
     data: str
     run_id: str | None
+    run: AnyRun | None = None
+    channel: "Channel | None" = None
 
     @property
     def key(self) -> Any:
@@ -54,6 +60,7 @@ class Subscription:
 
     Attributes:
         since: id of an event after which it receives every event, but coalesced.
+        channel: the channel to which it belongs; None for a subscription to all channels.
     """
 
     def __init__(
@@ -61,9 +68,10 @@ class Subscription:
         bus: "EventBus",
         run_ids: Container[str | None] | None,
         names: Container[str] | None,
+        channel: "Channel | None",
         since: int,
     ) -> None:
-        self.since = since
+        self.since, self.channel = since, channel
         self._bus, self._run_ids, self._names = bus, run_ids, names
         self._pending: OrderedDict[Any, Event] = OrderedDict()
         self._lock = threading.Lock()
@@ -75,6 +83,8 @@ class Subscription:
         if self._run_ids is not None and event.run_id not in self._run_ids:
             return
         if self._names is not None and event.event not in self._names:
+            return
+        if self.channel is not event.channel and None not in (self.channel, event.channel):
             return
         with self._lock:
             was_empty = not self._pending
@@ -139,18 +149,39 @@ class EventBus:
         """Id of the newest event; before the first one, a lower number."""
         return self._last_id
 
-    def publish(self, event: str, data: Mapping[str, Any], run_id: str | None = None) -> None:
-        """Send an event to all subscriptions, in the order of the calls; from any thread.
+    def publish_run(self, run: AnyRun, queue_position: int | None = None) -> None:
+        """Send a `run` event for a run that has changed; arguments as of `run_view`."""
+        self._send("run", run_view(run, queue_position), run.id, run=run)
+
+    def publish(
+        self,
+        event: str,
+        data: Mapping[str, Any],
+        run_id: str | None = None,
+        channel: "Channel | None" = None,
+    ) -> None:
+        """Send an event to subscriptions, in the order of the calls; from any thread.
 
         Args:
             event: its name.
             data: plain types. A NaN or an infinity is sent as null, so that one run's number
                 does not break every stream.
             run_id: the run that it is about, if any.
+            channel: the channel to whose subscribers alone it goes; None for all.
         """
+        self._send(event, data, run_id, channel=channel)
+
+    def _send(
+        self,
+        event: str,
+        data: Mapping[str, Any],
+        run_id: str | None,
+        run: AnyRun | None = None,
+        channel: "Channel | None" = None,
+    ) -> None:
         text = json_text(data)
         with self._lock:
-            published = Event(next(self._ids), event, text, run_id)
+            published = Event(next(self._ids), event, text, run_id, run, channel)
             self._last_id = published.id
             if event not in _STATE_EVENTS:
                 self._ring.append(published)
@@ -162,6 +193,7 @@ class EventBus:
         run_ids: Container[str | None] | None = None,
         last_event_id: int | None = None,
         names: Container[str] | None = None,
+        channel: "Channel | None" = None,
     ) -> Subscription:
         """Create a subscription.
 
@@ -170,17 +202,18 @@ class EventBus:
             last_event_id: replay buffered events after this id first, except state events, which
                 a snapshot supersedes. An id in the future counts as None.
             names: only events of these names; None for all.
+            channel: only events of this channel, and those for all; None for every event.
         """
         with self._lock:
             since = self._last_id
             if last_event_id is not None and last_event_id < since:
                 since = last_event_id
-            subscription = Subscription(self, run_ids, names, since)
+            subscription = Subscription(self, run_ids, names, channel, since)
             self._subscriptions.add(subscription)
             for missed in self._ring if since < self._last_id else ():
                 if missed.id > since:
                     subscription.push(missed)
-        if self._closed:
+        if self._closed or (channel is not None and channel.is_closed):
             subscription.close()
         return subscription
 
@@ -192,5 +225,42 @@ class EventBus:
     def close(self) -> None:
         """Close all subscriptions, and future ones at once."""
         self._closed = True
-        for subscription in list(self._subscriptions):
-            subscription.close()
+        self.close_subscriptions()
+
+    def close_subscriptions(self, channel: "Channel | None" = None) -> None:
+        """Close the present subscriptions of a channel; None for all."""
+        with self._lock:
+            subscriptions = list(self._subscriptions)
+        for subscription in subscriptions:
+            if channel in (None, subscription.channel):
+                subscription.close()
+
+
+class Channel:
+    """The events of one stage, on a bus that it shares with other stages. Thread-safe.
+
+    What is published here goes to its own subscribers; events about runs, which jobs publish on the
+    bus, go to those of every channel.
+    """
+
+    def __init__(self, bus: EventBus) -> None:
+        self._bus = bus
+        self.is_closed = False
+
+    def publish(self, event: str, data: Mapping[str, Any]) -> None:
+        """Send an event to the subscribers of this channel; see `EventBus.publish`."""
+        self._bus.publish(event, data, channel=self)
+
+    def subscribe(
+        self,
+        run_ids: Container[str | None] | None = None,
+        last_event_id: int | None = None,
+        names: Container[str] | None = None,
+    ) -> Subscription:
+        """Create a subscription; see `EventBus.subscribe`."""
+        return self._bus.subscribe(run_ids, last_event_id, names, self)
+
+    def close(self) -> None:
+        """Close all subscriptions of this channel, and future ones at once."""
+        self.is_closed = True
+        self._bus.close_subscriptions(self)

@@ -9,9 +9,8 @@ from app.storage.run import (
     AnyRun,
     DamagedRun,
     Run,
-    config_as_json,
-    result_as_json,
 )
+from hexapods.domain.records import to_json
 from hexapods.runs.best_known import best_known_in_race_m
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import plans_with
@@ -53,7 +52,7 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
         "queue_position": queue_position,
         "progress": {"done": run.done, "total": run.total},
         "eta_s": run.eta_s,
-        "result": result_as_json(run.result),
+        "result": None if run.result is None else to_json(run.result),
         "error": run.error,
         "tags": list(run.tags),
         "notes": run.notes,
@@ -78,7 +77,7 @@ def _best_known_m(race: Run) -> float | None:
 
 
 def _config(run: Run) -> dict[str, Any]:
-    config = config_as_json(run.config)
+    config = to_json(run.config)
     if isinstance(run.config, RaceConfig):
         lanes = zip(run.config.lanes, config["lanes"], run.lane_training_ids, strict=True)
         config["lanes"] = [

@@ -28,17 +28,17 @@ class ActionNames:
     """Names of the actions and states of a walking problem."""
 
     def __init__(self, walk: WalkingProblem) -> None:
-        self._pairs, self._grid = walk.resolved_gait.pairs, walk.grid
+        self._groups, self._grid = walk.resolved_gait.groups, walk.grid
 
     def move(self, action: Action) -> str:
         """Return the name of an action: "legs 1 and 4 to front left"."""
-        legs = " and ".join(map(str, self._pairs[action.pair]))
+        legs = " and ".join(map(str, self._groups[action.group]))
         return f"legs {legs} to {self._grid.name(action.cell)}"
 
     def as_json(self) -> dict[str, Any]:
-        """Return the leg pairs and the cells of the foot grid."""
+        """Return the groups of legs and the cells of the foot grid."""
         return {
-            "pairs": [list(pair) for pair in self._pairs],
+            "pairs": [list(group) for group in self._groups],
             "cells_m": self._grid.cells.round(5).tolist(),
             "cell_names": [self._grid.name(cell) for cell in range(len(self._grid))],
         }
@@ -273,7 +273,7 @@ def table_as_json(
 
 
 def _best(values: FloatArray) -> list[int]:
-    """Return the first action with the highest value, as (pair, cell)."""
+    """Return the first action with the highest value, as (group, cell)."""
     return [int(index) for index in np.unravel_index(np.nanargmax(values), values.shape)]
 
 

@@ -115,10 +115,10 @@ class Explanations:
             raise InvalidInput(f"step must be from 0 to {len(log):,}, not {number}")
         # Read after the log, when all changes before its last step are stored.
         run, steps = self._store.get(run_id), _TrainingSteps(log)
-        pairs, cells = len(config.resolved_gait.pairs), len(config.grid)
-        if not 0 <= first < cells**pairs:
-            raise InvalidInput(f"first must be from 0 to {cells**pairs - 1:,}, not {first}")
-        count = min(count, MAX_VALUES_SHOWN // (pairs * cells))
+        groups, cells = len(config.resolved_gait.groups), len(config.grid)
+        if not 0 <= first < cells**groups:
+            raise InvalidInput(f"first must be from 0 to {cells**groups - 1:,}, not {first}")
+        count = min(count, MAX_VALUES_SHOWN // (groups * cells))
 
         def answer() -> dict[str, Any]:
             practice = _in(run, lambda: self._practice(run, config, steps))
@@ -196,12 +196,12 @@ class Explanations:
             return rebuild_learner(config, table)
 
         def make() -> RebuiltPractice:
-            pairs, cells = len(config.resolved_gait.pairs), len(config.grid)
-            rows = cells**pairs if run.continued_from else min(cells**pairs, len(steps))
-            if rows * pairs * cells > MAX_TABLE_VALUES:
+            groups, cells = len(config.resolved_gait.groups), len(config.grid)
+            rows = cells**groups if run.continued_from else min(cells**groups, len(steps))
+            if rows * groups * cells > MAX_TABLE_VALUES:
                 raise Conflict(
                     f"the table of training {run.id} is too large to be built again: it may have "
-                    f"{rows * pairs * cells:,} values, and the most is {MAX_TABLE_VALUES:,}",
+                    f"{rows * groups * cells:,} values, and the most is {MAX_TABLE_VALUES:,}",
                     run.state,
                 )
             return RebuiltPractice(new)

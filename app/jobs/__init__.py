@@ -6,7 +6,6 @@ In the server:
   run what its process needs to start, or to resume.
 - `queue` orders them; `supervisor` starts them as cores free up, and shuts them down.
 - `worker_process` is the handle on a process; `job` writes its messages to store and bus.
-- `fork_server` is the process from which the others are forked.
 - `process_pool` runs functions for requests that wait, in processes of its own; `stopping` ends
   those that take long in threads.
 Between both: `messages` defines the commands and messages on the pipe.

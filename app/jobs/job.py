@@ -12,7 +12,6 @@ from operator import itemgetter
 from typing import Any, cast
 
 from app.events.bus import EventBus
-from app.events.run_view import run_view
 from app.jobs.job_control import CHECKPOINT_EVERY_S
 from app.jobs.messages import (
     Batch,
@@ -193,7 +192,7 @@ class Job:
         with self._publish_lock:
             self.last = replace(self.last, **changed)
             self._published_s = time.monotonic()
-            self._bus.publish("run", run_view(self.last), self.run_id)
+            self._bus.publish_run(self.last)
             return self.last
 
     @property
@@ -416,19 +415,15 @@ class Job:
         return self._race_result(lanes, self._task)
 
     def _race_result(self, lanes: list[LaneRecording], task: RaceTask) -> RaceResult:
+        result = race_result(lanes, task.config)
         numbered = zip(
-            race_result(lanes, task.config).lanes,
-            self._run.lane_training_ids,
-            _trained_robots(task),
-            strict=True,
+            result.lanes, self._run.lane_training_ids, _trained_robots(task), strict=True
         )
-        return RaceResult(
-            lanes=tuple(
-                replace(lane, training_id=training, trained_robot=robot)
-                for lane, training, robot in numbered
-            ),
-            shared_machine=self.shared,
+        named = tuple(
+            replace(lane, training_id=training, trained_robot=robot)
+            for lane, training, robot in numbered
         )
+        return replace(result, lanes=named, shared_machine=self.shared)
 
     def _eta_s(self, done: int) -> float | None:
         """Return the estimated remaining time [s], None without progress.

@@ -484,4 +484,4 @@ class Jobs:
         return job
 
     def _publish(self, run: Run) -> None:
-        self._bus.publish("run", self.view(run), run.id)
+        self._bus.publish_run(run, self._queue.position(run.id))

@@ -1,48 +1,35 @@
 """Pool of worker processes for interactive requests, which shut down when idle."""
 
 import os
-import queue
 import threading
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass, field
-from functools import partial
-from typing import Any, NamedTuple, TypeVar
+from concurrent.futures import (
+    FIRST_EXCEPTION,
+    BrokenExecutor,
+    CancelledError,
+    Future,
+    wait,
+)
+from typing import TypeVar
 
-from app.jobs.fork_server import process_context
 from app.storage.errors import Busy
 from hexapods.domain.errors import HexapodError, InvalidInput
-from hexapods.processes import end_with_parent, kill_workers, set_up_process, worker_processes
+from hexapods.processes import SetUp
+from hexapods.worker_pool import WorkerPool
 
 IDLE_S = 60.0
 TIMEOUT_S = 60.0
 NICENESS = 10
 """Less than that of jobs, since a user waits for the reply."""
 _CHUNK_SIZE = 3
-_CLOSE_S, _KILL_EVERY_S = 3.0, 0.02
-_CHECK_EVERY_S = 0.1
+_CHECK_EVERY_S, _CLOSE_S = 0.1, 3.0
 T = TypeVar("T")
 R = TypeVar("R")
 
 
 class TookTooLong(Busy):
     """A request was given up, since it took longer than it may."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Request:
-    function: Callable[[Any], Any]
-    arguments: Sequence[Any]
-    timeout_s: float
-    future: "Future[list[Any]]" = field(default_factory=Future)
-
-
-class _Failure(NamedTuple):
-    """Reason why a call failed, in a sentence, since not all errors can be unpickled."""
-
-    reason: str
 
 
 class ProcessPool:
@@ -64,21 +51,17 @@ class ProcessPool:
             idle_s: time without a request after which they are shut down [s].
             timeout_s: time after which a request is given up, and its processes are killed [s].
         """
-        self.count, self._idle_s = count or os.cpu_count() or 1, idle_s
-        self._timeout_s = timeout_s
-        self._requests: queue.SimpleQueue[_Request | None] = queue.SimpleQueue()
-        self._executor: ProcessPoolExecutor | None = None
-        self._thread: threading.Thread | None = None
-        self._lock = threading.Lock()
-        self._running: _Request | None = None
+        self.count, self._timeout_s = count or os.cpu_count() or 1, timeout_s
+        set_up = SetUp(name="pool worker", niceness=NICENESS)
+        self._pool = WorkerPool(self.count, set_up, idle_s=idle_s)
+        self._turn = threading.Lock()
+        """Held by the request that is served."""
         self._closed = False
 
     @property
     def pids(self) -> list[int]:
         """Process ids of the running workers."""
-        executor = self._executor
-        found = [] if executor is None else worker_processes(executor)
-        return [process.pid for process in found if process.pid is not None]
+        return self._pool.pids
 
     def map(
         self,
@@ -106,125 +89,64 @@ class ProcessPool:
             TookTooLong: if the timeout passes.
             Busy: if a worker exits, or the pool is closed.
         """
-        request = _Request(function, arguments, self._timeout_s if timeout_s is None else timeout_s)
-        with self._lock:
+        while not self._turn.acquire(timeout=_CHECK_EVERY_S):
             self._check_open()
-            if self._thread is None:
-                self._thread = threading.Thread(
-                    target=self._serve, name="process pool", daemon=True
-                )
-                self._thread.start()
-            self._requests.put(request)
+            check()
         try:
-            while not wait([request.future], _CHECK_EVERY_S).done:
-                check()
-        except BaseException:
-            self._give_up(request)
-            raise
-        return request.future.result()
+            self._check_open()
+            return self._results(function, arguments, check, timeout_s or self._timeout_s)
+        except (BrokenExecutor, CancelledError, OSError, RuntimeError) as error:
+            message = "the processes that tried it are gone (one of them ended); try again"
+            raise Busy(message, 1) from error
+        finally:
+            self._turn.release()
 
     def close(self) -> None:
         """Kill the processes; reject further requests, and those that wait."""
-        with self._lock:
-            self._closed = True
-            self._requests.put(None)
-            thread = self._thread
-        deadline = time.monotonic() + _CLOSE_S
-        # More than once: a worker that is being started is not listed yet.
-        while thread is not None and thread.is_alive() and time.monotonic() < deadline:
-            self._kill_workers()
-            thread.join(_KILL_EVERY_S)
+        self._closed = True
+        self._pool.shutdown(cancel_futures=True)
 
     def _check_open(self) -> None:
         if self._closed:
             raise Busy("the server is stopping; try again later", 1)
 
-    def _serve(self) -> None:
-        while True:
-            try:
-                request = self._requests.get(timeout=self._idle_s)
-            except queue.Empty:
-                self._stop_workers()
-                continue
-            if request is None:
-                self._stop_workers()
-                return
-            if not request.future.set_running_or_notify_cancel():
-                continue
-            try:
-                self._check_open()
-                request.future.set_result(self._run(request))
-            except HexapodError as error:
-                request.future.set_exception(error)
-            except TimeoutError:
-                self._stop_workers()
-                message = f"it took over {request.timeout_s:g} s, and was given up; try again"
-                request.future.set_exception(TookTooLong(message, 1))
-            except (BrokenProcessPool, OSError, EOFError):
-                self._stop_workers()
-                message = "the processes that tried it are gone (one of them ended); try again"
-                request.future.set_exception(Busy(message, 1))
-            except Exception as error:  # such as an argument or result that cannot be pickled
-                request.future.set_exception(error)
-
-    def _give_up(self, request: _Request) -> None:
-        """Let a request that waits not begin, and kill the processes of one that is served."""
-        request.future.cancel()
-        deadline = time.monotonic() + _CLOSE_S
-        # More than once, as in `close`.
-        while not request.future.done() and time.monotonic() < deadline:
-            with self._lock:
-                if self._running is request:
-                    self._kill_workers()
-            wait([request.future], _KILL_EVERY_S)
-
-    def _run(self, request: _Request) -> list[Any]:
-        with self._lock:
-            self._running = request
+    def _results(
+        self,
+        function: Callable[[T], R],
+        arguments: Sequence[T],
+        check: Callable[[], None],
+        timeout_s: float,
+    ) -> list[R]:
+        deadline_s = time.monotonic() + timeout_s
+        starts = range(0, len(arguments), _CHUNK_SIZE)
+        calls = [self._pool.submit(_call, function, arguments[i : i + _CHUNK_SIZE]) for i in starts]
+        waiting: set[Future[list[R]]] = set(calls)
         try:
-            return self._results(request)
-        finally:
-            with self._lock:
-                self._running = None
-
-    def _results(self, request: _Request) -> list[Any]:
-        if self._executor is None:
-            self._executor = ProcessPoolExecutor(
-                self.count, process_context(), initializer=_set_up_worker
-            )
-        results = []
-        guarded = partial(_guarded, request.function)
-        for reply in self._executor.map(
-            guarded, request.arguments, timeout=request.timeout_s, chunksize=_CHUNK_SIZE
-        ):
-            if isinstance(reply, _Failure):
-                # All calls of a request share it; leaving the iteration cancels the others.
-                raise InvalidInput(reply.reason)
-            results.append(reply)
-        return results
-
-    def _stop_workers(self) -> None:
-        self._kill_workers()
-        if self._executor is not None:
-            self._executor.shutdown()
-            self._executor = None
-
-    def _kill_workers(self) -> None:
-        if (executor := self._executor) is not None:
-            kill_workers(executor)
+            while waiting:
+                done, waiting = wait(waiting, _CHECK_EVERY_S, FIRST_EXCEPTION)
+                for call in done:
+                    call.result()
+                if waiting:
+                    check()
+                if waiting and time.monotonic() > deadline_s:
+                    message = f"it took over {timeout_s:g} s, and was given up; try again"
+                    raise TookTooLong(message, 1)
+        except BaseException as error:
+            for call in calls:
+                call.cancel()
+            if not isinstance(error, InvalidInput):
+                self._pool.kill()
+                wait(calls, _CLOSE_S)
+            raise
+        return [result for call in calls for result in call.result()]
 
 
-def _set_up_worker() -> None:
-    set_up_process(NICENESS)
-    end_with_parent()
-
-
-def _guarded(function: Callable[[Any], Any], argument: Any) -> Any:
-    """Call a function in a worker; return a `_Failure` if it fails."""
+def _call(function: Callable[[T], R], arguments: Sequence[T]) -> list[R]:
+    """Call a function in a worker; all that fails there is InvalidInput, and can be pickled."""
     try:
-        return function(argument)
+        return [function(argument) for argument in arguments]
     except HexapodError as error:
-        return _Failure(str(error))
+        raise InvalidInput(str(error)) from None
     # User-supplied agents are untrusted code: they may raise anything, and call `sys.exit`.
     except (Exception, SystemExit) as error:
-        return _Failure(f"something in it broke ({type(error).__name__}: {error})")
+        raise InvalidInput(f"something in it broke ({type(error).__name__}: {error})") from None

@@ -9,6 +9,7 @@ from typing import Any
 from app.storage.database.store import RunStore
 from app.storage.run import Run
 from app.storage.stored_tables import load_table
+from hexapods.agents.appearance import name_of, title_of
 from hexapods.agents.q_table import MAX_VALUES, table_size
 from hexapods.agents.registry import check_problem, learns, needs_practice
 from hexapods.domain.disturbances import Disturbance
@@ -16,7 +17,7 @@ from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.observation import Observation
 from hexapods.domain.text import MAX_NAME, whole
-from hexapods.domain.world import check_ends
+from hexapods.domain.world import WORLDS, check_ends
 from hexapods.experiments.config import GRID, ExperimentConfig
 from hexapods.experiments.plan import Plan
 from hexapods.runs.config import TrainingConfig, WalkingProblem, problem_of
@@ -45,19 +46,15 @@ class LaneStart:
     """Request for a lane: with a training's table, with a training to run first, or neither.
 
     Attributes:
-        keep_learning: whether the agent learns in the race; None for the agent's default.
-        plans_with: what a searcher knows; see `LaneConfig`.
+        given: what is given of the lane's other fields, by name; see `lane_config`.
         settings: the agent's settings that are given with the lane, by name.
-        observation: observation mode; None for that of the training, or the default.
     """
 
     agent: str
     training_id: str | None = None
     training: TrainingStart | None = None
-    keep_learning: bool | None = None
-    plans_with: str | None = None
+    given: Mapping[str, Any] = field(default_factory=dict)
     settings: Mapping[str, Any] = field(default_factory=dict)
-    observation: Observation | None = None
 
     @property
     def has_training(self) -> bool:
@@ -96,7 +93,7 @@ def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str
     return Run(
         id=new_id(),
         kind="training",
-        name=start.name or f"{whole(config.steps)} steps: {config.resolved_gait.title}",
+        name=start.name or _training_name(config),
         config=config,
         continued_from=start.continue_from,
         total=config.steps,
@@ -125,13 +122,31 @@ def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> li
     race = Run(
         id=new_id(),
         kind="race",
-        name=start.name or f"Race: {config.resolved_gait.title}",
+        name=start.name or _race_name(config),
         config=config,
         lane_training_ids=tuple(ids.get(n, lane.training_id) for n, lane in enumerate(start.lanes)),
         waiting_for=tuple(ids.values()),
         total=config.steps * len(lanes),
     )
     return [*trainings.values(), race]
+
+
+def _training_name(config: TrainingConfig) -> str:
+    """Return a name by what trainings differ in: `Q-learning, α 0.5, 500 steps, ice`."""
+    practice = f"{name_of(config.agent, config.settings)}, {whole(config.steps)} steps"
+    return f"{practice}{_world_name(config)}"[:MAX_NAME]
+
+
+def _race_name(config: RaceConfig) -> str:
+    """Return a name by what races differ in: `Race: Q-learning, Greedy, Two-step, ice`."""
+    agents = dict.fromkeys(title_of(lane.agent) for lane in config.lanes)
+    return f"Race: {', '.join(agents)}{_world_name(config)}"[:MAX_NAME]
+
+
+def _world_name(problem: WalkingProblem) -> str:
+    """Return `, ice` for a named world in which something happens; else nothing."""
+    titles = [one.title.lower() for one in WORLDS.values() if one.world == problem.world]
+    return "".join(f", {title}" for title in titles if problem.world.disturbances)
 
 
 def _branch_name(original: str, step: int) -> str:
@@ -161,7 +176,7 @@ def new_branch(start: BranchStart, store: RunStore, new_id: Callable[[], str]) -
     Raises:
         InvalidInput, NotFound, Conflict: if it cannot be.
     """
-    race_id, step = start.branch
+    race_id, step = start.branch.race_id, start.branch.step
     original = store.get(race_id)
     config = original.config
     if not isinstance(config, RaceConfig):
@@ -246,11 +261,11 @@ def check_walk(walk: WalkingProblem) -> None:
     """
     gait, grid = walk.resolved_gait, walk.grid
     check_reach(walk.robot, gait, grid)
-    pairs, cells = len(gait.pairs), len(grid)
-    values = table_size(pairs, cells)
+    groups, cells = len(gait.groups), len(grid)
+    values = table_size(groups, cells)
     if values > MAX_VALUES:
         raise InvalidInput(
-            f"{pairs} leg pairs on {cells} cells have {values:,} state-action values; the most is "
+            f"{groups} leg pairs on {cells} cells have {values:,} state-action values; the most is "
             f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
         )
 
@@ -273,12 +288,11 @@ def _lane(lane: LaneStart, walk: WalkingProblem, store: RunStore) -> LaneConfig:
         check_fits(table, walk)
         _check_agent(table, lane.agent, lane.training_id)
         practised = table.meta["observation"]
+    observation = observation_of(lane.given.get("observation"), practised)
     config = lane_config(
         lane.agent,
-        observation=observation_of(lane.observation, practised),
-        keep_learning=lane.keep_learning,
-        plans_with=lane.plans_with,
         has_training=lane.has_training,
+        **{**lane.given, "observation": observation},
         **lane.settings,
     )
     if needs_practice(lane.agent) and not (lane.has_training or config.keep_learning):
@@ -361,7 +375,7 @@ def plan_of(config: ExperimentConfig) -> Plan:
             "fewer values, or use `hexapods sweep`"
         )
     plan = Plan(config)
-    for walk in {_walk(setting.training) for setting in plan.settings}:
+    for walk in {setting.training.walk() for setting in plan.settings}:
         check_walk(walk)
     return plan
 
@@ -371,9 +385,3 @@ def _settings(config: ExperimentConfig) -> int:
     names = ("gaits", "observations", "robots", "worlds", "agents", *GRID)
     lists = [*(getattr(config, name) for name in names), *config.settings.values()]
     return math.prod(map(len, lists))
-
-
-def _walk(walk: WalkingProblem) -> WalkingProblem:
-    return WalkingProblem(
-        **{name: getattr(walk, name) for name in WalkingProblem.__dataclass_fields__}
-    )

@@ -9,7 +9,7 @@ from hexapods.domain.text import MAX_NAME
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.names import trial_names
 from hexapods.experiments.plan import Trial
-from hexapods.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
+from hexapods.runs.config import RACE_STEPS, TrainingConfig
 
 
 class TrialStart(NamedTuple):
@@ -54,17 +54,17 @@ def _start(trial: Trial, name: str) -> TrainingStart | RaceStart:
     config = replace(trial.config.training, evaluate_every=TrainingConfig.evaluate_every)
     if trial.config.evaluations:
         return TrainingStart(config, name)
-    walk = WalkingProblem(
-        **{field: getattr(config, field) for field in WalkingProblem.__dataclass_fields__}
-    )
+    walk = config.walk()
     is_practised = trial.config.blocks > 0
     lane = LaneStart(
         config.agent,
         training=TrainingStart(config, name) if is_practised else None,
-        keep_learning=False,
-        plans_with=trial.config.plans_with,
+        given={
+            "observation": config.observation,
+            "keep_learning": False,
+            "plans_with": trial.config.plans_with,
+        },
         settings={} if is_practised else config.settings,
-        observation=config.observation,
     )
     return RaceStart(walk, [lane], RACE_STEPS, config.seed, name)
 

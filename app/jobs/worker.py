@@ -32,12 +32,12 @@ from app.jobs.messages import (
     Task,
     TrainingTask,
 )
-from hexapods.assembly import build_learner, build_walkers, finish_training
+from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.disturbances import as_mapping, disturbance
 from hexapods.domain.errors import HexapodError
-from hexapods.processes import set_up_process
 from hexapods.runs.racing import race
 from hexapods.runs.records import LaneStep, StepTaken
+from hexapods.runs.results import training_result
 from hexapods.runs.tables import restore, snapshot, to_bytes
 from hexapods.runs.training import Learner, train
 from hexapods.runs.walker import Interrupted, Walker
@@ -46,9 +46,8 @@ HEARTBEAT_EVERY_S = 1.0
 _logger = logging.getLogger(__name__)
 
 
-def main(pipe: Connection, niceness: int) -> None:
+def main(pipe: Connection) -> None:
     """Run the task that is the first item in the pipe, then end the process."""
-    set_up_process(niceness)
     logs.install("warning")
     task: Task = pipe.recv()
     commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
@@ -100,7 +99,7 @@ def _train(task: TrainingTask, control: JobControl) -> None:
             if is_step and not control.wait_for_turn(learner.step, walker.agent):
                 raise Stopped
         control.flush()
-        result = finish_training(learner, config)
+        result = training_result(learner, config)
     control.flush()
     if control.exiting and not control.stopped:
         control.checkpoint()
@@ -109,7 +108,7 @@ def _train(task: TrainingTask, control: JobControl) -> None:
         # What was learned is kept even if the evaluation takes longer than a stop may.
         control.checkpoint()
         # The baseline's walk takes a while; a training that is stopped early does not wait for it.
-        result = finish_training(learner, config, measure_reference=False)
+        result = training_result(learner, config, measure_reference=False)
     control.send(Saved(_saved(learner, task, control)))
     control.send(Ended("stopped" if control.stopped else "finished", result))
 

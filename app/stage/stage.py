@@ -1,15 +1,13 @@
 """The stage: draws what its state machine says, and executes playback commands."""
 
-import json
 import logging
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from datetime import datetime, timedelta
 from typing import Any, Literal
 
-from app.events.bus import Event, EventBus, Subscription
+from app.events.bus import Channel, Event, Subscription
 from app.stage.playback import show_of
 from app.stage.state_machine import Origin, StagedRun, StageState
 from app.storage.database.store import RunStore
@@ -36,13 +34,13 @@ _SAME_END = timedelta(seconds=15)
 class Stage:
     """Holds the stage's state and the show of its run. Thread-safe.
 
-    Runs are read from the store when they are put on the playlist; from then on the bus tells of
-    their changes.
+    Runs are read from the store when they are put on the playlist; from then on events tell
+    of their changes.
 
     Args:
         store: store of the runs.
         recordings: recordings of the runs.
-        bus: tells of changed and deleted runs; receives a `stage` event at each change.
+        channel: tells of changed and deleted runs; receives a `stage` event at each change.
         now: monotonic clock of playback [s].
     """
 
@@ -50,10 +48,11 @@ class Stage:
         self,
         store: RunStore,
         recordings: Recordings,
-        bus: EventBus,
+        channel: Channel,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._store, self._recordings, self._bus, self._now = store, recordings, bus, now
+        self._store, self._recordings, self._now = store, recordings, now
+        self._channel = channel
         self._lock = threading.RLock()
         self._clock: Clock = "paper"
         self._state = StageState()
@@ -62,7 +61,7 @@ class Stage:
         self._show: Show = IdleShow()
         self._world: World = UNDISTURBED
         """All that happens in the run on stage, as far as it is known."""
-        self._changes = bus.subscribe(run_ids=())
+        self._changes = channel.subscribe(run_ids=())
         """Events about the runs of the playlist."""
         self._playing = True
         self._speed: float | None = None
@@ -274,16 +273,14 @@ class Stage:
         Returns:
             whether the race on stage was resumed, which is recorded anew.
         """
-        run_id, view = event.run_id or "", json.loads(event.data)
-        if event.event == "run-deleted" or "damaged" in view:
+        run_id, changed = event.run_id or "", event.run
+        if not isinstance(changed, Run):
             self._runs.pop(run_id, None)
             self._state = self._state.remove(run_id)
             return False
         run = self._runs.get(run_id)
         if run is None:
             return False
-        changes = tuple(view.get("changes", ()))
-        changed = replace(run, state=view["state"], name=view["name"], changes=changes)
         self._runs[run_id] = changed
         self._state = self._state.change(StagedRun(run_id, changed.state))
         if run_id != self._run_id:
@@ -319,7 +316,7 @@ class Stage:
         if run is None:
             return
         # Whose deletion ends the announcement.
-        changes = self._bus.subscribe([*self._runs, run.id], names=_RUN_EVENTS)
+        changes = self._channel.subscribe([*self._runs, run.id], names=_RUN_EVENTS)
         self._update_playlist()
         self._follow_changes(changes)
         self._state = self._state.announce(run.id)
@@ -343,7 +340,7 @@ class Stage:
             is_anew: whether a run that is on stage begins anew; else it goes on.
         """
         # Subscribed before the runs are read: each change is in what is read, or comes after it.
-        changes = self._bus.subscribe(run_ids, names=_RUN_EVENTS)
+        changes = self._channel.subscribe(run_ids, names=_RUN_EVENTS)
         before = self._state, self._runs
         try:
             runs = [self._store.get(run_id) for run_id in run_ids]
@@ -356,13 +353,13 @@ class Stage:
                 self._publish()
         except HexapodError:
             self._state, self._runs = before
-            self._bus.remove(changes)
+            changes.close()
             raise
         self._follow_changes(changes)
 
     def _follow_changes(self, changes: Subscription) -> None:
         """Take the events of a new subscription, instead of those of the one before."""
-        self._bus.remove(self._changes)
+        self._changes.close()
         self._changes = changes
 
     def _begin(self) -> None:
@@ -398,7 +395,7 @@ class Stage:
         return pace
 
     def _publish(self) -> None:
-        self._bus.publish("stage", self.state())
+        self._channel.publish("stage", self.state())
 
 
 def _last_activity(run: Run) -> datetime:

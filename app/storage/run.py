@@ -6,17 +6,11 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, get_args
 
-import msgspec
-from pydantic import TypeAdapter, ValidationError
-
-from app.storage.json_text import finite
 from hexapods.domain.disturbances import disturbance
 from hexapods.domain.world import UNDISTURBED, World
-from hexapods.experiments import config as experiments
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.config import TrainingConfig
-from hexapods.runs.config_json import as_json, config_from_json
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.results import RaceResult, TrainingResult
 
@@ -54,11 +48,12 @@ CONFIGS: Mapping[Kind, type[Config]] = {
     "experiment": ExperimentConfig,
 }
 """Config class by kind of run."""
-_RESULTS: Mapping[Kind, TypeAdapter[Any]] = {
-    "training": TypeAdapter(TrainingResult),
-    "race": TypeAdapter(RaceResult),
-    "experiment": TypeAdapter(ExperimentResult),
+RESULTS: Mapping[Kind, type[Result]] = {
+    "training": TrainingResult,
+    "race": RaceResult,
+    "experiment": ExperimentResult,
 }
+"""Result class by kind of run."""
 TABLE = "q-table.npz"
 """Artifact of a training: its learned Q-table."""
 CHECKPOINT = "checkpoint.npz"
@@ -203,61 +198,3 @@ def world_of(run: Run) -> World:
         if "disturbance" in change:
             world = world.then(disturbance(change["disturbance"]))
     return world
-
-
-def config_as_json(config: Config) -> dict[str, Any]:
-    """Serialise a config to plain JSON types, as sent by the API and stored in the database."""
-    if isinstance(config, ExperimentConfig):
-        return experiments.as_json(config)
-    return as_json(config)
-
-
-def result_as_json(result: Result | None) -> dict[str, Any] | None:
-    """Serialise a result to plain JSON types, as sent by the API and stored in the database."""
-    fields: dict[str, Any] | None = msgspec.to_builtins(result)
-    return fields
-
-
-def result_from_json(kind: Kind, fields: Any) -> Result:
-    """Parse a result that `result_as_json` wrote; fields of later versions are ignored.
-
-    NaN, which earlier versions stored, is what was not measured.
-
-    Raises:
-        ValueError: if it lacks a field, or a value is out of its limits.
-    """
-    try:
-        result: Result = _RESULTS[kind].validate_python(finite(fields), extra="ignore")
-    except ValidationError as error:
-        raise ValueError(_first_error(error)) from None
-    return result
-
-
-def untrusted_result(kind: Kind, data: bytes) -> Result:
-    """Parse the JSON text of a result; no value is converted, and no other field is allowed.
-
-    Raises:
-        ValueError: if it is not exactly what `result_as_json` writes.
-    """
-    try:
-        result: Result = _RESULTS[kind].validate_json(data, strict=True, extra="forbid")
-    except ValidationError as error:
-        raise ValueError(_first_error(error)) from None
-    return result
-
-
-def _first_error(error: ValidationError) -> str:
-    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
-    return f"its result cannot be read: {'.'.join(map(str, first['loc']))}: {first['msg']}"
-
-
-def run_config_from_json(kind: str, fields: Mapping[str, Any]) -> Config:
-    """Parse a config that `config_as_json` wrote for a run of this kind.
-
-    Raises:
-        InvalidInput: if a value is out of range.
-        KeyError, TypeError, ValueError: if the structure is not that of `config_as_json`.
-    """
-    if kind == "experiment":
-        return experiments.from_json(fields)
-    return config_from_json(fields)

@@ -66,14 +66,14 @@ class Sessions:
 
     def __init__(
         self,
-        rows: SessionRows,
+        rows: SessionRows | None,
         token: str,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
         """Load the stored sessions; delete those that expired or belong to another token.
 
         Args:
-            rows: persistent storage of the sessions.
+            rows: persistent storage, of the sessions of this token alone; None for none.
             token: the server's access token.
             now: the clock, with time zone.
 
@@ -83,12 +83,10 @@ class Sessions:
         self._rows, self._now = rows, now
         self._token_sha256 = _sha256(token)
         self._lock = threading.Lock()
-        stored = rows.load()
+        stored = [] if rows is None else rows.load()
         valid = [row for row in stored if self._is_valid(row)]
         self._open = {row.id_sha256: row for row in valid}
-        ended = {row.id_sha256 for row in stored} - self._open.keys()
-        if ended:
-            rows.remove(ended)
+        self._remove({row.id_sha256 for row in stored} - self._open.keys())
 
     def open(self) -> str:
         """Open a session and return its id; beyond `MAX_SESSIONS` the oldest is closed.
@@ -103,12 +101,10 @@ class Sessions:
             ended = [key for key, opened in self._open.items() if not self._is_valid(opened)]
             remaining = [key for key in self._open if key not in ended]
             ended += remaining[: max(0, len(remaining) + 1 - MAX_SESSIONS)]
-            self._rows.add(row)
+            if self._rows is not None:
+                self._rows.add(row)
             self._open[row.id_sha256] = row
-            if ended:
-                self._rows.remove(ended)
-                for key in ended:
-                    del self._open[key]
+            self._remove(ended)
         return session_id
 
     def is_open(self, session_id: str) -> bool:
@@ -126,8 +122,13 @@ class Sessions:
         key = _sha256(session_id)
         with self._lock:
             if key in self._open:
-                self._rows.remove([key])
-                del self._open[key]
+                self._remove([key])
+
+    def _remove(self, keys: Collection[str]) -> None:
+        if keys and self._rows is not None:
+            self._rows.remove(keys)
+        for key in keys:
+            self._open.pop(key, None)
 
     def _is_valid(self, row: SessionRow) -> bool:
         return row.token_sha256 == self._token_sha256 and self._now() < row.expires_at

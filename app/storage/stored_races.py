@@ -110,7 +110,7 @@ class StoredRaces:
         with self._file(parts[-1]) as newest:
             figures = [summary.rows(f"lane{lane}") for lane in range(len(newest.heads))]
         # Another version may have had others.
-        is_known = all(own.dtype == figures_type(_pairs(own)) for own in figures)
+        is_known = all(own.dtype == figures_type(_groups(own)) for own in figures)
         return _Found(newest.heads, counts, figures) if is_known else None
 
     def _scanned(self, parts: Sequence["_LabelledFile"]) -> "_Found | None":
@@ -191,7 +191,7 @@ class StoredRaces:
             yield NpzSlices(io.BufferedReader(ReadableArtifact(file)), known)
 
 
-def _pairs(figures: Rows) -> int:
+def _groups(figures: Rows) -> int:
     names = figures.dtype.names or ()
     return figures["observation"].shape[1] if "observation" in names else 0
 

@@ -50,8 +50,7 @@ class Hub:
         upstream: Upstream | None = None,
         *,
         follow_position: FollowPosition | None = None,
-        max_viewers: int = sys.maxsize,
-        max_per_address: int = sys.maxsize,
+        slots: ClientSlots[Session] | None = None,
         on_viewers_changed: Callable[[int], None] | None = None,
     ) -> None:
         """Create the hub; `start` connects it.
@@ -60,15 +59,14 @@ class Hub:
             upstream: Opens viser's stream of encoded frames, which raises ConnectionError when
                 viser stops; None while there is no viser.
             follow_position: Positions of the robots that can be followed; without it, none can.
-            max_viewers: Maximum number of viewers; `ClientSlots` decides who is refused or evicted.
-            max_per_address: Maximum number of spectators per address.
+            slots: Decides who is refused or evicted, by default nobody. Hubs may share it.
             on_viewers_changed: Called with the number of viewers when that changes.
         """
         self.upstream = upstream
         """May be replaced; used at the next reconnection."""
         self.counters = Counters()
         self._follow_position = follow_position
-        self._slots = ClientSlots[Session](max_viewers, max_per_address)
+        self._slots = ClientSlots[Session](sys.maxsize, sys.maxsize) if slots is None else slots
         self._on_viewers_changed = on_viewers_changed
         self._sessions: set[Session] = set()
         self._snapshot = Snapshot()

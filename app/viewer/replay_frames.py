@@ -79,7 +79,7 @@ class ReplayFrames:
             clock: times a race.
             time_s: whose conditions it is drawn in [s]: legs that are lost are left out.
             lane: the lane, counted from 0.
-            cells: the cell of each pair.
+            cells: the cell of each group.
 
         Raises:
             NotFound, Conflict: see `Replays.get`.

@@ -5,7 +5,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from app.events.bus import EventBus
+from app.events.bus import Channel
 from app.stage.stage import Stage
 from hexapods.drawing.scene import StageScene
 from hexapods.shows.replay import FRAMES_PER_S, SCENES_PER_S
@@ -27,14 +27,14 @@ class StageLoop:
     Args:
         stage: advanced by each frame.
         scene: draws the frames.
-        bus: receives the events.
+        channel: receives the events.
         has_viewers: returns whether anyone sees the frames.
     """
 
     def __init__(
-        self, stage: Stage, scene: StageScene, bus: EventBus, has_viewers: Callable[[], bool]
+        self, stage: Stage, scene: StageScene, channel: Channel, has_viewers: Callable[[], bool]
     ) -> None:
-        self._stage, self._scene, self._bus = stage, scene, bus
+        self._stage, self._scene, self._channel = stage, scene, channel
         self._has_viewers = has_viewers
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="stage", daemon=True)
@@ -70,7 +70,7 @@ class StageLoop:
             if run != self._published_run or now - self._published_s >= 1 / SCENES_PER_S:
                 scene = frame.scene()
                 if scene != self._published:
-                    self._bus.publish("scene", scene)
+                    self._channel.publish("scene", scene)
                 self._published, self._published_s, self._published_run = scene, now, run
         except Exception:
             # An error in one frame must not end the thread; it is logged once, not at each frame.

@@ -1,14 +1,17 @@
-"""The page at /viewer/: viser's client, patched, and the parameters that its address may have."""
+"""The routes of /viewer/: viser's client, patched, and the parameters that its address may have."""
 
 import gzip
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from functools import cache
 from urllib.parse import urlencode
 
 from starlette.datastructures import QueryParams
-from starlette.responses import Response
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+from starlette.routing import BaseRoute, Route, WebSocketRoute
+from starlette.websockets import WebSocket
 
 from hexapods.drawing.viser_internals.client import content_policy, patched_page
 
@@ -88,3 +91,33 @@ def viewer_page() -> ViewerPage:
         RuntimeError: as `ViewerPage`.
     """
     return ViewerPage()
+
+
+def viewer_routes(serve: Callable[[WebSocket], Awaitable[None]]) -> list[BaseRoute]:
+    """Return the routes of `/viewer/`, which spectators may use.
+
+    Args:
+        serve: serves one browser until it disconnects, as `Hub.serve`.
+
+    Raises:
+        RuntimeError: The patch does not fit the client of the installed viser.
+    """
+    page = viewer_page()
+
+    async def show(request: Request) -> Response:
+        cleaned = sanitized_query(request.query_params)
+        if cleaned is not None:
+            return RedirectResponse(f"?{cleaned}")
+        return page.response(request.headers)
+
+    async def add_slash(request: Request) -> Response:
+        # Relative, so that it also works behind a proxy that serves the app under a prefix.
+        return RedirectResponse(f"viewer/?{request.url.query}".removesuffix("?"))
+
+    return [
+        Route("/viewer", add_slash, name="viewer-slash"),
+        Route("/viewer/", show, name="viewer"),
+        # viser's unpatched client connects to the path without the slash.
+        WebSocketRoute("/viewer", serve, name="viewer-socket-slash"),
+        WebSocketRoute("/viewer/", serve, name="viewer-socket"),
+    ]

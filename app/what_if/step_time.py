@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexapods.assembly import build_learner, build_walkers
-from hexapods.runs.config import TrainingConfig, WalkingProblem
+from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.racing import race
@@ -59,6 +59,6 @@ def _practised(config: TrainingConfig) -> Iterator[object]:
 
 def _raced(config: TrainingConfig) -> Iterator[object]:
     lane = LaneConfig(agent=config.agent, settings=config.settings)
-    walk = {name: getattr(config, name) for name in WalkingProblem.__dataclass_fields__}
+    walk = vars(config.walk())
     problem = RaceConfig(**walk, lanes=(lane,))
     return race(build_walkers(problem, [None]), problem.steps, time.perf_counter)

@@ -27,6 +27,11 @@ class Turns:
         self._numbers = itertools.count()
         self._is_taken = False
 
+    @property
+    def waiting(self) -> int:
+        """Number of requests that wait for their turn."""
+        return len(self._waiting)
+
     @contextmanager
     def turn(self, is_operator: bool, check: Callable[[], None]) -> Iterator[Callable[[], None]]:
         """Wait for the turn, and have it.

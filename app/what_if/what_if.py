@@ -184,7 +184,7 @@ def _check_limits(training: TrainingConfig) -> None:
         )
     check_training(training)
     check_ends(training.world.disturbances, training.steps)
-    values = table_size(len(training.resolved_gait.pairs), len(training.grid))
+    values = table_size(len(training.resolved_gait.groups), len(training.grid))
     if values > MAX_VALUES:
         raise InvalidInput(
             f"a table of {values:,} values is too large for a what-if, which takes "

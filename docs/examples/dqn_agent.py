@@ -24,8 +24,9 @@ from pathlib import Path
 
 import numpy as np
 
-from hexapods.assembly import build_learner, finish_training
+from hexapods.assembly import build_learner
 from hexapods.runs.config import training_config
+from hexapods.runs.results import training_result
 from hexapods.runs.tables import snapshot, to_bytes
 
 
@@ -33,7 +34,7 @@ class Agent:
     """Takes the legal action that the network values most. It learns beforehand, not here."""
 
     def __init__(self, problem):
-        self.shape = len(problem.pairs), len(problem.cells_m)
+        self.shape = len(problem.groups), len(problem.cells_m)
         self.layers = []  # of each its weights and biases
 
     def act(self, observation, legal):
@@ -41,7 +42,7 @@ class Agent:
         for number, (weights, biases) in enumerate(self.layers):
             signal = weights @ (np.maximum(signal, 0) if number else signal) + biases
         values = signal.reshape(self.shape)
-        return max(legal, key=lambda action: values[action.pair, action.cell])
+        return max(legal, key=lambda action: values[action.group, action.cell])
 
     def learn(self, transition):
         pass
@@ -102,7 +103,7 @@ def main():
     learner = build_learner(config)
     learner.walker.agent.load(practise(walk, options.steps, options.seed))
     learner.step = options.steps
-    result = finish_training(learner, config)
+    result = training_result(learner, config)
     options.out.write_bytes(to_bytes(snapshot(learner, config)))
     print(
         f"After {options.steps:,} steps it walks {result.distance_m:.2f} m, "

@@ -22,11 +22,11 @@ class Agent:
         if self.explore and self.rng.random() < 0.2:
             return legal[self.rng.integers(len(legal))]
         mean = self.paid / np.maximum(self.tried, 1)
-        return max(legal, key=lambda action: mean[observation[action.pair], action.cell])
+        return max(legal, key=lambda action: mean[observation[action.group], action.cell])
 
     def learn(self, transition):
         """Add what the move paid."""
-        move = transition.observation[transition.action.pair], transition.action.cell
+        move = transition.observation[transition.action.group], transition.action.cell
         self.paid[move] += transition.reward_m
         self.tried[move] += 1
 

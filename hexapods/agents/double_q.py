@@ -25,7 +25,7 @@ class DoubleQ(TabularLearner):
 
     def __init__(self, *args: Any, **settings: Any) -> None:
         super().__init__(*args, **settings)
-        self._halves = tuple(QTable(self.table.pairs, self.table.cells) for _ in range(2))
+        self._halves = tuple(QTable(self.table.groups, self.table.cells) for _ in range(2))
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Q₁(s, a) ← (1 − α) Q₁(s, a) + α (r + γ Q₂(s′, argmax Q₁(s′, ·))).

@@ -46,7 +46,7 @@ class DynaQPlus(DynaQ):
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Update as in Dyna-Q, with all actions of this state in the model from now on."""
-        for other in legal_columns(state, self.table.pairs, self.table.cells):
+        for other in legal_columns(state, self.table.groups, self.table.cells):
             self._model.imagine(state, other)
         super()._update(transition, state, column)
 

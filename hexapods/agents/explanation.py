@@ -97,7 +97,7 @@ class ChoiceExplanation:
         kind: whether it was the best by the scores, a random one, or one that is tried because it
             is unknown.
         criterion: what the scores are.
-        scores: by which it chooses [m], (pairs, cells); NaN where it could not choose.
+        scores: by which it chooses [m], (groups, cells); NaN where it could not choose.
         epsilon: probability of a random action; None for a learner without.
         draw: the random number that was compared with it; None if none was drawn.
     """

@@ -34,7 +34,7 @@ _ON_AXIS = 1e-9
 class Wave:
     """Metachronal wave: swings pair after pair to the front edge of the foot grid, in turn.
 
-    The order is that of the pairs' right legs, from back to front.
+    The order is that of the groups' right legs, from back to front.
 
     - With mirrored pairs the wave runs along both sides at once. In the wave gait of insects the
       sides are half a cycle apart, and one leg swings at a time.
@@ -43,7 +43,7 @@ class Wave:
       (5, 3), (6, 2) in a left-right gait, it is the ripple gait with two legs in the air.
 
     Args:
-        problem: pairs, foot grid and where the legs are.
+        problem: groups, foot grid and where the legs are.
         direction: of the wave.
     """
 
@@ -63,17 +63,17 @@ class Wave:
         self._steps = 0
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:  # noqa: ARG002
-        """Return the next pair's step to the front, as near to straight ahead as is legal."""
-        pair = self._order[self._steps % len(self._order)]
+        """Return the next group's step to the front, as near to straight ahead as is legal."""
+        group = self._order[self._steps % len(self._order)]
         self._steps += 1
-        steps = (Action(pair, cell) for cell in self._front)
+        steps = (Action(group, cell) for cell in self._front)
         return next(step for step in steps if step in legal)
 
     def learn(self, transition: Transition) -> None:
         """Do nothing."""
 
     def state(self) -> AgentState:
-        """Return the number of steps, by which the next pair is known."""
+        """Return the number of steps, by which the next group is known."""
         return {"steps": np.array([self._steps])}
 
     def load(self, state: AgentState) -> None:
@@ -82,18 +82,18 @@ class Wave:
 
 
 def _from_back_to_front(problem: Problem) -> list[int]:
-    """Return the numbers of the pairs, in the order of their right legs from back to front.
+    """Return the numbers of the groups, in the order of their right legs from back to front.
 
-    A pair on the axis counts by its middle.
+    A group on the axis counts by its middle.
     """
 
-    def place_of(pair: int) -> float:
-        angles = np.deg2rad([problem.azimuths_deg[leg - 1] for leg in problem.pairs[pair]])
+    def place_of(group: int) -> float:
+        angles = np.deg2rad([problem.azimuths_deg[leg - 1] for leg in problem.groups[group]])
         is_right = np.sin(angles) < -_ON_AXIS
         counted = angles[is_right] if is_right.any() else angles
         return round(float(np.cos(counted).mean()), 9)
 
-    return sorted(range(len(problem.pairs)), key=place_of)
+    return sorted(range(len(problem.groups)), key=place_of)
 
 
 class RandomWalk:

@@ -39,7 +39,7 @@ class Informed(Search):
 
     Args:
         expand: simulates the transitions.
-        problem: leg pairs, and cells of the foot grid.
+        problem: groups of legs, and cells of the foot grid.
         budget: maximum of transitions simulated for a decision.
     """
 
@@ -111,7 +111,7 @@ class _Candidate(NamedTuple):
     sequence: _Sequence
     action: Action
     offsets_m: FloatArray
-    """Of the feet before the step, (pairs, 2)."""
+    """Of the feet before the step, (groups, 2)."""
 
 
 def shares_of(budget: int) -> list[int]:
@@ -124,19 +124,20 @@ def shares_of(budget: int) -> list[int]:
 class RewardModel:
     """Reward of a step: the kinematic law, plus a linear residual that is learned.
 
-    The features are: which pair lands on which cell; the cells nearest to all pairs once it has
-    landed; where it comes from; and, for the pair that moves, the offsets of all pairs. Weights are
-    independent and normal beforehand, with mean 0: the law alone predicts until something is known.
-    Sums are taken row by row, so that a prediction does not depend on how many are made at once.
+    The features are: which group lands on which cell; the cells nearest to all groups once it has
+    landed; where it comes from; and, for the group that moves, the offsets of all groups. Weights
+    are independent and normal beforehand, with mean 0: the law alone predicts until something is
+    known. Sums are taken row by row, so that a prediction does not depend on how many are made at
+    once.
     """
 
     def __init__(self, problem: Problem) -> None:
         self._cells_m = np.array(problem.cells_m)
         self._unit_m = float(np.abs(self._cells_m).max())
-        self._pairs, self._cells = len(problem.pairs), len(self._cells_m)
-        pair, cell = np.divmod(np.arange(self._pairs * self._cells), self._cells)
-        self._actions = np.column_stack([pair, cell])
-        start = np.zeros((self._pairs, 2))
+        self._groups, self._cells = len(problem.groups), len(self._cells_m)
+        group, cell = np.divmod(np.arange(self._groups * self._cells), self._cells)
+        self._actions = np.column_stack([group, cell])
+        start = np.zeros((self._groups, 2))
         some = self._actions[:1]
         count = self._features(start, self._land(start, some), some).shape[1]
         deviation_m = np.full(count, PRIOR_DEVIATION_M)
@@ -146,11 +147,11 @@ class RewardModel:
         """Predict the rewards of some actions, and the offsets after them by the kinematic law.
 
         Args:
-            offsets_m: offsets of the pairs' leaders from home, (pairs, 2), or (n, pairs, 2).
+            offsets_m: offsets of the groups from home, (groups, 2), or (n, groups, 2).
             actions: n actions, (n, 2).
 
         Returns:
-            rewards [m], (n,), and offsets [m], (n, pairs, 2).
+            rewards [m], (n,), and offsets [m], (n, groups, 2).
         """
         landed = self._land(offsets_m, actions)
         law = landed[:, :, 1].mean(axis=1)
@@ -159,7 +160,7 @@ class RewardModel:
         return law + residual, landed
 
     def best_rewards(self, offsets_m: FloatArray) -> FloatArray:
-        """Return the highest predicted reward of a step from each of n offsets (n, pairs, 2)."""
+        """Return the highest predicted reward of a step from each of n offsets (n, groups, 2)."""
         best = np.empty(len(offsets_m))
         for number, offsets in enumerate(offsets_m):
             rewards, _ = self.predict(offsets, self._actions)
@@ -171,7 +172,7 @@ class RewardModel:
         """Update the residual with simulated rewards.
 
         Args:
-            offsets_m: offsets before each step, (pairs, 2), or (n, pairs, 2).
+            offsets_m: offsets before each step, (groups, 2), or (n, groups, 2).
             actions: n actions, (n, 2).
             rewards_m: their rewards, (n,).
         """
@@ -185,8 +186,8 @@ class RewardModel:
         )
 
     def _land(self, offsets_m: FloatArray, actions: IntArray) -> FloatArray:
-        """Return the offsets once the pair of each action has landed, (n, pairs, 2)."""
-        landed = np.broadcast_to(offsets_m, (len(actions), self._pairs, 2)).copy()
+        """Return the offsets once the group of each action has landed, (n, groups, 2)."""
+        landed = np.broadcast_to(offsets_m, (len(actions), self._groups, 2)).copy()
         landed[np.arange(len(actions)), actions[:, 0]] = self._cells_m[actions[:, 1]]
         return landed
 
@@ -194,17 +195,17 @@ class RewardModel:
         self, offsets_m: FloatArray, landed_m: FloatArray, actions: IntArray
     ) -> FloatArray:
         """Return the features of some actions, (n, features)."""
-        count, (pair, cell) = len(actions), actions.T
+        count, (group, cell) = len(actions), actions.T
         rows = np.arange(count)
-        lands = np.zeros((count, self._pairs, self._cells))
-        lands[rows, pair, cell] = 1
-        cells = np.zeros((count, self._pairs, self._cells))
-        cells[rows[:, None], np.arange(self._pairs), self._nearest(landed_m)] = 1
-        comes_from = np.zeros((count, self._pairs, 2))
+        lands = np.zeros((count, self._groups, self._cells))
+        lands[rows, group, cell] = 1
+        cells = np.zeros((count, self._groups, self._cells))
+        cells[rows[:, None], np.arange(self._groups), self._nearest(landed_m)] = 1
+        comes_from = np.zeros((count, self._groups, 2))
         before = np.broadcast_to(offsets_m, landed_m.shape)
-        comes_from[rows, pair] = before[rows, pair] / self._unit_m
-        stance = np.zeros((count, self._pairs, self._pairs, 2))
-        stance[rows, pair] = landed_m / self._unit_m
+        comes_from[rows, group] = before[rows, group] / self._unit_m
+        stance = np.zeros((count, self._groups, self._groups, 2))
+        stance[rows, group] = landed_m / self._unit_m
         parts = (np.ones(count), lands, cells, comes_from, stance)
         return np.concatenate([part.reshape(count, -1) for part in parts], axis=1)
 

@@ -1,8 +1,8 @@
 """Generalising learner: a Bayesian linear model of a step's reward, chosen from by optimism.
 
 A table learns each state and action by itself. This learner assumes that the reward depends on
-where the feet stand after landing, by a sum over leg pairs, and so learns from every step about
-every other. Sources: Bayesian linear regression (Bishop 2006, §3.3), LinUCB (Li et al. 2010),
+where the feet stand after landing, by a sum over groups of legs, and so learns from every step
+about every other. Sources: Bayesian linear regression (Bishop 2006, §3.3), LinUCB (Li et al. 2010),
 choice between experts as a non-stationary bandit with discounted rewards (Garivier & Moulines
 2011) and optimistic initial values (Sutton & Barto 2018, §2.6).
 """
@@ -53,7 +53,7 @@ Optimism = Annotated[
 _NOISE = 0.15
 _DEVIATION, _LATERAL_DEVIATION = 1.0, 0.1
 _TURNS = 2
-"""Turns of every pair for which a policy decides: six steps of a robot with three pairs."""
+"""Turns of every group for which a policy decides: six steps of a robot with three groups."""
 _FORGETTING = 0.98
 """Share of the evidence, and of what policies earned, that remains at each further step."""
 _UNTRIED, _UNTRIED_MEASURED = 0.5, 0.25
@@ -75,7 +75,7 @@ class Readings(NamedTuple):
     cells: Cells
     """The measured cells, whatever the run's observation is."""
     planned_m: FloatArray
-    """Offset (x, y) of each pair from home by dead reckoning, (pairs, 2)."""
+    """Offset (x, y) of each group from home by dead reckoning, (groups, 2)."""
 
 
 class Expert(ABC):
@@ -86,7 +86,7 @@ class Expert(ABC):
     def __init__(self, problem: Problem, prior: Prior) -> None:
         self._cells_m = problem.cells_m
         self._half_side_m = float(np.abs(problem.cells_m).max()) or 1.0
-        weights, deviations = self._prior(len(problem.pairs))
+        weights, deviations = self._prior(len(problem.groups))
         weights = weights if prior == "kinematic" else np.zeros_like(weights)
         half = self._half_side_m
         self.model = BayesianRegression(
@@ -94,7 +94,7 @@ class Expert(ABC):
         )
 
     @abstractmethod
-    def _prior(self, pairs: int) -> tuple[FloatArray, FloatArray]:
+    def _prior(self, groups: int) -> tuple[FloatArray, FloatArray]:
         """Return the weights of the kinematic law, and their prior deviations [h], (d,)."""
 
     @abstractmethod
@@ -131,45 +131,45 @@ class Expert(ABC):
 
 
 class MeasuredExpert(Expert):
-    """One-hot features of each pair's observed cell after landing: pairs × cells weights."""
+    """One-hot features of each group's observed cell after landing: groups × cells weights."""
 
     name = "measured"
 
-    def _prior(self, pairs: int) -> tuple[FloatArray, FloatArray]:
-        weights = np.tile(self._cells_m[:, 1] / self._half_side_m, pairs) / pairs
+    def _prior(self, groups: int) -> tuple[FloatArray, FloatArray]:
+        weights = np.tile(self._cells_m[:, 1] / self._half_side_m, groups) / groups
         return weights, np.full(len(weights), _DEVIATION)
 
     def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:  # noqa: D102
-        landed = np.tile(before.cells, (len(actions), 1))  # (n, pairs)
+        landed = np.tile(before.cells, (len(actions), 1))  # (n, groups)
         for row, action in enumerate(actions):
-            landed[row, action.pair] = action.cell
+            landed[row, action.group] = action.cell
         one_hot: FloatArray = np.eye(len(self._cells_m))[landed]
         return one_hot.reshape(len(actions), -1)
 
     def feature_name(self, index: int) -> str:  # noqa: D102
-        pair, cell = divmod(index, len(self._cells_m))
-        return f"pair {pair + 1} on cell {cell}"
+        group, cell = divmod(index, len(self._cells_m))
+        return f"pair {group + 1} on cell {cell}"
 
 
 class PlannedExpert(Expert):
-    """Features of the planned offsets after landing, which are continuous: 1 + pairs weights.
+    """Features of the planned offsets after landing, which are continuous: 1 + groups weights.
 
     They are the mean forward offset of all feet, by which the body would move without slip, and
-    each pair's lateral offset, as a wider or narrower stance slips less or more. One weight for
-    all forward offsets: with a weight for each pair, greedy steps favour the pairs that push well
+    each group's lateral offset, as a wider or narrower stance slips less or more. One weight for
+    all forward offsets: with a weight for each group, greedy steps favour the groups that push well
     and never bring the others forward.
     """
 
     name = "planned"
 
-    def _prior(self, pairs: int) -> tuple[FloatArray, FloatArray]:
-        deviations = np.array([_DEVIATION, *[_LATERAL_DEVIATION] * pairs])
-        return np.array([1.0, *[0.0] * pairs]), deviations
+    def _prior(self, groups: int) -> tuple[FloatArray, FloatArray]:
+        deviations = np.array([_DEVIATION, *[_LATERAL_DEVIATION] * groups])
+        return np.array([1.0, *[0.0] * groups]), deviations
 
     def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:  # noqa: D102
-        landed = np.tile(before.planned_m, (len(actions), 1, 1))  # (n, pairs, 2)
+        landed = np.tile(before.planned_m, (len(actions), 1, 1))  # (n, groups, 2)
         for row, action in enumerate(actions):
-            landed[row, action.pair] = self._cells_m[action.cell]
+            landed[row, action.group] = self._cells_m[action.cell]
         landed /= self._half_side_m
         return np.column_stack((landed[:, :, 1].mean(1), landed[:, :, 0]))
 
@@ -178,33 +178,33 @@ class PlannedExpert(Expert):
 
 
 class Policy(NamedTuple):
-    """One way of choosing: by an expert, and in which order the pairs take turns."""
+    """One way of choosing: by an expert, and in which order the groups take turns."""
 
     expert: Expert
     successor: tuple[int, ...] | None
-    """The pair that moves after each pair; None if any may."""
+    """The group that moves after each group; None if any may."""
     untried: float
     """Reward per step that it is expected to earn before it was tried [h]."""
 
-    def allowed(self, legal: Sequence[Action], last_pair: int) -> Sequence[Action]:
-        """Return the legal actions among which it chooses; all if the pair in turn has none."""
+    def allowed(self, legal: Sequence[Action], last_group: int) -> Sequence[Action]:
+        """Return the legal actions among which it chooses; all if the group in turn has none."""
         if self.successor is None:
             return legal
-        return [one for one in legal if one.pair == self.successor[last_pair]] or legal
+        return [one for one in legal if one.group == self.successor[last_group]] or legal
 
 
 class LinearModel:
     """Bayesian linear models of the reward by two experts, one for each reading of the state.
 
     Both learn from every step. One of three policies decides, for six steps at a time: the one
-    whose steps paid most lately. Two follow the plan, and let the pairs take turns in one order
+    whose steps paid most lately. Two follow the plan, and let the groups take turns in one order
     or the other, which one step's reward does not tell apart; the third follows the measured
     cells. A policy takes the action with the highest mean plus `optimism` posterior deviations
     (LinUCB). Where errors of prediction rise suddenly, most of the evidence is forgotten, which
     makes it explore again. It makes no random choices: ties go to the first action in `legal`.
 
     Args:
-        problem: number of pairs, and the cells' displacements.
+        problem: number of groups, and the cells' displacements.
         observe: reads the plan of the feet beside the run's observation.
         explore: if False, an action is chosen by the mean alone.
         prior: the prior mean of the reward: 0, or what the kinematic law predicts.
@@ -233,18 +233,18 @@ class LinearModel:
         self._cells = len(problem.cells_m)
         self._half_side_m = float(np.abs(problem.cells_m).max()) or 1.0
         self._experts = (PlannedExpert(problem, prior), MeasuredExpert(problem, prior))
-        self._visits: IntArray = np.zeros((len(problem.pairs), self._cells), np.int64)
+        self._visits: IntArray = np.zeros((len(problem.groups), self._cells), np.int64)
         planned, measured = self._experts
-        pairs = len(problem.pairs)
-        self._block_steps = _TURNS * pairs
-        forth = tuple((pair + 1) % pairs for pair in range(pairs))
-        back = tuple((pair - 1) % pairs for pair in range(pairs))
+        groups = len(problem.groups)
+        self._block_steps = _TURNS * groups
+        forth = tuple((group + 1) % groups for group in range(groups))
+        back = tuple((group - 1) % groups for group in range(groups))
         self._policies = (
             Policy(planned, forth, _UNTRIED),
             Policy(planned, back, _UNTRIED),
             Policy(measured, None, _UNTRIED_MEASURED),
         )
-        self._deciding, self._decided, self._last_pair = 0, 0, pairs - 1
+        self._deciding, self._decided, self._last_group = 0, 0, groups - 1
         self._earned: FloatArray = np.zeros((len(self._policies), 2))
         """Discounted steps that each policy decided, and the rewards [m] in them."""
         self._noise_variance = (_NOISE * self._half_side_m) ** 2
@@ -285,12 +285,12 @@ class LinearModel:
             self._choose_policy()
         self._decided += 1
         policy = self._policies[self._deciding]
-        allowed = policy.allowed(legal, self._last_pair)
+        allowed = policy.allowed(legal, self._last_group)
         optimism = self._optimism if self._explore else 0.0
         bounds_m = policy.expert.upper_bound_m(self._before, allowed, optimism)
         best = allowed[int(bounds_m.argmax())]
         self._predicted += self._predictions(best)
-        self._last_pair = best.pair
+        self._last_group = best.group
         return best, allowed, bounds_m
 
     def learn(self, transition: Transition) -> None:
@@ -390,14 +390,14 @@ class LinearModel:
             self._optimism = self._tuned_optimism = optimism
 
     def values(self, observation: Cells) -> FloatArray:
-        """Return the expected reward of the next step [m], (pairs, cells), NaN where illegal."""
-        pairs, cells = self._visits.shape
-        actions = [Action(pair, cell) for pair in range(pairs) for cell in range(cells)]
+        """Return the expected reward of the next step [m], (groups, cells), NaN where illegal."""
+        groups, cells = self._visits.shape
+        actions = [Action(group, cell) for group in range(groups) for cell in range(cells)]
         expected_m = self._policies[self._deciding].expert.expected_m(self._read(), actions)
-        return _without_illegal(expected_m.reshape(pairs, cells), observation)
+        return _without_illegal(expected_m.reshape(groups, cells), observation)
 
     def visits(self, observation: Cells) -> FloatArray:
-        """Return how often each action was taken in any state, (pairs, cells), NaN where illegal.
+        """Return how often each action was taken in any state, (groups, cells), NaN where illegal.
 
         Every visit teaches the model about all states.
         """
@@ -414,7 +414,7 @@ class LinearModel:
             "earned": self._earned.copy(),
             "errors": self._errors.copy(),
             "visits": self._visits.copy(),
-            "deciding": np.array([self._deciding, self._decided, self._last_pair], np.int64),
+            "deciding": np.array([self._deciding, self._decided, self._last_group], np.int64),
             "tuned_optimism": np.array([self._tuned_optimism]),
         }
 
@@ -422,7 +422,7 @@ class LinearModel:
         """Load what was learned, but not the optimism that was tuned.
 
         Raises:
-            ValueError: if it is of another number of pairs or cells.
+            ValueError: if it is of another number of groups or cells.
         """
         self.load({**state, "tuned_optimism": np.array([np.nan])})
 
@@ -430,7 +430,7 @@ class LinearModel:
         """Restore a state that `state` returned.
 
         Raises:
-            ValueError: if it is of another number of pairs or cells.
+            ValueError: if it is of another number of groups or cells.
         """
         own = self.state()
         for name, array in own.items():
@@ -442,13 +442,13 @@ class LinearModel:
             )
         self._earned, self._errors = state["earned"].copy(), state["errors"].copy()
         self._visits = state["visits"].copy()
-        self._deciding, self._decided, self._last_pair = state["deciding"].tolist()
+        self._deciding, self._decided, self._last_group = state["deciding"].tolist()
         (self._tuned_optimism,) = state["tuned_optimism"].tolist()
         if not np.isnan(self._tuned_optimism):
             self._optimism = self._tuned_optimism
         if not self._explore:  # a walk of its own, from rest
             self._deciding, self._decided = self._best_policy(self._policies, optimistic=False), 0
-            self._last_pair = len(self._visits) - 1
+            self._last_group = len(self._visits) - 1
 
     @staticmethod
     def check_state(state: AgentState) -> None:
@@ -474,7 +474,7 @@ class LinearModel:
             raise ValueError("it has no records of three policies and two experts")
         if (state["earned"][:, 0] < 0).any() or (state["errors"] < 0).any():
             raise ValueError("it has records below zero")
-        deciding, decided, last_pair = state["deciding"].tolist()
+        deciding, decided, last_group = state["deciding"].tolist()
         visits = state["visits"]
         kinds = state["deciding"].dtype.kind + visits.dtype.kind
         counts = kinds == "ii" and visits.ndim == 2 and (visits >= 0).all()
@@ -482,7 +482,7 @@ class LinearModel:
             not counts
             or decided < 0
             or deciding not in range(3)
-            or last_pair not in range(len(visits))
+            or last_group not in range(len(visits))
         ):
             raise ValueError("its counters are out of range")
 

@@ -85,9 +85,10 @@ class Greedy(LookAhead):
     title = "Greedy"
     description = "Simulates every possible step, and takes the best one."
     color = "#56B4E9"
+    steps_ahead = 1
 
     def __init__(self, expand: Expand) -> None:
-        super().__init__(expand, depth=1)
+        super().__init__(expand, depth=self.steps_ahead)
 
 
 class TwoStep(LookAhead):
@@ -96,6 +97,7 @@ class TwoStep(LookAhead):
     title = "Two-step"
     description = "Simulates every possible pair of steps, and takes the best one."
     color = "#009E73"
+    steps_ahead = 2
 
     def __init__(self, expand: Expand) -> None:
-        super().__init__(expand, depth=2)
+        super().__init__(expand, depth=self.steps_ahead)

@@ -64,7 +64,7 @@ class ModelArrays:
         untried: number of legal actions of each state that were never tried.
     """
 
-    def __init__(self, model: TabularModel, leg_pairs: int, cells: int) -> None:
+    def __init__(self, model: TabularModel, groups: int, cells: int) -> None:
         pairs = model.pairs
         outcomes = [pair.outcomes for pair in pairs]
         at = np.array([pair.state for pair in pairs], np.int64)
@@ -80,7 +80,7 @@ class ModelArrays:
         counts = chain.from_iterable(one.values() for one in outcomes)
         self.outcome_counts = np.fromiter(counts, np.int64)
         tried = np.bincount(self.places, minlength=len(self.states))
-        self.untried = leg_pairs * (cells - 1) - tried
+        self.untried = groups * (cells - 1) - tried
         # Pairs ordered by their states, so that the maximum of each state is one of a slice.
         self._order = np.argsort(self.places, kind="stable")
         self._with_pairs, self._starts = np.unique(self.places[self._order], return_index=True)
@@ -182,7 +182,7 @@ class ModelAgent(TabularAgent):
             self._table.row(pair.state)[0][pair.column] = value
 
     def _arrays(self) -> ModelArrays:
-        return ModelArrays(self._model, self._table.pairs, self._table.cells)
+        return ModelArrays(self._model, self._table.groups, self._table.cells)
 
     def learn(self, transition: Transition) -> None:
         """Add the transition to the model, and count the visit."""

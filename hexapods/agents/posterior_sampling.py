@@ -102,8 +102,8 @@ class PosteriorSampling(ModelAgent):
         if not self._explore:
             return super().values(observation)
         values = np.zeros(self._table.actions) if planned is None else planned.copy()
-        values = values.reshape(self._table.pairs, self._table.cells)
-        values[range(self._table.pairs), observation] = np.nan
+        values = values.reshape(self._table.groups, self._table.cells)
+        values[range(self._table.groups), observation] = np.nan
         return values
 
     def _learn(self, state: int, column: int, reward_m: float, next_state: int) -> None:
@@ -124,10 +124,10 @@ class PosteriorSampling(ModelAgent):
         untried = self._prior_m * rng.standard_normal((len(arrays.states), table.actions))
         is_open = np.zeros(untried.shape, bool)
         for place, state in enumerate(arrays.states.tolist()):
-            is_open[place, list(legal_columns(state, table.pairs, table.cells))] = True
+            is_open[place, list(legal_columns(state, table.groups, table.cells))] = True
         is_open[arrays.places, arrays.columns] = False
         best = np.where(is_open, untried, -np.inf).max(axis=1)
-        actions = table.actions - table.pairs
+        actions = table.actions - table.groups
         uniform = UniformTransitions(
             unseen / total,
             float(self._prior_m * rng.standard_normal(actions).max()),
@@ -199,9 +199,9 @@ class PosteriorSampling(ModelAgent):
     def check_state(state: AgentState) -> None:
         """Check what `load` relies on beyond the table, as in `ModelAgent`."""
         ModelAgent.check_state(state)
-        pairs, cells = state["shape"].tolist()
+        groups, cells = state["shape"].tolist()
         states, values = state["plan_states"], state["plan_values"]
-        if states.dtype.kind != "i" or values.shape != (len(states), pairs * cells):
+        if states.dtype.kind != "i" or values.shape != (len(states), groups * cells):
             raise ValueError("its plan is of another problem")
         if values.dtype.kind != "f" or not np.isfinite(values).all():
             raise ValueError("its plan has values that are no numbers")

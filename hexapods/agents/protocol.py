@@ -46,18 +46,18 @@ class Observe(Protocol):
     """Readings of the robot's current state: in `act` before the action, in `learn` after it."""
 
     def __call__(self, how: Observation) -> Cells:
-        """Return the observed cells, one per pair."""
+        """Return the observed cells, one per group."""
 
     @property
     def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
-        """Each pair's offset (x, y) from home by dead reckoning: `planned` before rounding."""
+        """Each group's offset (x, y) from home by dead reckoning: `planned` before rounding."""
 
 
 class Problem(NamedTuple):
     """Size and geometry of the walking problem."""
 
-    pairs: tuple[tuple[int, int], ...]
-    """(leader, partner) legs, counted from 1."""
+    groups: tuple[tuple[int, ...], ...]
+    """Legs that move together, counted from 1."""
     cells_m: FloatArray
     """Displacement of each cell of the foot grid from home, (cells, 2): x right, y forward."""
     azimuths_deg: tuple[float, ...] = ()
@@ -111,10 +111,10 @@ class Valuing(Protocol):
     """Agent that exposes its action values and visit counts."""
 
     def values(self, observation: Cells) -> FloatArray:
-        """Return action values [m], (pairs, cells): expected return; NaN where illegal."""
+        """Return action values [m], (groups, cells): expected return; NaN where illegal."""
 
     def visits(self, observation: Cells) -> FloatArray:
-        """Return visit counts of the actions in this state, (pairs, cells)."""
+        """Return visit counts of the actions in this state, (groups, cells)."""
 
 
 @runtime_checkable
@@ -142,7 +142,7 @@ class Node(Protocol):
 
     @property
     def offsets_m(self) -> Sequence[tuple[float, float]]:
-        """Measured offset (x, y) of each pair's leader from home, in the robot frame [m]."""
+        """Measured offset (x, y) of each group from home, in the robot frame [m]."""
 
 
 class Expand(Protocol):

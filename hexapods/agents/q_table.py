@@ -1,4 +1,4 @@
-"""Q-table, sparse by rows: one row per state, one column per action (pair, cell)."""
+"""Q-table, sparse by rows: one row per state, one column per action (group, cell)."""
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,10 +21,10 @@ _NO_SLOT = -1
 
 
 class QTable:
-    """Values and visit counts of all states of `pairs` leg pairs over `cells` cells.
+    """Values and visit counts of all states of `groups` groups of legs over `cells` cells.
 
-    The index of a state is the number whose base-`cells` digits are its cells, the first pair the
-    most significant; the column of an action is pair · cells + cell. Moving a pair to its current
+    The index of a state is the number whose base-`cells` digits are its cells, the first group the
+    most significant; the column of an action is group · cells + cell. Moving a group to its current
     cell is illegal: those entries are never read, and are NaN in all output.
 
     Sparse by rows: only states that were written to take memory, 12 bytes per value. Rows are
@@ -35,11 +35,11 @@ class QTable:
         InvalidInput: if the table would be larger than `MAX_VALUES`.
     """
 
-    def __init__(self, pairs: int, cells: int) -> None:
-        self.pairs, self.cells = pairs, cells
-        self.states: int = cells**pairs
-        self.actions = pairs * cells
-        check_size(pairs, cells)
+    def __init__(self, groups: int, cells: int) -> None:
+        self.groups, self.cells = groups, cells
+        self.states: int = cells**groups
+        self.actions = groups * cells
+        check_size(groups, cells)
         self._clear()
 
     def _clear(self) -> None:
@@ -58,12 +58,12 @@ class QTable:
 
     def column(self, action: Action) -> int:
         """Return the column of an action."""
-        return action.pair * self.cells + action.cell
+        return action.group * self.cells + action.cell
 
     def cells_at(self, state: int) -> Cells:
         """Return the observation of a state given by its index."""
         cells = []
-        for _ in range(self.pairs):
+        for _ in range(self.groups):
             state, cell = divmod(state, self.cells)
             cells.append(cell)
         return tuple(reversed(cells))
@@ -79,7 +79,7 @@ class QTable:
             return [0.0] * len(actions)
         row: list[float] = self._q[slot].tolist()
         cells = self.cells
-        return [row[pair * cells + cell] for pair, cell in actions]
+        return [row[group * cells + cell] for group, cell in actions]
 
     def best(self, state: int) -> float:
         """Return the highest value of a legal action in a state given by its index."""
@@ -87,14 +87,14 @@ class QTable:
         if slot == _NO_SLOT:
             return 0.0
         row: list[float] = self._q[slot].tolist()
-        return max([row[column] for column in legal_columns(state, self.pairs, self.cells)])
+        return max([row[column] for column in legal_columns(state, self.groups, self.cells)])
 
     def values(self, observation: Cells) -> FloatArray:
-        """Return the action values in a state, (pairs, cells), NaN where illegal."""
+        """Return the action values in a state, (groups, cells), NaN where illegal."""
         return self._row(self._q, observation)
 
     def visits(self, observation: Cells) -> FloatArray:
-        """Return the visit counts in a state, (pairs, cells), NaN where illegal."""
+        """Return the visit counts in a state, (groups, cells), NaN where illegal."""
         return self._row(self._n, observation)
 
     def row(self, state: int) -> tuple[FloatArray, NDArray[np.uint32]]:
@@ -106,14 +106,14 @@ class QTable:
         return self._q[slot], self._n[slot]
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Iterate over all states in order, with values and visits, (pairs, cells), NaN illegal."""
-        for state in product(range(self.cells), repeat=self.pairs):
+        """Yield all states in order, with values and visits, (groups, cells), NaN illegal."""
+        for state in product(range(self.cells), repeat=self.groups):
             yield state, self.values(state), self.visits(state)
 
     @property
     def size(self) -> int:
-        """Number of legal state-action values: 1,500 at two divisions and three pairs."""
-        return self.states * (self.actions - self.pairs)
+        """Number of legal state-action values: 1,500 at two divisions and three groups."""
+        return self.states * (self.actions - self.groups)
 
     def sha256(self) -> str:
         """Return the SHA-256 of the values as little-endian float64, row-major, NaN if illegal."""
@@ -123,11 +123,11 @@ class QTable:
             rows = np.zeros((len(slots), self.actions), "<f8")
             written = np.flatnonzero(slots != _NO_SLOT)
             rows[written] = self._q[slots[written]]
-            by_pair = rows.reshape(-1, self.pairs, self.cells)
+            by_group = rows.reshape(-1, self.groups, self.cells)
             places = np.arange(len(rows))
-            at = np.unravel_index(first + places, (self.cells,) * self.pairs)
-            for pair in range(self.pairs):
-                by_pair[places, pair, at[pair]] = np.nan
+            at = np.unravel_index(first + places, (self.cells,) * self.groups)
+            for group in range(self.groups):
+                by_group[places, group, at[group]] = np.nan
             digest.update(rows.data)
         return digest.hexdigest()
 
@@ -148,7 +148,7 @@ class QTable:
             q[begin:end] = self._q[slots[row], column]
             n[begin:end] = self._n[slots[row], column]
             begin = end
-        return {"shape": np.array([self.pairs, self.cells]), "where": where, "q": q, "n": n}
+        return {"shape": np.array([self.groups, self.cells]), "where": where, "q": q, "n": n}
 
     def values_at(self, where: NDArray[np.int64]) -> FloatArray:
         """Return the values of entries given by their flat indices, as in `dump`."""
@@ -163,7 +163,7 @@ class QTable:
         Raises:
             TableMismatch: if the arrays are inconsistent, or of a table of another shape.
         """
-        check_arrays(arrays, self.pairs, self.cells)
+        check_arrays(arrays, self.groups, self.cells)
         where, q, n = (arrays[name] for name in ("where", "q", "n"))
         self._clear()
         for first in range(0, len(where), _VALUES_AT_ONCE):
@@ -188,42 +188,42 @@ class QTable:
     def _row(self, table: NDArray[Any], observation: Cells) -> FloatArray:
         slot = self._slots[self.index(observation)]
         row = np.zeros(self.actions) if slot == _NO_SLOT else table[slot].astype(float)
-        row = row.reshape(self.pairs, self.cells)
-        row[range(self.pairs), observation] = np.nan
+        row = row.reshape(self.groups, self.cells)
+        row[range(self.groups), observation] = np.nan
         return row
 
 
 @lru_cache(maxsize=1 << 12)
-def legal_columns(state: int, pairs: int, cells: int) -> tuple[int, ...]:
+def legal_columns(state: int, groups: int, cells: int) -> tuple[int, ...]:
     """Return the columns of the legal actions in a state given by its index, in order."""
     columns = []
-    for pair in range(pairs):
-        present = state // cells ** (pairs - 1 - pair) % cells
-        columns += [pair * cells + cell for cell in range(cells) if cell != present]
+    for group in range(groups):
+        present = state // cells ** (groups - 1 - group) % cells
+        columns += [group * cells + cell for cell in range(cells) if cell != present]
     return tuple(columns)
 
 
-def table_size(pairs: int, cells: int) -> int:
-    """Return the number of values of a table: cells^pairs states times pairs · cells actions."""
-    size: int = cells**pairs * pairs * cells
+def table_size(groups: int, cells: int) -> int:
+    """Return the number of values of a table: cells^groups states times groups · cells actions."""
+    size: int = cells**groups * groups * cells
     return size
 
 
-def check_size(pairs: int, cells: int) -> None:
+def check_size(groups: int, cells: int) -> None:
     """Check that a table of this shape has at most `MAX_VALUES` values.
 
     Raises:
         InvalidInput: if it is larger.
     """
-    values = table_size(pairs, cells)
+    values = table_size(groups, cells)
     if values > MAX_VALUES:
         raise InvalidInput(
-            f"a table of {pairs} leg pairs and {cells} cells has {values:,} values; the most is "
+            f"a table of {groups} leg pairs and {cells} cells has {values:,} values; the most is "
             f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
         )
 
 
-def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: int) -> None:
+def check_arrays(arrays: Mapping[str, NDArray[np.generic]], groups: int, cells: int) -> None:
     """Check that arrays are a valid output of `QTable.dump` for a table of this shape.
 
     Raises:
@@ -232,15 +232,16 @@ def check_arrays(arrays: Mapping[str, NDArray[np.generic]], pairs: int, cells: i
     if missing := {"shape", "where", "q", "n"} - set(arrays):
         raise TableMismatch(f"this is no Q-table: it lacks {', '.join(sorted(missing))}")
     shape, where, q, n = (arrays[name] for name in ("shape", "where", "q", "n"))
-    if shape.tolist() != [pairs, cells]:
+    if shape.tolist() != [groups, cells]:
         raise TableMismatch(
-            f"the table's leg pairs and cells are {shape.tolist()}, this problem's {[pairs, cells]}"
+            f"the table's leg pairs and cells are {shape.tolist()}, this problem's "
+            f"{[groups, cells]}"
         )
     kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind
     has_equal_shapes = where.ndim == 1 and where.shape == q.shape == n.shape
     if kinds != "ifu" or not has_equal_shapes or not np.isfinite(q).all():
         raise TableMismatch("the table's values, visits and places do not fit together")
-    if where.size and not (where.min() >= 0 and where.max() < table_size(pairs, cells)):
+    if where.size and not (where.min() >= 0 and where.max() < table_size(groups, cells)):
         raise TableMismatch("the table has values for states that do not exist")
     if not np.all(np.diff(where) > 0):
         raise TableMismatch(NOT_RISING)
@@ -252,8 +253,8 @@ def check_entries(places: NDArray[Any], count: int, shape: NDArray[Any]) -> None
     Raises:
         ValueError: if they are not.
     """
-    pairs, cells = shape.tolist()
+    groups, cells = shape.tolist()
     if places.shape != (count, 2) or places.dtype.kind != "i":
         raise ValueError("its steps are no list of states and actions")
-    if (places < 0).any() or (places >= [cells**pairs, pairs * cells]).any():
+    if (places < 0).any() or (places >= [cells**groups, groups * cells]).any():
         raise ValueError("it has steps from states that do not exist")

@@ -106,9 +106,9 @@ class RMax(ModelAgent):
             return super().values(observation)
         table, state = self._table, self._table.index(observation)
         values = np.full(table.actions, np.nan)
-        for column in legal_columns(state, table.pairs, table.cells):
+        for column in legal_columns(state, table.groups, table.cells):
             values[column] = self._value(state, column)
-        return values.reshape(table.pairs, table.cells)
+        return values.reshape(table.groups, table.cells)
 
     def _learn(self, state: int, column: int, reward_m: float, next_state: int) -> None:
         """Add the transition to the model, unless the pair is known."""

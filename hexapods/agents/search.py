@@ -91,7 +91,7 @@ class Search:
 
 def action_count(problem: Problem) -> int:
     """Return the number of legal actions in each state."""
-    return len(problem.pairs) * (len(problem.cells_m) - 1)
+    return len(problem.groups) * (len(problem.cells_m) - 1)
 
 
 def check_depth(depth: int, sizes: Sequence[int], actions: int) -> None:

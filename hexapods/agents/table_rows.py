@@ -21,31 +21,31 @@ Part = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
 
 
 class TableRows:
-    """Dense rows of a sparse table of `pairs` leg pairs over `cells` cells, as in `QTable`."""
+    """Dense rows of a sparse table of `groups` groups over `cells` cells, as in `QTable`."""
 
-    def __init__(self, pairs: int, cells: int, parts: Callable[[], Iterator[Part]]) -> None:
+    def __init__(self, groups: int, cells: int, parts: Callable[[], Iterator[Part]]) -> None:
         """Store the source; reading starts with the iteration.
 
         Args:
-            pairs: number of leg pairs.
+            groups: number of groups of legs.
             cells: number of cells of the foot grid.
             parts: starts an iteration over the chunks of the sparse form, in order.
         """
-        self.pairs, self.cells = pairs, cells
+        self.groups, self.cells = groups, cells
         self._parts = parts
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Iterate over all states in order, with values and visits, (pairs, cells), NaN illegal.
+        """Iterate over all states in order, with values and visits, (groups, cells), NaN illegal.
 
         Raises:
             TableMismatch: if the indices are not ascending.
         """
-        pairs = range(self.pairs)
-        states = product(range(self.cells), repeat=self.pairs)
-        for q, n in self._dense(max(1, VALUES_AT_ONCE // (self.pairs * self.cells))):
+        groups = range(self.groups)
+        states = product(range(self.cells), repeat=self.groups)
+        for q, n in self._dense(max(1, VALUES_AT_ONCE // (self.groups * self.cells))):
             for values, visits in zip(q, n, strict=True):
                 state = next(states)
-                values[pairs, state] = visits[pairs, state] = np.nan
+                values[groups, state] = visits[groups, state] = np.nan
                 yield state, values, visits
 
     def sha256(self) -> str:
@@ -57,18 +57,18 @@ class TableRows:
         digest, first = hashlib.sha256(), 0
         for q, _ in self._dense(1000):
             places = np.arange(len(q))
-            at = np.unravel_index(first + places, (self.cells,) * self.pairs)
-            for pair in range(self.pairs):
-                q[places, pair, at[pair]] = np.nan
+            at = np.unravel_index(first + places, (self.cells,) * self.groups)
+            for group in range(self.groups):
+                q[places, group, at[group]] = np.nan
             digest.update(q.astype("<f8", copy=False).data)
             first += len(q)
         return digest.hexdigest()
 
     def _dense(self, at_once: int) -> Iterator[tuple[FloatArray, FloatArray]]:
-        """Iterate over blocks of rows: values and visits, (rows, pairs, cells) each."""
-        parts, actions = self._parts(), self.pairs * self.cells
+        """Iterate over blocks of rows: values and visits, (rows, groups, cells) each."""
+        parts, actions = self._parts(), self.groups * self.cells
         where, q, n = next(parts, _EMPTY_PART)
-        states: int = self.cells**self.pairs
+        states: int = self.cells**self.groups
         for first in range(0, states, at_once):
             rows = min(at_once, states - first)
             values, visits = np.zeros(rows * actions), np.zeros(rows * actions)
@@ -82,7 +82,7 @@ class TableRows:
                 if where.size:
                     break
                 where, q, n = next(parts, _EMPTY_PART)
-            shape = (rows, self.pairs, self.cells)
+            shape = (rows, self.groups, self.cells)
             yield values.reshape(shape), visits.reshape(shape)
 
 

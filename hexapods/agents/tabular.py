@@ -109,7 +109,7 @@ class TabularAgent(ABC):
     needs_practice = True
 
     def __init__(self, rng: np.random.Generator, problem: Problem, *, explore: bool = True) -> None:
-        self.table = QTable(len(problem.pairs), len(problem.cells_m))
+        self.table = QTable(len(problem.groups), len(problem.cells_m))
         self._rng, self._explore = rng, explore
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
@@ -137,11 +137,11 @@ class TabularAgent(ABC):
         """Learn from the transition of the last action."""
 
     def values(self, observation: Cells) -> FloatArray:
-        """Return the action values in this state, (pairs, cells), NaN where illegal."""
+        """Return the action values in this state, (groups, cells), NaN where illegal."""
         return self.table.values(observation)
 
     def visits(self, observation: Cells) -> FloatArray:
-        """Return the visit counts in this state, (pairs, cells), NaN where illegal."""
+        """Return the visit counts in this state, (groups, cells), NaN where illegal."""
         return self.table.visits(observation)
 
     @abstractmethod

@@ -142,13 +142,13 @@ class TabularModel:
             np.unique(outcomes[:, :2], axis=0)
         ) < len(outcomes):
             raise ValueError("its model has duplicate entries")
-        leg_pairs, cells = state["shape"].tolist()
+        groups, cells = state["shape"].tolist()
         tries, nexts, last_steps = pairs[:, 2:].T
         if (tries < 0).any() or (last_steps < 0).any() or (last_steps > steps[0]).any():
             raise ValueError("its model has negative counts, or steps beyond its total")
         numbers, afters, counts = outcomes.T
         _check_below(numbers, count)
-        _check_below(np.concatenate([nexts, afters]), cells**leg_pairs)
+        _check_below(np.concatenate([nexts, afters]), cells**groups)
         if (counts < 1).any() or (np.bincount(numbers, counts, count) != tries).any():
             raise ValueError("its model has tries that differ from its outcomes")
 
@@ -159,12 +159,12 @@ def check_problem(problem: Problem, **settings: Any) -> None:  # noqa: ARG001  #
     Raises:
         InvalidInput: if it would not.
     """
-    pairs, cells = len(problem.pairs), len(problem.cells_m)
-    values = table_size(pairs, cells)
+    groups, cells = len(problem.groups), len(problem.cells_m)
+    values = table_size(groups, cells)
     if values > MAX_MODEL_VALUES:
         raise InvalidInput(
             f"a learner with a model of the world takes at most {MAX_MODEL_VALUES:,} state-action "
-            f"pairs, and {pairs} leg pairs on {cells} cells have {values:,}: choose fewer "
+            f"pairs, and {groups} leg pairs on {cells} cells have {values:,}: choose fewer "
             "divisions or a learner without a model, such as q-learning"
         )
 

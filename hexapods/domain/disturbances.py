@@ -12,7 +12,8 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 from annotated_types import Ge, Gt, Le
 
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.kinematics import JOINT_LIMITS_RAD
+from hexapods.domain.kinematics import JOINT_LIMITS_RAD, legs_of
+from hexapods.domain.records import JsonForm, Schema
 from hexapods.domain.robot import MAX_LEGS, RANGES, Robot
 from hexapods.domain.settings import Setting, declared_fields
 
@@ -82,6 +83,10 @@ class Disturbance:
     """The fields that tell, beside the kind, what it changes; of a list each value by itself."""
     part: ClassVar[Key] = ()
     """The part of a leg to which it happens; by default all of it."""
+    repairs: ClassVar[bool] = False
+    """Whether it only ends what happened before."""
+    adjective: ClassVar[str] = ""
+    """Of a leg to which it has happened; empty where that is the kind."""
 
     at_step: Annotated[
         int,
@@ -139,6 +144,8 @@ class _OfLegs(Disturbance):
         super().__post_init__()
         legs: Any = self.legs  # as a user gave them
         is_list = isinstance(legs, list | tuple)
+        if is_list:  # JSON does not distinguish 2.0 from 2
+            legs = [int(x) if isinstance(x, float) and x.is_integer() else x for x in legs]
         if not is_list or not legs or any(type(leg) is not int for leg in legs):
             raise InvalidInput(f"{self.kind}: legs must be a list of numbers of legs, such as 1,4")
         if len(set(legs)) < len(legs) or not 1 <= min(legs) <= max(legs) <= MAX_LEGS:
@@ -209,8 +216,9 @@ class Stuck(Disturbance):
         return {("leg", self.leg, self.joint): self}
 
     def check(self, robot: Robot) -> None:
-        """Check that the robot has the leg."""
+        """Check that the robot has the leg and the joint."""
         _check_leg(self.kind, self.leg, robot)
+        legs_of(robot).index(self.leg, self.joint)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -243,6 +251,7 @@ class Repair(_OfLegs):
     kind = "repair"
     title = "Repaired legs"
     help = "These legs work again as they were built."
+    repairs, adjective = True, "repaired"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -407,17 +416,21 @@ def is_nothing(one: Disturbance, robot: Robot) -> bool:
     return bool(getattr(one, one.size) == nothing)
 
 
-def disturbance(data: Mapping[str, Any]) -> Disturbance:
-    """Build a disturbance from user input: its kind and its fields by name.
+def disturbance(data: Mapping[str, Any] | Disturbance) -> Disturbance:
+    """Build a disturbance from user input: its kind and its fields by name, or itself.
 
     Raises:
         UnknownName: for an unknown kind or field.
         InvalidInput: for a missing field, or a value out of its limits.
     """
+    if isinstance(data, Disturbance):
+        return data
+    if not isinstance(data, Mapping):
+        raise InvalidInput(f"a disturbance is an object of a kind, {', '.join(KINDS)}, and fields")
     given = dict(data)
     name = given.pop("kind", None)
     if not isinstance(name, str) or name not in KINDS:
-        raise UnknownName("disturbance", name, KINDS)
+        raise UnknownName("kind of disturbance", name, KINDS)
     kind = KINDS[name]
     known = fields(kind)
     for field in given:
@@ -436,14 +449,63 @@ def as_mapping(value: Disturbance) -> dict[str, Any]:
     return {"kind": value.kind, **plain}
 
 
-_SHORT = {"at": "at_step", "until": "until_step"}
+def json_schema(kind: type[Disturbance]) -> Schema:
+    """Return the JSON schema of a kind of disturbance."""
+    # As in `hexapods.domain.records`.
+    from pydantic import TypeAdapter  # noqa: PLC0415
+
+    declared = declared_fields(kind)  # type: ignore[arg-type]  # of a class, not of an instance
+    leg = {"type": "integer", "minimum": 1, "maximum": MAX_LEGS}
+    legs = {"type": "array", "items": leg, "minItems": 1, "maxItems": MAX_LEGS}
+    properties: Schema = {"kind": {"const": kind.kind, "type": "string"}}
+    for one in fields(kind):
+        setting = declared.get(one.name)
+        properties[one.name] = (
+            {**legs, "title": LEGS.title, "description": LEGS.help}
+            if setting is None
+            else TypeAdapter(setting.annotation).json_schema()
+        )
+    return {
+        "type": "object",
+        "title": kind.title,
+        "description": kind.help,
+        "properties": properties,
+        "required": ["kind", *(one.name for one in fields(kind) if one.default is MISSING)],
+        "additionalProperties": False,
+    }
+
+
+def _any_kind() -> Schema:
+    return {"anyOf": [json_schema(kind) for kind in KINDS.values()]}
+
+
+_PART: Schema = {
+    "anyOf": [
+        {"type": ["number", "string", "null"]},
+        {"type": "array", "items": {"type": "integer"}},
+    ]
+}
+SENT: Schema = {
+    "type": "object",
+    "description": "A disturbance from a step on; the fields of its kind are further members.",
+    "properties": {"kind": {"type": "string"}, "at_step": {"type": "integer", "minimum": 0}},
+    "required": ["kind", "at_step"],
+    "additionalProperties": _PART,
+}
+"""JSON schema of a disturbance in answers."""
+AnyDisturbance = Annotated[Disturbance, JsonForm(disturbance, as_mapping, _any_kind, SENT)]
+"""A disturbance of any kind."""
+
+
+SHORT = MappingProxyType({"at": "at_step", "until": "until_step"})
+"""Names of fields in a text, where they are others: name in a text → field."""
 
 
 def as_text(value: Disturbance) -> str:
     """Return a disturbance as on a command line, the inverse of `parse_disturbance`."""
     given = as_mapping(value)
     name = given.pop("kind")
-    times = [(short, given.pop(field)) for short, field in _SHORT.items() if field in given]
+    times = [(short, given.pop(field)) for short, field in SHORT.items() if field in given]
     parts = [
         f"{field}={','.join(map(str, one)) if isinstance(one, list) else one}"
         for field, one in [*given.items(), *times]
@@ -464,7 +526,7 @@ def parse_disturbance(text: str) -> Disturbance:
     given: dict[str, Any] = {}
     for part in parts:
         field, equals, value = part.partition("=")
-        field = _SHORT.get(field, field)
+        field = SHORT.get(field, field)
         if not equals or field in given or field == "kind":
             raise InvalidInput(
                 f"{text!r}: give each field once, as in limp:legs=1,4:at=25; {part!r} is not"

@@ -1,8 +1,8 @@
 """Foot offsets without slip, and the kinematic law of a step.
 
-The feet of a pair mirror each other, so a pair stands for both: its leader is at (x, y) from
-home, its partner at (−x, y). A step puts one pair on its new cell; then the body moves by the
-mean of all forward offsets, and every offset shrinks by it. Lateral offsets cancel by symmetry.
+All feet of a group have the same offset (x, y) from home, some of them mirrored, at (−x, y). A step
+puts one group on its new cell; then the body moves by the mean of all forward offsets, and every
+offset shrinks by it. Lateral offsets cancel by symmetry.
 """
 
 from typing import NamedTuple
@@ -13,41 +13,41 @@ from hexapods.domain.types import Cells, FloatArray
 
 
 class Feet(NamedTuple):
-    """Offsets of all leg pairs from home, in the robot frame.
+    """Offsets of all groups of legs from home, in the robot frame.
 
     Plain floats, which are faster than arrays for so few numbers.
     """
 
     commanded: Cells
-    """The cell that each pair was last sent to."""
+    """The cell that each group was last sent to."""
     lateral_m: tuple[float, ...]
-    """Each pair's leader, to the right of home [m]."""
+    """Of each group, to the right of home [m]."""
     forward_m: tuple[float, ...]
-    """Each pair's leader, forward of home [m]."""
+    """Of each group, forward of home [m]."""
 
     @classmethod
-    def at_home(cls, pairs: int) -> "Feet":
+    def at_home(cls, groups: int) -> "Feet":
         """Return the offsets with every foot at home."""
-        nothing = (0.0,) * pairs
-        return cls((0,) * pairs, nothing, nothing)
+        nothing = (0.0,) * groups
+        return cls((0,) * groups, nothing, nothing)
 
-    def landed(self, pair: int, cell: int, place_m: tuple[float, float]) -> "Feet":
+    def landed(self, group: int, cell: int, place_m: tuple[float, float]) -> "Feet":
         """Return the offsets after the swing phase.
 
         Args:
-            pair: the pair that swings.
+            group: the group that swings.
             cell: its new cell.
             place_m: the cell's displacement (x, y) from home.
         """
         x, y = place_m
         return Feet(
-            (*self.commanded[:pair], cell, *self.commanded[pair + 1 :]),
-            (*self.lateral_m[:pair], x, *self.lateral_m[pair + 1 :]),
-            (*self.forward_m[:pair], y, *self.forward_m[pair + 1 :]),
+            (*self.commanded[:group], cell, *self.commanded[group + 1 :]),
+            (*self.lateral_m[:group], x, *self.lateral_m[group + 1 :]),
+            (*self.forward_m[:group], y, *self.forward_m[group + 1 :]),
         )
 
     def moved(self, by_m: FloatArray) -> "Feet":
-        """Return the offsets with the pairs' leaders moved, by (pairs, 2) [m]."""
+        """Return the offsets with the groups moved, by (groups, 2) [m]."""
         lateral, forward = (np.array((self.lateral_m, self.forward_m)) + by_m.T).tolist()
         return Feet(self.commanded, tuple(lateral), tuple(forward))
 
@@ -61,11 +61,11 @@ class Feet(NamedTuple):
         return Feet(self.commanded, self.lateral_m, forward), mean
 
     def as_array(self) -> FloatArray:
-        """Return the offsets as an array (3, pairs), for storage."""
+        """Return the offsets as an array (3, groups), for storage."""
         return np.array((self.commanded, self.lateral_m, self.forward_m), float)
 
     @classmethod
     def from_array(cls, array: FloatArray) -> "Feet":
-        """Build the offsets from an array written by `as_array`, (3, pairs)."""
+        """Build the offsets from an array written by `as_array`, (3, groups)."""
         commanded, lateral, forward = array.tolist()
         return cls(tuple(int(cell) for cell in commanded), tuple(lateral), tuple(forward))

@@ -1,15 +1,20 @@
-"""Gaits in the paper's sense: the robot's forward direction, and the pairs of its legs.
+"""Gaits in the paper's sense: the robot's forward direction, and the groups of its legs.
 
 Elsewhere in the field a gait is a pattern of footfalls over time. Here (paper §4, Figure 2) it is
 an orientation of the robot and a symmetry that pairs its legs; the pattern over time is learned.
+A step moves one group of legs. A user's groups are pairs so far; only `GaitSpec` and what checks it
+know that.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from operator import index
-from typing import Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.records import JsonForm, Schema
+from hexapods.domain.robot import MAX_LEGS
+from hexapods.domain.types import FloatArray
 
 Symmetry = Literal["origin", "vertical"]
 Pair = tuple[int, int]
@@ -92,6 +97,65 @@ GAIT_TITLES: Mapping[str, str] = {
 """Display names of the named gaits."""
 
 
+def read_gait(given: Any) -> str | GaitSpec:
+    """Return a gait from user input: a name, or a mapping with its legs, and symmetry or pairs.
+
+    Raises:
+        UnknownName, InvalidInput: if it is none.
+    """
+    if isinstance(given, GaitSpec):
+        return given
+    if isinstance(given, str):
+        gait_spec(given)
+        return given
+    if not isinstance(given, Mapping):
+        raise InvalidInput(f"a gait is one of {', '.join(NAMED_GAITS)}, or its legs, not {given!r}")
+    names = [one.name for one in fields(GaitSpec)]
+    if set(given) - {*names} or not {"right_leg", "left_leg"} <= {*given}:
+        raise InvalidInput(
+            "a gait needs right_leg and left_leg, and either symmetry or pairs; "
+            f"not {', '.join(map(str, sorted(given))) or 'nothing'}"
+        )
+    return GaitSpec(**{name: _whole(part) for name, part in given.items()})
+
+
+def _whole(part: Any) -> Any:
+    """Convert floats that are whole, as JSON does not distinguish 2.0 from 2."""
+    if isinstance(part, list | tuple):
+        return tuple(map(_whole, part))
+    return int(part) if isinstance(part, float) and part.is_integer() else part
+
+
+def gait_as_json(value: str | GaitSpec) -> str | dict[str, Any]:
+    """Return a gait fit for JSON, the inverse of `read_gait`."""
+    if isinstance(value, str):
+        return value
+    return {name: part for name, part in asdict(value).items() if part is not None}
+
+
+_NAME: Schema = {"type": "string", "enum": list(NAMED_GAITS)}
+_LEG: Schema = {"type": "integer", "minimum": 1, "maximum": MAX_LEGS}
+_PAIR: Schema = {"type": "array", "prefixItems": [_LEG, _LEG], "minItems": 2, "maxItems": 2}
+_SENT: Schema = {
+    "type": "object",
+    "description": "A gait by its legs, with symmetry or pairs.",
+    "properties": {
+        "right_leg": _LEG,
+        "left_leg": _LEG,
+        "symmetry": {"type": "string", "enum": list(get_args(Symmetry))},
+        "pairs": {"type": "array", "items": _PAIR},
+    },
+    "required": ["right_leg", "left_leg"],
+    "additionalProperties": False,
+}
+_GIVEN: Schema = {**_SENT, "oneOf": [{"required": ["symmetry"]}, {"required": ["pairs"]}]}
+AnyGait = Annotated[
+    str | GaitSpec,
+    JsonForm(read_gait, gait_as_json, {"anyOf": [_NAME, _GIVEN]}, {"anyOf": [_NAME, _SENT]}),
+]
+"""A gait by its name, or by its legs."""
+
+
 @dataclass(frozen=True)
 class Gait:
     """A gait of one robot.
@@ -100,13 +164,52 @@ class Gait:
         name: its name, or a description of a user's specification.
         forward_deg: the forward direction in the body frame, anticlockwise from body x.
         azimuths_deg: each leg's azimuth relative to forward, anticlockwise, in (−180, 180].
-        pairs: the leg pairs, in the order of the state vector.
+        groups: the legs that move together, counted from 1, in the order of the state vector. Each
+            leg is in one group, and all are of one size: the mean over groups is that over feet.
+        mirror: for each leg 1 if its foot goes to (x, y) where its group does, −1 if to (−x, y).
+
+    Raises:
+        InvalidInput: if a leg is in no group or in several, or groups differ in size.
     """
 
     name: str
     forward_deg: float
     azimuths_deg: tuple[float, ...]
-    pairs: tuple[Pair, ...]
+    groups: tuple[tuple[int, ...], ...]
+    mirror: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        _check_partition(self.groups, len(self.azimuths_deg))
+        if len({len(group) for group in self.groups}) > 1:
+            raise InvalidInput(f"the groups of a gait must have as many legs each: {self.groups}")
+
+    @property
+    def group_of_leg(self) -> tuple[int, ...]:
+        """Index of the group of each leg."""
+        numbered = [(leg, index) for index, group in enumerate(self.groups) for leg in group]
+        return tuple(index for _, index in sorted(numbered))
+
+    def by_leg(self, offsets_m: FloatArray) -> FloatArray:
+        """Return each foot's offset (x, y) from home, (legs, 2), by those of the groups."""
+        offsets = offsets_m[list(self.group_of_leg)]
+        offsets[:, 0] *= self.mirror
+        return offsets
+
+    def by_group(self, feet_m: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+        """Return each group's offset (x, y), the mean of its feet, from those of all feet [m].
+
+        In plain floats, which are faster than arrays for so few numbers.
+        """
+        mirror, offsets = self.mirror, []
+        for group in self.groups:
+            x = y = 0.0
+            for leg in group:
+                foot = feet_m[leg - 1]
+                x += mirror[leg - 1] * foot[0]
+                y += foot[1]
+            size = len(group)
+            offsets.append((x / size, y / size))
+        return offsets
 
     @property
     def title(self) -> str:
@@ -153,8 +256,9 @@ def resolve(gait: str | GaitSpec, body_azimuths_deg: Sequence[float]) -> Gait:
         pairs = _origin_pairs(azimuths)
     else:
         pairs = _vertical_pairs(azimuths)
-    _check_partition(pairs, count)
-    return Gait(_name(gait), _wrap(forward), azimuths, pairs)
+    partners = {partner for _, partner in pairs}
+    mirror = tuple(-1 if leg in partners else 1 for leg in range(1, count + 1))
+    return Gait(_name(gait), _wrap(forward), azimuths, pairs, mirror)
 
 
 def _name(gait: str | GaitSpec) -> str:
@@ -213,8 +317,8 @@ def _check_leg(leg: int, count: int) -> None:
         raise InvalidInput(f"there is no leg {leg}; this robot has legs 1 to {count}")
 
 
-def _check_partition(pairs: Sequence[Pair], count: int) -> None:
-    used = [leg for pair in pairs for leg in pair]
+def _check_partition(groups: Sequence[Sequence[int]], count: int) -> None:
+    used = [leg for group in groups for leg in group]
     for leg in used:
         _check_leg(leg, count)
         if used.count(leg) > 1:

@@ -72,7 +72,7 @@ class FootGrid:
     def nearest(self, x_m: float, y_m: float) -> int:
         """Return the cell nearest to an offset from home; ties go to home, then the lower index.
 
-        In plain floats, which are faster than arrays for the three pairs of a step.
+        In plain floats, which are faster than arrays for the few groups of a step.
         """
         # Exact ties differ in their last bits by rounding.
         tie = 1e-9 * self.side_m * self.side_m

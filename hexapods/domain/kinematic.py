@@ -28,7 +28,7 @@ class KinematicState:
 
     @property
     def commanded(self) -> Cells:
-        """The cell that each pair was last sent to."""
+        """The cell that each group was last sent to."""
         return self.feet.commanded
 
 
@@ -58,15 +58,15 @@ class KinematicSimulator:
         return KinematicState(self._motion.at_home())
 
     def standing(self, cells: Cells) -> KinematicState:
-        """Return the state on the start line with the feet of each pair in a cell of the grid.
+        """Return the state on the start line with the feet of each group in a cell of the grid.
 
         Raises:
-            InvalidInput: if that is not one cell of the grid for each pair.
+            InvalidInput: if that is not one cell of the grid for each group.
         """
-        pairs, last = len(self.gait.pairs), len(self.grid) - 1
-        if len(cells) != pairs:
+        groups, last = len(self.gait.groups), len(self.grid) - 1
+        if len(cells) != groups:
             raise InvalidInput(
-                f"cells must be {pairs} numbers, one for each pair, not {len(cells)}"
+                f"cells must be {groups} numbers, one for each pair, not {len(cells)}"
             )
         for cell in cells:
             if not 0 <= cell <= last:
@@ -100,16 +100,15 @@ class KinematicSimulator:
     def estimate(self, state: KinematicState, error_m: FloatArray) -> KinematicState:
         return replace(state, feet=state.feet.moved(error_m))
 
-    def pair_offsets(self, state: KinematicState) -> Sequence[tuple[float, float]]:
+    def group_offsets(self, state: KinematicState) -> Sequence[tuple[float, float]]:
         return list(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))
 
     def pose(self, state: KinematicState) -> FloatArray:
-        feet = np.zeros((len(self.robot.legs), 3))
-        for pair, (leader, partner) in enumerate(self.gait.pairs):
-            x, y = state.feet.lateral_m[pair], state.feet.forward_m[pair]
-            feet[leader - 1, :2], feet[partner - 1, :2] = (x, y), (-x, y)
-        angles = self._motion.legs.joint_angles(feet)
-        pose: FloatArray = self._qpos(np.array([state.distance_m]), angles.reshape(1, -1))[0]
+        kinematics = self._motion.kinematics
+        feet = np.zeros((len(kinematics.legs), 3))
+        feet[:, :2] = self.gait.by_leg(np.array((state.feet.lateral_m, state.feet.forward_m)).T)
+        angles = kinematics.joint_angles(feet)
+        pose: FloatArray = self._qpos(np.array([state.distance_m]), angles[None])[0]
         return pose
 
     def torso(self, state: KinematicState) -> Sequence[float]:
@@ -129,16 +128,16 @@ class KinematicSimulator:
         return KinematicState(Feet.from_array(arrays["feet"]), distance, int(steps))
 
     def _record(self, plan: StepPlan, distance_m: float) -> Motion:
-        angles = self._motion.joint_targets([plan])[0]  # (recorded substeps, 3 · legs)
+        angles = self._motion.joint_targets([plan])[0]  # (recorded substeps, joints)
         place = distance_m + plan.advance_m * self._share_of_advance
         return Motion(self._times_s, self._qpos(place, angles).astype(np.float32))
 
     def _qpos(self, distance_m: FloatArray, angles: FloatArray) -> FloatArray:
-        """Return generalised positions (k, 7 + 3 · legs).
+        """Return generalised positions (k, 7 + joints).
 
         Args:
             distance_m: displacement along the track (world +y), (k,).
-            angles: joint angles [rad], (k, 3 · legs).
+            angles: joint angles [rad], (k, joints).
         """
         qpos = np.zeros((len(distance_m), 7 + angles.shape[1]))
         qpos[:, :7] = self.torso(self.rest())

@@ -1,4 +1,4 @@
-"""Servo commands of a step: swing a pair of feet to its new cell, then shift the body over them.
+"""Servo commands of a step: swing a group of feet to its new cell, then shift the body over them.
 
 Turns plans of foot offsets into joint targets per substep, vectorised over many steps, such as a
 whole layer of a look-ahead.
@@ -12,7 +12,8 @@ import numpy as np
 from hexapods.domain.feet import Feet
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.kinematics import Legs
+from hexapods.domain.kinematics import legs_of
+from hexapods.domain.legs import FootKinematics
 from hexapods.domain.robot import Robot
 from hexapods.domain.simulator import RECORDING_HZ
 from hexapods.domain.types import Action, FloatArray, IntArray
@@ -21,8 +22,8 @@ from hexapods.domain.types import Action, FloatArray, IntArray
 class StepPlan(NamedTuple):
     """Foot offsets at the phases of one step, without slip."""
 
-    pair: int
-    """The pair that swings."""
+    group: int
+    """The group that swings."""
     start: Feet
     landed: Feet
     """After the swing."""
@@ -46,24 +47,24 @@ class StepMotion:
             grid: the foot grid.
             substeps: indices of those whose joint targets are computed, ascending; None for all.
         """
-        self.legs = Legs(robot, gait)
+        self.kinematics = legs_of(robot).under(gait)
         self._places = grid.places_m
-        self._pairs = len(gait.pairs)
+        self._groups = len(gait.groups)
         total = robot.swing_substeps + robot.shift_substeps
         wanted = np.arange(total) if substeps is None else substeps
-        self._samples = _samples(robot, gait, self.legs.frames, wanted)
+        self._samples = _samples(robot, gait, self.kinematics, wanted)
         self._substeps = len(wanted)
 
     def at_home(self) -> Feet:
         """Return the offsets with every foot at home."""
-        return Feet.at_home(self._pairs)
+        return Feet.at_home(self._groups)
 
     def plan(self, start: Feet, action: Action) -> StepPlan:
         """Plan a step from the feet's offsets, by the kinematic law of `hexapods.domain.feet`."""
-        pair, cell = action
-        landed = start.landed(pair, cell, self._places[cell])
+        group, cell = action
+        landed = start.landed(group, cell, self._places[cell])
         end, advance = landed.centred()
-        return StepPlan(pair, start, landed, end, advance)
+        return StepPlan(group, start, landed, end, advance)
 
     def joint_targets(self, plans: Sequence[StepPlan]) -> FloatArray:
         """Compute the commands of the position servos over the wanted substeps of each step.
@@ -72,10 +73,10 @@ class StepMotion:
             plans: the n steps.
 
         Returns:
-            (n, substeps, legs · 3) [rad]; in each row legs in order, coxa, femur, tibia.
+            (n, substeps, joints) [rad].
         """
-        samples, swinging = self._samples, [plan.pair for plan in plans]
-        endpoints = np.array([_phase_endpoints(plan) for plan in plans])  # (n, 4, 2 · pairs)
+        samples, swinging = self._samples, [plan.group for plan in plans]
+        endpoints = np.array([_phase_endpoints(plan) for plan in plans])  # (n, 4, 2 · groups)
         source = samples.source.take(swinging, 1)  # (4, n, samples)
         order = samples.order.take(swinging, 0)  # (n, substeps · legs)
         if len(plans) > 1:  # offset the indices to each plan's part of the flat arrays
@@ -85,15 +86,17 @@ class StepMotion:
         sample_endpoints = endpoints.take(source)
         places = sample_endpoints[:2] + samples.share * (
             sample_endpoints[2:] - sample_endpoints[:2]
-        )  # of the leader, (2, n, samples)
-        frames = samples.frames.take(swinging, 2)
-        angles = self.legs.solve(places, samples.lift, frames)
-        targets: FloatArray = angles.reshape(-1, 3).take(order, 0)
-        return targets.reshape(len(plans), self._substeps, -1)
+        )  # of the groups, (2, n, samples)
+        frames = samples.frames.take(swinging, -2)
+        angles = self.kinematics.solve(places, samples.lift, frames)
+        most = angles.shape[-1]
+        by_leg = angles.reshape(-1, most).take(order, 0)
+        by_leg = by_leg.reshape(len(plans), self._substeps, -1, most)
+        return self.kinematics.in_pose_order(by_leg)
 
 
 def _phase_endpoints(plan: StepPlan) -> tuple[tuple[float, ...], ...]:
-    """Return from x, from y, to x, to y [m] of every pair in the swing, then in the shift."""
+    """Return from x, from y, to x, to y [m] of every group in the swing, then in the shift."""
     start, landed, end = plan.start, plan.landed, plan.end
     return (
         start.lateral_m + landed.lateral_m,
@@ -107,54 +110,53 @@ class _Samples(NamedTuple):
     """The distinct foot positions of a step, for which inverse kinematics is solved in one call.
 
     Feet that stand through the swing need a single sample, which keeps planning cheap in a
-    look-ahead. Fields that depend on which pair swings have a row for each pair.
+    look-ahead. Fields that depend on which group swings have a row for each group.
     """
 
     frames: FloatArray
-    """`Legs.frames` of the sample's leg, mirrored for a partner, (3, 2, pairs, samples)."""
+    """`FootKinematics.frames` of the sample's leg, mirrored by the gait, (..., groups, samples)."""
     source: IntArray
     """Indices of each sample's from x, from y, to x, to y in the flattened result of
-    `_phase_endpoints`, (4, pairs, samples)."""
+    `_phase_endpoints`, (4, groups, samples)."""
     share: FloatArray
     """Interpolation parameter of each sample within its phase, 0 to 1, (samples,)."""
     lift: FloatArray
     """Height of each sample above the ground [m], (samples,)."""
     order: IntArray
     """Index of the sample that commands each leg at each wanted substep,
-    (pairs, substeps · legs)."""
+    (groups, substeps · legs)."""
 
 
-def _samples(robot: Robot, gait: Gait, frames: FloatArray, substeps: IntArray) -> _Samples:
+def _samples(robot: Robot, gait: Gait, kinematics: FootKinematics, substeps: IntArray) -> _Samples:
     """Sample the trajectory of a step: easing by half a cosine, lifting by half a sine.
 
     Args:
         robot: for the number of substeps and the step height.
-        gait: for the pairs.
-        frames: `Legs.frames`.
+        gait: for the groups.
+        kinematics: of the feet under this gait.
         substeps: indices of the wanted ones.
     """
-    count, is_swing = len(robot.legs), substeps < robot.swing_substeps
-    all_legs, swinging_legs = np.arange(count), np.array(gait.pairs) - 1
+    count, is_swing = len(kinematics.legs), substeps < robot.swing_substeps
+    all_legs, swinging_legs = np.arange(count), np.array(gait.groups) - 1
+    groups, size = swinging_legs.shape
     swing_times = (substeps[is_swing] + 1) / robot.swing_substeps
     shift_times = (substeps[~is_swing] - robot.swing_substeps + 1) / robot.shift_substeps
     swing, shift = len(swing_times), len(shift_times)
-    swing_phase, shift_phase = np.repeat(swing_times, 2), np.repeat(shift_times, count)
+    swing_phase, shift_phase = np.repeat(swing_times, size), np.repeat(shift_times, count)
     zeros = np.zeros(count)
     legs, order = [], []
-    for pair in swinging_legs:
-        legs.append(np.concatenate((all_legs, np.tile(pair, swing), np.tile(all_legs, shift))))
+    for group in swinging_legs:
+        legs.append(np.concatenate((all_legs, np.tile(group, swing), np.tile(all_legs, shift))))
         in_swing = np.tile(all_legs, (swing, 1))
-        in_swing[:, pair] = count + np.arange(2 * swing).reshape(swing, 2)
-        in_shift = count + 2 * swing + np.arange(count * shift)
+        in_swing[:, group] = count + np.arange(size * swing).reshape(swing, size)
+        in_shift = count + size * swing + np.arange(count * shift)
         order.append(np.concatenate((in_swing.ravel(), in_shift)))
-    sample_legs, place_in_gait = np.array(legs), np.argsort(swinging_legs.ravel())
-    mirrored = frames.copy()
-    mirrored[1] *= np.where(place_in_gait % 2, -1.0, 1.0)  # a partner is at (−x, y)
-    in_phase = np.repeat((0, 0, len(swinging_legs)), (count, 2 * swing, count * shift))
-    pair_of = (place_in_gait // 2)[sample_legs] + in_phase  # (pairs, samples)
+    sample_legs = np.array(legs)
+    in_phase = np.repeat((0, 0, groups), (count, size * swing, count * shift))
+    group_of = np.array(gait.group_of_leg)[sample_legs] + in_phase  # (groups, samples)
     return _Samples(
-        mirrored[:, :, sample_legs],
-        np.stack([pair_of + part * 2 * len(swinging_legs) for part in range(4)]),
+        kinematics.mirrored(np.array(gait.mirror, float))[..., sample_legs],
+        np.stack([group_of + part * 2 * groups for part in range(4)]),
         np.concatenate((zeros, ease(swing_phase), ease(shift_phase))),
         np.concatenate(
             (

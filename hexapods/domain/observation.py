@@ -1,4 +1,4 @@
-"""Observations of an agent, one cell per leg pair in three readings; and the legal actions.
+"""Observations of an agent, one cell per group of legs in three readings; and the legal actions.
 
 After each step the body re-centres over the feet, so a foot's actual offset from home drifts from
 its commanded cell. The paper does not say which of the two its state holds. Dead reckoning is in
@@ -15,9 +15,9 @@ from hexapods.domain.simulator import S, Simulator, WalkState
 from hexapods.domain.types import Action, Cells, FloatArray
 
 Observation = Literal["measured", "commanded", "planned"]
-"""`measured`: the cell nearest to where the pair's feet are, by forward kinematics.
-`commanded`: the cell that the pair was last sent to; aliased, so not Markov.
-`planned`: the cell nearest to where the pair's feet would be if nothing had slipped or given way
+"""`measured`: the cell nearest to where the group's feet are, by forward kinematics.
+`commanded`: the cell that the group was last sent to; aliased, so not Markov.
+`planned`: the cell nearest to where the group's feet would be if nothing had slipped or given way
 (dead reckoning from the commands); it does not depend on sensors, nor on what a leg really did."""
 
 OBSERVATIONS: tuple[Observation, ...] = get_args(Observation)
@@ -38,13 +38,13 @@ def check_observation(name: str) -> None:
 def observe(
     simulator: Simulator[S], state: S, how: Observation, error_m: FloatArray | None = None
 ) -> Cells:
-    """Return the cells that an agent observes in a state, one per pair.
+    """Return the cells that an agent observes in a state, one per group.
 
     Args:
         simulator: simulates the robot.
         state: of the robot.
         how: observation mode.
-        error_m: errors of the measured offsets, (pairs, 2) [m]; None for none.
+        error_m: errors of the measured offsets, (groups, 2) [m]; None for none.
     """
     if how == "commanded":
         return state.commanded
@@ -57,38 +57,38 @@ def observe(
 def measured_offsets(
     simulator: Simulator[S], state: S, error_m: FloatArray | None = None
 ) -> Sequence[tuple[float, float]]:
-    """Return the measured offset (x, y) of each pair's leader from home [m].
+    """Return the measured offset (x, y) of each group from home [m].
 
     Args:
         simulator: simulates the robot.
         state: of the robot.
-        error_m: errors of measurement, (pairs, 2) [m]; None for none.
+        error_m: errors of measurement, (groups, 2) [m]; None for none.
     """
-    offsets = simulator.pair_offsets(state)
+    offsets = simulator.group_offsets(state)
     if error_m is None:
         return offsets
     return [(x + dx, y + dy) for (x, y), (dx, dy) in zip(offsets, error_m.tolist(), strict=True)]
 
 
 def planned_offsets(state: WalkState) -> tuple[tuple[float, float], ...]:
-    """Return where each pair's feet would be without slip, (x, y) from home [m]."""
+    """Return where each group's feet would be without slip, (x, y) from home [m]."""
     return tuple(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))
 
 
 @lru_cache(maxsize=1 << 10)
 def legal_actions(cells: Cells, cell_count: int) -> tuple[Action, ...]:
-    """Return all legal actions, pair by pair: every cell but the pair's observed one."""
-    parts = [_actions_except(pair, present, cell_count) for pair, present in enumerate(cells)]
+    """Return all legal actions, group by group: every cell but the group's observed one."""
+    parts = [_actions_except(group, present, cell_count) for group, present in enumerate(cells)]
     return tuple(chain.from_iterable(parts))
 
 
 @lru_cache(maxsize=1 << 12)
-def _actions_except(pair: int, present: int, cell_count: int) -> tuple[Action, ...]:
-    """Return a pair's actions except the one to its observed cell; cached, shared by states."""
-    every = _all_actions(pair, cell_count)
+def _actions_except(group: int, present: int, cell_count: int) -> tuple[Action, ...]:
+    """Return a group's actions except the one to its observed cell; cached, shared by states."""
+    every = _all_actions(group, cell_count)
     return every[:present] + every[present + 1 :]
 
 
 @lru_cache(maxsize=1 << 7)
-def _all_actions(pair: int, cell_count: int) -> tuple[Action, ...]:
-    return tuple(Action(pair, cell) for cell in range(cell_count))
+def _all_actions(group: int, cell_count: int) -> tuple[Action, ...]:
+    return tuple(Action(group, cell) for cell in range(cell_count))

@@ -1,4 +1,4 @@
-"""Posture of a robot: whether it has fallen, and its heading."""
+"""Posture of a robot: its rotation, its heading, and whether it has fallen."""
 
 import math
 from collections.abc import Sequence
@@ -55,3 +55,18 @@ def heading_deg(pose: Sequence[float], start: Sequence[float]) -> float:
 def _yaw(pose: Sequence[float]) -> float:
     w, x, y, z = pose[3:7]
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def rotation_matrices(poses: FloatArray) -> FloatArray:
+    """Return the rotation of each pose's torso as a matrix, (k, 3, 3).
+
+    Args:
+        poses: torso position and rotation (wxyz), which may be followed by joint angles, (k, ...).
+    """
+    w, x, y, z = poses[:, 3:7].T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)

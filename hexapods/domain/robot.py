@@ -3,9 +3,10 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
-from typing import Any
+from typing import Annotated, Any
 
 from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.records import JsonForm, Schema
 
 MIN_LEGS, MAX_LEGS = 4, 12
 _NO_NUMBERS = ("name", "legs")
@@ -167,7 +168,7 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
     """
     if isinstance(value, Robot):
         return value
-    if isinstance(value, str):
+    if not isinstance(value, Mapping):
         return _preset(value)
     given = dict(value)
     for name in ("n_legs", "mount_radius_m", "legs"):
@@ -242,3 +243,53 @@ def _number(name: str, value: object) -> float:
     if not low <= value <= high:
         raise InvalidInput(f"robot.{name} must be from {low:g} to {high:g}, not {value}")
     return float(value)
+
+
+def _numbers(ranges: Mapping[str, tuple[float, float]]) -> Schema:
+    return {
+        name: {"type": "number", "minimum": low, "maximum": high}
+        for name, (low, high) in ranges.items()
+    }
+
+
+_PRESET: Schema = {"type": "string", "enum": list(PRESETS)}
+_LEG: Schema = {
+    "type": "object",
+    "properties": _numbers({"azimuth_deg": AZIMUTH, "radius_m": MOUNT_RADIUS}),
+    "additionalProperties": False,
+}
+_COUNTED: Schema = {
+    "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS, "multipleOf": 2},
+    **_numbers({"mount_radius_m": MOUNT_RADIUS}),
+}
+_GIVEN: Schema = {
+    "type": "object",
+    "properties": {
+        "preset": _PRESET,
+        "legs": {
+            "type": "array",
+            "minItems": MIN_LEGS,
+            "maxItems": MAX_LEGS,
+            "items": {**_LEG, "required": ["azimuth_deg"]},
+        },
+        **_COUNTED,
+        **_numbers(RANGES),
+    },
+    "additionalProperties": False,
+    "not": {"required": ["legs"], "anyOf": [{"required": [name]} for name in _COUNTED]},
+}
+_SENT: Schema = {
+    "type": "object",
+    "description": "A preset, and by name the parts that differ from it.",
+    "properties": {
+        "preset": _PRESET,
+        "legs": {"type": "array", "items": {**_LEG, "required": ["azimuth_deg", "radius_m"]}},
+    },
+    "required": ["preset"],
+    "additionalProperties": {"type": "number"},
+}
+AnyRobot = Annotated[
+    Robot,
+    JsonForm(robot, as_mapping, {"anyOf": [_PRESET, _GIVEN]}, _SENT),
+]
+"""A robot: in requests a preset's name too."""

@@ -25,6 +25,7 @@ from annotated_types import Ge, Gt, Le, Lt, MultipleOf
 
 from hexapods.domain.checks import Limit, bound_of, parse_number, satisfies
 from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.records import plain_form
 
 Value = float | int | str | bool | None
 V = TypeVar("V")
@@ -66,6 +67,15 @@ class Setting:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "examples", tuple(self.examples))
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """Describe the value to Pydantic, but leave its validation to `DeclaredSetting.check`."""
+        native = handler(source)
+
+        def describe(_: Any, schema_of: Any) -> dict[str, Any]:
+            return {**schema_of(native), "title": self.title, "description": self.help}
+
+        return plain_form(lambda given: given, lambda value: value, describe)
 
 
 @dataclass(frozen=True)
@@ -339,6 +349,33 @@ class SettingValues(Mapping[str, V]):
             if not _is_value(value):
                 raise InvalidInput(f"{name} must be a number, text, true or false")
         self._values = dict(values)
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+        """Read and write a JSON object; its values are lists if those of the type are tuples."""
+        are_lists = get_origin(next(iter(get_args(source)), None)) is tuple
+
+        def read(given: Any) -> "SettingValues[Any]":
+            if isinstance(given, SettingValues):
+                return given
+            if not isinstance(given, Mapping):
+                raise InvalidInput(f"settings are given by name, not as {given!r}"[:200])
+            for name, value in given.items():
+                if isinstance(value, list | tuple) != are_lists:
+                    kind = "a list of values" if are_lists else "a number, text, true or false"
+                    raise InvalidInput(f"{name} must be {kind}")
+            values: dict[str, Any] = {k: tuple(v) if are_lists else v for k, v in given.items()}
+            return cls(values)
+
+        def write(values: "SettingValues[Any]") -> dict[str, Any]:
+            return {k: list(v) if are_lists else v for k, v in values.items()}
+
+        def describe(_: Any, schema_of: Any) -> dict[str, Any]:
+            values = dict[str, list[Value]] if are_lists else dict[str, Value]
+            shape = schema_of(handler.generate_schema(values))
+            return {**shape, "description": "settings of the agent, by name"}
+
+        return plain_form(read, write, describe)
 
     def __getitem__(self, name: str) -> V:
         return self._values[name]

@@ -25,7 +25,7 @@ class WalkState(Protocol):
 
     @property
     def commanded(self) -> Cells:
-        """The cell that each pair was last sent to."""
+        """The cell that each group was last sent to."""
 
     @property
     def distance_m(self) -> float:
@@ -46,9 +46,9 @@ class Motion(NamedTuple):
     """Times since the step's start, (k,); the last is the step's end."""
     qpos: NDArray[np.float32]
     """Torso position [m], its rotation (quaternion wxyz), joint angles [rad],
-    (k, 7 + 3 · legs)."""
+    (k, 7 + joints)."""
     torque_nm: NDArray[np.float16] | None = None
-    """Of each servo its largest torque by magnitude since the frame before [N·m], (k, 3 · legs);
+    """Of each servo its largest torque by magnitude since the frame before [N·m], (k, joints);
     None if it was not recorded, or nothing has servos."""
     work_j: NDArray[np.float32] | None = None
     """Positive mechanical work of all servos since the frame before [J], (k,); likewise None."""
@@ -119,18 +119,17 @@ class Simulator(Protocol[S]):
 
         Args:
             state: the true state.
-            error_m: errors of the measured offsets of the pairs' leaders, (pairs, 2) [m]; those of
-                their partners are mirrored.
+            error_m: errors of the measured offsets of the groups, (groups, 2) [m].
         """
 
-    def pair_offsets(self, state: S) -> Sequence[tuple[float, float]]:
-        """Return the feet's actual offsets (x, y) from home in the robot frame [m], per pair.
+    def group_offsets(self, state: S) -> Sequence[tuple[float, float]]:
+        """Return the feet's actual offsets (x, y) from home in the robot frame [m], per group.
 
-        Each is the mean of the leader's offset and the partner's mirrored one.
+        Each is the mean of the group's feet, mirrored as the gait says.
         """
 
     def pose(self, state: S) -> FloatArray:
-        """Return torso position [m], rotation (wxyz) and joint angles [rad], (7 + 3 · legs,)."""
+        """Return torso position [m], rotation (wxyz) and joint angles [rad], (7 + joints,)."""
 
     def torso(self, state: S) -> Sequence[float]:
         """Return the first seven numbers of `pose`, which may take less time than all."""

@@ -9,11 +9,11 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 Cells = tuple[int, ...]
-"""One cell of the foot grid per leg pair: an agent's observation."""
+"""One cell of the foot grid per group of legs: an agent's observation."""
 
 
 class Action(NamedTuple):
-    """Move the two feet of one pair to one cell of the foot grid; both count from 0."""
+    """Move the feet of one group of legs to one cell of the foot grid; both count from 0."""
 
-    pair: int
+    group: int
     cell: int

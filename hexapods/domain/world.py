@@ -8,9 +8,10 @@ from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple, TypeVar
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 from hexapods.domain.disturbances import (
+    SENT,
     Disturbance,
     Friction,
     Key,
@@ -25,10 +26,12 @@ from hexapods.domain.disturbances import (
     Slope,
     Stuck,
     Weak,
+    as_mapping,
     disturbance,
     parse_disturbance,
 )
 from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.records import JsonForm
 from hexapods.domain.robot import Robot
 
 MAX_DISTURBANCES = 20
@@ -128,7 +131,7 @@ class World:
                 del newest[covered]
             for key, part in one.parts().items():
                 newest[key] = replace(part, at_step=0, until_step=None)
-        lasting = [one for one in newest.values() if not isinstance(one, Repair)]
+        lasting = [one for one in newest.values() if not one.repairs]
         return _conditions(lasting)
 
     def then(self, one: Disturbance) -> "World":
@@ -204,13 +207,20 @@ def check_ends(disturbances: Iterable[Disturbance], steps: int) -> None:
             )
 
 
-def world(data: Iterable[Mapping[str, Any]]) -> World:
+def world(data: Iterable[Mapping[str, Any]] | World) -> World:
     """Build a world from user input, a list of disturbances.
 
     Raises:
         UnknownName, InvalidInput: if a disturbance is not valid, or two contradict each other.
     """
-    return World(tuple(disturbance(one) for one in data))
+    return data if isinstance(data, World) else World(tuple(map(disturbance, data)))
+
+
+_LIST = {"type": "array", "items": SENT}
+AnyWorld = Annotated[
+    World, JsonForm(world, lambda world: [as_mapping(one) for one in world.disturbances], _LIST)
+]
+"""A world as the list of its disturbances."""
 
 
 def _conditions(disturbances: Iterable[Disturbance]) -> World:

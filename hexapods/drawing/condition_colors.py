@@ -1,6 +1,7 @@
 """Colours of what happens to a robot and to its ground; the same in the light and dark theme."""
 
 from hexapods.domain.disturbances import Friction, Limp, Lost, Patch, Stuck, Weak
+from hexapods.domain.legs import Joint
 from hexapods.domain.world import World
 from hexapods.drawing.colormap import Rgb, mix
 
@@ -20,7 +21,7 @@ _HIGHEST_SHARE = 0.7
 """Share of grey of a leg with hardly any torque; limp ones are grey altogether."""
 
 
-def link_color(color: Rgb, conditions: World, leg: int, joint: str) -> Rgb | None:
+def link_color(color: Rgb, conditions: World, joint: Joint) -> Rgb | None:
     """Return the colour of a leg's link; None if the leg is lost.
 
     A link is the greyer the less torque its servos have; one whose joint is stuck is red.
@@ -28,18 +29,17 @@ def link_color(color: Rgb, conditions: World, leg: int, joint: str) -> Rgb | Non
     Args:
         color: of the link as it was built.
         conditions: what holds, a result of `World.as_of`.
-        leg: number of the leg, from 1.
-        joint: the joint that moves the link: `coxa`, `femur` or `tibia`.
+        joint: the joint that moves the link.
     """
     for one in conditions.disturbances:
-        if isinstance(one, Lost) and leg in one.legs:
+        if isinstance(one, Lost) and joint.leg in one.legs:
             return None
-        if isinstance(one, Limp) and leg in one.legs:
+        if isinstance(one, Limp) and joint.leg in one.legs:
             return _NO_TORQUE
-        if isinstance(one, Weak) and leg in one.legs:
+        if isinstance(one, Weak) and joint.leg in one.legs:
             color = mix(color, _NO_TORQUE, _HIGHEST_SHARE * (1 - one.torque_share))
     stuck = conditions.all_of(Stuck)
-    return RED if any((one.leg, one.joint) == (leg, joint) for one in stuck) else color
+    return RED if any((one.leg, one.joint) == (joint.leg, joint.name) for one in stuck) else color
 
 
 def ground_color(ground: Friction | Patch, friction: float) -> Rgb:

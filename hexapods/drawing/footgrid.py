@@ -7,6 +7,7 @@ import viser
 from numpy.typing import NDArray
 
 from hexapods.domain.disturbances import Lost
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.types import FloatArray, IntArray
 from hexapods.drawing.colormap import Rgb, rgb, value_colors
 from hexapods.drawing.shapes import Shape
@@ -28,9 +29,9 @@ class FootGridDrawing:
     """The grid cells of one lane, around each foot's home position in the body's frame.
 
     A cell is drawn as its Voronoi region, as observations assign a foot to the nearest cell. Rims
-    are red at home and blue elsewhere, as in the paper; the fill is the value of moving the pair
-    there now, or grey if it was never moved there from here. The cell where a pair is has a white
-    rim and no value, since it is no legal action. A leg that is lost has no cells.
+    are red at home and blue elsewhere, as in the paper; the fill is the value of moving the
+    leg's group there now, or grey if it was never moved there from here. The cell where it is has a
+    white rim and no value, since it is no legal action. A leg that is lost has no cells.
 
     Args:
         server: where to draw.
@@ -43,11 +44,7 @@ class FootGridDrawing:
         self._x_m = x_m
         self._forward_rad = math.radians(90 - spec.gait.forward_deg)
         self._frame = server.scene.add_frame(root, show_axes=False)
-        pairs = spec.gait.pairs
-        legs = range(1, len(spec.robot.legs) + 1)
-        self._pair_of_leg = [
-            next(p for p, legs_of_pair in enumerate(pairs) if leg in legs_of_pair) for leg in legs
-        ]
+        self._group_of_leg = list(spec.gait.group_of_leg)
         positions, side = _cell_positions(spec), spec.grid.side_m / (spec.grid.divisions - 1)
         home_is_between = spec.grid.divisions % 2 == 0
         others = np.arange(1, len(spec.grid))
@@ -78,19 +75,19 @@ class FootGridDrawing:
         lost = {leg for one in lane.conditions.all_of(Lost) for leg in one.legs}
         if lost != self._lost:
             self._lost = lost
-            legs = range(1, len(self._pair_of_leg) + 1)
+            legs = range(1, len(self._group_of_leg) + 1)
             for tiles in self._tiles:
                 tiles.show(np.array([leg not in lost for leg in legs]))
         action_values = lane.action_values
         if action_values is None or _is_unchanged(action_values, self._drawn):
             return
         self._drawn = action_values
-        values = action_values.values_m[self._pair_of_leg]  # (legs, cells)
+        values = action_values.values_m[self._group_of_leg]  # (legs, cells)
         fills = value_colors(values, action_values.low_m, action_values.high_m)
-        is_current = np.array(action_values.current)[self._pair_of_leg][:, None] == np.arange(
+        is_current = np.array(action_values.current)[self._group_of_leg][:, None] == np.arange(
             values.shape[1]
         )
-        fills[action_values.visits[self._pair_of_leg] == 0] = _UNTRIED_FILL
+        fills[action_values.visits[self._group_of_leg] == 0] = _UNTRIED_FILL
         fills[is_current] = _CURRENT_FILL
         for tiles in self._tiles:
             tiles.draw(fills, is_current)
@@ -131,7 +128,7 @@ class _Tiles:
 
         Args:
             fills: colours of every cell of every leg, (legs, cells, 3), 0–255.
-            is_current: whether a leg's pair is in the cell, (legs, cells).
+            is_current: whether a leg's group is in the cell, (legs, cells).
         """
         tile_is_current = is_current[:, self._cells].reshape(-1, 1)
         self._rims.batched_colors = _flat_colors(
@@ -164,11 +161,9 @@ def _tile(outline: FloatArray) -> Shape:
 
 def _cell_positions(spec: SceneSpec) -> FloatArray:
     """Return all cells of all legs in the robot frame, x right, y forward, (legs, cells, 3) [m]."""
-    azimuth = np.radians(spec.gait.azimuths_deg)
-    homes = spec.robot.home_radius_m * np.stack([-np.sin(azimuth), np.cos(azimuth)], axis=1)
+    homes = legs_of(spec.robot).under(spec.gait).homes_m
     cells = np.tile(spec.grid.cells, (len(homes), 1, 1))  # (legs, cells, 2)
-    partners = [partner - 1 for _, partner in spec.gait.pairs]
-    cells[partners, :, 0] *= -1
+    cells[..., 0] *= np.array(spec.gait.mirror)[:, None]
     positions = np.zeros((*cells.shape[:2], 3))
     positions[..., :2] = homes[:, None] + cells
     return positions

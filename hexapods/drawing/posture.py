@@ -1,4 +1,4 @@
-"""Ghost of a robot that stands in a state: each pair of legs in a cell of its foot grid."""
+"""Ghost of a robot that stands in a state: each group of legs in a cell of its foot grid."""
 
 import viser
 
@@ -12,10 +12,10 @@ from hexapods.shows.stage_frame import LaneFrame, SceneSpec
 
 
 def posture(spec: SceneSpec, cells: Cells) -> FloatArray:
-    """Return the qpos of the robot in a state, in the frame of its foot grid, (7 + 3 · legs,).
+    """Return the qpos of the robot in a state, in the frame of its foot grid, (7 + joints,).
 
     Raises:
-        InvalidInput: if that is not one cell of the grid for each pair.
+        InvalidInput: if that is not one cell of the grid for each group.
         Unreachable: if a cell of the grid is out of a leg's reach.
     """
     simulator = KinematicSimulator(spec.robot, spec.gait, spec.grid)
@@ -33,7 +33,7 @@ def draw_posture(
         server: where to draw.
         root: scene node of the ghost, a child of the grid's.
         spec: the scene, with the robot's lane only.
-        cells: the cell of each pair.
+        cells: the cell of each group.
         conditions: what holds for the robot, a result of `World.as_of`.
 
     Raises:

@@ -63,7 +63,7 @@ def encode_posture(frame: StageFrame, lane: int, cells: Cells) -> bytes:
     Args:
         frame: in whose conditions it is drawn: legs that are lost are left out.
         lane: the lane, counted from 0.
-        cells: the cell of each pair.
+        cells: the cell of each group.
 
     Raises:
         InvalidInput: if there is no such state.

@@ -8,13 +8,14 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
 from hexapods.domain.types import FloatArray, IntArray
 from hexapods.domain.world import World
 from hexapods.drawing.colormap import Rgb
 from hexapods.drawing.condition_colors import link_color
 from hexapods.drawing.shapes import Shape, antenna, geom_shape, joined
-from hexapods.physics.mjcf import LINKS, VISIBLE_GROUP, compile_visual_model, is_painted
+from hexapods.physics.mjcf import VISIBLE_GROUP, compile_visual_model, is_painted
 
 ANTENNA_M = 0.15
 """Height of the antenna's top over the torso's centre [m]."""
@@ -54,13 +55,10 @@ class RobotMesh:
         self._model = compile_visual_model(robot)
         self._data = mujoco.MjData(self._model)
         self.parts = _parts(robot)
-        bodies = [
-            (self._model.body(f"leg{leg}_{joint}").id, (leg, joint))
-            for leg in range(1, len(robot.legs) + 1)
-            for joint in LINKS
-        ]
-        self._joint_of_link = dict(bodies)
-        """Leg, from 1, and joint by the body id of the link that the joint moves."""
+        self._joint_of_link = {
+            self._model.body(joint.label).id: joint for joint in legs_of(robot).joints
+        }
+        """The joint that moves a link, by the link's body id."""
 
     @property
     def default_qpos(self) -> FloatArray:
@@ -84,7 +82,7 @@ class RobotMesh:
             conditions: what holds, a result of `World.as_of`.
         """
         joints = [self._joint_of_link.get(link) for link in part.links.tolist()]
-        return [link_color(color, conditions, *joint) if joint else color for joint in joints]
+        return [link_color(color, conditions, joint) if joint else color for joint in joints]
 
 
 @lru_cache(maxsize=8)

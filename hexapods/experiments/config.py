@@ -2,25 +2,37 @@
 
 import contextlib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
-from typing import Any, ClassVar, Literal, get_args
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar, Literal, get_args
+
+from annotated_types import Ge, Le
 
 from hexapods.agents.registry import learns
-from hexapods.domain.checks import check_whole
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.gait import NAMED_GAITS, AnyGait
 from hexapods.domain.observation import PAPER_OBSERVATIONS, Observation
-from hexapods.domain.robot import Robot, as_mapping, robot
+from hexapods.domain.records import Record
+from hexapods.domain.robot import AnyRobot, Robot, robot
 from hexapods.domain.settings import (
     REQUIRED,
     DeclaredSetting,
+    Setting,
     SettingValues,
     Value,
     declared_fields,
 )
 from hexapods.domain.world import parse_world
-from hexapods.runs.config import SimulatorName, TrainingConfig, agent_settings
-from hexapods.runs.config_json import gait_from_json
+from hexapods.runs.config import (
+    Divisions,
+    GridSide,
+    PracticeSteps,
+    Seed,
+    SimulatorName,
+    StepsPerEpisode,
+    Tolerance,
+    TrainingConfig,
+    agent_settings,
+)
 
 ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
@@ -31,6 +43,8 @@ FIGURE4_BLOCKS = 8
 
 SUMMARY = "summary.json"
 """File of a report: statistics and claims computed from the trials so far."""
+SUMMARY_FORMAT = 2
+"""In the first format, of versions before 0.2, the config has settings beside its other fields."""
 REPORT = "report.html"
 """The report as one self-contained page."""
 TRIALS_TABLE = "trials.csv"
@@ -44,7 +58,7 @@ DISTURBED: tuple[ExperimentName, ...] = ("league", "recovery")
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExperimentConfig:
+class ExperimentConfig(Record):
     """Config of an experiment. `experiment_config` adds the defaults of the experiment.
 
     Attributes:
@@ -81,34 +95,41 @@ class ExperimentConfig:
     """Options of the command line, by field; see `option_of`."""
 
     experiment: ExperimentName
-    seeds: int = 30
-    seed: int = 0
+    seeds: Annotated[
+        int,
+        Ge(1),
+        Le(MAX_SEEDS),
+        Setting(
+            title="Seeds",
+            help="How often each setting is tried, each time with other random numbers.",
+        ),
+    ] = 30
+    seed: Seed = 0
     agents: tuple[str, ...] = ("q-learning",)
-    gaits: tuple[str | GaitSpec, ...] = tuple(NAMED_GAITS)
+    gaits: tuple[AnyGait, ...] = tuple(NAMED_GAITS)
     observations: tuple[Observation, ...] = PAPER_OBSERVATIONS
-    robots: tuple[Robot, ...] = (Robot(),)
+    robots: tuple[AnyRobot, ...] = (Robot(),)
     simulator: SimulatorName = "mujoco"
-    steps: tuple[int, ...] = (TrainingConfig.steps,)
+    steps: tuple[PracticeSteps, ...] = (TrainingConfig.steps,)
     settings: SettingValues[tuple[Value, ...]] = field(default_factory=SettingValues)
-    steps_per_episode: tuple[int, ...] = (TrainingConfig.steps_per_episode,)
-    divisions: tuple[int, ...] = (TrainingConfig.divisions,)
-    grid_side_m: tuple[float, ...] = (TrainingConfig.grid_side_m,)
+    steps_per_episode: tuple[StepsPerEpisode, ...] = (TrainingConfig.steps_per_episode,)
+    divisions: tuple[Divisions, ...] = (TrainingConfig.divisions,)
+    grid_side_m: tuple[GridSide, ...] = (TrainingConfig.grid_side_m,)
     blocks: int = 1
     worlds: tuple[str, ...] = ("flat",)
-    tolerance: float = 0.0
+    tolerance: Tolerance = 0.0
 
     def __post_init__(self) -> None:
         if self.experiment not in EXPERIMENTS:
             raise UnknownName("experiment", self.experiment, EXPERIMENTS)
-        declared_fields(TrainingConfig)["tolerance"].check(self.tolerance)
+        for setting in declared_fields(type(self)).values():  # type: ignore[arg-type]  # mypy: no hash
+            setting.check(getattr(self, setting.name))
         for world in self.worlds:
             if parse_world(world).change_steps:
                 raise InvalidInput(
                     f"{world}: the worlds of an experiment hold from the start to the end; leave "
                     "out at and until"
                 )
-        check_whole("seeds", self.seeds, 1, MAX_SEEDS)
-        check_whole("seed", self.seed, 0, None)
         lists = {name: getattr(self, name) for name in (*_LIST_FIELDS, *GRID)} | dict(self.settings)
         for name, values in lists.items():
             if not values:
@@ -251,50 +272,10 @@ def _normalized(value: Value, own: Sequence[DeclaredSetting]) -> Value:
     return own[-1].normalized(value)  # type: ignore[no-any-return]
 
 
-def as_json(config: ExperimentConfig) -> dict[str, Any]:
-    """Convert a config to plain types, as in API responses and in files."""
-    data: dict[str, Any] = {}
-    for one in fields(config):
-        value = getattr(config, one.name)
-        data[one.name] = value
-    data["robots"] = [as_mapping(one) for one in config.robots]
-    data["gaits"] = [
-        {k: v for k, v in asdict(gait).items() if v is not None}
-        if isinstance(gait, GaitSpec)
-        else gait
-        for gait in config.gaits
-    ]
-    data["settings"] = {name: list(values) for name, values in config.settings.items()}
-    return {k: list(v) if isinstance(v, tuple) else v for k, v in data.items()}
-
-
 def by_option(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return fields and settings side by side, as options and Python's arguments have them.
 
     Args:
-        data: the output of `as_json`.
+        data: a config as JSON.
     """
     return {**{k: v for k, v in data.items() if k != "settings"}, **data["settings"]}
-
-
-def from_json(
-    data: Mapping[str, Any], kind: type[ExperimentConfig] = ExperimentConfig
-) -> ExperimentConfig:
-    """Parse the output of `as_json`.
-
-    Args:
-        data: the output of `as_json`.
-        kind: class of the config.
-
-    Raises:
-        InvalidInput: if a value is invalid.
-        KeyError, TypeError, ValueError: if it is not the output of `as_json`.
-    """
-    values: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in data.items()}
-    values["robots"] = tuple(robot(one) for one in data["robots"])
-    values["gaits"] = tuple(gait_from_json(one) for one in data["gaits"])
-    settings = values.pop("settings")
-    if single := [name for name, value in settings.items() if not isinstance(value, list)]:
-        raise InvalidInput(f"{single[0]} must be a list of values")
-    lists = {name: tuple(value) for name, value in settings.items()}
-    return kind(**values, settings=SettingValues(lists))

@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
-from hexapods.experiments.config import SUMMARY, ExperimentConfig, as_json, by_option, from_json
+from hexapods.domain.records import from_json, to_json
+from hexapods.experiments.config import SUMMARY, ExperimentConfig, by_option
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.worker import difference, versions
@@ -78,7 +79,7 @@ class ResultsFolder(Progress):
         self._end = sum(map(len, lines))
         file.truncate(self._end)
         if not lines:
-            config = as_json(self.plan.config)
+            config = to_json(self.plan.config)
             kind = self.plan.config.kind
             self._write({"format": FORMAT, "kind": kind, "versions": versions(), "config": config})
             return
@@ -136,10 +137,10 @@ class ResultsFolder(Progress):
         if differs is not None:
             raise InvalidInput(f"{self.path} has results of {differs}; {_CHOOSE}")
         try:
-            there = by_option(as_json(from_json(head["config"], type(self.plan.config))))
+            there = by_option(to_json(from_json(type(self.plan.config), head["config"])))
         except (HexapodError, KeyError, TypeError, ValueError) as error:
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
-        here = by_option(as_json(self.plan.config))
+        here = by_option(to_json(self.plan.config))
         # Each trial's seed depends on its number only, so that more seeds extend the results; and
         # a tuning asks for the same settings first, however many are to come.
         every = dict.fromkeys((*here, *there))

@@ -8,9 +8,10 @@ from importlib.metadata import version
 from itertools import combinations
 from typing import Any
 
+from hexapods.domain.records import to_json
 from hexapods.experiments.claims import CLAIMS_OF
 from hexapods.experiments.claims.judging import judge
-from hexapods.experiments.config import DISTURBED, ExperimentConfig, as_json
+from hexapods.experiments.config import DISTURBED, SUMMARY_FORMAT, ExperimentConfig
 from hexapods.experiments.measures import (
     ReferenceDistance,
     best_known_relative,
@@ -35,7 +36,6 @@ from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worker import versions
 from hexapods.experiments.worlds import compare_in_worlds
 
-FORMAT = 1
 _DISTANCE_SHARES = ("relative", "relative_finished", "of_best_known")
 """Measures that are shares of a distance, other than shares of seeds."""
 
@@ -67,9 +67,9 @@ def summarise(
     walked = [one for one in settings if one.setting.role != "timed"]
     is_disturbed = config.experiment in DISTURBED
     summary: dict[str, Any] = {
-        "format": FORMAT,
+        "format": SUMMARY_FORMAT,
         "experiment": config.experiment,
-        "config": as_json(config),
+        "config": to_json(config),
         "versions": _versions(),
         "machine": {"platform": platform.platform(), "cores": os.cpu_count()},
         "trials": _count_trials(plan, settings, set_aside or {}),

@@ -11,7 +11,7 @@ from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.errors import Diverged
 from hexapods.domain.settings import SettingValues
 from hexapods.runs.clocks import Timetable, distance_at
-from hexapods.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
+from hexapods.runs.config import RACE_STEPS, TrainingConfig
 from hexapods.runs.lane import LaneConfig, PlansWith
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.racing import record_race
@@ -174,7 +174,7 @@ def _race(
     config: TrialConfig, table: Checkpoint | None, timer: Callable[[], float]
 ) -> list[LaneRecording]:
     training = config.training
-    walk = {name: getattr(training, name) for name in WalkingProblem.__dataclass_fields__}
+    walk = vars(training.walk())
     own = LaneConfig(
         agent=training.agent,
         observation=training.observation,

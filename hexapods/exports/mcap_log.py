@@ -15,11 +15,11 @@ import numpy as np
 
 from hexapods.agents.appearance import title_of
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.types import FloatArray
 from hexapods.exports.export_format import HERE, Execution
 from hexapods.exports.extras import import_extra
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
-from hexapods.exports.trajectory import joint_names
 from hexapods.physics.mjcf import compile_visual_model
 from hexapods.runs.clocks import Clock
 
@@ -81,7 +81,8 @@ def _write(
     foxglove: Any, walks: RecordedWalks, clock: Clock, file: Any, check: Callable[[], None]
 ) -> None:
     step_s, robot = walks.problem.robot.step_s, walks.problem.built_robot
-    names, links = joint_names(robot), _Links(compile_visual_model(robot))
+    names = [joint.label for joint in legs_of(robot).joints]
+    links = _Links(compile_visual_model(robot))
     messages, context = foxglove.messages, foxglove.Context()
     with foxglove.open_mcap(file, context=context) as writer:
         tf = foxglove.channels.FrameTransformsChannel("/tf", context=context)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.domain.kinematics import JOINT_LIMITS_RAD, foot_positions
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
 from hexapods.exports.extras import import_extra
 from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
@@ -39,20 +39,15 @@ class _Block(NamedTuple):
     """(k, columns after those of `_INDEX`); NaN where torque was not recorded."""
 
 
-def joint_names(robot: Robot) -> list[str]:
-    """Return the names of a robot's joints in the order of a pose: `leg1_coxa` and so on."""
-    legs = range(1, len(robot.legs) + 1)
-    return [f"leg{leg}_{joint}" for leg in legs for joint in JOINT_LIMITS_RAD]
-
-
 def column_names(robot: Robot, has_torque: bool) -> list[str]:
     """Return the names of the columns, with units."""
-    joints, legs = joint_names(robot), range(1, len(robot.legs) + 1)
+    legs = legs_of(robot)
+    joints = [joint.label for joint in legs.joints]
     return [
         *_INDEX,
         *_BODY,
         *(f"{joint}_rad" for joint in joints),
-        *(f"leg{leg}_foot_{axis}_m" for leg in legs for axis in "xyz"),
+        *(f"leg{leg}_foot_{axis}_m" for leg in range(1, len(legs) + 1) for axis in "xyz"),
         *(f"{joint}_torque_nm" for joint in joints if has_torque),
     ]
 
@@ -180,7 +175,7 @@ class _Encoder(NamedTuple):
 
     def _torques(self, recorded: NDArray[np.float16] | None, frames: int) -> NDArray[np.float32]:
         if recorded is None or not self.has_torque:
-            joints = len(joint_names(self.robot)) if self.has_torque else 0
+            joints = len(legs_of(self.robot).joints) if self.has_torque else 0
             return np.full((frames, joints), np.nan, np.float32)
         return recorded.astype(np.float32)
 
@@ -191,6 +186,8 @@ class _Encoder(NamedTuple):
         qpos: NDArray[np.float32],
         torques: NDArray[np.float32],
     ) -> _Block:
-        feet = foot_positions(self.robot, qpos.astype(float)).reshape(len(qpos), -1).round(6)
+        feet = (
+            legs_of(self.robot).foot_positions(qpos.astype(float)).reshape(len(qpos), -1).round(6)
+        )
         numbers = np.hstack([qpos, feet.astype(np.float32), torques])
         return _Block(self.lane, steps.astype(np.int32), times_s, numbers)

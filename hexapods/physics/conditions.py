@@ -23,6 +23,7 @@ from hexapods.domain.disturbances import (
     Stuck,
     Weak,
 )
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
 from hexapods.domain.terrain import ROUGH_CELL_M, ROUGH_PERIOD_M, rough_heights
 from hexapods.domain.types import FloatArray
@@ -75,30 +76,32 @@ def _apply(one: Disturbance, target: _Target) -> None:
 @_apply.register
 def _limp(limp: Limp, target: _Target) -> None:
     for leg in limp.legs:
-        _cut_power(target.spec, leg)
+        _cut_power(target, leg)
 
 
 @_apply.register
 def _lost(lost: Lost, target: _Target) -> None:
     """Make legs weightless and let nothing touch them; their joints stay in the state."""
     for leg in lost.legs:
-        _cut_power(target.spec, leg)
-        for part in ("coxa", "femur", "tibia", "foot"):
-            geom = target.spec.geom(f"leg{leg}_{part}")
+        _cut_power(target, leg)
+        links = [joint.label for joint in legs_of(target.robot).of_leg(leg)]
+        for name in (*links, f"leg{leg}_foot"):
+            geom = target.spec.geom(name)
             geom.mass, geom.contype = _NO_KG, 0
 
 
 @_apply.register
 def _weak(weak: Weak, target: _Target) -> None:
     for leg in weak.legs:
-        for servo in _servos(target.spec, leg):
+        for servo in _servos(target, leg):
             servo.forcerange = np.array(servo.forcerange) * weak.torque_share
 
 
 @_apply.register
 def _stuck(stuck: Stuck, target: _Target) -> None:
     """Let the servo hold the joint with all its torque, even without power: it is jammed."""
-    robot, servo = target.robot, target.spec.actuator(f"leg{stuck.leg}_{stuck.joint}")
+    robot, legs = target.robot, legs_of(target.robot)
+    servo = target.spec.actuator(legs.joints[legs.index(stuck.leg, stuck.joint)].label)
     servo.gainprm[0] = robot.servo_kp
     servo.biasprm[1:3] = -robot.servo_kp, -robot.servo_kv
     servo.forcerange = [-robot.servo_torque_nm, robot.servo_torque_nm]
@@ -197,12 +200,12 @@ def _add_strip(spec: mujoco.MjSpec, name: str, from_m: float, to_m: float) -> mu
     )
 
 
-def _servos(spec: mujoco.MjSpec, leg: int) -> list[mujoco.MjsActuator]:
-    return [spec.actuator(f"leg{leg}_{joint}") for joint in ("coxa", "femur", "tibia")]
+def _servos(target: _Target, leg: int) -> list[mujoco.MjsActuator]:
+    return [target.spec.actuator(joint.label) for joint in legs_of(target.robot).of_leg(leg)]
 
 
-def _cut_power(spec: mujoco.MjSpec, leg: int) -> None:
-    for servo in _servos(spec, leg):
+def _cut_power(target: _Target, leg: int) -> None:
+    for servo in _servos(target, leg):
         servo.gainprm[0] = 0
         servo.biasprm[1:3] = 0, 0
         servo.forcerange = [-_NO_TORQUE_NM, _NO_TORQUE_NM]

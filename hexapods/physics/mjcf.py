@@ -1,6 +1,6 @@
 """Build a MuJoCo model from a `Robot`: a torso with a copy of one leg at each mount."""
 
-from functools import lru_cache
+from functools import lru_cache, singledispatch
 
 import mujoco
 import numpy as np
@@ -12,7 +12,6 @@ from hexapods.domain.robot import Robot
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.physics.conditions import apply_conditions
 
-LINKS = ("coxa", "femur", "tibia")
 VISIBLE_GROUP = 1
 """The group of the visual geoms."""
 _UNPAINTED = ("servo", "hip", "knee", "belly", "deck", "foot", "bracket")
@@ -54,8 +53,13 @@ def _compile_model(robot: Robot, conditions: World, forward_deg: float) -> mujoc
     return spec.compile()
 
 
+@singledispatch
 def robot_spec(robot: Robot) -> mujoco.MjSpec:
-    """Build the robot as an editable model specification."""
+    """Build the robot as an editable model specification.
+
+    A kind of robot with other legs registers its own function. Bodies, joints and actuators have
+    the labels of the joints (`hexapods.domain.legs`), the geom of a foot is `leg1_foot`.
+    """
     spec = mujoco.MjSpec.from_file(str(models_dir() / "torso.xml"))
     spec.option.timestep = robot.dt_s
     torso = spec.body("torso")
@@ -95,9 +99,9 @@ def _leg_spec(robot: Robot) -> mujoco.MjSpec:
     """Build a leg with this robot's lengths, masses, servos and friction."""
     spec = mujoco.MjSpec.from_file(str(models_dir() / "leg.xml"))
     ends = {"coxa": "femur", "femur": "tibia", "tibia": "foot"}
-    for link in LINKS:
+    for link, end_name in ends.items():
         length: float = getattr(robot, f"{link}_m")
-        end = spec.body(ends[link])
+        end = spec.body(end_name)
         _stretch(spec.body(link), length / end.pos[0])
         end.pos = [length, 0, 0]
         spec.geom(link).mass = getattr(robot, f"{link}_kg")
@@ -128,8 +132,3 @@ def _set_servo(spec: mujoco.MjSpec, link: str, robot: Robot) -> None:
     servo.gainprm[0] = robot.servo_kp
     servo.biasprm[1:3] = -robot.servo_kp, -robot.servo_kv
     servo.forcerange = [-robot.servo_torque_nm, robot.servo_torque_nm]
-
-
-def joint_index(leg: int, link: str) -> int:
-    """Return the index of a joint among all joints and servos; legs count from 1."""
-    return (leg - 1) * len(LINKS) + LINKS.index(link)

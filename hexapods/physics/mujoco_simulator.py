@@ -15,7 +15,7 @@ from hexapods.domain.errors import Diverged
 from hexapods.domain.feet import Feet
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.kinematics import JOINT_LIMITS_RAD, check_reach
+from hexapods.domain.kinematics import check_reach
 from hexapods.domain.motion import StepMotion, StepPlan, recorded_substeps
 from hexapods.domain.robot import Robot
 from hexapods.domain.simulator import Expansion, Motion, Step
@@ -23,7 +23,7 @@ from hexapods.domain.terrain import ROUGH_PERIOD_M
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.physics.conditions import direction
-from hexapods.physics.mjcf import compile_model, joint_index
+from hexapods.physics.mjcf import compile_model
 from hexapods.physics.servo_torque import servo_effort
 
 SETTLE_S = 1.0
@@ -42,7 +42,7 @@ class MujocoState:
         steps: taken since rest.
         origin_m: position of the row's origin in the world (x, y); on rough ground, which repeats,
             the row is moved by whole periods so that the robot stays on one of them.
-        delayed: servo targets that were not yet received [rad], (k, 3 · legs); only with a delay.
+        delayed: servo targets that were not yet received [rad], (k, joints); only with a delay.
     """
 
     row: FloatArray
@@ -54,7 +54,7 @@ class MujocoState:
 
     @property
     def commanded(self) -> Cells:
-        """The cell that each pair was last sent to."""
+        """The cell that each group was last sent to."""
         return self.feet.commanded
 
 
@@ -100,6 +100,7 @@ class MujocoSimulator:
         self._built = robot if built is None else built
         self.model = self._model(world.as_of(0))
         self._motion = StepMotion(robot, gait, grid)
+        self._legs = self._motion.kinematics.legs
         self._substeps = robot.swing_substeps + robot.shift_substeps
         self._recorded_substeps = recorded_substeps(robot)
         self._threads = threads
@@ -116,7 +117,7 @@ class MujocoSimulator:
     @cached_property
     def _rest(self) -> MujocoState:
         """The settled state with every foot at home, over the origin."""
-        standing = self._motion.legs.joint_angles(np.zeros((len(self.robot.legs), 3))).ravel()
+        standing = self._motion.kinematics.joint_angles(np.zeros((len(self._legs), 3)))
         half = np.deg2rad(90 - self.gait.forward_deg) / 2
         conditions = self.world.as_of(0)
         batch = Batch(self.model, 1, 1)
@@ -128,7 +129,7 @@ class MujocoSimulator:
         qpos[3], qpos[6] = np.cos(half), np.sin(half)
         qpos[7:] = standing
         for stuck in conditions.all_of(Stuck):
-            joint = joint_index(stuck.leg, stuck.joint)
+            joint = self._legs.index(stuck.leg, stuck.joint)
             standing[joint] = qpos[7 + joint] = stuck.angle_rad
         batch.rollout(round(SETTLE_S / self.robot.dt_s), standing[None, None], record=())
         self._check(batch, [0.0], [0])
@@ -206,7 +207,7 @@ class MujocoSimulator:
         return Expansion([ends[i] for i in range(len(states))], rewards)
 
     def commands(self, states: Sequence[MujocoState], actions: Sequence[Action]) -> FloatArray:
-        """Return the servo targets over a step from each state, (n, substeps, 3 · legs) [rad].
+        """Return the servo targets over a step from each state, (n, substeps, joints) [rad].
 
         They are those of an undisturbed robot.
         """
@@ -288,7 +289,7 @@ class MujocoSimulator:
         """Return the targets that the servos act on, and those that they receive after the step.
 
         Returns:
-            targets (n, substeps, 3 · legs) [rad], and for each state those delayed.
+            targets (n, substeps, joints) [rad], and for each state those delayed.
         """
         targets = self._motion.joint_targets(plans)
         delayed: list[FloatArray | None] = [None] * len(plans)
@@ -313,7 +314,7 @@ class MujocoSimulator:
                 held = np.where(np.abs(wanted - held) > dead_band.radians, wanted, held)
                 targets[:, substep] = held
         for stuck in conditions.all_of(Stuck):
-            targets[:, :, joint_index(stuck.leg, stuck.joint)] = stuck.angle_rad
+            targets[:, :, self._legs.index(stuck.leg, stuck.joint)] = stuck.angle_rad
         return targets, delayed
 
     def _placed(self, state: MujocoState, conditions: World) -> MujocoState:
@@ -371,29 +372,23 @@ class MujocoSimulator:
         )
 
     def estimate(self, state: MujocoState, error_m: FloatArray) -> MujocoState:
-        legs, gait = self._motion.legs, self.gait
-        angles = state.row[self._joints].reshape(-1, 3)
-        feet = np.array(legs.foot_offsets(angles.ravel().tolist()))
+        kinematics, leg_of = self._motion.kinematics, self._legs.leg_of_joint
+        angles = state.row[self._joints]
+        feet = np.array(kinematics.foot_offsets(angles.tolist()))
         measured = feet.copy()
-        for (leader, partner), (x, y) in zip(gait.pairs, error_m.tolist(), strict=True):
-            measured[leader - 1, :2] += x, y
-            measured[partner - 1, :2] += -x, y
-        low, high = np.array([*JOINT_LIMITS_RAD.values()]).T
+        measured[:, :2] += self.gait.by_leg(error_m)
         # As differences, so that an error of 0 changes nothing.
-        moved = angles + (legs.joint_angles(measured) - legs.joint_angles(feet))
+        moved = angles + (kinematics.joint_angles(measured) - kinematics.joint_angles(feet))
         row = state.row.copy()
-        is_reached = np.isfinite(moved).all(axis=1, keepdims=True)
+        is_unreached = np.bincount(leg_of, ~np.isfinite(moved)) > 0  # (legs,)
         # A foot that seems to be out of reach stays where it is.
-        row[self._joints] = np.where(is_reached, np.clip(moved, low, high), angles).ravel()
+        possible = np.clip(moved, *self._legs.limits_rad)
+        row[self._joints] = np.where(is_unreached[leg_of], angles, possible)
         return replace(state, row=_read_only_copy(row))
 
-    def pair_offsets(self, state: MujocoState) -> Sequence[tuple[float, float]]:
-        feet = self._motion.legs.foot_offsets(state.row[self._joints].tolist())
-        offsets = []
-        for leader, partner in self.gait.pairs:
-            (x, y, _), (mirrored_x, partner_y, _) = feet[leader - 1], feet[partner - 1]
-            offsets.append(((x - mirrored_x) / 2, (y + partner_y) / 2))
-        return offsets
+    def group_offsets(self, state: MujocoState) -> Sequence[tuple[float, float]]:
+        angles = state.row[self._joints].tolist()
+        return self.gait.by_group(self._motion.kinematics.foot_offsets(angles))
 
     def pose(self, state: MujocoState) -> FloatArray:
         pose: FloatArray = state.row[1 : 1 + self.model.nq].copy()

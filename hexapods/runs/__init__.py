@@ -1,7 +1,7 @@
 """Training loop and race loop; independent of web, database and job processes.
 
 `config` has the walking problem and the validated configs of trainings, `lane` and `race_config`
-those of races; `config_json` converts them to JSON and back.
+those of races.
 `training` is the training loop with its evaluations, `racing` the race loop; both yield `records`.
 `walker` combines a simulator, its current state and an agent.
 `recording` stores motion for playback; `stored_practice` encodes a training's recording as arrays.

@@ -6,7 +6,8 @@ Fields that a user may choose are declared as settings (`hexapods.domain.setting
 import logging
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Annotated, Any, Literal, get_args
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from annotated_types import Ge, Le
 
@@ -14,10 +15,11 @@ from hexapods.agents import registry
 from hexapods.agents.protocol import Problem
 from hexapods.domain import disturbances
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
-from hexapods.domain.gait import Gait, GaitSpec, resolve
+from hexapods.domain.gait import AnyGait, Gait, resolve
 from hexapods.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
 from hexapods.domain.observation import Observation, check_observation
-from hexapods.domain.robot import Robot
+from hexapods.domain.records import Record
+from hexapods.domain.robot import AnyRobot, Robot
 from hexapods.domain.settings import (
     DeclaredSetting,
     Setting,
@@ -27,7 +29,7 @@ from hexapods.domain.settings import (
     declared_fields,
 )
 from hexapods.domain.tolerance import MAX_TOLERANCE, build_tolerance
-from hexapods.domain.world import UNDISTURBED, World
+from hexapods.domain.world import UNDISTURBED, AnyWorld
 from hexapods.runs.seeding import BUILDING, generator
 
 _log = logging.getLogger(__name__)
@@ -122,7 +124,7 @@ Pace = Annotated[
 
 
 @dataclass(frozen=True, kw_only=True)
-class WalkingProblem:
+class WalkingProblem(Record):
     """Walking problem: a robot, its gait and foot grid, and the simulator.
 
     Attributes:
@@ -139,12 +141,14 @@ class WalkingProblem:
         InvalidInput: if a value is out of its limits, or gait or world do not fit the robot.
     """
 
-    gait: str | GaitSpec
-    robot: Robot = field(default_factory=Robot)
+    json_names: ClassVar[Mapping[str, str]] = MappingProxyType({"world": "disturbances"})
+
+    gait: AnyGait
+    robot: AnyRobot = field(default_factory=Robot)
     simulator: SimulatorName = "mujoco"
     divisions: Divisions = FootGrid.divisions
     grid_side_m: GridSide = FootGrid.side_m
-    world: World = UNDISTURBED
+    world: AnyWorld = UNDISTURBED
     tolerance: Tolerance = 0.0
 
     def __post_init__(self) -> None:
@@ -162,6 +166,11 @@ class WalkingProblem:
             )
         self.world.check(self.robot, self.simulator, getattr(self, "steps", None))
 
+    def walk(self) -> "WalkingProblem":
+        """Return the walking problem alone, without the fields of a training or race."""
+        names = (one.name for one in fields(WalkingProblem))
+        return WalkingProblem(**{name: getattr(self, name) for name in names})
+
     @property
     def grid(self) -> FootGrid:
         """The foot grid of this config."""
@@ -169,7 +178,7 @@ class WalkingProblem:
 
     @property
     def resolved_gait(self) -> Gait:
-        """The gait with its leg pairs for this robot."""
+        """The gait with its groups of legs for this robot."""
         return resolve(self.gait, self.robot.azimuths_deg)
 
     @property
@@ -187,7 +196,7 @@ class WalkingProblem:
 def problem_of(walk: WalkingProblem) -> Problem:
     """Return the size and geometry of a walking problem, as agents know it."""
     gait = walk.resolved_gait
-    return Problem(gait.pairs, walk.grid.cells, gait.azimuths_deg)
+    return Problem(gait.groups, walk.grid.cells, gait.azimuths_deg)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hexapods.domain.disturbances import Lost
-from hexapods.domain.kinematics import foot_positions
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
 from hexapods.domain.terrain import ground_heights
 from hexapods.domain.types import FloatArray
@@ -34,11 +34,11 @@ def clearances_m(
 
     Args:
         robot: the robot as it was built.
-        poses: (k, 7 + 3 · legs).
+        poses: (k, 7 + joints).
         steps: the step that each pose belongs to, counted from 0, (k,).
         world: what happens by step; of a leg that is gone the foot is infinitely far from it.
     """
-    feet = foot_positions(robot, poses)
+    feet = legs_of(robot).foot_positions(poses)
     clearance: FloatArray = feet[..., 2] - robot.foot_radius_m
     for part, conditions in _stretches(steps, world):
         clearance[part] -= ground_heights(conditions, feet[part, :, :2])
@@ -72,9 +72,9 @@ def stance_intervals(times_s: FloatArray, clearance_m: FloatArray) -> list[Inter
     changes = np.flatnonzero(stands[1:] != stands[:-1])
     edges = []
     for before in changes.tolist():
-        share, pair = 0.0, above[before : before + 2]
-        if np.isfinite(pair).all():  # else a leg is lost, or is there again, with the new step
-            share = pair[0] / (pair[0] - pair[1])
+        share, both = 0.0, above[before : before + 2]
+        if np.isfinite(both).all():  # else a leg is lost, or is there again, with the new step
+            share = both[0] / (both[0] - both[1])
         edges.append(float(times_s[before] + share * (times_s[before + 1] - times_s[before])))
     if stands[0]:
         edges.insert(0, float(times_s[0]))

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from hexapods.domain.disturbances import Lost, Payload
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.kinematics import rotation_matrices
+from hexapods.domain.kinematics import legs_of
+from hexapods.domain.posture import rotation_matrices
 from hexapods.domain.robot import Robot
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
@@ -58,7 +59,7 @@ class Cycle:
         first_step: the step in which the repetition begins, counted from 0.
         repeats: how often it was walked, in full.
         advance_m: the distance along the track in one period, on average.
-        actions: (pair, cell) of each step, beginning with that of `first_step`.
+        actions: (group, cell) of each step, beginning with that of `first_step`.
     """
 
     steps: int
@@ -313,14 +314,15 @@ def _distance_m(
 
 
 def _mean_mass_kg(robot: Robot, world: World, steps: NDArray[np.int64]) -> float:
-    leg = robot.coxa_kg + robot.femur_kg + robot.tibia_kg + robot.foot_kg
+    masses_kg = dict(enumerate(legs_of(robot).masses_kg, start=1))
     numbers, counts = np.unique(steps, return_counts=True)
     total = 0.0
     for number, count in zip(numbers.tolist(), counts.tolist(), strict=True):
         conditions = world.as_of(number)
-        legs = len(robot.legs) - sum(len(lost.legs) for lost in conditions.all_of(Lost))
+        lost = {leg for one in conditions.all_of(Lost) for leg in one.legs}
+        legs = math.fsum(kg for leg, kg in masses_kg.items() if leg not in lost)
         payload = sum(one.kg for one in conditions.all_of(Payload))
-        total += count * (robot.torso_kg + legs * leg + payload)
+        total += count * (robot.torso_kg + legs + payload)
     return total / len(steps)
 
 
@@ -348,7 +350,7 @@ def _cycle_of(walk: RecordedWalk, period: int, first: int) -> Cycle:
         repeats=repeats,
         advance_m=advance,
         actions=[
-            (step.action.pair, step.action.cell)
+            (step.action.group, step.action.cell)
             for step in walk.steps[first : first + period]
             if step.action is not None
         ],

@@ -1,12 +1,13 @@
 """Lanes of races: their configs, with checks against their agents."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Literal
 
 from hexapods.agents import registry
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.observation import Observation, check_observation
+from hexapods.domain.records import Record
 from hexapods.domain.settings import Setting, SettingValues, Value, complete, declared_fields
 from hexapods.runs.config import WalkingProblem, agent_settings
 
@@ -46,7 +47,7 @@ KeepLearning = Annotated[
 
 
 @dataclass(frozen=True, kw_only=True)
-class LaneConfig:
+class LaneConfig(Record):
     """Config of one lane of a race. `lane_config` adds the agent's defaults.
 
     Attributes:
@@ -71,7 +72,8 @@ class LaneConfig:
             setting.check(getattr(self, setting.name))
 
 
-_LANE_FIELDS = tuple(one.name for one in fields(LaneConfig) if one.name != "settings")
+LANE_FIELDS = frozenset(declared_fields(LaneConfig))
+"""Names of the declared fields of a lane; all other names are settings of its agent."""
 
 
 def observation_of(
@@ -99,37 +101,23 @@ def observation_of(
     return of_training
 
 
-def lane_config(
-    agent: str,
-    *,
-    observation: Observation = LaneConfig.observation,
-    keep_learning: bool | None = None,
-    plans_with: str | None = None,
-    has_training: bool = False,
-    **settings: Any,
-) -> LaneConfig:
+def lane_config(agent: str, *, has_training: bool = False, **given: Any) -> LaneConfig:
     """Create the config of a lane, with its agent's settings validated and completed.
 
     Args:
         agent: a registered name or `my.module:Agent`.
-        observation: observation mode.
-        keep_learning: whether the agent learns in the race; None for the agent's default.
-        plans_with: what a searcher knows; see `LaneConfig`.
         has_training: whether the agent races with what it learned in a training.
-        settings: the agent's settings by name.
+        given: fields of `LaneConfig`, without `keep_learning` or with None for the agent's default;
+            and the agent's settings by name.
 
     Raises:
         UnknownName, InvalidInput: if the agent, a setting or a value is invalid.
     """
-    if keep_learning is None:
-        keep_learning = registry.keeps_learning(agent)
-    lane = LaneConfig(
-        agent=agent,
-        observation=observation,
-        keep_learning=keep_learning,
-        plans_with=plans_with,  # type: ignore[arg-type]  # it is checked
-        settings=SettingValues(settings),
-    )
+    own = {name: value for name, value in given.items() if name in LANE_FIELDS}
+    settings = {name: value for name, value in given.items() if name not in LANE_FIELDS}
+    if own.get("keep_learning") is None:
+        own["keep_learning"] = registry.keeps_learning(agent)
+    lane = LaneConfig(agent=agent, **own, settings=SettingValues(settings))
     check_lane(lane, has_training)
     if has_training:
         return lane
@@ -175,18 +163,3 @@ def check_lane(lane: LaneConfig, has_training: bool) -> None:
         )
     if not has_training:
         complete(agent_settings(lane.agent), lane.settings, lane.agent)
-
-
-def lane_as_json(lane: LaneConfig) -> dict[str, Any]:
-    """Convert a lane to plain types."""
-    return {**{name: getattr(lane, name) for name in _LANE_FIELDS}, "settings": dict(lane.settings)}
-
-
-def lane_from_json(data: Mapping[str, Any]) -> LaneConfig:
-    """Parse the output of `lane_as_json`; the agent is not imported.
-
-    Raises:
-        InvalidInput: if a value is invalid.
-        KeyError, TypeError: if it is not the output of `lane_as_json`.
-    """
-    return LaneConfig(**{**data, "settings": SettingValues(data["settings"])})

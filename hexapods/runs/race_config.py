@@ -1,13 +1,14 @@
 """Configs of races: complete, validated and immutable."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
-from annotated_types import Ge, Le
+from annotated_types import Ge, Le, Lt
 
 from hexapods.domain.checks import check_whole
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.settings import Setting
+from hexapods.domain.records import Record
+from hexapods.domain.settings import Setting, declared_fields
 from hexapods.runs.config import RACE_STEPS, Seed, WalkingProblem
 from hexapods.runs.lane import LaneConfig
 
@@ -24,13 +25,38 @@ RaceSteps = Annotated[
     Setting(title="Steps of the race", help="How many steps each robot has in the race."),
 ]
 
+BRANCH_STEPS = (
+    "a whole number from 0 to the steps that the race has taken; at least one must be left"
+)
+"""The valid steps of a branch, in words."""
 
-class Branch(NamedTuple):
-    """The moment of another race at which a race branches off; until then both are the same."""
+
+@dataclass(frozen=True)
+class Branch(Record):
+    """The moment of another race at which a race branches off; until then both are the same.
+
+    Attributes:
+        race_id: id of the other race.
+        step: number of steps that they share.
+    """
 
     race_id: str
-    step: int
-    """Number of steps that they share."""
+    step: Annotated[
+        int,
+        Ge(0),
+        Lt(MAX_RACE_STEPS),
+        Setting(title="Step", help="How many steps of that race are repeated."),
+    ]
+
+    def __post_init__(self) -> None:
+        try:
+            step = declared_fields(Branch)["step"].normalized(self.step)
+        except InvalidInput:
+            given = repr(self.step)[:80]
+            raise InvalidInput(
+                f"there is no such step: branch_from.step must be {BRANCH_STEPS}, not {given}"
+            ) from None
+        object.__setattr__(self, "step", step)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,12 +4,11 @@ A long race is stored in several such files, each with the steps that follow tho
 before. About 2 kB a step.
 """
 
-import hashlib
 import io
 import json
 import math
 import zipfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from itertools import accumulate
 from typing import Any, NamedTuple
@@ -86,32 +85,6 @@ def _future_arrays(steps: Sequence[LaneStep]) -> Arrays:
         "future_values": np.array([(one.reward_m, one.return_m) for one in found], float),
         "future_counts": np.array([(one.sequences, one.steps) for one in found], np.uint32),
     }
-
-
-def recording_sha256(lanes: Iterable[LaneRecording]) -> str:
-    """Return the SHA-256 of what a recording has of each lane, without the times of decisions.
-
-    The reason of a failure does not count, which may name an object by its address in memory.
-    """
-    digest = hashlib.sha256()
-
-    def add(kind: str, values: object) -> None:
-        array = np.asarray(values, kind)
-        digest.update(f"{array.shape}".encode())
-        digest.update(array.tobytes())
-
-    for lane in lanes:
-        digest.update(f"{lane.agent} {len(lane.steps)} {lane.failure is not None}".encode())
-        add("<f4", lane.rest_qpos)
-        for step in lane.steps:
-            add("<i8", [*step.observation, *step.action, step.transitions])
-            add("<f8", [step.reward_m, step.distance_m])
-            known = step.action_values
-            for column in (*step.motion, *((known.values, known.visits) if known else ())):
-                add("<f4", () if column is None else column)
-            for future in step.futures:
-                add("<f8", [*future.action, *future[1:]])
-    return digest.hexdigest()
 
 
 def race_recording(arrays: Mapping[str, NDArray[Any]]) -> list[LaneRecording]:

@@ -41,7 +41,7 @@ class LoggedSensors:
             observation: the observation mode.
         """
         self._grid, self._observation = walk.grid, observation
-        self.feet = Feet.at_home(len(walk.resolved_gait.pairs))
+        self.feet = Feet.at_home(len(walk.resolved_gait.groups))
         self.see(self.feet.commanded, self.feet.commanded)
 
     def see(self, observation: Cells, measured: Cells) -> None:
@@ -60,7 +60,7 @@ class LoggedSensors:
         self.feet, _ = landed.centred()
 
     def __call__(self, how: Observation) -> Cells:
-        """Return the observed cells, one per pair."""
+        """Return the observed cells, one per group."""
         if how in self._cells:
             return self._cells[how]
         if how == "commanded":
@@ -71,7 +71,7 @@ class LoggedSensors:
 
     @property
     def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
-        """Each pair's offset (x, y) from home by dead reckoning."""
+        """Each group's offset (x, y) from home by dead reckoning."""
         return tuple(zip(self.feet.lateral_m, self.feet.forward_m, strict=True))
 
 
@@ -99,7 +99,7 @@ class ExplainedStep:
     Attributes:
         step: counted from 1.
         logged: what is in the log.
-        visits: how often each action had been tried in this state before, (pairs, cells); None for
+        visits: how often each action had been tried in this state before, (groups, cells); None for
             a learner that does not count.
         choice: why it chose its action; None for a learner that does not explain.
         update: how its values changed; None for one that does not explain, or did not learn.

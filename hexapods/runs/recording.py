@@ -5,6 +5,7 @@ race only the figures of the steps (`step_figures`) stay in memory; what else th
 steps is in files, and read when it is asked for.
 """
 
+import hashlib
 from bisect import bisect_right
 from collections import deque
 from collections.abc import Iterable, Sequence
@@ -168,6 +169,28 @@ class LaneRecording:
         newest = self.steps[self.steps.stored :]
         held = sum(_size_of(step.motion, step.action_values) for step in newest)
         return self.steps.figures.nbytes + held
+
+
+_NOT_HASHED = ("decision_s", "lowest", "highest")
+
+
+def recording_sha256(lanes: Iterable[LaneRecording]) -> str:
+    """Return the SHA-256 of what a recording has of each lane, without the times of decisions.
+
+    It is of the figures of the steps, which follow from the motion to the last bit and are in
+    memory. The reason of a failure does not count: it may name an object by its address.
+    """
+    digest = hashlib.sha256()
+    for lane in lanes:
+        rows = lane.steps.figures
+        digest.update(f"{lane.agent} {rows.shape} {lane.failure is not None}".encode())
+        names = [name for name in rows.dtype.names or () if name not in _NOT_HASHED]
+        for column in (lane.rest_qpos, *(rows[name] for name in names)):
+            digest.update(column.astype(column.dtype.newbyteorder("<")).tobytes())
+        # A file keeps action values in single precision.
+        for name in ("lowest", "highest"):
+            digest.update(rows[name].astype("<f4").tobytes())
+    return digest.hexdigest()
 
 
 FIRST_STEPS, NEWEST_STEPS = 20, 500

@@ -12,9 +12,9 @@ class ActionValues:
     """Action values of a learner in the state in which it is about to act."""
 
     values: FloatArray
-    """(pairs, cells) expected return [m], NaN where illegal."""
+    """(groups, cells) expected return [m], NaN where illegal."""
     visits: FloatArray
-    """(pairs, cells) visit counts, NaN where illegal."""
+    """(groups, cells) visit counts, NaN where illegal."""
 
 
 @dataclass(frozen=True)

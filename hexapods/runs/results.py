@@ -11,15 +11,18 @@ from typing import Annotated, Any
 
 from annotated_types import Ge, Le, MaxLen, MinLen, Predicate
 
+from hexapods.agents.protocol import Tabular
 from hexapods.domain.posture import have_fallen, heading_deg
 from hexapods.domain.robot import Robot
 from hexapods.domain.text import MAX_MESSAGE, message
 from hexapods.domain.world import World
+from hexapods.runs.best_known import best_known_m
 from hexapods.runs.clocks import CLOCKS, Clock, Timetable, crossing_s, distance_at
-from hexapods.runs.config import MAX_STEPS
+from hexapods.runs.config import MAX_STEPS, TrainingConfig
 from hexapods.runs.lane import PlanningModel, plans_with
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
-from hexapods.runs.recording import LaneRecording
+from hexapods.runs.recording import LaneRecording, recording_sha256
+from hexapods.runs.training import Learner, evaluate, measure_baseline
 
 Metres = Annotated[float, Ge(-1e6), Le(1e6)]
 Seconds = Annotated[float, Ge(0), Le(1e9)]
@@ -110,11 +113,36 @@ class LaneResult:
 class RaceResult:
     """Result of a race, by lane.
 
-    `shared_machine`: whether other runs computed beside it, which slows its wall clock.
+    `recording_sha256` is a hash of all steps without the times of decisions, the same wherever the
+    race is repeated; null if it was raced by an earlier version. `shared_machine`: whether other
+    runs computed beside it, which slows its wall clock.
     """
 
     lanes: Annotated[tuple[LaneResult, ...], MaxLen(MAX_LANES)]
+    recording_sha256: Sha256 | None = None
     shared_machine: bool = False
+
+
+def training_result(
+    learner: Learner, config: TrainingConfig, measure_reference: bool = True
+) -> TrainingResult:
+    """Compute the result of a training: an evaluation, its references, the hash of the Q-table.
+
+    Without `measure_reference`, `greedy_distance_m` is None unless it was measured before.
+    """
+    distance = evaluate(learner, config, learner.epsilon).distance_m
+    conditions = learner.conditions(config.steps)
+    is_measured = learner.greedy_distance_m is not None and learner.measured_in == conditions
+    if measure_reference and not is_measured:
+        measure_baseline(learner, config, conditions)
+    agent, is_known = learner.walker.agent, is_measured or measure_reference
+    return TrainingResult(
+        distance_m=distance,
+        greedy_distance_m=learner.greedy_distance_m if is_known else None,
+        best_known_m=best_known_m(config, conditions),
+        q_table_sha256=agent.table.sha256() if isinstance(agent, Tabular) else None,
+        fell_at_step=learner.fell_at_step,
+    )
 
 
 def race_result(lanes: Sequence[LaneRecording], config: RaceConfig) -> RaceResult:
@@ -140,7 +168,8 @@ def race_result(lanes: Sequence[LaneRecording], config: RaceConfig) -> RaceResul
                 ),
             )
             for number, lane in enumerate(lanes)
-        )
+        ),
+        recording_sha256=recording_sha256(lanes),
     )
 
 

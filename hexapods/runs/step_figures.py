@@ -20,7 +20,7 @@ Rows = NDArray[Any]
 """A structured array; see `figures_type`."""
 
 
-def figures_type(pairs: int) -> np.dtype[Any]:
+def figures_type(groups: int) -> np.dtype[Any]:
     """Return the type of a row.
 
     Its fields are those of `LaneStep`, and `lowest` and `highest`, of all action values up to the
@@ -29,7 +29,7 @@ def figures_type(pairs: int) -> np.dtype[Any]:
     number.
 
     Args:
-        pairs: number of leg pairs, which are observed.
+        groups: number of groups of legs, which are observed.
     """
     return np.dtype(
         [
@@ -43,7 +43,7 @@ def figures_type(pairs: int) -> np.dtype[Any]:
             ("furthest_m", "f4"),
             ("tilt", "f4", (len(TILT),)),
             ("frames", "i4"),
-            ("observation", "u1", (pairs,)),
+            ("observation", "u1", (groups,)),
             ("action", "u1", (2,)),
         ]
     )
@@ -77,9 +77,9 @@ class GrowingArray:
         self._count = count
 
 
-def no_figures(pairs: int = 0) -> Rows:
+def no_figures(groups: int = 0) -> Rows:
     """Return the figures of no steps; see `figures_type`."""
-    return np.empty(0, figures_type(pairs))
+    return np.empty(0, figures_type(groups))
 
 
 def row_of(step: LaneStep, before: Rows) -> tuple[Any, ...]:
@@ -122,7 +122,7 @@ class StepColumns(NamedTuple):
     motion: Motion
     """The frames of all steps."""
     values: NDArray[np.float32] | None
-    """Action values before each step, (n, pairs, cells)."""
+    """Action values before each step, (n, groups, cells)."""
 
 
 def rows_of(columns: StepColumns, before: Rows) -> Rows:

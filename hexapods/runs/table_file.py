@@ -32,7 +32,7 @@ class TableFile:
 
     Attributes:
         meta: metadata as in `Checkpoint.meta`.
-        pairs, cells: number of leg pairs and of cells of the foot grid.
+        groups, cells: number of groups of legs and of cells of the foot grid.
     """
 
     def __init__(self, file: RandomAccessFile, readable: BinaryIO, label: str) -> None:
@@ -62,7 +62,7 @@ class TableFile:
                     for name in ("where", "q", "n")
                 )
             grid = FootGrid(self.meta["grid_side_m"], self.meta["divisions"])
-            self.pairs, self.cells = len(self.meta["pairs"]), len(grid)
+            self.groups, self.cells = len(self.meta["pairs"]), len(grid)
         except TableMismatch:
             raise
         except Exception as error:  # zipfile and NumPy document no complete list of exceptions
@@ -71,11 +71,11 @@ class TableFile:
         if kinds != "ifu" or not self._where.length == self._q.length == self._n.length:
             raise TableMismatch("the table's values, visits and places do not fit together")
 
-        check_size(self.pairs, self.cells)
+        check_size(self.groups, self.cells)
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Iterate over all states in order, with values and visits, (pairs, cells), NaN illegal."""
-        return TableRows(self.pairs, self.cells, self._parts).rows()
+        """Yield all states in order, with values and visits, (groups, cells), NaN illegal."""
+        return TableRows(self.groups, self.cells, self._parts).rows()
 
     def _parts(self) -> Iterator[Part]:
         for first in range(0, self._where.length, VALUES_AT_ONCE):

@@ -21,10 +21,10 @@ from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from hexapods.domain.disturbances import as_mapping
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.domain.grid import FootGrid
+from hexapods.domain.records import to_json
 from hexapods.domain.world import world
 from hexapods.runs import seeding
 from hexapods.runs.config import TrainingConfig, WalkingProblem
-from hexapods.runs.config_json import as_json
 from hexapods.runs.recording import Arrays
 from hexapods.runs.training import Learner
 from hexapods.runs.version_1 import nested_change, nested_config
@@ -65,7 +65,7 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         "agent": config.agent,
         "gait": gait.name,
         "azimuths_deg": gait.azimuths_deg,
-        "pairs": gait.pairs,
+        "pairs": gait.groups,
         "legs": len(config.robot.legs),
         "divisions": config.divisions,
         "grid_side_m": config.grid_side_m,
@@ -76,7 +76,7 @@ def snapshot(learner: Learner, config: TrainingConfig, **more: Any) -> Checkpoin
         "due_epsilon": learner.due_epsilon,
         **_next_step(learner),
         "rng": seeding.dump(learner.rng),
-        "config": as_json(config),
+        "config": to_json(config),
         "disturbances": [as_mapping(one) for one in learner.world.disturbances],
         "fell_at_step": learner.fell_at_step,
         "newest_epsilon": learner.newest_epsilon,
@@ -181,9 +181,9 @@ def table_of(checkpoint: Checkpoint) -> TableRows:
     state, meta = agent_state(checkpoint), checkpoint.meta
     if "where" not in state:
         raise TableMismatch(f"the agent {meta['agent']} keeps no Q-table")
-    pairs, cells = len(meta["pairs"]), len(FootGrid(meta["grid_side_m"], meta["divisions"]))
-    check_size(pairs, cells)
-    check_arrays(state, pairs, cells)
+    groups, cells = len(meta["pairs"]), len(FootGrid(meta["grid_side_m"], meta["divisions"]))
+    check_size(groups, cells)
+    check_arrays(state, groups, cells)
 
     def parts() -> Iterator[Part]:
         for first in range(0, len(state["where"]), VALUES_AT_ONCE):
@@ -192,7 +192,7 @@ def table_of(checkpoint: Checkpoint) -> TableRows:
             )
             yield where, q, n
 
-    return TableRows(pairs, cells, parts)
+    return TableRows(groups, cells, parts)
 
 
 def check_fits(
@@ -212,7 +212,7 @@ def check_fits(
     wanted: dict[str, Any] = {
         "legs": len(walk.robot.legs),
         "gait": gait.name,
-        "pairs": [list(pair) for pair in gait.pairs],
+        "pairs": [list(group) for group in gait.groups],
         "azimuths_deg": list(gait.azimuths_deg),
         "divisions": walk.divisions,
         "grid_side_m": walk.grid_side_m,

@@ -1,8 +1,8 @@
 """Log of the transitions of a practice: what its learner observed, did and earned, step by step.
 
 With the log a learner of any step can be rebuilt without physics (`hexapods.runs.rebuilding`).
-It takes 16 bytes a step with three leg pairs: rewards are float64, so that the rebuilt values are
-equal to the bit.
+It takes 16 bytes a step with three groups of legs: rewards are float64, so that the rebuilt values
+are equal to the bit.
 """
 
 from array import array
@@ -18,7 +18,7 @@ from hexapods.runs.recording import Arrays
 MAX_LOGGED_STEPS = 1_000_000
 """Steps of a training that are logged, from its start; about 16 MB."""
 BYTES_PER_STEP = 24
-"""Approximate size of a step in memory, with five leg pairs or fewer."""
+"""Approximate size of a step in memory, with five groups of legs or fewer."""
 
 
 class Logged(NamedTuple):
@@ -39,11 +39,11 @@ class Transitions(NamedTuple):
     first: int
     """Number of steps before the first of them."""
     observed: NDArray[np.uint8]
-    """Observation before each of n steps and after the last, (n + 1, pairs)."""
+    """Observation before each of n steps and after the last, (n + 1, groups)."""
     measured: NDArray[np.uint8]
-    """The measured cells at these times, (n + 1, pairs)."""
+    """The measured cells at these times, (n + 1, groups)."""
     actions: NDArray[np.uint8]
-    """Pair and cell of each action, (n, 2)."""
+    """Group and cell of each action, (n, 2)."""
     rewards_m: FloatArray
     """(n,)"""
 
@@ -55,14 +55,14 @@ class Transitions(NamedTuple):
         reward_m = float(self.rewards_m[number])
         return Logged(observed[0], measured[0], action, reward_m, observed[1], measured[1])
 
-    def check(self, pairs: int, cells: int) -> None:
+    def check(self, groups: int, cells: int) -> None:
         """Check that the steps are possible on a foot grid, as those of an untrusted file.
 
         Raises:
             ValueError: if they are not.
         """
         count = len(self.rewards_m)
-        shapes = [(count + 1, pairs), (count + 1, pairs), (count, 2), (count,)]
+        shapes = [(count + 1, groups), (count + 1, groups), (count, 2), (count,)]
         parts = (self.observed, self.measured, self.actions, self.rewards_m)
         if [part.shape for part in parts] != shapes:
             raise ValueError("its steps do not fit together")
@@ -70,7 +70,7 @@ class Transitions(NamedTuple):
             raise ValueError("its steps are no numbers of cells and rewards")
         if self.observed.max() >= cells or self.measured.max() >= cells:
             raise ValueError("what it observed is on no foot grid")
-        if (self.actions >= [pairs, cells]).any() or not np.isfinite(self.rewards_m).all():
+        if (self.actions >= [groups, cells]).any() or not np.isfinite(self.rewards_m).all():
             raise ValueError("what it did cannot be done")
         moved = self.observed[np.arange(count), self.actions[:, 0]]
         if (moved == self.actions[:, 1]).any():
@@ -84,7 +84,7 @@ class TransitionLog:
     """
 
     def __init__(self) -> None:
-        self._pairs = 0
+        self._groups = 0
         self._observed, self._measured = bytearray(), bytearray()
         self._actions, self._rewards = bytearray(), array("d")
 
@@ -103,7 +103,7 @@ class TransitionLog:
         begin, end = len(self) - part.first, MAX_LOGGED_STEPS - part.first
         if begin < 0:
             raise ValueError(f"these steps follow step {part.first}, not step {len(self)}")
-        self._pairs = part.observed.shape[1]
+        self._groups = part.observed.shape[1]
         # The observation after the last step is there; before the first step nothing is.
         rows = slice(begin + bool(self._observed), end + 1)
         self._observed += part.observed[rows].tobytes()
@@ -114,9 +114,9 @@ class TransitionLog:
     def part(self, first: int, end: int) -> Transitions:
         """Return the steps from one to before another, as far as there are; a copy."""
         end = min(end, len(self))
-        cells = slice(first * self._pairs, (end + 1) * self._pairs)
+        cells = slice(first * self._groups, (end + 1) * self._groups)
         observed, measured = (
-            np.frombuffer(bytes(column[cells]), np.uint8).reshape(-1, self._pairs)
+            np.frombuffer(bytes(column[cells]), np.uint8).reshape(-1, self._groups)
             for column in (self._observed, self._measured)
         )
         actions = np.frombuffer(bytes(self._actions[2 * first : 2 * end]), np.uint8)

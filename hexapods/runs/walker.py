@@ -58,7 +58,7 @@ class FutureNode:
 
     @cached_property
     def offsets_m(self) -> Sequence[tuple[float, float]]:
-        """Measured offset (x, y) of each pair's leader from home [m]."""
+        """Measured offset (x, y) of each group from home [m]."""
         return self._expand.offsets_m(self.state)
 
 
@@ -67,7 +67,7 @@ class Sensors:
 
     Attributes:
         error_m: errors of the measured offsets in this state, the same for all that is read from
-            it, (pairs, 2) [m]; None where sensors are exact.
+            it, (groups, 2) [m]; None where sensors are exact.
     """
 
     def __init__(
@@ -96,22 +96,22 @@ class Sensors:
         noise = self._simulator.world.as_of(steps).one_of(SensorNoise)
         if noise is None or self._noise is None:
             return None
-        return self._noise(steps).normal(0, noise.sd_m, (len(self._simulator.gait.pairs), 2))
+        return self._noise(steps).normal(0, noise.sd_m, (len(self._simulator.gait.groups), 2))
 
     @property
     def offsets_m(self) -> Sequence[tuple[float, float]]:
-        """Measured offset (x, y) of each pair's leader from home, with errors [m]."""
+        """Measured offset (x, y) of each group from home, with errors [m]."""
         return measured_offsets(self._simulator, self._state, self.error_m)
 
     def __call__(self, how: Observation) -> Cells:
-        """Return the cells that an agent observes in the current state, one per pair."""
+        """Return the cells that an agent observes in the current state, one per group."""
         if how not in self._read:
             self._read[how] = observe(self._simulator, self._state, how, self.error_m)
         return self._read[how]
 
     @property
     def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
-        """Each pair's offset (x, y) from home by dead reckoning."""
+        """Each group's offset (x, y) from home by dead reckoning."""
         return planned_offsets(self._state)
 
 
@@ -173,8 +173,8 @@ class SimulatorExpand:
         self.here = FutureNode(self, state, observed, legal)
 
     def offsets_m(self, state: WalkState) -> Sequence[tuple[float, float]]:
-        """Return where the feet are measured in a state, per pair [m]."""
-        return self._simulator.pair_offsets(state)
+        """Return where the feet are measured in a state, per group [m]."""
+        return self._simulator.group_offsets(state)
 
     def legal(self, state: WalkState) -> Sequence[Action]:
         """Return the legal actions in a state."""
@@ -190,8 +190,9 @@ class Walker:
         agent: chooses actions.
         observation: observation mode.
         keeps_learning: whether the agent learns in a race.
+        expand: simulates what the agent's search asks for; None for an agent that does not search.
         state: current state of the simulation.
-        observed: current observation, the cell of each leg pair.
+        observed: current observation, the cell of each group of legs.
         legal: legal actions in the current state.
     """
 
@@ -205,7 +206,7 @@ class Walker:
     ) -> None:
         self.simulator, self.agent, self.observation = simulator, agent, observation
         self.keeps_learning = False
-        self._expand, self._sensors = expand, sensors or Sensors(simulator)
+        self.expand, self._sensors = expand, sensors or Sensors(simulator)
         self.set_state(simulator.rest())
 
     def set_state(self, state: WalkState) -> None:
@@ -214,8 +215,8 @@ class Walker:
         self._sensors.at(state)
         self.observed: Cells = self._sensors(self.observation)
         self.legal = legal_actions(self.observed, len(self.simulator.grid))
-        if self._expand:
-            self._expand.at(state, self._sensors, self.legal)
+        if self.expand:
+            self.expand.at(state, self._sensors, self.legal)
 
     @property
     def measured(self) -> Cells:
@@ -225,12 +226,12 @@ class Walker:
     @property
     def transitions(self) -> int:
         """Number of transitions that the agent has simulated so far."""
-        return self._expand.transitions if self._expand else 0
+        return self.expand.transitions if self.expand else 0
 
     def interrupt_by(self, interrupt: Callable[[], None]) -> None:
         """Let a function interrupt the agent's search, by raising `Interrupted`."""
-        if self._expand:
-            self._expand.interrupt = interrupt
+        if self.expand:
+            self.expand.interrupt = interrupt
 
     def decide(self) -> Action:
         """Return the action that the agent chooses in the current state.
@@ -241,7 +242,7 @@ class Walker:
         return self.legal_action(self.agent.act(self.observed, self.legal))
 
     def legal_action(self, chosen: Sequence[int]) -> Action:
-        """Return an action given as (pair, cell) after checking that it is legal.
+        """Return an action given as (group, cell) after checking that it is legal.
 
         Raises:
             IllegalAction: if it is not legal in the current state.

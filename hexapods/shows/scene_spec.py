@@ -10,6 +10,7 @@ from hexapods.domain.errors import Unreachable
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematic import KinematicSimulator
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
 from hexapods.domain.types import FloatArray
 from hexapods.runs.config import TrainingConfig
@@ -41,7 +42,7 @@ def idle_scene() -> SceneSpec:
 
 
 def rest_pose(spec: SceneSpec) -> FloatArray:
-    """Return the qpos of the robot at rest on the start line, (7 + 3 · legs,), read-only."""
+    """Return the qpos of the robot at rest on the start line, (7 + joints,), read-only."""
     return _rest_pose(spec.robot, spec.gait, spec.grid)
 
 
@@ -52,7 +53,7 @@ def _rest_pose(robot: Robot, gait: Gait, grid: FootGrid) -> FloatArray:
         pose = simulator.pose(simulator.rest())
     except Unreachable:
         # A run with such a robot failed before its first step, but can still be shown.
-        pose = np.zeros(7 + 3 * len(robot.legs))
+        pose = np.zeros(legs_of(robot).pose_size)
         pose[2], pose[3] = robot.body_height_m + robot.foot_radius_m, 1.0
     pose.flags.writeable = False
     return pose

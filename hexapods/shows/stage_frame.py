@@ -50,11 +50,11 @@ class ActionValuesView:
     """Action values of a learner in its present state, with their visit counts."""
 
     values_m: FloatArray
-    """(pairs, cells), NaN where illegal."""
+    """(groups, cells), NaN where illegal."""
     visits: FloatArray
-    """(pairs, cells), NaN where illegal."""
+    """(groups, cells), NaN where illegal."""
     current: Cells
-    """Cell of each leg pair."""
+    """Cell of each group of legs."""
     next: Action | None
     """Action taken in this state."""
     low_m: float
@@ -211,17 +211,17 @@ class StageFrame:
         lane, known = next(learners, (0, None))
         if known is None:
             return None
-        spec = self.spec
+        spec, upcoming = self.spec, known.next
         return {
             "lane": lane,
             "agent": spec.lane_specs[lane].agent,
-            "pairs": [list(pair) for pair in spec.gait.pairs],
+            "pairs": [list(group) for group in spec.gait.groups],
             "cells_m": spec.grid.cells.round(5).tolist(),
             "cell_names": [spec.grid.name(cell) for cell in range(len(spec.grid))],
             "current": list(known.current),
             "values_m": _table(known.values_m),
             "visits": _table(known.visits),
-            "next": None if known.next is None else known.next._asdict(),
+            "next": upcoming and {"pair": upcoming.group, "cell": upcoming.cell},
             "low": round(known.low_m, 5),
             "high": round(known.high_m, 5),
         }

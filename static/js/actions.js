@@ -7,12 +7,10 @@ import {
   chooseLearner, form, mistakes, raceBody, setField, setFields, trainingBody, validSteps,
 } from "./form.js";
 import { count, listed, whole } from "./format.js";
-import { goIfStillHere } from "./page.js";
+import { changeIfStillHere, page } from "./page-state.js";
 import { canPlay, isPlaying, isRaceRun, laneTables, myWork, shownRun, work } from "./on-stage.js";
 import { isActive, isOperator, markAsMine } from "./selectors.js";
-import {
-  closeReplay, ownRunId, playReplay, seekReplay, setReplayClock, setReplaySpeed,
-} from "./replay.js";
+import { closeReplay, playReplay, seekReplay, setReplayClock, setReplaySpeed } from "./replay.js";
 import { formRobot } from "./robots.js";
 import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
@@ -191,7 +189,7 @@ const STATES = { pause: "paused", resume: "running", stop: "stopped" };
 
 /** Pause or resume the training on stage, else the playback. */
 export function togglePause() {
-  if (ownRunId.value !== null) {
+  if (page.run.value !== null) {
     togglePlaying();
     return;
   }
@@ -225,7 +223,7 @@ export const branchRace = (race, step, disturbances) =>
 
 /** @param {StageChanges} changes */
 export function setStage(changes) {
-  if (ownRunId.value === null) return stageChanges.request(changes);
+  if (page.run.value === null) return stageChanges.request(changes);
   const { time_s, playing, speed, clock } = changes;
   setEntry(problems, "stage", null);
   if (typeof speed === "number") setReplaySpeed(speed);
@@ -265,10 +263,10 @@ export const stay = () => setStage({ stay: true });
 export const showOnStage = (run) =>
   attempt(run.id, async () => {
     const start = isActive(run) ? {} : { time_s: 0 };
-    const go = goIfStillHere();
+    const go = changeIfStillHere();
     await requestStage(() => api.putStage({ run_id: run.id, playing: true, ...start }));
     closeReplay();
-    go("");
+    go({ view: "race" });
   });
 
 // ---- runs
@@ -293,9 +291,9 @@ export const deleteRun = (run) =>
  */
 export const runAgain = (run) =>
   attempt(run.id, async () => {
-    const go = goIfStillHere();
+    const go = changeIfStillHere();
     const again = await adopt(() => api.startAgain(run.id));
-    go(run.kind === "experiment" ? `#experiments?run=${again?.id}` : "");
+    go(run.kind === "experiment" ? { view: "experiments", report: again?.id ?? null } : { view: "race" });
   });
 
 /**

@@ -23,6 +23,10 @@ export interface AgentOption {
   searches: boolean;
   needs_practice: boolean;
   keeps_learning: boolean;
+  /**
+   * of a look-ahead agent without settings: how many steps it simulates
+   */
+  steps_ahead: number | null;
   color: string;
   settings: {
     [k: string]: SettingOption;
@@ -99,10 +103,13 @@ export interface BeliefView {
   deviation_after: number | null;
 }
 /**
- * The race and the step at which a race branches off.
+ * The moment of another race at which a race branches off; until then both are the same.
  */
-export interface BranchView {
+export interface Branch {
   race_id: string;
+  /**
+   * How many steps of that race are repeated.
+   */
   step: number;
 }
 /**
@@ -117,15 +124,11 @@ export interface Change {
   settings?: {
     [k: string]: number | string | boolean | null;
   };
-  disturbance?: DisturbanceView | null;
-}
-/**
- * Disturbance from a step on; the fields of its kind are further members, by name.
- */
-export interface DisturbanceView {
-  kind: string;
-  at_step: number;
-  [k: string]: number | string | boolean | number[] | null;
+  disturbance?: {
+    kind: string;
+    at_step: number;
+    [k: string]: number | string | null | number[];
+  } | null;
 }
 /**
  * Why an action was chosen, why no other, and when another would have been.
@@ -409,6 +412,14 @@ export interface DisturbanceOption {
    * part of a leg to which it happens; empty for all of it
    */
   part: string[];
+  /**
+   * whether it only ends what happened before
+   */
+  repairs: boolean;
+  /**
+   * of a leg to which it has happened: limp, repaired
+   */
+  adjective: string;
   simulators: string[];
 }
 /**
@@ -450,6 +461,10 @@ export interface FieldOption {
    * whether it may change while a training runs
    */
   is_live: boolean;
+  /**
+   * its name in a text, such as `limp:legs=1,4:at=25`
+   */
+  short: string;
   is_list: boolean;
   is_required: boolean;
   /**
@@ -486,7 +501,7 @@ export interface EvaluationEvent {
  */
 export interface EventBodies {
   snapshot: SnapshotView;
-  run: TrainingView | RaceView | ExperimentView | DamagedRunView;
+  run: (TrainingView | RaceView | ExperimentView) | DamagedRunView;
   "run-deleted": DeletedRun;
   evaluation: EvaluationEvent;
   reference: ReferenceEvent;
@@ -503,7 +518,7 @@ export interface SnapshotView {
   version: string;
   role: "operator" | "spectator";
   viewers: number;
-  runs: (TrainingView | RaceView | ExperimentView | DamagedRunView)[];
+  runs: ((TrainingView | RaceView | ExperimentView) | DamagedRunView)[];
   stage: StageView;
   scene: SceneView;
   evaluations?: Evaluation[];
@@ -542,51 +557,84 @@ export interface ProgressView {
  * Config of a training.
  */
 export interface TrainingConfigView {
-  gait: string | GaitParts;
-  robot: RobotView;
+  gait:
+    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+      };
+  /**
+   * A preset, and by name the parts that differ from it.
+   */
+  robot: {
+    preset: "stiff" | "compliant" | "slippery";
+    legs?: {
+      azimuth_deg: number;
+      radius_m: number;
+    }[];
+    [k: string]:
+      | number
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | {
+          azimuth_deg: number;
+          radius_m: number;
+        }[]
+      | undefined;
+  };
   simulator: "mujoco" | "kinematic";
+  /**
+   * Points along each side of the foot grid: more choices, more to learn.
+   */
   divisions: number;
+  /**
+   * Side of the square in which each foot may be put; every leg must reach all of it.
+   */
   grid_side_m: number;
+  /**
+   * Items: A disturbance from a step on; the fields of its kind are further members.
+   */
+  disturbances: {
+    kind: string;
+    at_step: number;
+    [k: string]: number | string | null | number[];
+  }[];
+  /**
+   * How far the robot that the seed draws differs from its design, as a share.
+   */
   tolerance: number;
-  disturbances: DisturbanceView[];
+  /**
+   * How many steps it practises; the paper uses 500 and 1000.
+   */
   steps: number;
+  /**
+   * Everything that is random follows from this number: the same seed, the same run.
+   */
   seed: number;
   observation: "measured" | "commanded" | "planned";
-  steps_per_episode: number;
-  evaluate_every: number;
-  pace: number | "max";
-  agent: string;
   /**
    * settings of the agent, by name
    */
   settings: {
     [k: string]: number | string | boolean | null;
   };
+  /**
+   * The share of random steps falls after every so many steps.
+   */
+  steps_per_episode: number;
+  /**
+   * Evaluates the policy after every so many steps; 0: never.
+   */
+  evaluate_every: number;
+  /**
+   * How fast it practises: max, or a number of times real time.
+   */
+  pace: "max" | number;
+  agent: string;
   continue_from: string | null;
-}
-/**
- * A custom gait; members that were not given are absent.
- */
-export interface GaitParts {
-  right_leg: number;
-  left_leg: number;
-  symmetry?: "origin" | "vertical";
-  pairs?: [number, number][];
-}
-/**
- * A preset, and by name the numeric parameters that override it.
- */
-export interface RobotView {
-  preset: "stiff" | "compliant" | "slippery";
-  legs?: LegView[];
-  [k: string]: number | "stiff" | "compliant" | "slippery" | LegView[] | undefined;
-}
-/**
- * The mount of a leg: its direction [°] and its distance from the body's middle [m].
- */
-export interface LegView {
-  azimuth_deg: number;
-  radius_m: number;
 }
 /**
  * Final distance [m] of the agent and of the greedy reference, and the Q-table's hash.
@@ -628,47 +676,101 @@ export interface RaceView {
  * Config of a race.
  */
 export interface RaceConfigView {
-  gait: string | GaitParts;
-  robot: RobotView;
+  gait:
+    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+      };
+  /**
+   * A preset, and by name the parts that differ from it.
+   */
+  robot: {
+    preset: "stiff" | "compliant" | "slippery";
+    legs?: {
+      azimuth_deg: number;
+      radius_m: number;
+    }[];
+    [k: string]:
+      | number
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | {
+          azimuth_deg: number;
+          radius_m: number;
+        }[]
+      | undefined;
+  };
   simulator: "mujoco" | "kinematic";
+  /**
+   * Points along each side of the foot grid: more choices, more to learn.
+   */
   divisions: number;
+  /**
+   * Side of the square in which each foot may be put; every leg must reach all of it.
+   */
   grid_side_m: number;
+  /**
+   * Items: A disturbance from a step on; the fields of its kind are further members.
+   */
+  disturbances: {
+    kind: string;
+    at_step: number;
+    [k: string]: number | string | null | number[];
+  }[];
+  /**
+   * How far the robot that the seed draws differs from its design, as a share.
+   */
   tolerance: number;
-  disturbances: DisturbanceView[];
   lanes: LaneView[];
+  /**
+   * How many steps each robot has in the race.
+   */
   steps: number;
+  /**
+   * Everything that is random follows from this number: the same seed, the same run.
+   */
   seed: number;
-  branch_from: BranchView | null;
+  branch_from: Branch | null;
 }
 /**
  * A lane of a race, with the id of the training whose Q-table it uses.
- *
- * The settings of an agent with training are those of the training.
  */
 export interface LaneView {
   agent: string;
+  /**
+   * How the agent reads its state; with a training as in the training.
+   */
+  observation: "measured" | "commanded" | "planned";
+  /**
+   * Whether it learns from each step of the race too; without practice it begins there.
+   */
   keep_learning: boolean;
   /**
    * model that it plans with; null if it does not search
    */
   plans_with: ("world" | "start" | "nominal") | null;
   /**
-   * whether `plans_with` was left out
-   */
-  plans_with_by_default: boolean;
-  observation: "measured" | "commanded" | "planned";
-  /**
    * settings of the agent, by name
    */
   settings: {
     [k: string]: number | string | boolean | null;
   };
+  /**
+   * whether `plans_with` was left out
+   */
+  plans_with_by_default: boolean;
   training_id: string | null;
 }
 /**
  * Result of a race, by lane.
  *
- * `shared_machine`: whether other runs computed beside it, which slows its wall clock.
+ * `recording_sha256` is a hash of all steps without the times of decisions, the same wherever the
+ * race is repeated; null if it was raced by an earlier version. `shared_machine`: whether other
+ * runs computed beside it, which slows its wall clock.
  */
 export interface RaceResult {
   /**
@@ -682,6 +784,7 @@ export interface RaceResult {
     | [LaneResult, LaneResult, LaneResult, LaneResult]
     | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult]
     | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult, LaneResult];
+  recording_sha256?: string | null;
   shared_machine?: boolean;
 }
 /**
@@ -745,35 +848,83 @@ export interface ExperimentView {
   started_at: string | null;
   ended_at: string | null;
   kind: "experiment";
-  config: ExperimentConfigView;
+  config: ExperimentConfig;
   result: ExperimentResult | null;
   workers: number | null;
 }
 /**
- * Config of an experiment; each element of the lists' Cartesian product is a setting.
+ * Config of an experiment. `experiment_config` adds the defaults of the experiment.
  */
-export interface ExperimentConfigView {
+export interface ExperimentConfig {
   experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
+  /**
+   * How often each setting is tried, each time with other random numbers.
+   */
   seeds: number;
+  /**
+   * Everything that is random follows from this number: the same seed, the same run.
+   */
   seed: number;
   agents: string[];
-  gaits: (string | GaitParts)[];
+  gaits: (
+    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+      }
+  )[];
   observations: ("measured" | "commanded" | "planned")[];
-  robots: RobotView[];
+  /**
+   * Items: A preset, and by name the parts that differ from it.
+   */
+  robots: {
+    preset: "stiff" | "compliant" | "slippery";
+    legs?: {
+      azimuth_deg: number;
+      radius_m: number;
+    }[];
+    [k: string]:
+      | number
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | {
+          azimuth_deg: number;
+          radius_m: number;
+        }[]
+      | undefined;
+  }[];
   simulator: "mujoco" | "kinematic";
+  /**
+   * Items: How many steps it practises; the paper uses 500 and 1000.
+   */
   steps: number[];
   /**
-   * values of the agents' settings, by name
+   * settings of the agent, by name
    */
   settings: {
     [k: string]: (number | string | boolean | null)[];
   };
+  /**
+   * Items: The share of random steps falls after every so many steps.
+   */
   steps_per_episode: number[];
+  /**
+   * Items: Points along each side of the foot grid: more choices, more to learn.
+   */
   divisions: number[];
+  /**
+   * Items: Side of the square in which each foot may be put; every leg must reach all of it.
+   */
   grid_side_m: number[];
   blocks: number;
-  worlds?: string[];
-  tolerance?: number;
+  worlds: string[];
+  /**
+   * How far the robot that the seed draws differs from its design, as a share.
+   */
+  tolerance: number;
 }
 /**
  * Result of an experiment; `files` are those of its report.
@@ -1311,6 +1462,12 @@ export interface OptionsView {
     [k: string]: string;
   };
   /**
+   * names of fields that are no declared settings
+   */
+  titles: {
+    [k: string]: string;
+  };
+  /**
    * files of a recorded walk
    */
   exports: ExportOption[];
@@ -1322,7 +1479,26 @@ export interface RobotOption {
   name: string;
   title: string;
   description: string;
-  robot: RobotView;
+  /**
+   * A preset, and by name the parts that differ from it.
+   */
+  robot: {
+    preset: "stiff" | "compliant" | "slippery";
+    legs?: {
+      azimuth_deg: number;
+      radius_m: number;
+    }[];
+    [k: string]:
+      | number
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | {
+          azimuth_deg: number;
+          radius_m: number;
+        }[]
+      | undefined;
+  };
   /**
    * parts in whose place a disturbance puts another value, as they were built
    */
@@ -1337,7 +1513,14 @@ export interface WorldOption {
   name: string;
   title: string;
   description: string;
-  disturbances: DisturbanceView[];
+  /**
+   * Items: A disturbance from a step on; the fields of its kind are further members.
+   */
+  disturbances: {
+    kind: string;
+    at_step: number;
+    [k: string]: number | string | null | number[];
+  }[];
 }
 /**
  * Results of a setting, pooled over its gaits, with the best known as a share of greedy's.
@@ -1398,7 +1581,14 @@ export interface PublishedView {
  * Q-table: all legal actions in all states; `cells` are the (x, y) of each cell [m].
  */
 export interface QTableView {
-  gait: string | GaitParts;
+  gait:
+    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+      };
   divisions: number;
   grid_side_m: number;
   cells: [number, number][];
@@ -1597,7 +1787,7 @@ export interface SummaryCounts {
 export interface SummaryView {
   format: number;
   experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
-  config: ExperimentConfigView;
+  config: ExperimentConfig;
   versions: {
     [k: string]: string;
   };

@@ -5,6 +5,7 @@ import { computed, effect, untracked } from "@preact/signals";
 /** @import { Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary, Timeline, Trial } from "./types.js" */
 /** @import { Verb, WhatIfAnswer } from "./types.js" */
 
+// All that a page asks for is below its own address, which tells the stage that it is about.
 const base = () => new URL("api/v1/", document.baseURI);
 
 /** Where something is that the browser loads by itself. @param {string} path of the API */
@@ -366,7 +367,7 @@ export function openEvents(names, onEvent, onState) {
   const open = () => {
     clearTimeout(timer);
     source?.close();
-    const opened = new EventSource(new URL("api/v1/events", document.baseURI));
+    const opened = new EventSource(addressOf("events"));
     source = opened;
     for (const name of names) {
       opened.addEventListener(name, ({ data }) => {

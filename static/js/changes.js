@@ -3,18 +3,12 @@ import { count, whole } from "./format.js";
 import { agentOf } from "./settings.js";
 import { rates } from "./store.js";
 
-/** @import { Change, Rates, Run, RunConfig, SettingValue } from "./types.js" */
+/** @import { Rates, Run, RunConfig, SettingValue } from "./types.js" */
 
 /** A setting's new value from a step on. @typedef {{ name: string, value: SettingValue, step: number }} RateChange */
 
-/** Live settings change what is learned, the pace does not. */
-const UNLEARNED = "pace";
 /** A slider that is dragged sends values in a row; those within this share of the training are one change. */
 const BURST_SHARE = 0.02;
-
-/** Changed settings, without disturbances. @type {(change: Change) => [string, SettingValue][]} */
-const ratesOf = ({ pace = null, settings = {} }) =>
-  Object.entries({ ...settings, ...(pace === null ? {} : { [UNLEARNED]: pace }) });
 
 /**
  * Values that were changed while a run ran, as they hold at its end.
@@ -22,7 +16,8 @@ const ratesOf = ({ pace = null, settings = {} }) =>
  * @returns {Rates}
  */
 const changedValues = ({ changes = [] }) =>
-  Object.fromEntries(changes.flatMap(ratesOf).filter(([, value]) => value !== null));
+  Object.fromEntries(changes.flatMap(({ pace = null, settings = {} }) => Object.entries({ ...settings, pace }))
+    .filter(([, value]) => value !== null));
 
 /**
  * Pace and live settings of a run that were changed, with what this page has sent and not yet seen confirmed.
@@ -39,7 +34,7 @@ export const presentRates = (run) => ({ ...changedValues(run), ...rates.value[ru
  */
 export function configAtEnd(run) {
   const { settings, live_settings } = agentOf(run.config.agent);
-  const { [UNLEARNED]: newest, ...changed } = changedValues(run);
+  const { pace: newest, ...changed } = changedValues(run);
   const values = Object.entries(changed).flatMap(([name, value]) => {
     if (name in run.config.settings) return [[name, value]];
     const same = Object.keys(settings).filter((one) => settings[one].symbol === (live_settings[name]?.symbol ?? name));
@@ -58,10 +53,9 @@ export function configAtEnd(run) {
 export function rateChanges({ changes = [], config }, offset = 0) {
   /** @type {RateChange[]} */
   const found = [];
-  for (const change of changes) {
-    const { step } = change;
-    for (const [name, value] of ratesOf(change)) {
-      if (name === UNLEARNED || value === null) continue;
+  for (const { step, settings = {} } of changes) {
+    for (const [name, value] of Object.entries(settings)) {
+      if (value === null) continue;
       const before = found.findLast((one) => one.name === name);
       const isBurst = before && offset + step - before.step <= BURST_SHARE * config.steps;
       if (isBurst) Object.assign(before, { value, step: offset + step });

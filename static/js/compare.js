@@ -1,9 +1,9 @@
 // Runs that are compared: which, each one's letter, colour and dashes, their curves, settings and results.
-import { computed, effect, signal } from "@preact/signals";
+import { computed } from "@preact/signals";
 import { changesInWords, rateChanges } from "./changes.js";
 import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, duration, listed, metres, percentage, sentence, whole } from "./format.js";
-import { followQuery, place } from "./page.js";
+import { page } from "./page-state.js";
 import { formRobot } from "./robots.js";
 import { absentIds, distanceOf, followRuns } from "./runs.js";
 import { isActive } from "./selectors.js";
@@ -24,37 +24,19 @@ const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 3], [12, 3, 2, 3, 2, 3], 
 
 // ---- which runs: `#compare?runs=a,b,c`
 
-/** Ids of the runs that are compared, in their order. @type {Signal<string[]>} */
-export const comparedIds = signal([]);
+/** Ids of the runs that are compared, in their order. */
+export const comparedIds = computed(() => page.compared.value.slice(0, MAX_COMPARED));
 
 /** Number of runs that a link names beyond those that can be compared. */
-export const leftOut = signal(0);
-
-/** @param {URLSearchParams} query */
-export function readCompared(query) {
-  const named = [...new Set((query.get("runs") ?? "").split(",").map((id) => id.trim()).filter(Boolean))];
-  comparedIds.value = named.slice(0, MAX_COMPARED);
-  leftOut.value = named.length - comparedIds.value.length;
-}
-
-export const comparedAsQuery = () =>
-  comparedIds.value.length ? `runs=${comparedIds.value.map(encodeURIComponent).join(",")}` : "";
-
-/** Where runs are compared. @param {string[]} ids */
-export const compareAddress = (ids) => `#compare?runs=${ids.map(encodeURIComponent).join(",")}`;
+export const leftOut = computed(() => page.compared.value.length - comparedIds.value.length);
 
 /** @param {string} id */
-export const leaveOut = (id) => (comparedIds.value = comparedIds.value.filter((one) => one !== id));
+export const leaveOut = (id) => (page.compared.value = comparedIds.value.filter((one) => one !== id));
 
-/** Keep the address, the runs and their curves, while the view is open. */
+/** Keep the runs and their curves, while the view is open. */
 export function followCompared() {
-  followQuery("compare", readCompared, comparedAsQuery);
-  followRuns(computed(() => (place.value === "compare" ? comparedIds.value : [])));
-  followCurves(computed(() => (place.value === "compare" ? comparedTrainings.value : [])));
-  // The note on a link that was too long is of that link only.
-  effect(() => {
-    if (comparedIds.value.length < MAX_COMPARED) leftOut.value = 0;
-  });
+  followRuns(computed(() => (page.view.value === "compare" ? comparedIds.value : [])));
+  followCurves(computed(() => (page.view.value === "compare" ? comparedTrainings.value : [])));
 }
 
 /**

@@ -8,12 +8,7 @@ import { options } from "./store.js";
 /** @import { Parsed } from "./parse.js" */
 /** @import { Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run } from "./types.js" */
 
-export const PUSH = "push";
-const REPAIR = "repair";
-const LOST = "lost";
 const STEPS = ["at_step", "until_step"];
-/** Of the fields in a text. @type {Record<string, string>} */
-const SHORT = { at_step: "at", until_step: "until" };
 
 /** @param {string} name */
 export const kindNamed = (name) => (options.value?.disturbances ?? []).find((kind) => kind.name === name);
@@ -70,7 +65,7 @@ export function conditionsAt(disturbances, step, robot) {
       newest.set(key, part);
     }
   }
-  return [...newest.values()].filter((one) => one.kind !== REPAIR && !isNothing(one, robot));
+  return [...newest.values()].filter((one) => !kindNamed(one.kind)?.repairs && !isNothing(one, robot));
 }
 
 /**
@@ -96,7 +91,7 @@ function isNothing(one, robot) {
  * @param {RobotConfig} [robot]
  */
 export function changesSomething(one, conditions, robot) {
-  if (one.kind !== REPAIR && !isNothing(one, robot)) return true;
+  if (!kindNamed(one.kind)?.repairs && !isNothing(one, robot)) return true;
   const own = keysOf(one);
   return conditions.some((other) => keysOf(other).some((key) => own.some((mine) => covers(mine, key))));
 }
@@ -152,8 +147,8 @@ function fieldsInWords(one) {
     });
 }
 
-/** Adjective of a leg, by the kind of its disturbance. @type {Record<string, string>} */
-export const LEG_WORDS = { limp: "limp", lost: "lost", weak: "weak", repair: "repaired" };
+/** Adjective of a leg to which a kind of disturbance has happened. @param {string} kind */
+export const adjectiveOf = (kind) => kindNamed(kind)?.adjective ?? kind;
 
 /** @param {number[]} legs */
 const legsInWords = (legs) => `leg${legs.length > 1 ? "s" : ""}${JOIN}${legs.join(", ")}`;
@@ -164,7 +159,7 @@ const legsInWords = (legs) => `leg${legs.length > 1 ? "s" : ""}${JOIN}${legs.joi
  */
 export function inWords(one) {
   const values = fieldsInWords(one);
-  if (one.legs) return [`${legsInWords(one.legs)} ${LEG_WORDS[one.kind] ?? one.kind}`, ...values].join(", ");
+  if (one.legs) return [`${legsInWords(one.legs)} ${adjectiveOf(one.kind)}`, ...values].join(", ");
   if (one.leg) return `leg${JOIN}${one.leg}: ${one.joint} ${one.kind} at ${withUnit(one.angle_rad, "rad")}`;
   const title = (kindNamed(one.kind)?.title ?? one.kind).toLowerCase();
   return [title, values.join(", ")].filter(Boolean).join(" ");
@@ -195,9 +190,10 @@ export const conditionsInWords = (conditions) => joined(conditions).map(inWords)
  * @param {Disturbance} one
  */
 export function inTime(one) {
-  const from = `${one.kind === PUSH ? "in" : "from"} step ${whole(one.at_step + 1)}`;
+  const lasts = kindNamed(one.kind)?.lasts ?? true;
+  const from = `${lasts ? "from" : "in"} step ${whole(one.at_step + 1)}`;
   const words = [inWords(one)];
-  if (one.at_step > 0 || one.kind === PUSH) words.push(from);
+  if (one.at_step > 0 || !lasts) words.push(from);
   if (one.until_step) words.push(`to step ${whole(one.until_step)}`);
   return words.join(" ");
 }
@@ -220,15 +216,15 @@ export function legStates(conditions) {
   /** @type {Map<number, string>} */
   const states = new Map();
   for (const one of conditions) {
-    const word = one.leg ? `${one.joint} ${one.kind}` : LEG_WORDS[one.kind] ?? one.kind;
+    const word = one.leg ? `${one.joint} ${one.kind}` : adjectiveOf(one.kind);
     for (const leg of legsOf(one)) states.set(leg, [states.get(leg), word].filter(Boolean).join(", "));
   }
   return states;
 }
 
 /**
- * The disturbance that a press on a leg stands for: the wanted one, or a repair if that already holds. A lost leg can
- * only be repaired.
+ * The disturbance that a press on a leg stands for: the wanted one, or a repair if that already holds. What happened
+ * to a leg as a whole, such as its loss, can only be repaired.
  * @param {Disturbance[]} conditions
  * @param {number} leg
  * @param {{ kind: string, [field: string]: any }} wanted without the leg
@@ -236,8 +232,10 @@ export function legStates(conditions) {
 export function pressed(conditions, leg, wanted) {
   const own = conditions.filter((one) => legsOf(one).includes(leg));
   const isSame = (/** @type {Disturbance} */ one) =>
-    one.kind === LOST || Object.entries(wanted).every(([name, value]) => one[name] === value);
-  if (wanted.kind === REPAIR || own.some(isSame)) return { kind: REPAIR, legs: [leg] };
+    (one.legs && !kindNamed(one.kind)?.part.length)
+    || Object.entries(wanted).every(([name, value]) => one[name] === value);
+  const repair = options.value?.disturbances.find(({ repairs }) => repairs)?.name ?? "";
+  if (wanted.kind === repair || own.some(isSame)) return { kind: repair, legs: [leg] };
   return { ...wanted, ...(kindNamed(wanted.kind)?.fields.legs ? { legs: [leg] } : { leg }) };
 }
 
@@ -260,8 +258,8 @@ export function splitText(text) {
 /** @type {(kind: string, fields: [string, string][]) => string} */
 const joinText = (kind, fields) => [kind, ...fields.map(([name, value]) => `${name}=${value}`)].join(":");
 
-/** @param {string} field */
-export const shortName = (field) => SHORT[field] ?? field;
+/** The name of a kind's field in a text. @type {(kind: string, field: string) => string} */
+export const shortName = (kind, field) => kindNamed(kind)?.fields[field]?.short ?? field;
 
 /**
  * A text with another value of a field; without the field if the value is empty.
@@ -270,8 +268,8 @@ export const shortName = (field) => SHORT[field] ?? field;
  * @param {string} value
  */
 export function withField(text, field, value) {
-  const name = shortName(field);
   const { kind, fields } = splitText(text);
+  const name = shortName(kind, field);
   const isSame = (/** @type {[string, string]} */ [one]) => one === name || one === field;
   if (value === "") return joinText(kind, fields.filter((one) => !isSame(one)));
   const changed = fields.map((one) => (isSame(one) ? /** @type {[string, string]} */ ([name, value]) : one));
@@ -287,7 +285,7 @@ export const textOf = ({ kind, ...fields }) => {
   const given = Object.entries(fields).filter(([name, value]) =>
     value !== null && value !== undefined && value !== kindNamed(kind)?.fields[name]?.default);
   given.sort(([a], [b]) => order.indexOf(a) - order.indexOf(b));
-  return joinText(kind, given.map(([name, value]) => [shortName(name), String(value)]));
+  return joinText(kind, given.map(([name, value]) => [shortName(kind, name), String(value)]));
 };
 
 /** @type {(text: string, field: FieldOption) => Parsed<any>} */
@@ -316,7 +314,7 @@ export function parseText(text) {
   const found = { kind: name, at_step: 0 };
   const seen = new Set();
   for (const [short, value] of fields) {
-    const field = Object.keys(kind.fields).find((one) => one === short || SHORT[one] === short);
+    const field = Object.keys(kind.fields).find((one) => one === short || kind.fields[one].short === short);
     if (!field) return { mistake: `${kind.title}: ${quoted(short)} is none of ${namesOf(kind)}` };
     if (seen.has(field)) return { mistake: `${kind.title}: give ${quoted(short)} once` };
     seen.add(field);
@@ -338,7 +336,7 @@ export function parseText(text) {
 }
 
 /** @param {DisturbanceKind} kind */
-const namesOf = ({ fields }) => listed(Object.keys(fields).map(shortName));
+const namesOf = ({ fields }) => listed(Object.values(fields).map(({ short }) => short));
 
 // ---- worlds of an experiment: a name, or what happens, joined by +
 

@@ -1,29 +1,25 @@
-// The form's values, what was typed that is none, their query string, and the request bodies that they make.
-import { computed, signal } from "@preact/signals";
+// The form's values, what was typed that is none, and the request bodies that they make.
+import { batch, computed, signal } from "@preact/signals";
 import { isSimulated, parseText } from "./disturbances.js";
 import { listed } from "./format.js";
-import { parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
-import { hasOwnSettings, isReadOnly, PAGE_FIELDS } from "./page.js";
+import { makeTexts, parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
+import { ignored, page } from "./page-state.js";
 import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
-import { options, served } from "./store.js";
+import { options, role, served } from "./store.js";
 
-/** @import { Signal } from "@preact/signals" */
 /** @import { Parsed } from "./parse.js" */
 /** @import { FormValue, FormValues, SettingValue } from "./types.js" */
 
 /** Empty until the server's options have come; no component shows the form before. */
 const UNKNOWN = /** @type {FormValues} */ ({});
 
-/** Values set by a person or a link; all else is the server's default. @type {Signal<Record<string, FormValue>>} */
-export const overrides = signal({});
-/**
- * Field → its text, as it was typed or as a link has it, while it is not valid. The field's value stays the last
- * valid one until then.
- * @type {Signal<Record<string, string>>}
- */
-export const typed = signal({});
-/** Parts of a link that are no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
-export const unknownParts = signal([]);
+/** Whether the form shows a spectator the settings of the run that is shown, which are not in the address. */
+export const isReadOnly = computed(() => role.value === "spectator" && page.form.value.size === 0);
+/** The texts of those settings. */
+export const stageTexts = signal(new URLSearchParams());
+/** Texts set by a person or a link; all else is the server's default. */
+const texts = () => (isReadOnly.value ? stageTexts : page.form);
+const { set, keep, valueOf } = makeTexts(texts);
 
 // ---- texts as values
 
@@ -68,8 +64,7 @@ function commonDefaults() {
   const { training, race } = served().defaults;
   const others = ["agent", "disturbances", "settings"];
   const common = Object.entries(training).filter(([field]) => !others.includes(field));
-  const world = { world: served().worlds[0].name, disturb: [] };
-  return { ...Object.fromEntries(common), ...world, race_steps: race.steps, name: "" };
+  return { ...Object.fromEntries(common), world: served().worlds[0].name, race_steps: race.steps, name: "" };
 }
 
 /**
@@ -81,29 +76,24 @@ function defaultLanes(agent) {
   return race.lanes.map((lane) => (lane.agent === training.agent ? agent : lane.agent));
 }
 
-/**
- * Values of an agent's settings: those that are given and valid for it, else the agent's defaults.
- * @param {string} agent
- * @param {Record<string, FormValue>} given
- * @returns {Record<string, SettingValue>}
- */
-const settingValues = (agent, given) =>
-  Object.fromEntries(
-    Object.entries(settingsOf([agent])).map(([name, setting]) => {
-      const texts = [typed.value[name], name in given ? written(given[name]) : undefined];
-      const readings = texts.filter((text) => text !== undefined).map((text) => parseSetting(text, setting));
-      return [name, readings.find(({ mistake }) => mistake === undefined)?.value ?? setting.default];
-    }),
-  );
+/** Values of an agent's settings. @type {(agent: string) => Record<string, SettingValue>} */
+const settingValues = (agent) =>
+  Object.fromEntries(Object.entries(settingsOf([agent])).map(([name, setting]) =>
+    [name, valueOf(name, (text) => parseSetting(text, setting), setting.default)]));
 
-/** @param {Record<string, FormValue>} given */
-function complete(given) {
-  const agent = String(given.agent ?? served().defaults.training.agent);
-  const lanes = /** @type {string[]} */ (given.lanes ?? defaultLanes(agent));
-  const ofLanes = Object.entries(laneSettings(lanes)).map(([field, setting]) => [field, setting.default]);
-  const defaults = { ...commonDefaults(), agent, lanes, ...Object.fromEntries(ofLanes) };
-  const common = Object.entries(given).filter(([field]) => field in defaults);
-  return /** @type {FormValues} */ ({ ...defaults, ...Object.fromEntries(common), ...settingValues(agent, given) });
+/** @type {(field: string, byDefault: FormValue, agents?: string[]) => [string, FormValue]} */
+const entryOf = (field, byDefault, agents = []) =>
+  [field, valueOf(field, (text) => read(field, text, agents), byDefault)];
+
+/** @returns {FormValues} */
+function complete() {
+  const [, agent] = /** @type {[string, string]} */ (entryOf("agent", served().defaults.training.agent));
+  const [, lanes] = /** @type {[string, string[]]} */ (entryOf("lanes", defaultLanes(agent)));
+  const common = Object.entries(commonDefaults()).map(([field, value]) => entryOf(field, value));
+  const ofLanes = Object.entries(laneSettings(lanes)).map(([field, setting]) => entryOf(field, setting.default, lanes));
+  const disturb = texts().value.getAll(REPEATED);
+  return /** @type {FormValues} */ (
+    { ...Object.fromEntries([...common, ...ofLanes]), agent, lanes, disturb, ...settingValues(agent) });
 }
 
 /** The form without the settings of the chosen learner. */
@@ -113,7 +103,7 @@ const commonFields = () => {
 };
 
 /** The common fields, and the settings of the chosen learner. */
-export const form = computed(() => (options.value ? complete(overrides.value) : UNKNOWN));
+export const form = computed(() => (options.value ? complete() : UNKNOWN));
 
 /** The learners whose settings the form has: the chosen one, and the others of the race. */
 const learnersInUse = computed(() => [...new Set([form.value.agent, ...form.value.lanes.filter(learns)])]);
@@ -126,21 +116,16 @@ export const wrong = computed(() => {
   /** @type {Record<string, { text: string, mistake: string }>} */
   const found = {};
   if (!options.value) return found;
-  const check = (/** @type {string} */ field, /** @type {string} */ text, /** @type {string[]} */ agents) => {
-    const { mistake } = read(field, text, agents);
-    if (mistake !== undefined) found[field] ??= { text, mistake };
+  const given = texts().value;
+  const check = (/** @type {string} */ field, /** @type {string[]} */ agents) => {
+    const text = given.get(field);
+    const { mistake } = text === null ? {} : read(field, text, agents);
+    if (text !== null && mistake !== undefined) found[field] ??= { text, mistake };
   };
-  for (const agent of learnersInUse.value) {
-    for (const name of Object.keys(settingsOf([agent]))) {
-      if (name in typed.value) check(name, typed.value[name], [agent]);
-      else if (name in overrides.value) check(name, written(overrides.value[name]), [agent]);
-    }
-  }
-  const common = Object.keys({ ...commonDefaults(), agent: "", lanes: "" });
-  for (const field of common.filter((one) => one in typed.value)) check(field, typed.value[field], []);
+  for (const agent of learnersInUse.value) Object.keys(settingsOf([agent])).forEach((name) => check(name, [agent]));
+  for (const field of Object.keys({ ...commonDefaults(), agent: "", lanes: "" })) check(field, []);
   const { lanes } = form.value;
-  const ofLanes = Object.keys(laneSettings(lanes)).filter((field) => field in typed.value);
-  for (const field of ofLanes) check(field, typed.value[field], lanes);
+  Object.keys(laneSettings(lanes)).forEach((field) => check(field, lanes));
   const { world, disturb, simulator } = form.value;
   const impossible = disturbancesOf(world).find(({ kind }) => !isSimulated(kind, simulator));
   if (impossible) found.world ??= { text: world, mistake: unknownTo(simulator, impossible.kind) };
@@ -178,15 +163,13 @@ export const mistakes = computed(() =>
 /** The steps of practice; null while their field has a text that is none. @returns {number | null} */
 export const validSteps = () => ("steps" in mistakes.value ? null : form.value.steps);
 
-/**
- * Change fields, and the address with them.
- * @param {Record<string, FormValue>} changes
- */
-export const setFields = (changes) => {
-  typed.value = select(typed.value, (field) => !(field in changes));
-  overrides.value = { ...overrides.value, ...changes };
-  writeAddress();
-};
+/** Change fields. @param {Record<string, FormValue>} changes */
+export const setFields = (changes) => batch(() => {
+  set(Object.fromEntries(Object.entries(changes).map(([field, value]) =>
+    [field, field === REPEATED ? /** @type {string[]} */ (value) : [written(value)]])));
+  // What a spectator tries is theirs even where it is the default.
+  if (role.peek() !== "spectator") leaveOutDefaults();
+});
 
 /** @type {(field: string, value: FormValue) => void} */
 export const setField = (field, value) => setFields({ [field]: value });
@@ -197,7 +180,7 @@ export const setField = (field, value) => setFields({ [field]: value });
  */
 export function chooseLearner(agent) {
   const { lanes, agent: before } = form.value;
-  const isSet = "lanes" in overrides.value && !lanes.includes(agent);
+  const isSet = texts().peek().has("lanes") && !lanes.includes(agent);
   setFields({ agent, ...(isSet ? { lanes: lanes.map((lane) => (lane === before ? agent : lane)) } : {}) });
 }
 
@@ -208,93 +191,44 @@ export function chooseLearner(agent) {
  */
 export function enter(field, text) {
   const { value, mistake } = read(field, text, [form.value.agent, ...form.value.lanes]);
-  if (mistake === undefined) {
-    setField(field, value);
-    return;
-  }
-  typed.value = { ...typed.value, [field]: text };
-  writeAddress();
-}
-
-// ---- the address
-
-/** The form, and what is set for other learners of the race. @returns {Record<string, FormValue>} */
-const everyValue = () => {
-  const own = settingsOf(form.value.lanes);
-  return { ...form.value, ...select(overrides.value, (field) => field in own && !(field in form.value)) };
-};
-
-/** Whether the form says anything else than its defaults. */
-export const isChanged = computed(() => {
-  const defaults = complete({});
-  const isOther = (/** @type {[string, FormValue]} */ [field, value]) => written(value) !== written(defaults[field]);
-  return Object.keys(wrong.value).length > 0 || Object.entries(everyValue()).some(isOther);
-});
-
-/** The whole form as a query string, what is not valid as it was typed; empty texts are left out. */
-export function toQuery() {
-  const valid = Object.entries(everyValue()).map(([field, value]) => [field, written(value)]);
-  const entries = valid.filter(([field, text]) => text !== "" && field !== REPEATED && !(field in wrong.value));
-  const kept = Object.entries(wrong.value).filter(([field]) => field !== REPEATED);
-  const disturbances = form.value.disturb.map((text) => [REPEATED, text]);
-  return new URLSearchParams([...entries, ...kept.map(([field, { text }]) => [field, text]), ...disturbances]);
+  if (mistake === undefined) setField(field, value);
+  else keep(field, text);
 }
 
 /**
- * Set the form to what a query string says; what is not valid is kept as it is, and unknown fields are told.
- * @param {URLSearchParams} query
+ * Whether a text is the default of a field: of a setting, for each learner in use that has it.
+ * @type {(field: string, text: string) => boolean}
  */
-export function readQuery(query) {
-  /** @type {Record<string, FormValue>} */
-  const found = {};
-  /** @type {Record<string, string>} */
-  const texts = {};
-  const take = (/** @type {string} */ field, /** @type {string} */ text, /** @type {string[]} */ agents) => {
-    const { value, mistake } = read(field, text, agents);
-    if (mistake === undefined) found[field] = value;
-    else texts[field] = text;
-  };
-  typed.value = {};
-  // First those on which the others depend.
-  for (const field of ["agent", "lanes"]) if (query.has(field)) take(field, query.get(field) ?? "", []);
-  const defaults = complete(found);
-  const agents = [defaults.agent, ...defaults.lanes];
-  const known = { ...defaults, ...served().settings, ...settingsOf(agents), ...laneSettings(agents) };
-  if (query.has(REPEATED)) found[REPEATED] = query.getAll(REPEATED);
-  for (const [field, text] of query) {
-    if (field in known && !(field in found) && !(field in texts)) take(field, text, agents);
-  }
-  const isUnknown = (/** @type {string} */ field) => !(field in known) && !PAGE_FIELDS.includes(field);
-  unknownParts.value = [...query].filter(([field]) => isUnknown(field)).map((part) => part.join("="));
-  overrides.value = select(found, (field) => field === "lanes" || written(found[field]) !== written(defaults[field])
-    || (field === "agent" && found.agent !== served().defaults.training.agent));
-  typed.value = texts;
+function isDefault(field, text) {
+  const { agent, lanes } = form.value;
+  const own = [...learnersInUse.value.map((one) => settingsOf([one])), laneSettings(lanes)].map((settings) =>
+    Object.fromEntries(Object.entries(settings).map(([name, setting]) => [name, setting.default])));
+  const common = { ...commonDefaults(), agent: served().defaults.training.agent, lanes: defaultLanes(agent) };
+  const found = [common, ...own].filter((defaults) => field in defaults);
+  return found.length > 0 && found.every((defaults) => written(Reflect.get(defaults, field)) === text);
 }
 
-/** Set the fields that the page's address contains. */
-export const readAddress = () => readQuery(new URLSearchParams(location.search));
-
-/** Write the form to the page's address; an unchanged form keeps it clean. */
-export function writeAddress() {
-  const query = isChanged.value && !isReadOnly.value ? toQuery() : new URLSearchParams();
-  for (const [field, text] of new URLSearchParams(location.search)) {
-    if (PAGE_FIELDS.includes(field)) query.set(field, text);
-  }
-  const search = query.size ? `?${query}` : "";
-  history.replaceState(history.state, "", `${location.pathname}${search}${location.hash}`);
+/** Leave out of the texts what is so by default. */
+function leaveOutDefaults() {
+  const kept = [...texts().peek()].filter(([field, text]) => field in wrong.value || !isDefault(field, text));
+  texts().value = new URLSearchParams(kept);
 }
+
+/** Read the form of the link that was opened: what is no field is told, and what is the default left out. */
+export const openForm = () => batch(() => {
+  const agents = [form.value.agent, ...form.value.lanes];
+  const known = { ...form.value, ...served().settings, ...settingsOf(agents), ...laneSettings(agents) };
+  const given = [...page.form.peek()];
+  const others = given.filter(([field]) => !(field in known)).map((part) => part.join("="));
+  ignored.query.value = [...ignored.query.peek(), ...others];
+  page.form.value = new URLSearchParams(given.filter(([field]) => field in known));
+  leaveOutDefaults();
+});
 
 /** Let a spectator change the form. */
 export const tryOwnSettings = () => {
-  hasOwnSettings.value = true;
-  writeAddress();
+  page.form.value = new URLSearchParams([["agent", form.value.agent], ...stageTexts.value]);
 };
-
-/** A link to the page with every field of the form. */
-export const link = () =>
-  form.value === UNKNOWN
-    ? location.href
-    : `${location.origin}${location.pathname}?${toQuery()}${location.hash}`;
 
 // ---- request bodies
 
@@ -327,7 +261,7 @@ const nameField = () => {
 
 /** The settings of an agent that have a value. @param {string} agent */
 const ownSettings = (agent) =>
-  Object.fromEntries(Object.entries(settingValues(agent, overrides.value)).filter(([, value]) => value !== null));
+  Object.fromEntries(Object.entries(settingValues(agent)).filter(([, value]) => value !== null));
 
 /** The practice of an agent: the fields that are common to all, and the agent's settings. @param {string} agent */
 function practiceFields(agent) {

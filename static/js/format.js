@@ -26,6 +26,18 @@ export function metres(value) {
   return `${rounded < 0 ? MINUS : ""}${Math.abs(rounded).toFixed(2)}${NO_BREAK}m`;
 }
 
+const MIN_CM = 0.01;
+
+/**
+ * How far apart two distances are: "3 cm", "4 mm", "under 1 mm".
+ * @param {number} value [m], not negative
+ */
+export function distanceApart(value) {
+  if (value >= MIN_CM) return `${Math.round(100 * value)}${NO_BREAK}cm`;
+  const rounded = Math.round(1000 * value);
+  return rounded < 1 ? `under 1${NO_BREAK}mm` : `${rounded}${NO_BREAK}mm`;
+}
+
 /**
  * Metres as whole millimetres without the unit: "52".
  * @param {number} value

@@ -4,13 +4,15 @@ import { render } from "preact";
 import { getOptions, getStage, openEvents, RequestError } from "./api.js";
 import { App, listenForKeys, listenForMenus } from "./components/app.js";
 import { html } from "./components/elements.js";
-import { announceExperiments, followAddress, followExperiments, followSummary } from "./experiments/runs.js";
-import { readAddress, writeAddress } from "./form.js";
+import { openExperimentForm } from "./experiments/form.js";
+import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
+import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
-import { followPresenter, followTheme, place } from "./page.js";
-import { announceOutcomes, headline } from "./headline.js";
+import { followHistory, page, reload } from "./page-state.js";
+import { followPresenter, followTheme } from "./page.js";
+import { announceOutcomes, headline, practiceTitle } from "./headline.js";
 import { followTimeline } from "./race.js";
-import { followReplay, readReplayAddress } from "./replay.js";
+import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
 import { applyEvent, connection, eventNames, isLockedOut, options, role, version } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
@@ -32,10 +34,9 @@ async function loadOptions(attempt = 0) {
     setTimeout(loadOptions, Math.min(FIRST_RETRY_MS * 2 ** attempt, LONGEST_RETRY_MS), attempt + 1);
     return;
   }
-  readAddress();
-  writeAddress();
+  openForm();
+  openExperimentForm();
   followSpectators();
-  followAddress();
   followWhatIf();
 }
 
@@ -57,15 +58,16 @@ function reloadAfterUpgrade() {
   let first = null;
   effect(() => {
     first ??= version.value;
-    if (version.value !== first) location.reload();
+    if (version.value !== first) reload();
   });
 }
 
 /** Keep the window's title: what is shown, in a list of tabs. */
 const followTitle = () => effect(() => {
-  document.title = windowTitle(place.value, headline.value);
+  document.title = windowTitle(page.view.value, headline.value ?? practiceTitle.value);
 });
 
+followHistory();
 followTheme();
 followPresenter();
 reloadAfterUpgrade();
@@ -73,7 +75,6 @@ followRuns(stageIds);
 followCurves(trainingsInView);
 followTimeline();
 followReplay();
-readReplayAddress();
 followExperiments();
 followSummary();
 announceOutcomes();

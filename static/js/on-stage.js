@@ -326,7 +326,7 @@ const VIEW_TITLES = { experiments: "Experiments", runs: "Runs", compare: "Compar
 /**
  * The window's title: the connection if it is lost, the view, or what the stage shows.
  * @param {string} view
- * @param {string | null} headline of the race that is shown
+ * @param {string | null} headline of the race or the practice that is shown
  */
 export function windowTitle(view, headline) {
   const parts = [VIEW_TITLES[view] ?? (phase.value === "empty" ? null : headline ?? sceneOnStage.value?.label ?? null)];

@@ -1,7 +1,10 @@
-// Reads what a person typed or a link says: numbers, lists and choices, or the reason why it is none of them.
-// Spaces, semicolons and decimal commas are accepted where only one reading of the text is valid.
+// Reads what a person typed or a link says: numbers, lists and choices, or the reason why it is none of them; and
+// keeps the texts of a form's fields. Spaces, semicolons and decimal commas are accepted where only one reading of the
+// text is valid.
+import { batch, signal } from "@preact/signals";
 import { kindOf, mistakeIn, rangeOf } from "./settings.js";
 
+/** @import { Signal } from "@preact/signals" */
 /** @import { Limits, SettingOption, SettingValue } from "./types.js" */
 
 /**
@@ -227,3 +230,48 @@ export const parseName = (text, { maximum }) =>
   maximum !== null && text.trim().length > maximum
     ? { mistake: `Enter at most ${maximum} characters; this has ${text.trim().length}` }
     : { value: text };
+
+/** @param {() => Signal<URLSearchParams>} ofForm the texts */
+export function makeTexts(ofForm) {
+  /** Field → a text that is not valid, and the last valid one. @type {Signal<Record<string, (string | null)[]>>} */
+  const before = signal({});
+  const lastValid = (/** @type {string} */ field, /** @type {string | null} */ text) => {
+    const [wrong, last = null] = before.value[field] ?? [];
+    return wrong === text ? last : null;
+  };
+
+  /** Replace the texts of fields; none leaves a field at its default. @param {Record<string, string[]>} changes */
+  const set = (changes) => {
+    const kept = [...ofForm().peek()].filter(([field]) => !(field in changes));
+    const added = Object.entries(changes).flatMap(([field, texts]) => texts.map((text) => [field, text]));
+    ofForm().value = new URLSearchParams([...kept, ...added]);
+  };
+
+  return {
+    set,
+
+    /**
+     * The value of a field: that of its text, or while it is not valid of the last valid one, or else the default.
+     * @template Value
+     * @param {string} field
+     * @param {(text: string) => Parsed<any>} parse
+     * @param {Value} byDefault
+     * @returns {Value}
+     */
+    valueOf(field, parse, byDefault) {
+      const given = ofForm().value.get(field);
+      for (const text of given === null ? [] : [given, lastValid(field, given)]) {
+        const { value, mistake } = text === null ? { mistake: "" } : parse(text);
+        if (mistake === undefined) return value;
+      }
+      return byDefault;
+    },
+
+    /** Keep a text that is not valid; the field keeps its value. @type {(field: string, text: string) => void} */
+    keep: (field, text) => batch(() => {
+      const given = ofForm().peek().get(field);
+      before.value = { ...before.peek(), [field]: [text, lastValid(field, given) ?? given] };
+      set({ [field]: [text] });
+    }),
+  };
+}

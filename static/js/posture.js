@@ -2,8 +2,9 @@
 // in the 3D view; one on a foot grid in the 3D view chooses the present state and that move.
 import { batch, computed, effect, signal } from "@preact/signals";
 import { getReplayFrames } from "./api.js";
+import { page } from "./page-state.js";
 import { clickedCell, drawHere } from "./page.js";
-import { ownRunId, plan } from "./replay.js";
+import { plan } from "./replay.js";
 import { decode } from "./replay-frames.js";
 import { clock, conditionsShown } from "./on-stage.js";
 import { chosenLane, explanation, followStage, keepAnswer, stageMoment } from "./steps.js";
@@ -92,7 +93,7 @@ function followView() {
   /** @type {unknown[]} */
   let before = [];
   return effect(() => {
-    const now = [drawHere.value, ownRunId.value, plan.value === null];
+    const now = [drawHere.value, page.run.value, plan.value === null];
     if (now.some((one, number) => one !== before[number])) giveUpState();
     before = now;
   });

@@ -102,6 +102,8 @@ export const followTimeline = () => askForNewest({
 /** A decision that simulates fewer is over before it can be shown as thinking. */
 const FEWEST_SHOWN_FUTURES = 100;
 
+/** Lanes that are less apart are level, while they race [m]. */
+export const LEVEL_M = 0.01;
 const SAME_S = 1e-6;
 /** Times of a scene are rounded to milliseconds. */
 const SAME_MOMENT_S = 0.001;

@@ -1,8 +1,9 @@
 // A replay of this page's own: it plays a run by itself, without the stage that all pages share.
-// The server gives frames (`replay-frames.js`); position, speed and clock are kept here and in the address.
-import { batch, computed, effect, signal } from "@preact/signals";
+// The server gives frames (`replay-frames.js`); which run it is, and where it is held, is of the page's state.
+import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getReplay, getReplayFrames, isLasting } from "./api.js";
-import { readReplay, replayAddress, view, writeReplay } from "./page.js";
+import { camera } from "./page.js";
+import { change, linkTo, page } from "./page-state.js";
 import { decode, endOf, Follower, inRecording, placeOf, SceneState, Segments } from "./replay-frames.js";
 import { connection, ownScene, ownStage } from "./store.js";
 
@@ -16,15 +17,11 @@ const SCENES_PER_S = 5;
 /** At its end, a run that is still computed is asked for more after so long. */
 const GROWTH_MS = 1000;
 const RETRY_MS = 1500;
-const ADDRESS_MS = 250;
+const HELD_MS = 250;
 /** As on the stage, a stall does not skip what comes after it. */
 const LONGEST_TICK_S = 0.25;
 const SAME_S = 1e-6;
 
-/** The id of the run that this page plays by itself; null while it shows the stage. @type {Signal<string | null>} */
-export const ownRunId = signal(null);
-/** The id of the run whose robots are shown as ghosts; null without one. @type {Signal<string | null>} */
-export const ghostId = signal(null);
 /** Plan of the replay; null until it is known. @type {Signal<ReplayPlan | null>} */
 export const plan = signal(null);
 /** Why the run cannot be played. @type {Signal<string | null>} */
@@ -33,7 +30,7 @@ export const replayProblem = signal(null);
 export const replayTime = signal(0);
 /** Whether the picture waits for frames. */
 export const isBuffering = signal(false);
-const playing = signal(true);
+const playing = computed(() => page.moment.value === null);
 const speed = signal(FIRST_SPEED);
 /** @type {Signal<Clock>} */
 const clock = signal("paper");
@@ -49,7 +46,7 @@ let draw = () => {};
 /** @type {SceneState | null} */
 let scene = null;
 const segments = new Segments(
-  (address) => load(address, { clock: clock.peek() }),
+  (address) => request(address, { clock: clock.peek() }),
   (error, again) => retryAfter(error, opening, again),
 );
 const NOTHING = { address: "", index: -1, time_s: NaN, frame: /** @type {Frame | null} */ (null), view: "" };
@@ -64,31 +61,47 @@ let opening = 0;
 let sceneSentAt = -Infinity;
 const follower = new Follower();
 
+/** The run and the ghost that are loaded, or being loaded. */
+let opened = "";
+const named = () => `${page.run.value ?? ""} ${page.ghost.value ?? ""}`.trim();
+
 /**
- * Open a run at a time.
+ * Open a run at a time, in the view of the race, where the stage is.
  * @param {string} id
  * @param {{ time_s?: number, isPlaying?: boolean, clock?: Clock, ghost?: string | null }} [at]
  */
-export async function openReplay(id, at = {}) {
-  const { time_s = 0, isPlaying = true, clock: timedBy = clock.peek(), ghost = null } = at;
+export function openReplay(id, { time_s = 0, isPlaying = true, clock: timedBy = clock.peek(), ghost = null } = {}) {
+  return batch(() => {
+    change({ view: "race", run: id, ghost, moment: isPlaying ? null : time_s });
+    clock.value = timedBy;
+    return load(time_s);
+  });
+}
+
+/** Show the stage again that all pages share. */
+export const closeReplay = () => batch(() => {
+  change({ run: null, ghost: null, moment: null });
+  load(0);
+});
+
+/** Load the run that the page's state names, if any, in place of the one before. @param {number} time_s */
+async function load(time_s) {
   opening += 1;
   const own = opening;
-  batch(() => {
-    forget(id, ghost);
-    replayTime.value = time_s;
-    playing.value = isPlaying;
-    clock.value = timedBy;
-  });
-  writeReplayAddress();
+  const [id, ghost, timedBy] = [page.run.peek(), page.ghost.peek(), clock.peek()];
+  if (scene && id === null) draw([removal(scene)]);
+  forget();
+  replayTime.value = time_s;
+  if (id === null) return;
   try {
-    const [answer, start] = await Promise.all([getReplay(id, timedBy, ghost), load("scene")]);
+    const [answer, start] = await Promise.all([getReplay(id, timedBy, ghost), request("scene")]);
     if (own !== opening) return;
     scene = new SceneState(start);
     plan.value = answer;
     redraw();
     seekReplay(time_s);
   } catch (error) {
-    retryAfter(error, own, () => openReplay(id, { ...at, clock: timedBy }));
+    retryAfter(error, own, () => load(time_s));
   }
 }
 
@@ -105,34 +118,19 @@ function retryAfter(error, own, again) {
   else setTimeout(() => own === opening && again(), RETRY_MS);
 }
 
-/** Show the stage again that all pages share. */
-export function closeReplay() {
-  opening += 1;
-  if (scene) draw([removal(scene)]);
-  batch(() => {
-    forget(null, null);
-    ownStage.value = null;
-  });
-  writeReplayAddress();
-}
-
-/**
- * Forget what is known of the run that was open; another one is, or none.
- * @param {string | null} id
- * @param {string | null} ghost
- */
-function forget(id, ghost) {
+/** Forget what is known of the run that was open. */
+function forget() {
+  opened = named();
   scene = null;
   segments.clear();
   shown = NOTHING;
   isMomentPending = false;
   isGrowthPending = false;
-  ownRunId.value = id;
-  ghostId.value = ghost;
   plan.value = null;
   replayProblem.value = null;
   isBuffering.value = false;
   ownScene.value = null;
+  if (page.run.peek() === null) ownStage.value = null;
 }
 
 /**
@@ -155,15 +153,10 @@ function redraw() {
 const removal = ({ world }) => ({ type: "RemoveSceneNodeMessage", name: world, owner: "" });
 
 /** @param {string} address @param {Record<string, string>} [query] */
-async function load(address, query = {}) {
-  return decode(await getReplayFrames(/** @type {string} */ (ownRunId.peek()), address, { ...query, ...ghostQuery() }));
+async function request(address, query = {}) {
+  const [id, ghost] = [/** @type {string} */ (page.run.peek()), page.ghost.peek()];
+  return decode(await getReplayFrames(id, address, { ...query, ...(ghost === null ? {} : { ghost }) }));
 }
-
-/** @returns {Record<string, string>} */
-const ghostQuery = () => {
-  const ghost = ghostId.peek();
-  return ghost === null ? {} : { ghost };
-};
 
 // ---- what the user can do
 
@@ -172,18 +165,20 @@ export function seekReplay(time_s) {
   const last = endTime.peek();
   replayTime.value = plan.peek() ? Math.min(Math.max(time_s, 0), last) : Math.max(time_s, 0);
   // Not at each pixel of a drag: browsers slow down pages that write their address often.
-  clearTimeout(addressTimer);
-  addressTimer = setTimeout(writeReplayAddress, ADDRESS_MS);
+  clearTimeout(heldTimer);
+  heldTimer = setTimeout(() => playing.peek() || hold(true), HELD_MS);
 }
 
 /** @type {ReturnType<typeof setTimeout> | undefined} */
-let addressTimer;
+let heldTimer;
+
+/** @param {boolean} isOn */
+const hold = (isOn) => change({ moment: isOn ? replayTime.peek() : null });
 
 /** Go on, hold, or play again from the start. @param {boolean} isOn */
 export function playReplay(isOn) {
   if (isOn && hasEnded.peek()) replayTime.value = 0;
-  playing.value = isOn;
-  writeReplayAddress();
+  hold(!isOn);
 }
 
 /** @param {number} times */
@@ -199,7 +194,7 @@ let clockChoice = 0;
  */
 export async function setReplayClock(name) {
   clockChoice += 1;
-  const [own, choice, id, ghost] = [opening, clockChoice, ownRunId.peek(), ghostId.peek()];
+  const [own, choice, id, ghost] = [opening, clockChoice, page.run.peek(), page.ghost.peek()];
   if (!plan.peek() || !id || name === clock.peek()) return;
   const isObeyed = () => own === opening && choice === clockChoice;
   try {
@@ -223,14 +218,14 @@ export function stepReplay(direction) {
   const next = direction > 0
     ? ends.find((end) => end > now + SAME_S) ?? endTime.peek()
     : ends.findLast((end) => end < now - SAME_S) ?? 0;
-  playing.value = false;
+  hold(true);
   seekReplay(next);
 }
 
 /** The ends of the steps of the lane that the camera follows, or of all [s], in order. */
 const stepEnds = computed(() => {
   const lanes = plan.value?.step_ends_s ?? [];
-  return lanes[Number(view.value) - 1] ?? lanes.flat().sort((a, b) => a - b);
+  return lanes[Number(camera.value) - 1] ?? lanes.flat().sort((a, b) => a - b);
 });
 
 // ---- playing
@@ -251,16 +246,16 @@ export function tick(now) {
   else showMoment(now);
   const isNearEnd = endTime.peek() - replayTime.peek() <= speed.peek() * GROWTH_MS / 1000;
   if (!known.complete && isNearEnd) grow(now);
-  if (shown.frame && shown.view !== view.peek()) {
-    draw([follower.centring(scene, shown.frame, view.peek(), Infinity)]);
-    shown = { ...shown, view: view.peek() };
+  if (shown.frame && shown.view !== camera.peek()) {
+    draw([follower.centring(scene, shown.frame, camera.peek(), Infinity)]);
+    shown = { ...shown, view: camera.peek() };
   }
 }
 
 /** Show the frame at the position, of a segment at the level that fits the speed. */
 function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /** @type {number} */ elapsed_s) {
   const { address, next, index: wanted } = placeOf(known, speed.peek(), replayTime.peek());
-  const loaded = request(address);
+  const loaded = segmentAt(address);
   if (!loaded) {
     isBuffering.value = true;
     showMoment(now);
@@ -268,18 +263,18 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
   }
   const index = Math.min(wanted, loaded.frames.length - 1);
   isBuffering.value = false;
-  if (next && index >= known.segment_frames / 2) request(next);
+  if (next && index >= known.segment_frames / 2) segmentAt(next);
   if (shown.address === address && shown.index === index) return;
   const state = /** @type {SceneState} */ (scene);
   const newest = loaded.frames[index];
   const messages = state.showFrame(loaded.frames, index, shown.address === address ? shown.index : -1);
-  draw([...messages, follower.centring(state, newest, view.peek(), elapsed_s)]);
-  shown = { address, index, time_s: newest.time_s, frame: newest, view: view.peek() };
+  draw([...messages, follower.centring(state, newest, camera.peek(), elapsed_s)]);
+  shown = { address, index, time_s: newest.time_s, frame: newest, view: camera.peek() };
   tell(loaded.frames.slice(0, index + 1).findLast((one) => one.scene) ?? newest, now);
 }
 
 /** @param {string} address */
-const request = (address) => segments.get(address, plan.peek()?.segment_frames ?? 0, endTime.peek());
+const segmentAt = (address) => segments.get(address, plan.peek()?.segment_frames ?? 0, endTime.peek());
 
 let grewAt = -Infinity;
 
@@ -290,7 +285,7 @@ async function grow(/** @type {number} */ now) {
   isGrowthPending = true;
   const own = opening;
   try {
-    const answer = await getReplay(/** @type {string} */ (ownRunId.peek()), clock.peek(), ghostId.peek());
+    const answer = await getReplay(/** @type {string} */ (page.run.peek()), clock.peek(), page.ghost.peek());
     if (own !== opening) return;
     isGrowthPending = false;
     plan.value = answer;
@@ -306,7 +301,7 @@ async function showMoment(/** @type {number} */ now) {
   isMomentPending = true;
   const own = opening;
   try {
-    const { frames: [frame] } = await load("moment", { time_s: String(time_s), clock: clock.peek() });
+    const { frames: [frame] } = await request("moment", { time_s: String(time_s), clock: clock.peek() });
     if (own !== opening || !scene) return;
     isMomentPending = false;
     drawMoment(scene, frame, time_s, now);
@@ -317,8 +312,8 @@ async function showMoment(/** @type {number} */ now) {
 
 /** @type {(state: SceneState, frame: Frame, time_s: number, now: number) => void} */
 function drawMoment(state, frame, time_s, now) {
-  draw([...state.jump(frame.messages), follower.centring(state, frame, view.peek(), Infinity)]);
-  shown = { ...NOTHING, time_s, frame, view: view.peek() };
+  draw([...state.jump(frame.messages), follower.centring(state, frame, camera.peek(), Infinity)]);
+  shown = { ...NOTHING, time_s, frame, view: camera.peek() };
   if (frame.time_s > time_s + SAME_S && replayTime.peek() === time_s) {
     // In a gap of the recording: the next moment is shown.
     replayTime.value = frame.time_s;
@@ -336,7 +331,7 @@ function tell(frame, now) {
   ownScene.value = { ...told, time_s: replayTime.peek(), shown_speed: speed.peek() };
 }
 
-// ---- the page's stage, and its address
+// ---- the page's stage
 
 function ownPhase() {
   if (plan.value?.complete === false) return "live";
@@ -346,7 +341,7 @@ function ownPhase() {
 /** Keep the page's own stage, which takes the place of the one that all share. */
 export function followReplay() {
   effect(() => {
-    const id = ownRunId.value;
+    const id = page.run.value;
     if (id === null) return;
     ownStage.value = {
       run_id: id, next_run_id: null, phase: ownPhase(), origin: "chosen", playing: playing.value,
@@ -359,38 +354,28 @@ export function followReplay() {
     wasAway ||= connection.value === "reconnecting";
     if (connection.value !== "live" || !wasAway) return;
     wasAway = false;
-    if (replayProblem.peek() && ownRunId.peek()) readReplayAddress();
+    if (replayProblem.peek() && page.run.peek()) load(page.moment.peek() ?? 0);
   });
   let isLooping = false;
   const loop = (/** @type {number} */ now) => {
-    isLooping = ownRunId.peek() !== null;
+    isLooping = page.run.peek() !== null;
     if (!isLooping) return;
     tick(now);
     requestAnimationFrame(loop);
   };
   effect(() => {
-    if (ownRunId.value === null || isLooping) return;
+    if (page.run.value === null || isLooping) return;
     isLooping = true;
     requestAnimationFrame(loop);
   });
-  addEventListener("popstate", readReplayAddress);
+  // A link, or "back", names another run or another moment.
+  effect(() => {
+    const [isOther, held] = [named() !== opened, page.moment.value];
+    if (isOther) untracked(() => batch(() => load(held ?? 0)));
+    else if (held !== null && held !== replayTime.peek()) seekReplay(held);
+  });
 }
-
-/** Open the run that the address names, if any. */
-export function readReplayAddress() {
-  const named = readReplay();
-  if (named) openReplay(named.id, named.at);
-  else if (ownRunId.peek() !== null) closeReplay();
-}
-
-/** Run, ghost and held moment, for an address. @param {string} id @param {boolean} isHeld */
-const shownNow = (id, isHeld) => ({ id, ghost: ghostId.peek(), time_s: isHeld ? replayTime.peek() : null });
 
 /** A link to the moment that is shown. */
-export const replayLink = () => `${location.origin}${replayAddress(shownNow(ownRunId.peek() ?? "", true))}`;
-
-/** Write the run and a held position into the address. */
-function writeReplayAddress() {
-  const id = ownRunId.peek();
-  writeReplay(id === null ? null : shownNow(id, !playing.peek()));
-}
+export const replayLink = () =>
+  linkTo({ run: page.run.peek(), ghost: page.ghost.peek(), moment: replayTime.peek() });

@@ -1,44 +1,34 @@
 // The list of the Runs view: its filters and order, which are in the address, and the runs that it shows.
-import { computed, signal } from "@preact/signals";
-import { followQuery } from "./page.js";
+import { computed } from "@preact/signals";
+import { page } from "./page-state.js";
 import { folded, makeList, NO_FILTERS, orderOf } from "./runs.js";
 import { everyRun } from "./selectors.js";
 import { damagedRuns } from "./store.js";
 
-/** @import { Signal } from "@preact/signals" */
+/** @import { ReadonlySignal } from "@preact/signals" */
 /** @import { Filters } from "./runs.js" */
 /** @import { DamagedRun, Run } from "./types.js" */
 
-/** @type {Signal<Filters>} */
-export const filters = signal(NO_FILTERS);
+/** Those of the address, `#runs?kind=race&tag=ice&sort=name`; the others are empty. @type {ReadonlySignal<Filters>} */
+export const filters = computed(() => {
+  const given = Object.keys(NO_FILTERS).map((name) => [name, page.list.value.get(name)]).filter(([, value]) => value);
+  return { ...NO_FILTERS, ...Object.fromEntries(given) };
+});
 export const isFiltered = computed(() => {
   const { sort: _, ...chosen } = filters.value;
   return Object.values(chosen).some(Boolean);
 });
 /** @param {Partial<Filters>} changes */
-export const setFilters = (changes) => (filters.value = { ...filters.value, ...changes });
-export const clearFilters = () => (filters.value = { ...NO_FILTERS, sort: filters.value.sort });
+export const setFilters = (changes) => {
+  const chosen = Object.entries({ ...filters.value, ...changes });
+  page.list.value = new URLSearchParams(chosen.filter(([name, value]) => value !== Reflect.get(NO_FILTERS, name)));
+};
+export const clearFilters = () => setFilters({ ...NO_FILTERS, sort: filters.value.sort });
 
 export const runList = makeList(filters);
 
-// ---- the address: `#runs?kind=race&tag=ice&sort=name`
-
-/** Every filter that is in a query; the others are empty. @param {URLSearchParams} query */
-export const readFilters = (query) => {
-  const given = Object.keys(NO_FILTERS).flatMap((name) => (query.get(name) ? [[name, query.get(name)]] : []));
-  filters.value = { ...NO_FILTERS, ...Object.fromEntries(given) };
-};
-
-export const filtersAsQuery = () => {
-  const chosen = Object.entries(filters.value).filter(([name, value]) => value !== Reflect.get(NO_FILTERS, name));
-  return new URLSearchParams(chosen).toString();
-};
-
-/** Load the list while the view is open, and keep its filters and the address the same. */
-export function followRunList() {
-  followQuery("runs", readFilters, filtersAsQuery);
-  runList.follow("runs");
-}
+/** Load the list while the view is open. */
+export const followRunList = () => runList.follow("runs");
 
 // ---- the runs to be shown
 

@@ -1,8 +1,7 @@
 // Runs that the page requests beside those of the snapshot: single ones by their ids, and lists by pages.
 import { computed, effect, signal } from "@preact/signals";
 import { getAnyRun, listRuns } from "./api.js";
-import { place } from "./page.js";
-import { ghostId } from "./replay.js";
+import { page } from "./page-state.js";
 import { trainingIds } from "./selectors.js";
 import { connection, damagedRuns, isDeleted, requestRun, requestRuns, runs, stage } from "./store.js";
 import { messageOf } from "./titles.js";
@@ -58,7 +57,7 @@ const originalIds = ({ config: { branch_from: branch } }) => (branch ? [branch.r
  * They may be older than those of the snapshot.
  */
 export const stageIds = computed(() => {
-  const all = [stage.value?.run_id, stage.value?.next_run_id, ghostId.value];
+  const all = [stage.value?.run_id, stage.value?.next_run_id, page.ghost.value];
   const shown = all.filter((id) => id !== null && id !== undefined);
   return shown.flatMap((id) => {
     const run = runs.value.get(id);
@@ -165,7 +164,7 @@ export function makeList(filters) {
 
   /** Load the first page as soon as the view is open, and again after a reconnection and for other filters. */
   const follow = (/** @type {string} */ view) => {
-    const isOpen = computed(() => place.value === view);
+    const isOpen = computed(() => page.view.value === view);
     effect(() => {
       // The snapshot after a reconnection replaces all known runs.
       if (connection.value !== "live") pages.value = NO_PAGES;

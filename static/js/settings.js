@@ -154,7 +154,7 @@ export function withinRanges(fields, values) {
 /** For an agent that a run names and the server no longer has. */
 const REMOVED_AGENT = {
   description: "", color: "#888888", learns: false, searches: false, needs_practice: false, keeps_learning: false,
-  settings: {}, live_settings: {},
+  steps_ahead: null, settings: {}, live_settings: {},
 };
 
 /** @type {(name: string) => Agent} */

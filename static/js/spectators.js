@@ -1,8 +1,7 @@
 // The form on a spectator's page follows the run that is shown. Loaded on spectators' pages only.
 import { batch, computed, effect, untracked } from "@preact/signals";
 import { copySettings } from "./actions.js";
-import { isChanged, readQuery, unknownParts, writeAddress } from "./form.js";
-import { hasOwnSettings, isReadOnly } from "./page.js";
+import { isReadOnly, stageTexts } from "./form.js";
 import { shownRun } from "./on-stage.js";
 import { trainingIds } from "./selectors.js";
 import { runs } from "./store.js";
@@ -19,18 +18,14 @@ let isFollowing = false;
 
 /** Keep the form as the run that is shown has it, unless a link or the spectator says otherwise. */
 export function followStageSettings() {
-  // A page that was an operator's keeps what its form has, as a link does.
-  if (isChanged.peek() || unknownParts.peek().length) hasOwnSettings.value = true;
-  writeAddress();
   if (isFollowing) return;
   isFollowing = true;
   effect(() => {
     const hasSettings = version.value !== null;
     if (!isReadOnly.value) return;
     untracked(() => batch(() => {
-      readQuery(new URLSearchParams());
+      stageTexts.value = new URLSearchParams();
       if (hasSettings && shownRun.value) copySettings(shownRun.value);
-      writeAddress();
     }));
   });
 }

@@ -2,7 +2,7 @@
 import { adopt, attempt } from "./actions.js";
 import { startRace } from "./api.js";
 import { count, listed } from "./format.js";
-import { goIfStillHere } from "./page.js";
+import { changeIfStillHere } from "./page-state.js";
 import { formRobot, isSame, numberOfLegs } from "./robots.js";
 import { hasTable } from "./selectors.js";
 import { limitsOf } from "./settings.js";
@@ -85,6 +85,6 @@ function bodyOf(trainings) {
 /** Start the race, and show it. @param {Run[]} trainings */
 export const raceThem = (trainings) =>
   attempt("table race", async () => {
-    const go = goIfStillHere();
-    if (await adopt(() => startRace(bodyOf(trainings)))) go("");
+    const go = changeIfStillHere();
+    if (await adopt(() => startRace(bodyOf(trainings)))) go({ view: "race" });
   });

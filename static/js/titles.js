@@ -54,12 +54,8 @@ export const choicesOf = (list, nameOf) => (list ?? []).map(({ name }) => [name,
 
 // ---- fields
 
-/** @type {Record<string, string>} */
-const LABELS = {
-  gait: "Gait", robot: "Robot", simulator: "Simulator", observation: "Observation", agent: "Learner", lanes: "Lanes",
-  name: "Name", world: "World", disturb: "Disturbances", experiment: "Experiment", seeds: "Seeds", gaits: "Gaits",
-  robots: "Robots", observations: "Observation", agents: "Agents", worlds: "Worlds", tags: "Tags", notes: "Notes",
-};
+/** The served name of a field that is no declared setting. @param {string} field */
+const titleOfField = (field) => options.value?.titles[field];
 
 /**
  * A field's name as the form shows it: "Learning rate α".
@@ -70,7 +66,7 @@ export function labelOf(field) {
   const [agent, own] = field.split(".");
   if (own) return `${agentOf(agent).title}: ${labelOf(own).toLowerCase()}`;
   const setting = options.value?.settings[field];
-  return setting ? titleOf(setting) : LABELS[field] ?? field;
+  return setting ? titleOf(setting) : titleOfField(field) ?? field;
 }
 
 const ROBOT_PART = /\brobot\.([a-z_]+)/gi;
@@ -93,7 +89,7 @@ const PATH = new RegExp(
 export const inFormWords = (text) =>
   withPartsInWords(text).replace(PATH, (...[whole, path, name, verb]) => {
     const field = name.toLowerCase();
-    const isField = options.value?.settings[field] || field in LABELS;
+    const isField = options.value?.settings[field] || titleOfField(field);
     return isField && (path || verb || name.includes("_")) ? labelOf(field) : whole;
   });
 
@@ -105,16 +101,15 @@ export const messageOf = (error) => inFormWords(error.message);
 /** @param {string} name */
 export const agentTitle = (name) => agentOf(name).title;
 
-/** @type {Record<string, string>} */
-const PLACE_TITLES = { gait: "Gait", observation: "Observation", robot: "Robot", agent: "Agent" };
-
 /**
  * The name of a field of settings; of a setting the short one that it declares.
  * @param {string} field
  */
 export function fieldTitle(field) {
   const setting = options.value?.settings[field];
-  return PLACE_TITLES[field] ?? (setting ? shortTitle(setting) : LABELS[field] ?? field);
+  // An experiment has agents that do not learn, too.
+  if (field === "agent") return "Agent";
+  return setting ? shortTitle(setting) : titleOfField(field) ?? field;
 }
 
 /**

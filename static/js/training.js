@@ -12,7 +12,10 @@ import { bestKnown, connection, evaluations, references, runs, scene, setEntry }
 /** @import { RateChange } from "./changes.js" */
 /** @import { Disturbance, Evaluation, ActionValues, Run } from "./types.js" */
 
-/** A point of the curve; steps count all practice. @typedef {{ step: number, distance_m: number }} CurvePoint */
+/**
+ * A point of the curve; steps count all practice. The first, before any, has no ε.
+ * @typedef {{ step: number, distance_m: number, epsilon?: number }} CurvePoint
+ */
 
 const LONGEST_CHAIN = 20;
 const RETRY_MS = 3000;

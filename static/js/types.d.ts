@@ -61,7 +61,7 @@ type Merged<Union> = { [Name in NameIn<Union>]: MemberOf<Union, Name> };
 type AnyRun = Api.TrainingView | Api.RaceView | Api.ExperimentView;
 type WalkConfig = Merged<Api.TrainingConfigView | Api.RaceConfigView>;
 /** Some of its fields are looked up by their names. */
-export type RunConfig = WalkConfig & Omit<Api.ExperimentConfigView, keyof WalkConfig> & { [field: string]: unknown };
+export type RunConfig = WalkConfig & Omit<Api.ExperimentConfig, keyof WalkConfig> & { [field: string]: unknown };
 export type RunResult = Merged<Api.TrainingResult | Api.RaceResult | Api.ExperimentResult>;
 export type Run = Omit<Merged<AnyRun>, "config" | "result"> & { config: RunConfig; result: RunResult | null };
 export type Kind = AnyRun["kind"];
@@ -77,7 +77,7 @@ export type Stage = Pick<
 export type Timeline = Api.TimelineView & { id: string };
 export type ClockResult = Api.FiguresUnderClock;
 /** Something that happens; its fields but the first two depend on its kind. Legs are numbered from 1. */
-export type Disturbance = Api.DisturbanceView & { until_step?: number | null; leg?: number; legs?: number[] };
+export type Disturbance = Api.TrainingConfigView["disturbances"][number] & { until_step?: number | null; leg?: number; legs?: number[] };
 /** A lane as it was started, or as the form starts it. */
 export type LaneConfig = Pick<Api.LaneView, "agent"> &
   Partial<Omit<Api.LaneView, "observation">> & { observation?: string };

@@ -1,8 +1,10 @@
 // What-if: kinematic trials of the form's settings, beside trials of the defaults.
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api.js";
-import { form, mistakes, whatIfBody } from "./form.js";
-import { isReadOnly } from "./page.js";
+import { form, mistakes, whatIfBody, isReadOnly } from "./form.js";
+import { work } from "./on-stage.js";
+import { page } from "./page-state.js";
+import { isNarrow } from "./page.js";
 import { limitsOf } from "./settings.js";
 import { options, role } from "./store.js";
 
@@ -14,7 +16,8 @@ import { options, role } from "./store.js";
 const QUIET_MS = 300;
 
 /** Whether the panel is open; a closed one computes nothing. */
-export const isPanelOpen = signal(false);
+export const isPanelOpen = computed(() =>
+  (page.whatIf.value === null ? !isNarrow.value && !work.value : page.whatIf.value === "open"));
 /** The newest answer, and the settings that it is for. @type {Signal<(WhatIfAnswer & { settings: string }) | null>} */
 export const answer = signal(null);
 /** @type {Signal<RequestError | null>} */

@@ -9,40 +9,40 @@ from hexapods.agents.double_q import DoubleQ
 from hexapods.agents.q_learning import QLearning
 from hexapods.agents.tabular import TabularLearner
 from hexapods.domain.observation import legal_actions
-from tests.agents.by_hand import FIRST, PROBLEM, SECOND, THIRD, A, B, step, value
+from tests.agents.by_hand import FIRST, PROBLEM, SECOND, THIRD, A, B, C, step, value
 
 
 class Coin:
-    """A generator whose lots are all the same."""
+    """A generator that draws one lot, again and again."""
 
     def __init__(self, lot: int) -> None:
-        self._lot = lot
+        self.lot = lot
 
     def integers(self, high: int) -> int:
-        return min(self._lot, high - 1)
-
-
-def learner(lot: int, **settings: Any) -> DoubleQ:
-    return DoubleQ(Coin(lot), PROBLEM, **settings)
+        return min(self.lot, high - 1)
 
 
 def half(agent: DoubleQ, number: int) -> TabularLearner:
-    """Return a learner with one of the two tables, to read and write it."""
-    of_half = QLearning(np.random.default_rng(0), PROBLEM)
-    of_half.table = agent._halves[number]
+    """Return a learner with one of the two tables, to read it."""
+    of_half, state = QLearning(np.random.default_rng(0), PROBLEM), agent.state()
+    of_half.table.load({**state, "q": state["halves"][number]})
     return of_half
 
 
 @pytest.mark.parametrize("drawn", [0, 1])
 def test_the_drawn_table_names_the_action_and_the_other_values_it(drawn: int) -> None:
-    agent = learner(drawn, alpha=0.5, gamma=0.9)
-    row = agent.table.index(B)
-    second, third = agent.table.column(SECOND), agent.table.column(THIRD)
-    agent._halves[drawn].row(row)[0][[second, third]] = [2.0, 1.0]
-    agent._halves[1 - drawn].row(row)[0][[second, third]] = [0.4, 3.0]
+    coin: Any = Coin(drawn)
+    agent = DoubleQ(coin, PROBLEM, alpha=0.5, gamma=0.9)
+    values = {drawn: (2.0, 1.0), 1 - drawn: (0.4, 3.0)}
+    for coin.lot, (second, third) in values.items():
+        # What follows is worth nothing yet.
+        agent.learn(step(B, SECOND, second / 0.5, C))
+        agent.learn(step(B, THIRD, third / 0.5, C))
+    coin.lot = drawn
     agent.learn(step(A, FIRST, 0.1, B))
 
     updated = 0.5 * (0.1 + 0.9 * 0.4)
+    assert value(half(agent, drawn), B, SECOND) == pytest.approx(2.0)
     assert value(half(agent, drawn), A, FIRST) == pytest.approx(updated)
     assert value(half(agent, 1 - drawn), A, FIRST) == 0
     assert value(agent, A, FIRST) == pytest.approx(updated / 2)

@@ -34,10 +34,10 @@ def raced(lane: LaneConfig, gait: str | GaitSpec = "left-right-origin") -> LaneR
     return lanes[0]
 
 
-def pairs_of(wave: Wave, gait: str | GaitSpec, steps: int) -> list[tuple[int, int]]:
+def pairs_of(wave: Wave, gait: str | GaitSpec, steps: int) -> list[tuple[int, ...]]:
     """Return the pairs of legs that swing, where every foot is observed at home."""
     legal = legal_actions((0, 0, 0), 5)
-    return [problem(gait).pairs[wave.act((0, 0, 0), legal).pair] for _ in range(steps)]
+    return [problem(gait).groups[wave.act((0, 0, 0), legal).group] for _ in range(steps)]
 
 
 @pytest.mark.parametrize(

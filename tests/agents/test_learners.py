@@ -11,7 +11,7 @@ from hexapods.agents.appearance import colors_of, description_of, title_of
 from hexapods.agents.protocol import Problem, Transition, Valuing
 from hexapods.agents.registry import OURS, build, find, learns
 from hexapods.agents.tabular import TabularAgent, TabularLearner
-from hexapods.assembly import build_learner, build_walkers, finish_training
+from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.feet import Feet
 from hexapods.domain.grid import FootGrid
@@ -22,6 +22,7 @@ from hexapods.experiments.trial import TrialConfig, run_trial
 from hexapods.runs.config import TrainingConfig, training_config
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.results import training_result
 from hexapods.runs.seeding import RACING, generator
 from hexapods.runs.tables import Checkpoint, from_bytes, restore, snapshot, table_of, to_bytes
 from hexapods.runs.training import Learner, evaluate, train
@@ -214,7 +215,7 @@ def test_values_and_visits_are_shown(agent: str) -> None:
 def test_table_of_a_file_is_that_of_the_result(name: str) -> None:
     config = config_of(name)
     learner = trained(config)
-    result = finish_training(learner, config)
+    result = training_result(learner, config)
     table = table_of(from_bytes(to_bytes(snapshot(learner, config)), "q.npz"))
 
     assert table.sha256() == result.q_table_sha256

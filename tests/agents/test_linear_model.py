@@ -131,7 +131,7 @@ def test_planned_policies_let_the_pairs_take_turns() -> None:
     agent, moved = model(prior="kinematic"), []
     for _ in range(12):
         action = agent.act(AT_HOME, LEGAL)
-        moved.append(action.pair)
+        moved.append(action.group)
         agent.learn(Transition(AT_HOME, action, 0.009, AT_HOME, LEGAL))
     assert moved == [0, 1, 2, 0, 1, 2, 1, 0, 2, 1, 0, 2]
 
@@ -206,7 +206,7 @@ def test_evaluation_leaves_the_learner_unchanged() -> None:
 
 
 def test_a_state_of_another_grid_is_refused() -> None:
-    other = LinearModel(Problem(PROBLEM.pairs, FootGrid(divisions=3).cells), Plan())
+    other = LinearModel(Problem(PROBLEM.groups, FootGrid(divisions=3).cells), Plan())
     with pytest.raises(ValueError, match="measured_moments has the shape"):
         model().load(other.state())
 

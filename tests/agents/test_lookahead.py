@@ -73,7 +73,7 @@ def test_greedy_moves_the_pairs_to_the_front_in_turn(gait: str) -> None:
         robot.carry_out(chosen[-1])
 
     assert chosen[:3] == [(0, FRONT_LEFT), (1, FRONT_LEFT), (2, FRONT_LEFT)]
-    assert [action.pair for action in chosen] == [0, 1, 2] * 3
+    assert [action.group for action in chosen] == [0, 1, 2] * 3
     assert {action.cell for action in chosen} <= {FRONT_LEFT, FRONT_RIGHT}
 
 
@@ -143,6 +143,6 @@ def test_every_pair_moves_at_each_gait_and_depth() -> None:
         moved = set()
         for _ in range(6):
             action = robot.decide()
-            moved.add(action.pair)
+            moved.add(action.group)
             robot.carry_out(action)
         assert moved == {0, 1, 2}

@@ -76,7 +76,7 @@ def test_agent_chooses_legal_actions_in_each_observation_mode(
         observed = observe(walker.simulator, walker.state, observation)
         action = walker.decide()
         assert action in walker.legal
-        assert observed[action.pair] != action.cell
+        assert observed[action.group] != action.cell
         assert [type(part) for part in action] == [int, int]
         walker.carry_out(action)
 

@@ -23,7 +23,7 @@ def legal_values(table: QTable) -> int:
 
 def test_two_divisions_give_the_papers_1500_values() -> None:
     cells = len(FootGrid(divisions=2))
-    table = QTable(pairs=3, cells=cells)
+    table = QTable(groups=3, cells=cells)
 
     assert table.states == 125
     assert {len(legal_actions(s, cells)) for s in product(range(cells), repeat=3)} == {12}
@@ -31,7 +31,7 @@ def test_two_divisions_give_the_papers_1500_values() -> None:
 
 
 def test_three_divisions_give_nine_cells() -> None:
-    table = QTable(pairs=3, cells=len(FootGrid(divisions=3)))
+    table = QTable(groups=3, cells=len(FootGrid(divisions=3)))
 
     assert (table.cells, table.states, legal_values(table)) == (9, 729, 729 * 24)
 
@@ -159,4 +159,4 @@ def test_invalid_arrays_are_refused(arrays: dict[str, Any], message: str) -> Non
 
 def test_too_large_table_is_refused_with_the_maximum() -> None:
     with pytest.raises(InvalidInput, match=f"the most is {MAX_VALUES:,}: choose fewer divisions"):
-        QTable(pairs=4, cells=65)
+        QTable(groups=4, cells=65)

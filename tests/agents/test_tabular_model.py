@@ -77,16 +77,16 @@ def test_an_invalid_model_is_refused(
 
 @pytest.mark.parametrize("name", WITH_A_MODEL)
 def test_a_problem_that_is_too_large_is_refused_before_and_at_the_start(name: str) -> None:
-    large = Problem(PROBLEM.pairs, FootGrid(divisions=5).cells)
+    large = Problem(PROBLEM.groups, FootGrid(divisions=5).cells)
     sentence = "at most 300,000 .* 3 leg pairs on 25 cells have 1,171,875: choose fewer divisions"
     with pytest.raises(InvalidInput, match=sentence):
         check_problem(name, large, {})
     with pytest.raises(InvalidInput, match=sentence):
         build(find(name), {"rng": np.random.default_rng(0), "problem": large})
 
-    check_problem(name, Problem(PROBLEM.pairs, FootGrid(divisions=4).cells), {})
+    check_problem(name, Problem(PROBLEM.groups, FootGrid(divisions=4).cells), {})
 
 
 def test_learners_without_a_model_take_any_problem() -> None:
     assert {"dyna-q", "dyna-q-plus", "prioritized-sweeping", "r-max"} < set(WITH_A_MODEL)
-    check_problem("q-learning", Problem(PROBLEM.pairs, FootGrid(divisions=8).cells), {})
+    check_problem("q-learning", Problem(PROBLEM.groups, FootGrid(divisions=8).cells), {})

@@ -5,7 +5,6 @@ import socket
 
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.auth import Role
 from app.api.concurrency_limit import (
     MAX_WAITING,
     PROBE_SLOTS,
@@ -16,6 +15,7 @@ from app.api.concurrency_limit import (
 )
 from app.api.rate_limit import WHAT_IF
 from app.limits.connections import ConnectionTable
+from app.stage.roles import Role
 
 STOP = "/api/v1/trainings/x/stop"
 READING = SLOTS["spectator"]["other"].size

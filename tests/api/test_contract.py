@@ -224,7 +224,8 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     api.call("DELETE", f"/trainings/{run['id']}")
 
     async def first_event() -> ServerSentEvent:
-        return await anext(get_events(services, "operator", None, EventListener()))
+        listener = EventListener("operator")
+        return await anext(get_events(services, services.stages[0], None, listener))
 
     snapshot = asyncio.run(first_event())
     bodies = EventBodies.model_fields.items()

@@ -11,7 +11,6 @@ import pytest
 
 from app.api import events
 from app.api.deps import EventListener, Services
-from app.events.run_view import run_view
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -34,7 +33,9 @@ class Stream:
 
     def __init__(self, services: Services, last_event_id: int | None = None) -> None:
         header = None if last_event_id is None else str(last_event_id)
-        self.events: Any = events.get_events(services, "operator", None, EventListener(), header)
+        self.events: Any = events.get_events(
+            services, services.stages[0], None, EventListener("operator"), header
+        )
 
     async def next(self) -> ReceivedEvent:
         event = await asyncio.wait_for(anext(self.events), LONG_S)
@@ -81,7 +82,7 @@ class BlockedRead:
 def change(services: Services, state: Any) -> None:
     """Change the state of run `a` and publish the change, as jobs do."""
     run = services.store.change("a", QUEUED | LIVE, state)
-    services.bus.publish("run", run_view(run), "a")
+    services.bus.publish_run(run)
 
 
 @pytest.mark.parametrize("moment", ["before", "after"])

@@ -10,6 +10,7 @@ import pytest
 
 from hexapods.experiments.config import experiment_config
 from tests.api.calls import Api, refused
+from tests.archive.test_transfer import repacked
 from tests.jobs.experiments import tried
 
 Serve = Callable[..., Api]
@@ -43,6 +44,20 @@ def test_finished_experiment_has_summary_and_report(swept: dict[str, Any], api: 
     assert len(summary["settings"]) == 3
     assert "experiment" in {run["kind"] for run in api.get("/experiments")["items"]}
     assert swept["id"] not in {run["id"] for run in api.get("/trainings")["items"]}
+
+
+def test_summary_of_an_earlier_version_has_its_settings_as_a_member(
+    swept: dict[str, Any], api: Api
+) -> None:
+    summary = api.get(f"/experiments/{swept['id']}/summary")
+    fields = {name: value for name, value in summary["config"].items() if name != "settings"}
+    flat = {**fields, **summary["config"]["settings"]}
+    earlier = {**summary, "format": 1, "config": flat}
+    exported = api.call("GET", f"/experiments/{swept['id']}/export").content
+    archived = repacked(exported, summary_json=json.dumps(earlier).encode())
+    copy = api.call("POST", "/import", content=archived).json()
+    assert api.get(f"/experiments/{copy['id']}/summary") == summary
+    api.call("DELETE", f"/experiments/{copy['id']}")
 
 
 def test_report_has_a_policy_that_forbids_scripts(swept: dict[str, Any], api: Api) -> None:

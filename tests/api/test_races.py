@@ -2,14 +2,17 @@
 
 import io
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+import hexapods as hx
 from hexapods.agents import registry
 from hexapods.runs.race_file import race_recording
 from tests.api.calls import WALK, Api, refused
+from tests.cli.running import in_process, output
 
 PRACTICE = {"steps": 100}
 LANES = [
@@ -61,6 +64,25 @@ def test_race_is_reproducible(raced: dict[str, Any], api: Api) -> None:
             assert one[name] == other[name]
         for clock in ("paper", "free"):
             assert one["clocks"][clock] == other["clocks"][clock]
+
+
+def test_a_race_has_one_hash_over_rest_in_the_library_and_on_the_command_line(
+    api: Api, tmp_path: Path
+) -> None:
+    lanes = [{"agent": "q-learning", "training": PRACTICE}, {"agent": "greedy"}]
+    raced = api.finished(api.race(lanes=lanes, steps=30, seed=4))
+
+    given: dict[str, Any] = WALK
+    race = hx.race([hx.train(**given, steps=100, seed=4), "greedy"], **given, steps=30, seed=4)
+    walk = [part for name, value in WALK.items() for part in (f"--{name}", value)]
+    output("train", *walk, "--steps", "100", "--seed", "4", "--out", "q.npz", folder=tmp_path)
+    options = ("--lane", "q-learning=q.npz", "--lane", "greedy", "--steps", "30", "--seed", "4")
+    printed = output("race", *walk, *options, folder=tmp_path, run=in_process)
+
+    sha256 = raced["result"]["recording_sha256"]
+    assert sha256 == race.recording_sha256 == printed["recording_sha256"]
+    other = api.finished(api.race(lanes=lanes, steps=30, seed=5))
+    assert other["result"]["recording_sha256"] != sha256
 
 
 def test_lane_can_use_an_existing_table(api: Api, trained: dict[str, Any]) -> None:

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hexapods.assembly import build_learner, finish_training
+from hexapods.assembly import build_learner
 from hexapods.runs.config import training_config
+from hexapods.runs.results import training_result
 from hexapods.runs.tables import from_bytes, table_of
 from hexapods.runs.training import train
 from tests.api.calls import WALK, Api, refused
@@ -20,7 +21,7 @@ def train_directly(**fields: Any) -> dict[str, Any]:
     learner = build_learner(config)
     for _ in train(learner, config):
         pass
-    return asdict(finish_training(learner, config))
+    return asdict(training_result(learner, config))
 
 
 def test_training_needs_only_a_gait(api: Api) -> None:
@@ -28,7 +29,7 @@ def test_training_needs_only_a_gait(api: Api) -> None:
     api.stop(run)
     config = run["config"]
     assert run["kind"] == "training"
-    assert run["name"] == "500 steps: Front-back, mirrored"
+    assert run["name"] == "Q-learning, 500 steps"
     assert run["state"] == "queued"
     assert run["progress"] == {"done": 0, "total": 500}
     assert (config["steps"], config["settings"]["alpha"], config["settings"]["gamma"]) == (
@@ -38,6 +39,15 @@ def test_training_needs_only_a_gait(api: Api) -> None:
     )
     assert (config["observation"], config["simulator"]) == ("measured", "mujoco")
     assert run["created_at"].endswith("Z")
+
+
+def test_names_tell_what_runs_differ_in(api: Api) -> None:
+    settings = {"settings": {"alpha": 0.5}, "world": "ice", "steps": 30}
+    training = api.start("/trainings", {"gait": WALK["gait"], **settings})
+    lanes = [{"agent": "greedy"}, {"agent": "look-ahead", "settings": {"depth": 3}}]
+    race = api.start("/races", {"gait": WALK["gait"], "lanes": lanes, "steps": 2})
+    assert training["name"] == "Q-learning, α\u00a00.5, 30 steps, ice"
+    assert race["name"] == "Race: Greedy, Look-ahead"
 
 
 def test_result_equals_that_of_a_direct_call_on_kinematic(
@@ -189,7 +199,7 @@ def test_training_with_live_changes_is_reproducible(api: Api) -> None:
                 learner.walker.agent.tune(**change["settings"])  # type: ignore[attr-defined]
         if learner.step == now["progress"]["done"]:
             break
-    result = finish_training(learner, config, measure_reference=False)
+    result = training_result(learner, config, measure_reference=False)
     assert asdict(result) == now["result"]
 
 

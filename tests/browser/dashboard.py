@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import ConsoleMessage, FloatRect, Locator, Page, expect
+from playwright.sync_api import ConsoleMessage, FloatRect, FrameLocator, Locator, Page, expect
 
 PATIENCE_MS = 60_000
 """A race in software WebGL beside the browser that shows it, on two cores, takes its time."""
@@ -48,13 +48,15 @@ class Dashboard:
     def open(self, address: str) -> None:
         """Open it, and wait until it is live and the stage has a picture, if it is to have one."""
         self.page.goto(address)
-        expect(self.page.locator(".live")).to_contain_text("live")
+        expect(self.connection).to_contain_text("live")
         if self._has_3d:
             self.wait_for_stage()
 
     def wait_for_stage(self) -> None:
         """Wait until the 3D client has its stream."""
-        expect(self.page.locator(".stage")).to_have_attribute("data-status", "connected")
+        # Other views than that of the race hide it.
+        stage = self.page.get_by_role("region", name="Stage", exact=True, include_hidden=True)
+        expect(stage).to_have_attribute("data-status", "connected")
 
     @property
     def primary(self) -> Locator:
@@ -65,23 +67,103 @@ class Dashboard:
         """A button by its whole name."""
         return self.page.get_by_role("button", name=name, exact=True)
 
+    def group(self, name: str) -> Locator:
+        """A group of elements by its whole name."""
+        return self.page.get_by_role("group", name=name, exact=True)
+
+    @property
+    def connection(self) -> Locator:
+        """Whether the page is live, and how many watch; the presenter view hides it."""
+        return self.page.get_by_role("group", name="Connection", exact=True, include_hidden=True)
+
+    @property
+    def actions(self) -> Locator:
+        """The primary button, what can be done with the runs at work, and their progress."""
+        return self.group("Actions")
+
+    @property
+    def labels(self) -> Locator:
+        """What stands over the picture: the run, its conditions and its speed."""
+        return self.group("Labels of the picture")
+
+    @property
+    def shown_run(self) -> Locator:
+        """The label of the run in the picture."""
+        return self.group("Shown run")
+
+    @property
+    def notes(self) -> Locator:
+        """Notes on the run in the picture: how it ended, and what comes next."""
+        return self.group("Notes on the shown run")
+
+    @property
+    def view(self) -> FrameLocator:
+        """The 3D view in its frame."""
+        return self.page.get_by_title("The robots on the track, in 3D").content_frame
+
     def unfold_settings(self) -> None:
         """Open every group of settings, and what is folded in them."""
         for words in ("Robot and world", "Race", "More settings"):
-            self.page.locator(".settings summary", has_text=words).click()
+            self.unfold(words)
+
+    def unfold(self, words: str) -> None:
+        """Open a group of settings by its title."""
+        self.group("Settings").get_by_text(words, exact=True).click()
+
+    @property
+    def scoreboard(self) -> Locator:
+        """The panel with the headline, and with the standings or the lanes of the race to come."""
+        return self.page.get_by_role("region", name="Scoreboard", exact=True)
+
+    @property
+    def headline(self) -> Locator:
+        """How the race or the practice stands, in a line."""
+        return self.scoreboard.get_by_role("heading", level=3)
+
+    @property
+    def standings(self) -> Locator:
+        """The scoreboard's table."""
+        return self.scoreboard.get_by_role("table", name="Standings")
 
     @property
     def rows(self) -> Locator:
-        """The scoreboard's lanes, the leader first."""
-        return self.page.locator(".board tbody")
+        """The scoreboard's lanes, the leader first; only their groups of rows have names."""
+        return self.standings.get_by_role("rowgroup", name=re.compile("."))
 
     def distances(self) -> list[str]:
         """Return the texts of the scoreboard's column of distances."""
-        return self.page.locator(".board .big").all_inner_texts()
+        texts: list[str] = self.rows.evaluate_all(
+            "lanes => lanes.map(({rows: [row]}) => row.cells[2].innerText)"
+        )
+        return texts
+
+    @property
+    def start_list(self) -> Locator:
+        """The lanes of the race to come."""
+        return self.scoreboard.get_by_role("list", name="Lanes of the race").get_by_role("listitem")
+
+    @property
+    def experiment(self) -> Locator:
+        """Which experiment the report is of, how far it is, and what can be done with it."""
+        return self.page.get_by_role("region", name=re.compile("^Experiment: "))
+
+    def experiment_state(self, state: str) -> Locator:
+        """The word for the state of the experiment, if it is in that state."""
+        return self.experiment.get_by_text(state, exact=True)
+
+    @property
+    def runs(self) -> Locator:
+        """The runs in the list, each headed by its name."""
+        return self.page.get_by_role("list", name="Runs", exact=True).get_by_role("listitem")
+
+    @property
+    def run_names(self) -> Locator:
+        """The names in the list of runs."""
+        return self.runs.get_by_role("heading")
 
     def picture(self) -> str:
         """A fingerprint of the robots' canvas, without what stands over it."""
-        canvas = self.page.frame_locator(".picture iframe").locator("canvas").first
+        canvas = self.view.locator("canvas").first
         return hashlib.sha256(canvas.screenshot(timeout=PATIENCE_MS)).hexdigest()
 
     def eventually(self, condition: Callable[[], object], what: str) -> None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import httpx2
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
@@ -49,6 +49,20 @@ def different_states(dashboard: Dashboard, *ids: str) -> int:
     return sum(all(seen) and a != b for seen, (a, b) in zip(visited, moves, strict=True))
 
 
+def marks_what_differs(page: Page) -> None:
+    """Settings that differ are marked, and shown alone on request."""
+    settings = page.get_by_role("region", name="Settings side by side")
+    different = settings.get_by_role("rowheader", name=re.compile(", differs$"))
+    expect(different).to_contain_text(["Learner", "Practice"])
+    alike = settings.get_by_role("rowheader", name=re.compile("(?<!, differs)$"))
+    assert alike.count() > 0
+    page.get_by_label("Only differences").focus()
+    page.keyboard.press("Space")
+    expect(alike).to_have_count(0)
+    practised = page.get_by_role("row", name=re.compile("^Practised"))
+    expect(practised).to_contain_text("150 steps100 steps")
+
+
 def test_runs_are_compared_side_by_side_and_raced(
     dashboard: Dashboard, shared_server: Serving, duel: Duel
 ) -> None:
@@ -57,40 +71,34 @@ def test_runs_are_compared_side_by_side_and_raced(
 
     # From the list: those that cannot race say why, and two that can are compared.
     page.goto(f"{shared_server.address}#runs?search=duel&sort=oldest")
-    expect(page.locator(".run-name b")).to_have_text(["Duel calm", "Duel bold", "Duel turned"])
+    expect(dashboard.run_names).to_have_text(["Duel calm", "Duel bold", "Duel turned"])
     page.get_by_label("Select all").click()
-    expect(page.locator(".selection")).to_contain_text("they differ in gait (Left-right, opposite")
+    expect(dashboard.group("Selected runs")).to_contain_text(
+        "they differ in gait (Left-right, opposite"
+    )
     expect(dashboard.button("Race these")).to_have_attribute("aria-disabled", "true")
-    page.locator(".run-box input").nth(2).click()
+    dashboard.runs.nth(2).get_by_role("checkbox").click()
     expect(dashboard.button("Race these")).not_to_have_attribute("aria-disabled", "true")
     page.get_by_role("link", name="Compare 2").click()
 
     # Curves over each other, read at the crosshair by keys.
     expect(page).to_have_url(f"{shared_server.address}#compare?runs={one},{other}")
     expect(page.get_by_role("img", name=re.compile("^Learning curves: A .* B "))).to_be_visible()
-    page.get_by_role("slider", name=re.compile("learning curves")).focus()
+    reading = page.get_by_role("slider", name=re.compile("learning curves"))
+    reading.focus()
     page.keyboard.press("Home")
     page.keyboard.press("ArrowRight")
-    reading = page.locator(".compare .chart-frame")
     expect(reading).to_contain_text(re.compile("A: Duel calm.*B: Duel bold", re.DOTALL))
 
-    # Settings, with what differs marked, and nothing else on request.
-    settings = page.get_by_role("region", name="Settings side by side")
-    expect(settings.locator(".differs th")).to_contain_text(["Learner", "Practice"])
-    assert settings.locator("tbody tr").count() > settings.locator(".differs").count()
-    page.get_by_label("Only differences").focus()
-    page.keyboard.press("Space")
-    expect(settings.locator("tbody tr:not(.differs)")).to_have_count(0)
-    practised = page.get_by_role("row", name=re.compile("^Practised"))
-    expect(practised).to_contain_text("150 steps100 steps")
+    marks_what_differs(page)
 
     # Policies where they differ, as the tables have them.
     differ = different_states(dashboard, one, other)
-    policies = page.locator(".policies")
-    expect(policies.locator("p b").first).to_have_text(str(differ))
+    policies = page.get_by_role("region", name="Policies", exact=True)
+    expect(policies).to_contain_text(re.compile(rf"best moves differ in {differ}\b"))
     if differ > 12:
         policies.get_by_role("button", name=f"Show all {differ}").click()
-    expect(policies.locator("tbody tr")).to_have_count(differ)
+    expect(policies.get_by_role("rowheader")).to_have_count(differ)
     assert dashboard.violations() == []
     page.set_viewport_size({"width": 360, "height": 780})
     page.emulate_media(color_scheme="dark")
@@ -105,7 +113,7 @@ def test_runs_are_compared_side_by_side_and_raced(
     dashboard.button("Leave out Duel turned").click()
     assert dashboard.complaints.pop().startswith("404")
     dashboard.button("Race these").click()
-    expect(page.locator(".controls")).to_be_visible()
+    expect(page.get_by_role("region", name="Train and race")).to_be_visible()
     race = dashboard.get("/api/v1/races?sort=newest&limit=1")["items"][0]
     assert race["name"] == "Race of Duel calm and Duel bold"
     assert [lane["training_id"] for lane in race["config"]["lanes"]] == [one, other]
@@ -123,9 +131,7 @@ def test_the_robots_of_another_run_walk_along_as_ghosts(
     dashboard.open(f"{shared_server.address}#compare?runs={one},{other}")
     page.get_by_role("link", name="Replay A with B as ghost").click()
     expect(page).to_have_url(re.compile(rf"\?run={one}&ghost={other}$"))
-    expect(page.locator(".chip.ghosts")).to_contain_text(
-        re.compile(r"Ghosts: Duel bold \(Sarsa −?0\.\d\d")
-    )
+    expect(dashboard.labels).to_contain_text(re.compile(r"Ghosts: Duel bold \(Sarsa −?0\.\d\d"))
     dashboard.button("Pause replay").click()
     expect(page).to_have_url(re.compile(rf"run={one}&ghost={other}&t="))
     assert dashboard.violations() == []

@@ -20,10 +20,10 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
     first.kill()
 
     expect(page.get_by_text("Reconnecting. This is the last picture.")).to_be_visible()
-    expect(page.locator(".live")).to_have_text("reconnecting")
-    expect(page.frame_locator(".picture iframe").locator("canvas").first).to_be_visible()
+    expect(dashboard.connection).to_have_text("reconnecting")
+    expect(dashboard.view.locator("canvas").first).to_be_visible()
     dashboard.primary.click()
-    problem = page.locator(".actions").get_by_role("alert").filter(has_text="does not answer")
+    problem = dashboard.actions.get_by_role("alert").filter(has_text="does not answer")
     expect(problem).to_be_visible()
     # Without an answer the browser says so by itself, and cannot be kept from it.
     dashboard.complaints.clear()
@@ -33,7 +33,7 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
     dashboard.complaints.clear()
 
     with serving(tmp_path, port):
-        expect(page.locator(".live")).to_contain_text("live")
+        expect(dashboard.connection).to_contain_text("live")
         expect(page.get_by_text("Reconnecting.")).to_have_count(0)
         dashboard.wait_for_stage()
         dashboard.complaints.clear()
@@ -50,12 +50,12 @@ def test_what_could_not_be_loaded_is_loaded_when_it_is_back(
     page.unroute_all(behavior="wait")
     assert dashboard.complaints == []
     first.kill()
-    expect(page.locator(".live")).to_have_text("reconnecting")
+    expect(dashboard.connection).to_have_text("reconnecting")
 
     with (
         page.expect_response("**/spectators.js") as loaded,
         serving(tmp_path, first.port, token="for-the-operator"),
     ):
-        expect(page.locator(".live")).to_contain_text("live")
+        expect(dashboard.connection).to_contain_text("live")
         assert loaded.value.ok
     dashboard.complaints.clear()

@@ -6,7 +6,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Locator, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
@@ -26,6 +26,11 @@ def changes(dashboard: Dashboard) -> list[dict[str, Any]]:
     return [one["disturbance"] for one in training["changes"]]
 
 
+def disturbances_now(dashboard: Dashboard) -> Locator:
+    """What happens to the robot that practises, and the controls of it."""
+    return dashboard.page.get_by_role("region", name="Disturbances now", exact=True)
+
+
 def test_a_leg_is_broken_while_a_robot_practises(
     dashboard: Dashboard, flat_browser: Browser, shared_server: Serving
 ) -> None:
@@ -42,9 +47,9 @@ def test_a_leg_is_broken_while_a_robot_practises(
     dashboard.button("Leg 6").click()  # before the first is answered
     expect(leg).to_have_accessible_name("Leg 3, limp")
     expect(leg).to_have_attribute("aria-pressed", "true")
-    now = page.locator(".world-now")
+    now = disturbances_now(dashboard)
     expect(now).to_contain_text(re.compile(r"Now: legs\s3, 6 limp"))
-    happened = page.locator(".chart .happened")
+    happened = page.get_by_text(re.compile("^Happened: "))
     expect(happened).to_contain_text(re.compile(r"^Happened: legs?\s3.* limp from step \d+"))
     expect(curve).to_have_accessible_name(re.compile(r": −?0\.[012]\d\sm after"))
 
@@ -69,20 +74,20 @@ def test_a_leg_is_broken_while_a_robot_practises(
     assert kinds == {"limp": 2, "stuck": 1, "slope": 3, "friction": 2, "repair": 3}
     dashboard.button("Stop").click()
     page.get_by_role("link", name="Runs").click()
-    expect(page.locator(".run").first).to_contain_text(re.compile(r"slope 8°.* from step \d+"))
+    expect(dashboard.runs.first).to_contain_text(re.compile(r"slope 8°.* from step \d+"))
     only_sensors_of_an_ideal_robot(dashboard, shared_server)
 
 
 def changes_its_ground(dashboard: Dashboard) -> None:
     """A slope and another friction begin, and end."""
-    page, now = dashboard.page, dashboard.page.locator(".world-now")
+    page, now = dashboard.page, disturbances_now(dashboard)
     page.get_by_text("Ground, load and servos").click()
     page.get_by_role("slider", name="Slope", exact=True).fill("8")
     expect(now).to_contain_text("slope 8°")
     page.get_by_role("slider", name="Slope: Direction").fill("90")
     expect(now).to_contain_text("slope 8°, direction 90°")
     page.get_by_role("slider", name="Friction").fill("0.5")
-    words = page.locator("#live-words")
+    words = now.get_by_role("status").first
     expect(words).to_contain_text("friction 0.5")
     assert dashboard.violations() == []
     page.get_by_role("slider", name="Slope", exact=True).fill("0")
@@ -95,8 +100,7 @@ def tells_others(browser: Browser, server: Serving) -> None:
     with new_page(browser, viewport={"width": 360, "height": 780}) as page:
         other = Dashboard(page, has_3d=False)
         other.open(server.address)
-        chip = other.page.locator(".chip.disturbance")
-        expect(chip).to_contain_text(re.compile(r"^Legs\s3, 6 limp"))
+        expect(other.labels).to_contain_text(re.compile(r"Legs\s3, 6 limp"))
         assert other.scroll_width() == 360
         assert other.complaints == []
 
@@ -106,12 +110,12 @@ def only_sensors_of_an_ideal_robot(dashboard: Dashboard, server: Serving) -> Non
     page = dashboard.page
     dashboard.open(f"{server.address}?{IDEAL}")
     dashboard.button("Train, don’t race").click()
-    expect(page.locator(".world-now")).to_contain_text("only sensor noise can happen there")
+    expect(disturbances_now(dashboard)).to_contain_text("only sensor noise can happen there")
     expect(dashboard.button("Leg 1")).to_have_attribute("aria-disabled", "true")
     page.get_by_text("Ground, load and servos").click()
     expect(page.get_by_role("slider", name="Slope", exact=True)).to_be_disabled()
     page.get_by_role("slider", name="Sensor noise").fill("0.004")
-    expect(page.locator(".world-now")).to_contain_text(re.compile(r"sensor noise 4\smm"))
+    expect(disturbances_now(dashboard)).to_contain_text(re.compile(r"sensor noise 4\smm"))
     dashboard.button("Stop").click()
 
 
@@ -123,27 +127,31 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     dashboard.open(f"{shared_server.address}?{urlencode({'lanes': 'greedy,informed'})}")
     dashboard.primary.click()
     show_its_end(dashboard)
-    board = page.locator(".scoreboard")
+    board = dashboard.scoreboard
     expect(board.get_by_role("row", name=re.compile(r"Best known 0\.51\sm$"))).to_be_visible()
     chart = page.get_by_role("img", name=re.compile(r"^The race after"))
     expect(chart).to_have_accessible_name(re.compile(r"; best known 0\.51\sm\.$"))
     page.get_by_text("Disturb this race").click()
-    expect(page.locator(".branch")).to_contain_text("From step 26: as it was")
+    expect(dashboard.group("Disturb this race")).to_contain_text("From step 26: as it was")
     page.get_by_role("slider", name="Moment that is shown").fill("1")
     dashboard.button("Pause replay for everyone").click()
-    expect(page.locator(".branch")).to_contain_text(re.compile(r"From step [2-6]: as it was"))
+    expect(dashboard.group("Disturb this race")).to_contain_text(
+        re.compile(r"From step [2-6]: as it was")
+    )
     start = dashboard.button("Race on from here")
     expect(start).to_be_disabled()
     page.get_by_text("Ground, load and servos").click()
     page.get_by_role("spinbutton", name="Patch: To").fill("0.3")
     dashboard.button("Lay it").click()
     patch = re.compile(r"From step \d: patch .* to 0\.3\sm, friction 0\.05")
-    expect(page.locator(".branch")).to_contain_text(patch)
+    expect(dashboard.group("Disturb this race")).to_contain_text(patch)
     dashboard.button("Undo all").click()
     expect(start).to_be_disabled()
     for leg in (1, 4):
         dashboard.button(f"Leg {leg}").click()
-    expect(page.locator(".branch")).to_contain_text(re.compile(r"From step \d: legs\s1, 4 limp"))
+    expect(dashboard.group("Disturb this race")).to_contain_text(
+        re.compile(r"From step \d: legs\s1, 4 limp")
+    )
     assert dashboard.violations() == []
     start.click()
 
@@ -152,7 +160,7 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     expect(board.get_by_text("Best known")).to_have_count(0)
     expect(chart).to_have_accessible_name(re.compile(r"Informed.*\d\sm\.$"))
     with_3d.open(shared_server.address)
-    labels = with_3d.page.frame_locator(".picture iframe").locator(".labels > div:not([hidden])")
+    labels = with_3d.view.locator(".labels > div:not([hidden])")
     ghosts = labels.filter(has_text=re.compile(r"\d\sm, done\s*original 0\.\d\d\sm"))
     expect(ghosts).to_have_count(2)
     with_3d.page.close()
@@ -162,8 +170,8 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     expect(board.get_by_text("plans with the nominal model")).to_have_count(2)
     assert dashboard.violations() == []
     page.get_by_role("link", name=original["name"]).click()
-    expect(page.locator(".run")).to_have_count(1)
-    expect(page.locator(".run")).to_contain_text(original["name"])
+    expect(dashboard.runs).to_have_count(1)
+    expect(dashboard.runs).to_contain_text(original["name"])
     assert dashboard.complaints == []
 
 

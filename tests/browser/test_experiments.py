@@ -9,7 +9,7 @@ from urllib.parse import urlencode
 from urllib.request import Request, urlopen
 
 import pytest
-from playwright.sync_api import Browser, Locator, ViewportSize, expect
+from playwright.sync_api import Browser, ViewportSize, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving, serving
@@ -32,13 +32,8 @@ def visit(dashboard: Dashboard, server: Serving, **asked: object) -> None:
     """The view of experiments, with this form; the 3D stage is not waited for."""
     page = dashboard.page
     page.goto(f"{server.address}#experiments?{urlencode(asked)}")
-    expect(page.locator(".live")).to_contain_text("live")
-    expect(page.get_by_role("heading", name="New experiment")).to_be_visible()
-
-
-def head(dashboard: Dashboard) -> Locator:
-    """Which experiment it is, how far, and what can be done with it."""
-    return dashboard.page.locator(".report-head")
+    expect(dashboard.connection).to_contain_text("live")
+    expect(page.get_by_role("heading", name="Experiments", exact=True)).to_be_visible()
 
 
 def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) -> None:
@@ -46,7 +41,7 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     visit(dashboard, server, **SMALL)
     expect(page.get_by_role("heading", name="One seed misleads")).to_be_visible()
     dashboard.button("Run Table 1: 9 trials").click()
-    expect(head(dashboard).locator(".state")).to_have_text("finished")
+    expect(dashboard.experiment_state("finished")).to_be_visible()
 
     table = page.get_by_role("table", name="Distance at time-out and total distance")
     strips = table.get_by_role("img", name=re.compile("^3 seeds from .*; the paper 0.25 m$"))
@@ -55,7 +50,9 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     expect(table.get_by_role("columnheader", name="Best known")).to_be_visible()
     best = table.get_by_role("row", name=re.compile("^Total")).locator(".reference b").last
     expect(best).to_have_text("–")
-    expect(page.locator(".table-one")).to_contain_text("elsewhere a dash stands")
+    expect(page.get_by_role("region", name="Table 1, with every seed")).to_contain_text(
+        "elsewhere a dash stands"
+    )
     greedy = table.get_by_role("row", name=re.compile("^Total")).locator(".reference b").first
     expect(greedy).to_have_text("0.50\u00a0m")
     dashboard.button("half grid sides").click()
@@ -63,7 +60,8 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     dashboard.button("relative to greedy").click()
     expect(greedy).to_have_text("100\u202f%")
 
-    expect(page.locator(".claim .verdict").first).to_have_text(
+    claims = page.get_by_role("region", name="The paper’s claims over all seeds")
+    expect(claims.get_by_role("listitem").first).to_contain_text(
         re.compile(r"Holds|Does not hold|Not established")
     )
     expect(page.get_by_role("heading", name="Under the real clock")).to_be_visible()
@@ -74,17 +72,17 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     assert dashboard.violations() == []
 
     expect(page).to_have_url(re.compile("run="))
-    report = head(dashboard).get_by_role("link", name="Open the report").get_attribute("href")
+    report = dashboard.experiment.get_by_role("link", name="Open the report").get_attribute("href")
     assert report is not None
     with urlopen(report) as answer:
         assert answer.headers["Content-Security-Policy"].startswith("default-src 'none'")
         assert "left-right-origin" in answer.read().decode().lower()
     with page.expect_download() as download:
-        head(dashboard).get_by_role("link", name="Every trial (CSV)").click()
+        dashboard.experiment.get_by_role("link", name="Every trial (CSV)").click()
     assert len(Path(download.value.path()).read_text("utf-8").splitlines()) >= 9
 
     page.get_by_role("link", name="Runs").click()
-    expect(page.locator(".run", has_text="Table 1, 3 seeds")).to_contain_text("finished")
+    expect(dashboard.runs.filter(has_text="Table 1, 3 seeds")).to_contain_text("finished")
     page.get_by_role("link", name="Report").click()
     dashboard.button("Delete").click()
     dashboard.button("Delete for good?").click()
@@ -99,7 +97,7 @@ def run_a_seed(dashboard: Dashboard) -> None:
     expect(row).to_be_in_viewport()
     told = row.locator("td").first.inner_text()
     row.get_by_role("button", name="Run this seed here").click()
-    expect(page.locator(".board")).to_be_visible()
+    expect(dashboard.standings).to_be_visible()
     dashboard.eventually(
         lambda: dashboard.get("/api/v1/races")["items"][0]["state"] == "finished", "the seed's race"
     )
@@ -117,32 +115,32 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
     # It computes for as long as it is looked at, and leaves the machine to other tests.
     with serving(tmp_path, job_niceness=15) as server:
         visit(dashboard, server, **ENDLESS)
-        expect(page.get_by_text(re.compile(r"^Takes about .* on this machine\.$"))).to_be_visible()
+        expect(page.get_by_text(re.compile(r"Takes about .* on this machine\.$"))).to_be_visible()
         dashboard.button("Run Sweep: 5001 trials").click()
-        expect(head(dashboard)).to_contain_text("a second")
-        expect(head(dashboard)).to_be_in_viewport(ratio=1)
+        expect(dashboard.experiment).to_contain_text("a second")
+        expect(dashboard.experiment).to_be_in_viewport(ratio=1)
         expect(page.get_by_role("img", name=re.compile(r"^\d+ seeds, typically"))).to_be_visible()
         server.kill()
-        expect(page.locator(".cut-off-note")).to_be_visible()
+        expect(page.get_by_text("This is the last known state")).to_be_visible()
         assert dashboard.violations() == []
         page.goto("about:blank")
         dashboard.complaints.clear()
     with serving(tmp_path, job_niceness=15) as server:
         visit(dashboard, server)
-        expect(head(dashboard).locator(".state")).to_have_text("interrupted")
+        expect(dashboard.experiment_state("interrupted")).to_be_visible()
         done = trials_done(dashboard)
         assert done > 0
         dashboard.button("Resume").click()
         dashboard.eventually(lambda: trials_done(dashboard) > done, "another trial")
         # A rate is there once its process has tried something itself.
-        expect(head(dashboard)).to_contain_text("a second")
+        expect(dashboard.experiment).to_contain_text("a second")
         dashboard.button("Pause").click()
-        expect(head(dashboard).locator(".state")).to_have_text("paused")
+        expect(dashboard.experiment_state("paused")).to_be_visible()
         dashboard.button("Resume").click()
-        expect(head(dashboard).locator(".state")).to_have_text("running")
+        expect(dashboard.experiment_state("running")).to_be_visible()
         dashboard.button("Stop").click()
-        expect(head(dashboard)).to_contain_text("The report covers the completed trials.")
-        expect(head(dashboard).get_by_role("link", name="Open the report")).to_be_visible()
+        expect(dashboard.experiment).to_contain_text("The report covers the completed trials.")
+        expect(dashboard.experiment.get_by_role("link", name="Open the report")).to_be_visible()
 
 
 def trials_done(dashboard: Dashboard) -> int:
@@ -156,6 +154,7 @@ def test_links_carry_the_form_and_mistakes_hold_it_back(
 ) -> None:
     page = dashboard.page
     visit(dashboard, shared_server)
+    dashboard.button("New experiment").click()
     page.get_by_role("radio", name="Sweep").check(force=True)
     alpha = page.get_by_label("α", exact=True)
     alpha.fill("0.1, 0.3, oops")
@@ -209,7 +208,7 @@ def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
     assert config["worlds"] == ["flat", "limp-pair", "limp:legs=2,5+slope:degrees=4"]
     assert (config["experiment"], config["tolerance"]) == ("recovery", 0.05)
     dashboard.button("Stop").click()
-    expect(head(dashboard).locator(".state")).to_have_text("stopped")
+    expect(dashboard.experiment_state("stopped")).to_be_visible()
 
 
 def test_reports_fit_a_phone(flat_browser: Browser, small_runs: list[str]) -> None:
@@ -224,7 +223,7 @@ def test_reports_fit_a_phone(flat_browser: Browser, small_runs: list[str]) -> No
                 values.first.press("ArrowLeft")
                 words = r"1750 steps.*Q-learning \d\.\d\d\sm \(.* – .*\).*Greedy \d\.\d\d\sm$"
                 # Both gaits are read at once.
-                expect(values.locator(".readout")).to_have_text([re.compile(words)] * 2)
+                expect(values).to_have_text([re.compile(words)] * 2)
             for theme in THEMES:
                 page.emulate_media(color_scheme=theme)
                 assert dashboard.scroll_width() == PHONE["width"]
@@ -273,7 +272,9 @@ def tells_who_recovers(dashboard: Dashboard) -> None:
     expect(both.get_by_role("columnheader")).to_have_text(titles)
     expect(both.get_by_role("row", name="Greedy, true model 100 % 100 %")).to_have_count(1)
     dashboard.button("Sensor noise 10\u00a0mm").click()
-    expect(page.locator(".worlds").first).to_contain_text("Sensor noise 10\u00a0mm: share of")
+    expect(page.get_by_role("region", name="Recovery by agent")).to_contain_text(
+        "Sensor noise 10\u00a0mm: share of"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -322,10 +323,10 @@ def test_spectators_see_the_report_without_controls(
             expect(operator.primary).to_be_visible()
             visit(operator, guarded, **SMALL)
             operator.button("Run Table 1: 9 trials").click()
-            expect(head(operator)).to_be_visible()
+            expect(operator.experiment).to_be_visible()
             assert operator.complaints == []
 
-        expect(head(dashboard).get_by_role("link", name="Open the report")).to_be_visible()
+        expect(dashboard.experiment.get_by_role("link", name="Open the report")).to_be_visible()
         expect(page.get_by_role("heading", name="Method")).to_be_visible()
         for action in ("Run", "Pause", "Resume", "Stop", "Delete"):
             expect(page.get_by_role("button", name=re.compile(f"^{action}"))).to_have_count(0)

@@ -45,7 +45,7 @@ def follows_and_seeks(dashboard: Dashboard, address: str) -> None:
     dashboard.eventually(
         lambda: dashboard.get("/api/v1/races")["items"][0]["state"] == "finished", "the race ends"
     )
-    expect(page.locator(".headline")).to_be_visible()
+    expect(dashboard.headline).to_be_visible()
     page.evaluate(PAUSE, 2.0)
     panel = page.get_by_role("region", name="Gait analysis", exact=True)
     panel.scroll_into_view_if_needed()

@@ -54,7 +54,7 @@ def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, serve
     expect(trace_decay(dashboard)).to_have_count(0)
     learner(dashboard).select_option("Sarsa(λ)")
     expect(trace_decay(dashboard)).to_have_value("0.9")
-    expect(page.locator(".start-list li").first).to_contain_text("Sarsa(λ)")
+    expect(dashboard.start_list.first).to_contain_text("Sarsa(λ)")
     trace_decay(dashboard).fill("0.5")
     expect(page).to_have_url(re.compile(r"agent=sarsa-lambda.*trace_decay=0\.5"))
 
@@ -76,8 +76,8 @@ def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, serve
     expect(trace_decay(dashboard)).to_have_count(0)
 
     page.get_by_role("link", name="Runs").click()
-    expect(page.locator(".run")).to_contain_text("Sarsa(λ)")
-    expect(page.locator(".run")).to_contain_text(re.compile(r"λ\s0\.75 from step \d+"))
+    expect(dashboard.runs).to_contain_text("Sarsa(λ)")
+    expect(dashboard.runs).to_contain_text(re.compile(r"λ\s0\.75 from step \d+"))
     page.get_by_label("More for this training").click()
     page.get_by_role("link", name="Use its settings").click()
     page.get_by_role("link", name="Race", exact=True).click()
@@ -96,10 +96,11 @@ def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, serve
     expect(page.get_by_role("checkbox", name="Q-learning", exact=True)).not_to_be_checked()
     page.get_by_role("checkbox", name="Q-learning", exact=True).check()
     page.get_by_role("checkbox", name="Sarsa(λ)", exact=True).uncheck()
-    expect(page.locator(".notice")).to_contain_text("Sarsa(λ) is not in the race; Q-learning will")
+    note = dashboard.actions.get_by_text(re.compile(r"Sarsa\(λ\) is not in the race"))
+    expect(note).to_contain_text("Q-learning")
     assert dashboard.violations() == []
     dashboard.button("Add Sarsa(λ)").click()
-    expect(page.locator(".notice")).to_have_count(0)
+    expect(note).to_have_count(0)
     expect(page.get_by_role("checkbox", name="Sarsa(λ)", exact=True)).to_be_checked()
 
     dashboard.primary.click()
@@ -130,7 +131,7 @@ def test_a_sweep_varies_the_settings_of_its_agents(dashboard: Dashboard, server:
     expect(page.get_by_role("alert").filter(has_text="from 0 to 1")).to_be_visible()
     decays.fill("0.5, 0.9")
     dashboard.button("Run Sweep: 7 trials").click()
-    expect(page.locator(".report-head .state")).to_have_text("finished")
+    expect(dashboard.experiment_state("finished")).to_be_visible()
 
     [run] = dashboard.get("/api/v1/experiments")["items"]
     assert run["config"]["settings"]["trace_decay"] == [0.5, 0.9]
@@ -140,6 +141,7 @@ def test_a_sweep_varies_the_settings_of_its_agents(dashboard: Dashboard, server:
     expect(table.get_by_role("row", name=re.compile(r"^Q-learning \d"))).to_have_count(1)
     expect(table.get_by_role("row", name=re.compile(r"^Sarsa\(λ\), λ\s0\.[59]"))).to_have_count(2)
     assert dashboard.violations() == []
+    dashboard.button("New experiment").click()
     page.get_by_role("checkbox", name="Sarsa(λ)", exact=True).uncheck()
     expect(decays).to_have_count(0)
     expect(dashboard.button("Run Sweep: 3 trials")).to_be_visible()

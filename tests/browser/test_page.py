@@ -21,8 +21,14 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(server.address)
     expect(dashboard.primary).to_have_text("Train 500 steps, then race")
-    expect(page.locator(".start-list li")).to_have_count(3)
-    expect(page.locator(".empty")).to_have_count(3)
+    expect(dashboard.start_list).to_have_count(3)
+    for name, invitation in (
+        ("Learning", "Each evaluation"),
+        ("The race", "Each robot"),
+        ("Action values in this state", "When a learner"),
+    ):
+        panel = page.get_by_role("region", name=name, exact=True)
+        expect(panel).to_contain_text(invitation)
     # Gaits and worlds are folded until someone asks for them.
     expect(page.locator(".group > summary")).to_contain_text(
         ["Training Q-learning", "Robot and world Left-right, opposite", "Race Q-learning, Greedy"]
@@ -31,7 +37,9 @@ def test_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     assert page.url == server.address
     page.get_by_role("link", name="Runs").click()
     expect(page.get_by_text("No runs yet.")).to_be_visible()
-    expect(page.locator(".no-runs")).to_contain_text("or its report. Start the first one, or drop")
+    expect(page.get_by_role("region", name="Runs", exact=True)).to_contain_text(
+        "or its report. Start the first one, or drop"
+    )
 
 
 def test_the_first_lesson_is_skipped_once_and_opened_again(
@@ -72,7 +80,7 @@ def test_the_button_and_the_scoreboard_stay_in_view(
     rate, its_help = dashboard.box("#field-alpha"), dashboard.box("#help-alpha")
     assert 0 <= its_help["y"] - rate["y"] - rate["height"] < 8
 
-    page.locator(".settings summary", has_text="Robot and world").click()
+    dashboard.unfold("Robot and world")
     expect(page.get_by_role("radiogroup", name="Gait")).to_be_in_viewport(ratio=1)
     expect(dashboard.primary).to_be_in_viewport(ratio=1)
     expect(page.get_by_role("region", name="Scoreboard")).to_be_in_viewport(ratio=1)
@@ -84,7 +92,7 @@ def test_the_button_and_the_scoreboard_stay_in_view(
     page.set_viewport_size({"width": 1920, "height": 1080})
     for link, left, right in (
         ("Race", ".stage", ".controls"),
-        ("Experiments", ".answer", ".ask"),
+        ("Experiments", ".experiment-list", ".answer"),
         ("Runs", ".runs", ".runs"),
     ):
         page.get_by_role("navigation").get_by_role("link", name=link).click()
@@ -117,16 +125,17 @@ def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> N
     dashboard.unfold_settings()
     expect(page.get_by_role("radio", name="Front-back, mirrored")).to_be_checked()
     expect(page.get_by_role("radio", name="Payload")).to_be_checked()
-    expect(page.get_by_role("group", name="Limp legs").locator("[aria-pressed=true]")).to_have_text(
-        ["1", "2", "4"]
-    )
+    expect(
+        page.get_by_role("group", name="Limp legs").get_by_role("button", pressed=True)
+    ).to_have_text(["1", "2", "4"])
     expect(page.get_by_label("From step")).to_have_value("11")
-    assert "disturb=limp%3Alegs%3D1%2C2%2C4%3Aat%3D10" in page.url
+    assert "disturb=limp:legs=1,2,4:at=10" in page.url
     assert dashboard.violations() == []
     expect(page.get_by_label("Robot")).to_have_value("slippery")
     expect(page.get_by_role("checkbox", name="Two-step", exact=True)).not_to_be_checked()
     page.get_by_role("button", name="Share").click()
-    expect(page.locator(".toast")).to_contain_text(re.compile("link", re.IGNORECASE))
+    told = page.get_by_role("status").filter(has_text=re.compile("link", re.IGNORECASE))
+    expect(told).to_be_visible()
 
 
 def test_a_number_that_is_none_holds_the_button_back(
@@ -180,7 +189,7 @@ def test_keys(dashboard: Dashboard, server: Serving) -> None:
     page.keyboard.press("Space")
     expect(page.get_by_text(re.compile("^Paused at "))).to_be_visible()
     # The stage forwards the keys that it gets.
-    page.frame_locator(".picture iframe").locator("body").press("Space")
+    dashboard.view.locator("body").press("Space")
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
 
 
@@ -192,7 +201,7 @@ def test_a_phone_needs_no_scrolling_sideways(
     with new_page(flat_browser, viewport=PHONE, color_scheme=scheme) as page:
         dashboard = Dashboard(page, has_3d=False)
         dashboard.open(shared_server.address)
-        stage = page.locator(".stage")
+        stage = page.get_by_role("region", name="Stage", exact=True)
         top, below = stage.bounding_box(), dashboard.primary.bounding_box()
         assert top is not None
         assert below is not None
@@ -232,7 +241,7 @@ def test_the_theme_is_chosen_and_remembered(dashboard: Dashboard, shared_server:
     expect(page.locator("html")).to_have_attribute("data-theme", "dark")
     dashboard.open(shared_server.address)
     expect(page.locator("html")).to_have_attribute("data-theme", "dark")
-    stage = page.frame_locator(".picture iframe").locator("html")
+    stage = dashboard.view.locator("html")
     expect(stage).to_have_attribute("data-theme", "dark")
 
 

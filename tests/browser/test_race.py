@@ -21,33 +21,34 @@ LONG = urlencode({"steps": 100_000, "pace": 8})
 def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(f"{server.address}?{SHORT}")
-    expect(page.locator(".chip").first).to_have_text("On the start line")
+    expect(dashboard.shown_run).to_have_text("On the start line")
     before = dashboard.picture()
 
     expect(dashboard.primary).to_have_text("Train 20 steps, then race")
     dashboard.primary.click()
 
-    expect(page.locator(".chip").first).to_contain_text("of 20")
-    expect(page.get_by_role("table", name="Standings")).to_be_visible()
+    expect(dashboard.shown_run).to_contain_text("of 20")
+    expect(dashboard.standings).to_be_visible()
     dashboard.eventually(lambda: dashboard.picture() != before, "the robots move in the canvas")
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
-    headline = page.locator(".headline")
+    headline = dashboard.headline
     verdict = re.compile(r"(wins|tie).*: −?0\.\d\d\sm when .* had used its 3 steps$")
     expect(headline).to_have_text(verdict)
     expect(page.get_by_role("status").filter(has_text=verdict)).to_be_attached()
-    expect(page.locator(".scoreboard")).to_contain_text("The farthest at time-out wins")
+    expect(dashboard.scoreboard).to_contain_text("The farthest at time-out wins")
     expect(
         page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
     ).to_be_visible()
     expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
     # The ranking is settled, and the others walk on for those who want to see it.
     dashboard.button("Keep watching").click()
-    expect(dashboard.rows.filter(has_text="Two-step").locator(".aside").last).to_have_text("468")
+    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text("468 simulated")
     check_crosshairs(page)
     assert dashboard.violations() == []
     expect(dashboard.button("Play again for everyone")).to_be_visible()
-    expect(page.locator(".next-move")).to_contain_text("Q-learning would move legs")
-    timeline_end = page.locator(".seek .num").last.inner_text()
+    expect(page.get_by_text("Q-learning would move legs")).to_be_visible()
+    shown = page.get_by_role("slider", name="Moment that is shown")
+    timeline_end = (shown.get_attribute("aria-valuetext") or "").split(" of ")[1]
     expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"3 steps in {timeline_end}")
     page.evaluate("scrollTo(0, 0)")
     for width, height in ((390, 844), (844, 390)):
@@ -60,11 +61,11 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     dashboard = Dashboard(page.context.new_page(), has_3d=False)
     page = dashboard.page
     dashboard.open(f"{server.address}?{SHORT}")
-    expect(page.locator(".headline")).to_have_text(verdict)
+    expect(dashboard.headline).to_have_text(verdict)
     check_widths_of_the_scoreboard(dashboard)
     expect(dashboard.primary).to_have_text("Practise 20 more, race again")
     dashboard.primary.click()
-    expect(page.locator(".start-list, .board").first).to_contain_text("40 steps of practice")
+    expect(dashboard.scoreboard).to_contain_text("40 steps of practice")
     expect(dashboard.primary).to_have_text("Practise 20 more, race again")
 
     runs = dashboard.get("/api/v1/trainings")["items"]
@@ -77,9 +78,7 @@ def check_crosshairs(page: Page) -> None:
     """Read the values of both charts by pointer, keys and finger."""
     curve = page.get_by_role("slider", name="Values of the learning curve")
     curve.hover()
-    expect(curve.locator(".readout")).to_contain_text(
-        re.compile(r"steps.*Q-learning −?\d\.\d\d\sm")
-    )
+    expect(curve).to_contain_text(re.compile(r"steps.*Q-learning −?\d\.\d\d\sm"))
     curve.press("Home")
     expect(curve).to_have_attribute(
         "aria-valuetext",
@@ -93,7 +92,7 @@ def check_crosshairs(page: Page) -> None:
     finger = {"clientX": box["x"] + 1, "pointerType": "touch"}
     race.dispatch_event("pointerdown", finger)
     race.dispatch_event("pointerleave", finger)
-    expect(race.locator(".readout")).to_contain_text(re.compile(r"^0\.0\ss.*Two-step 0\.00\sm"))
+    expect(race).to_contain_text(re.compile(r"^0\.0\ss.*Two-step 0\.00\sm"))
 
 
 def check_widths_of_the_scoreboard(dashboard: Dashboard) -> None:
@@ -132,11 +131,11 @@ def boxes(shown: Locator) -> list[tuple[str, dict[str, float]]]:
 
 def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
     """Pairs of the stage's labels and chips that lie on each other, or what is missing."""
-    frame = dashboard.page.frame_locator(".picture iframe")
+    frame = dashboard.view
     labels = boxes(frame.locator(".labels > div:not([hidden])"))
     if len(labels) < 3:
         return [("labels", f"{len(labels)} are shown")]
-    chips = boxes(dashboard.page.locator(".stage .chip"))
+    chips = boxes(dashboard.labels.locator(".chip"))
     return [
         (words, others)
         for (words, one), (others, other) in combinations((*labels, *chips), 2)
@@ -150,17 +149,18 @@ def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
 def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Serving) -> None:
     dashboard.open(f"{server.address}?{LONG}")
     dashboard.button("Train, don’t race").click()
-    values = dashboard.page.locator("table.values")
-    expect(values.locator("tbody tr")).to_have_count(3)
-    expect(values.locator("td.here")).to_have_count(3)
-    expect(values.locator("td.next")).to_have_count(1)
-    expect(dashboard.page.locator(".next-move")).to_have_text(
-        re.compile(r"^Q-learning will move legs \d and \d to (home|front|back)")
+    panel = dashboard.page.get_by_role("region", name="Action values in this state")
+    values = panel.get_by_role("table")
+    expect(values.get_by_role("rowheader")).to_have_count(3)
+    expect(values.get_by_role("cell", name="here", exact=True)).to_have_count(3)
+    expect(values.get_by_role("cell", name=re.compile(", its next move$"))).to_have_count(1)
+    expect(panel).to_contain_text(
+        re.compile(r"Q-learning will move legs \d and \d to (home|front|back)")
     )
-    expect(values.locator("td.untried").first).to_have_text(re.compile("^never"))
-    tried = values.locator("td", has=dashboard.page.locator("small"))
+    expect(values.get_by_role("cell", name=re.compile("^never")).first).to_be_visible()
+    tried = values.get_by_role("cell", name=re.compile(r"tried \d"))
     expect(tried.first).to_have_text(re.compile(r"^−?\d+\s*[1-9]\d*×, tried \d+ times?"))
-    expect(dashboard.page.locator(".values-key")).to_contain_text("never tried")
+    expect(panel).to_contain_text("never tried")
     assert dashboard.violations() == []
 
 
@@ -186,15 +186,13 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     )
 
     said = re.compile(r"^Changed: α\s0\.5 from step \d+, ε\s0\.25 from step \d+$")
-    expect(page.locator(".changes")).to_have_text(said)
+    expect(page.get_by_text(said)).to_be_visible()
     other = Dashboard(page.context.new_page(), has_3d=False)
     other.open(server.address)
     alpha = other.page.get_by_role("slider", name="Learning rate α")
     expect(alpha).to_have_value("0.5")
     expect(other.page.get_by_role("slider", name="Exploration now ε")).to_have_value("0.25")
-    expect(other.page.locator(".next-rates")).to_contain_text(
-        re.compile(r"with α\s0\.3, pace\smax\.$")
-    )
+    expect(other.group("Settings")).to_contain_text(re.compile(r"with α\s0\.3, pace\smax\."))
     other.unfold_settings()
     expect(other.page.get_by_label("Pace")).to_have_value("8")
     alpha.fill("0.75")
@@ -210,24 +208,24 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     expect(page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
 
     dashboard.button("Stop").click()
-    expect(page.locator(".state.stopped")).to_have_count(0)
     expect(dashboard.primary).to_have_text(re.compile("^Train "))
     page.get_by_role("link", name="Runs").click()
-    expect(page.locator(".state.stopped")).to_have_count(2)
+    expect(dashboard.runs.get_by_text("stopped", exact=True)).to_have_count(2)
 
     # Keys of the race do nothing here, and a menu closes as menus do.
     page.keyboard.press("r")
-    menu = page.locator(".run details.menu").first
-    menu.locator("summary").click()
-    expect(menu).to_have_attribute("open", "")
+    row = dashboard.runs.first
+    menu, inside = row.get_by_label("More for this"), row.get_by_role("button", name="As code")
+    menu.click()
+    expect(inside).to_be_visible()
     page.keyboard.press("Tab")
     page.keyboard.press("Escape")
-    expect(menu).not_to_have_attribute("open", "")
-    expect(menu.locator("summary")).to_be_focused()
-    menu.locator("summary").press("Enter")
-    expect(menu).to_have_attribute("open", "")
+    expect(inside).to_be_hidden()
+    expect(menu).to_be_focused()
+    menu.press("Enter")
+    expect(inside).to_be_visible()
     page.get_by_role("heading", name="Runs").click()
-    expect(menu).not_to_have_attribute("open", "")
+    expect(inside).to_be_hidden()
     assert len(dashboard.get("/api/v1/trainings")["items"]) == 1
 
 
@@ -257,9 +255,7 @@ def test_no_click_is_lost_while_a_command_is_answered(
 def test_a_refusal_stands_beside_the_button(dashboard: Dashboard, server: Serving) -> None:
     dashboard.open(f"{server.address}?{urlencode({'grid_side_m': 0.9})}")
     dashboard.primary.click()
-    problem = (
-        dashboard.page.locator(".actions").get_by_role("alert").filter(has_text="cannot reach")
-    )
+    problem = dashboard.actions.get_by_role("alert").filter(has_text="cannot reach")
     expect(problem).to_contain_text("smaller Grid side than")
     assert [c.split()[0] for c in dashboard.complaints] == ["422"]
     dashboard.complaints.clear()
@@ -277,7 +273,7 @@ def test_a_chart_tells_why_it_stays_empty(dashboard: Dashboard, server: Serving)
     expect(chart).to_contain_text("Each robot draws a line here")
     dashboard.primary.click()
     expect(chart.get_by_role("alert")).to_have_text(problem["detail"])
-    expect(chart.locator(".empty")).to_have_count(0)
+    expect(chart).not_to_contain_text(re.compile("draws a line|lines start"))
     page.unroute_all(behavior="wait")
     page.get_by_label("Clock").select_option("free")
     expect(chart.get_by_role("img", name=re.compile("^The race after .*Greedy"))).to_be_visible()

@@ -56,7 +56,7 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
         common = api.put("stage", json={"run_id": race["id"], "playing": False}).json()
 
         dashboard.open(f"{server.address}?run={race['id']}&t=2.5")
-        expect(page.locator(".chip", has_text="Your own replay")).to_be_visible()
+        expect(dashboard.labels.get_by_text("Your own replay")).to_be_visible()
         expect(page.get_by_label("Moment of your replay")).to_have_value("2.5")
         dashboard.eventually(
             lambda: dashboard.has_figures(lanes=2), "the scoreboard follows the replay"
@@ -80,7 +80,7 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
 
         # To something that happened, and on from there.
         marks = page.get_by_label("Jump to something")
-        marks.select_option(marks.locator("option", has_text="Time-out").get_attribute("value"))
+        marks.select_option(marks.get_by_role("option", name="Time-out").get_attribute("value"))
         time_out = min(lane["clocks"]["paper"]["elapsed_s"] for lane in race["result"]["lanes"])
         dashboard.eventually(lambda: abs(shown_time(page) - time_out) < 0.01, "time-out")
         expect(page).to_have_url(re.compile(rf"run={race['id']}&t={time_out:.1f}"))
@@ -97,11 +97,11 @@ def test_a_spectator_replays_a_race_while_the_stage_goes_on(
             name: common[name] for name in ("run_id", "time_s", "playing", "clock")
         }
         dashboard.button("Live").click()
-        expect(page.locator(".chip", has_text="paused")).to_be_visible()
+        expect(dashboard.labels.get_by_text("paused")).to_be_visible()
         expect(page.get_by_label("Moment that is shown")).to_be_disabled()
         assert page.url == server.address
         page.go_back()
-        expect(page.locator(".chip", has_text="Your own replay")).to_be_visible()
+        expect(dashboard.labels.get_by_text("Your own replay")).to_be_visible()
         dashboard.button("Live").click()
         dashboard.button("Replay").click()
         expect(page.get_by_label("Moment of your replay")).to_be_enabled()

@@ -35,15 +35,16 @@ def test_an_interrupted_training_goes_on_at_a_click(tmp_path: Path, dashboard: D
         page.goto("about:blank")
     with serving(tmp_path) as server:
         dashboard.open(server.address)
-        expect(page.locator(".stage-note")).to_contain_text("The training was interrupted at step")
+        note = dashboard.notes.get_by_text("interrupted at step")
+        expect(note).to_be_visible()
         page.goto(f"{server.address}#runs")
-        row = page.locator(".run")
-        expect(row.locator(".state")).to_have_text("interrupted")
+        row = dashboard.runs
+        expect(row.get_by_text("interrupted", exact=True)).to_be_visible()
         expect(row.get_by_role("button", name="Resume", exact=True)).to_be_visible()
         page.goto(f"{server.address}#")
         left_at = done(dashboard)
         dashboard.button("Resume").click()
-        expect(page.locator(".stage-note")).to_have_count(0)
+        expect(note).to_have_count(0)
         dashboard.eventually(lambda: done(dashboard) > left_at, "another step")
         dashboard.button("Stop").click()
 

@@ -135,24 +135,24 @@ def present_replay(dashboard: Dashboard, address: str) -> None:
     audience = page.get_by_role("region", name="Watch along")
     expect(audience).to_contain_text("watching")
     home = address.partition("?")[0]
-    expect(audience.locator(".address")).to_have_text(home[len("http://") : -1])
+    expect(audience.get_by_text(home[len("http://") : -1], exact=True)).to_be_visible()
     code = audience.get_by_role("img", name=f"QR code of {home}")
     assert code.evaluate("image => image.naturalWidth") > 20
-    expect(page.locator(".header")).to_be_hidden()
+    expect(page.get_by_role("banner")).to_be_hidden()
     expect(page.get_by_role("region", name="Learning", exact=True)).to_be_visible()
     dashboard.eventually(lambda: dashboard.has_figures(lanes=2), "the scoreboard is there")
-    rule = audience.locator(".audience-rule")
-    expect(rule).to_contain_text(re.compile(r"^The farthest at time-out wins: .* \(paper clock\)"))
-    for agent in ("Q-learning", "Greedy"):
-        figures = rf"{agent}: −?\d\.\d\d\sm, \d+ steps? of −?\d+\.\d\smm"
-        expect(rule).to_contain_text(re.compile(figures))
+    expect(audience).to_contain_text(
+        re.compile(r"The farthest at time-out wins: .* \(paper clock\)")
+    )
+    # The reason why the leader is ahead, by its figures.
+    expect(audience).to_contain_text(re.compile(r"\(paper clock\)\..*\d"))
     assert font_px(dashboard, ".audience-rule") > 20
     large = font_px(dashboard, ".board .agent")
     assert dashboard.box(".picture")["width"] > 0.6 * width
     assert dashboard.scroll_width() <= width
     assert dashboard.violations() == []
     page.keyboard.press("Escape")
-    expect(page.locator(".header")).to_be_visible()
+    expect(page.get_by_role("banner")).to_be_visible()
     assert page.url == f"{address}0"
     assert large > 1.5 * font_px(dashboard, ".board .agent")
 

@@ -41,12 +41,17 @@ def explained(dashboard: Dashboard, run_id: str, time_s: float) -> Locator:
     return panel
 
 
+def explanation(panel: Locator) -> Locator:
+    """The part of the panel that explains a step."""
+    return panel.get_by_role("region", name=re.compile("explained$"))
+
+
 def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_server: Serving) -> None:
     page = dashboard.page
     dashboard.open(shared_server.address)
     run_id = finished(dashboard, "trainings", {"steps": 120, "agent": "q-learning"})
     panel = explained(dashboard, run_id, 5.0)
-    told, step = panel.locator(".told"), panel.get_by_role("textbox", name="Step")
+    told, step = explanation(panel), panel.get_by_role("textbox", name="Step")
 
     # It follows the stage, and tells the step as the server explains it.
     expect(told).to_contain_text("Q-learning moved legs")
@@ -70,11 +75,11 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     step.press("Enter")
     expect(told).to_contain_text("It explores")
     expect(panel.get_by_role("heading", name="The whole table before step 1")).to_be_visible()
-    expect(panel.locator(".values-key")).to_contain_text("0 % of 1500 moves tried")
+    expect(panel).to_contain_text("0 % of 1500 moves tried")
     expect(panel.get_by_role("button", name="One step back")).to_be_disabled()
     step.fill("120")
     step.press("Enter")
-    expect(panel.locator(".values-key")).to_contain_text(re.compile(r"[1-9] % of 1500"))
+    expect(panel).to_contain_text(re.compile(r"[1-9] % of 1500"))
     # Its explanation, which comes apart from its table, has the move that was made.
     expect(panel.get_by_role("heading", name="Step 120, explained")).to_be_visible()
 
@@ -135,7 +140,7 @@ def test_a_state_is_shown_in_the_scene_and_found_from_it(
     grid.hover(position={"x": 3, "y": 40})
     expect(note).to_contain_text("stands in the chosen state")
     note.hover()
-    expect(panel.locator(".heat-state")).to_contain_text("legs 3+6 home")
+    expect(panel.get_by_test_id("heat-read")).to_contain_text("legs 3+6 home")
     page.keyboard.press("ArrowDown")
     page.keyboard.press("Enter")
     expect(note).to_contain_text("legs 3+6 front left")
@@ -146,10 +151,10 @@ def test_a_state_is_shown_in_the_scene_and_found_from_it(
 
     # A cell in the scene is found in the table, whose panel opens.
     panel.get_by_role("button", name="Close").click()
-    page.locator(".picture").scroll_into_view_if_needed()
+    dashboard.view.owner.scroll_into_view_if_needed()
     cells = "/world/run/lane0/grid/others/fills"
     place = view.evaluate(PLACE_OF_CELL, [cells, 2 * 4 + 1])
-    page.locator(".picture iframe").click(position=place)
+    dashboard.view.owner.click(position=place)
     expect(note).to_contain_text("Clicked in the scene: legs 3+6 to front right.")
     expect(panel.get_by_test_id("heat-read")).to_contain_text("Legs 3+6 to front right: ")
     expect(grid).to_be_in_viewport()
@@ -166,11 +171,11 @@ def test_lanes_of_a_race_are_explained(dashboard: Dashboard, shared_server: Serv
     race = finished(dashboard, "races", {"steps": 6, "lanes": lanes})
     panel = explained(dashboard, race, 1.0)
 
-    expect(panel.locator(".told")).to_contain_text("it does not learn here")
+    expect(explanation(panel)).to_contain_text("it does not learn here")
     expect(panel).to_contain_text("at the end of its practice")
     panel.get_by_role("group", name="Lane").get_by_role("button", name="Greedy").click()
-    expect(panel.locator(".told")).to_contain_text("Greedy moved legs")
-    expect(panel.locator(".told")).to_contain_text("It simulated 12 steps before it took this one")
-    expect(panel.locator(".scores tr")).to_have_count(6)
+    expect(explanation(panel)).to_contain_text("Greedy moved legs")
+    expect(explanation(panel)).to_contain_text("It simulated 12 steps before it took this one")
+    expect(explanation(panel).get_by_role("row")).to_have_count(6)
     expect(panel).to_contain_text("This lane has no table of a training")
     assert dashboard.violations() == []

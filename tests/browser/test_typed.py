@@ -78,7 +78,7 @@ def test_wrong_values_of_each_field_stay_and_are_explained(
     page = dashboard.page
     dashboard.open(shared_server.address)
     dashboard.unfold_settings()
-    fields = page.locator(".settings").get_by_role("spinbutton")
+    fields = dashboard.group("Settings").get_by_role("spinbutton")
     expect(page.locator(".settings input[type=number]")).to_have_count(0)
     names = check_each_field_keeps_what_is_typed(page, fields, dashboard.primary)
     assert {"field-steps", "field-seed", "field-alpha", "field-grid_side_m"} <= set(names)
@@ -117,7 +117,7 @@ def test_a_link_is_kept_as_it_says(dashboard: Dashboard, shared_server: Serving)
         "world": "flatland",
     }
     dashboard.open(f"{shared_server.address}?{urlencode({**wrong, 'alhpa': '0.5'})}")
-    unknown = page.locator(".notice").filter(has_text="alhpa=0.5")
+    unknown = page.get_by_role("status").filter(has_text="alhpa=0.5")
     expect(unknown).to_be_visible()
     unknown.get_by_role("button", name="Dismiss").click()
     expect(unknown).to_have_count(0)
@@ -130,7 +130,9 @@ def test_a_link_is_kept_as_it_says(dashboard: Dashboard, shared_server: Serving)
     expect(page.locator("#field-alpha")).to_have_value("7")
     expect(page.locator("#field-seed")).to_have_value("−5")
     expect(page.locator("#mistake-seed")).to_have_text("Must be at least 0")
-    expect(page.get_by_label("Robot").locator("option:checked")).to_have_text("tank: not valid")
+    expect(page.get_by_label("Robot").get_by_role("option", selected=True)).to_have_text(
+        "tank: not valid"
+    )
     expect(dashboard.primary).to_have_attribute("aria-disabled", "true")
     expect(page.locator("#held-start li")).to_have_count(len(wrong))
     assert dashboard.violations() == []
@@ -172,14 +174,14 @@ def test_a_custom_robot_stays_whole_from_link_to_run_to_form(
 
     def expect_custom_robot() -> None:
         dashboard.unfold_settings()
-        chosen = page.get_by_label("Robot").locator("option:checked")
+        chosen = page.get_by_label("Robot").get_by_role("option", selected=True)
         expect(chosen).to_have_text("Custom: stiff, femur 0.1\u00a0m")
 
     dashboard.open(f"{shared_server.address}?{urlencode(link)}")
     expect_custom_robot()
     dashboard.button("Train, don’t race").click()
     page.get_by_role("link", name="Runs").click()
-    row = page.locator(".run", has_text=name)
+    row = dashboard.runs.filter(has_text=name)
     expect(row).to_contain_text("Custom: stiff, femur 0.1\u00a0m")
     expect(row).to_contain_text("finished")
     [run] = [run for run in dashboard.get("/api/v1/trainings")["items"] if run["name"] == name]

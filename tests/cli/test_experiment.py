@@ -134,7 +134,7 @@ def test_full_disk_ends_the_sweep_and_finished_trials_are_stored(tmp_path: Path)
     [
         (("experiment", "table2"), "table1"),
         (("experiment",), "experiment"),
-        (("experiment", "table1", "--seeds", "0"), "seeds must be from 1 to 10,000"),
+        (("experiment", "table1", "--seeds", "0"), "from 1 to 10,000, not 0"),
         (("experiment", "table1", "--seeds", "many"), "a whole number"),
         (("experiment", "table1", "--seed", "-1"), "at least 0"),
         (("experiment", "table1", "--gait", "moonwalk"), "left-right-origin"),

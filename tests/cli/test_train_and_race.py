@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 import hexapods as hx
-from hexapods.assembly import build_learner, finish_training
+from hexapods.assembly import build_learner
 from hexapods.runs.best_known import best_known_m
 from hexapods.runs.config import WalkingProblem, training_config
+from hexapods.runs.results import training_result
 from hexapods.runs.training import train
 from tests.cli.running import EXAMPLES, hexapods, in_process, output, refusal
 
@@ -39,7 +40,7 @@ def test_train_equals_a_direct_call(tmp_path: Path) -> None:
     learner = build_learner(config)
     for _ in train(learner, config):
         pass
-    assert printed["result"] == asdict(finish_training(learner, config))
+    assert printed["result"] == asdict(training_result(learner, config))
     assert [point["step"] for point in printed["curve"]] == [50, 60]
 
 

@@ -94,7 +94,7 @@ def test_stopped_and_killed_it_goes_on_and_gives_what_an_unbroken_one_gives(tmp_
         (("q-learning", *PLACE, "--world", "limp:legs=1:at=4"), "leave out at and until"),
         (("q-learning", *PLACE, "--candidates", "0"), "candidates must be from 1 to 10,000, not 0"),
         (("q-learning", *PLACE, "--candidates", "many"), "must be a whole number"),
-        (("q-learning", *PLACE, "--seeds", "0"), "seeds must be from 1 to 10,000"),
+        (("q-learning", *PLACE, "--seeds", "0"), "from 1 to 10,000"),
         (("q-learning", *PLACE, "--held-out", "0"), "held-out must be from 1"),
         (("q-learning", *PLACE, "--settings", "alpha,beta"), "alpha, gamma"),
         (("q-learning", *PLACE, "--range", "alpha=0.1:2"), "over 0 and at most 1"),

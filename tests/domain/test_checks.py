@@ -1,10 +1,12 @@
 """A whole number that is none, or out of its range, is refused with what is valid."""
 
+import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from hexapods.domain.checks import check_whole
+from hexapods.domain.checks import check_whole, parse_number
 from hexapods.domain.errors import InvalidInput
 
 
@@ -30,3 +32,13 @@ def test_anything_else_is_refused_in_a_sentence(
     with pytest.raises(InvalidInput) as refused:
         check_whole("seeds", value, 1, high)
     assert str(refused.value) == sentence
+
+
+NUMBERS = json.loads((Path(__file__).parents[1] / "cases" / "numbers.json").read_text("utf-8"))
+"""How a number may be written; the page's test of typed text reads them too."""
+
+
+@pytest.mark.parametrize("case", NUMBERS, ids=lambda case: repr(case["text"]))
+def test_numbers_are_read_as_the_page_reads_them(case: dict[str, Any]) -> None:
+    expected = case["text"] if case["value"] is None else case["value"]
+    assert parse_number(case["text"], case["is_whole"]) == expected

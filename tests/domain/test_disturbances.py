@@ -124,7 +124,7 @@ def test_legs_are_a_list_of_whole_numbers(legs: object) -> None:
 
 @pytest.mark.parametrize("given", [{}, {"kind": None}, {"kind": ["limp"]}, {"kind": "Limp"}])
 def test_a_kind_is_needed(given: dict[str, object]) -> None:
-    with pytest.raises(UnknownName, match="unknown disturbance"):
+    with pytest.raises(UnknownName, match="unknown kind of disturbance"):
         disturbance(given)
 
 

@@ -36,7 +36,7 @@ def test_the_four_gaits_of_a_hexapod(
     assert gait.name == name
     assert gait.forward_deg == forward_deg
     assert gait.azimuths_deg == azimuths_deg
-    assert gait.pairs == pairs
+    assert gait.groups == pairs
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_the_four_gaits_of_a_hexapod(
 def test_other_numbers_of_legs_are_paired_by_the_same_rule(
     legs: int, name: str, pairs: tuple[Pair, ...]
 ) -> None:
-    assert resolve(name, azimuths(legs)).pairs == pairs
+    assert resolve(name, azimuths(legs)).groups == pairs
 
 
 @given(
@@ -75,8 +75,8 @@ def test_pairs_are_symmetric_for_every_forward_direction(
     left = 1 + (right - 1 + between) % legs
     gait = resolve(GaitSpec(right, left, symmetry), azimuths(legs))
 
-    assert sorted(leg for pair in gait.pairs for leg in pair) == list(range(1, legs + 1))
-    for leader, partner in gait.pairs:
+    assert sorted(leg for pair in gait.groups for leg in pair) == list(range(1, legs + 1))
+    for leader, partner in gait.groups:
         a, b = gait.azimuths_deg[leader - 1], gait.azimuths_deg[partner - 1]
         on_axis = {a, b} == {0, 180}
         mirrored = a + 180 if symmetry == "origin" or on_axis else -a
@@ -96,7 +96,7 @@ def test_legs_need_not_stand_in_a_regular_ring() -> None:
     gait = resolve("left-right-vertical", [-40, 40, 85, 150, -150, -85])
 
     assert list(gait.azimuths_deg) == [-40, 40, 85, 150, -150, -85]
-    assert gait.pairs == ((1, 2), (6, 3), (5, 4))
+    assert gait.groups == ((1, 2), (6, 3), (5, 4))
 
 
 @pytest.mark.parametrize(
@@ -124,7 +124,7 @@ def test_explicit_pairs_are_used() -> None:
     pairs = ((1, 6), (2, 3), (4, 5))
     gait = resolve(GaitSpec(1, 2, pairs=pairs), azimuths(6))
 
-    assert gait.pairs == pairs
+    assert gait.groups == pairs
     assert list(gait.azimuths_deg) == list(LEFT_RIGHT)
     assert gait.name == "right 1, left 2, 1+6 2+3 4+5"
 

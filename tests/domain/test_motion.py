@@ -31,14 +31,14 @@ def third_step(motion: StepMotion) -> StepPlan:
 def feet_over_time(motion: StepMotion, plan: StepPlan) -> FloatArray:
     """Return the foot offsets from home in the robot frame [m], (substeps, legs, 3)."""
     targets = motion.joint_targets([plan])[0]
-    return np.array([motion.legs.foot_offsets(row.tolist()) for row in targets])
+    return np.array([motion.kinematics.foot_offsets(row.tolist()) for row in targets])
 
 
 @every_gait
 def test_a_pair_swings_from_its_position_over_the_midpoint_to_its_cell(gait: str) -> None:
     motion = motion_of(gait)
     plan = third_step(motion)
-    leader, partner = (leg - 1 for leg in resolve(gait, Robot().azimuths_deg).pairs[1])
+    leader, partner = (leg - 1 for leg in resolve(gait, Robot().azimuths_deg).groups[1])
     feet = feet_over_time(motion, plan)
     from_x, from_y = plan.start.lateral_m[1], plan.start.forward_m[1]
     half_way, landed = SWING // 2 - 1, SWING - 1
@@ -57,7 +57,7 @@ def test_a_pair_swings_from_its_position_over_the_midpoint_to_its_cell(gait: str
 @every_gait
 def test_four_feet_stand_still_while_two_swing(gait: str) -> None:
     motion = motion_of(gait)
-    pairs = resolve(gait, Robot().azimuths_deg).pairs
+    pairs = resolve(gait, Robot().azimuths_deg).groups
     plan = third_step(motion)
     feet = feet_over_time(motion, plan)
 

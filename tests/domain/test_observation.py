@@ -33,7 +33,7 @@ def test_the_observations_differ_once_the_body_has_moved(simulator: KinematicSim
     state = simulator.rest()
     for action in ((0, FRONT_LEFT), (1, FRONT_LEFT), (2, BACK_RIGHT), (0, FRONT_RIGHT)):
         state = simulator.step(state, Action(*action)).state
-    offsets = simulator.pair_offsets(state)
+    offsets = simulator.group_offsets(state)
 
     assert observe(simulator, state, "commanded") == (
         FRONT_RIGHT,

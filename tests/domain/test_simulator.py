@@ -9,7 +9,7 @@ import pytest
 from hexapods.domain.gait import NAMED_GAITS, resolve
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematic import KinematicSimulator
-from hexapods.domain.kinematics import Legs
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.observation import legal_actions, observe
 from hexapods.domain.robot import Robot, robot
 from hexapods.domain.simulator import Simulator
@@ -59,7 +59,7 @@ def test_rest_is_on_the_start_line_with_every_foot_at_home(build: Build) -> None
         rest = simulator.rest()
 
         assert (rest.distance_m, rest.steps, rest.commanded) == (0, 0, (0, 0, 0))
-        assert np.allclose(simulator.pair_offsets(rest), 0, atol=1e-3)
+        assert np.allclose(simulator.group_offsets(rest), 0, atol=1e-3)
         assert observe(simulator, rest, "measured") == (0, 0, 0)
 
 
@@ -80,10 +80,10 @@ def test_the_robot_faces_along_the_track(build: Build, gait: str) -> None:
 def test_the_pose_holds_the_joint_angles_of_the_legs_in_order(simulator: Simulator[Any]) -> None:
     state = walk(simulator, simulator.rest(), 5)[-1]
     angles = simulator.pose(state)[7:].tolist()
-    feet = Legs(simulator.robot, simulator.gait).foot_offsets(angles)
+    feet = legs_of(simulator.robot).under(simulator.gait).foot_offsets(angles)
 
     for (leader, partner), (x, y) in zip(
-        simulator.gait.pairs, simulator.pair_offsets(state), strict=True
+        simulator.gait.groups, simulator.group_offsets(state), strict=True
     ):
         (right, forward, _), (left, as_forward, _) = feet[leader - 1], feet[partner - 1]
         assert (right - left) / 2 == pytest.approx(x, abs=1e-12)
@@ -92,7 +92,7 @@ def test_the_pose_holds_the_joint_angles_of_the_legs_in_order(simulator: Simulat
 
 def test_a_step_moves_the_commanded_pair_and_counts(simulator: Simulator[Any]) -> None:
     state = simulator.step(simulator.rest(), Action(1, 2)).state
-    offsets = np.array(simulator.pair_offsets(state))
+    offsets = np.array(simulator.group_offsets(state))
 
     assert state.commanded == (0, 2, 0)
     assert state.steps == 1
@@ -224,7 +224,7 @@ def test_the_number_of_legs_is_a_parameter(build: Build, legs: int) -> None:
     for step in range(12):
         state = simulator.step(state, Action(step % (legs // 2), 1 + step // 6 % 2)).state
 
-    assert len(state.commanded) == len(simulator.pair_offsets(state)) == legs // 2
+    assert len(state.commanded) == len(simulator.group_offsets(state)) == legs // 2
     assert simulator.pose(state).shape == (7 + 3 * legs,)
     assert 0.03 < state.distance_m < 0.2
 
@@ -236,15 +236,15 @@ def test_estimate_has_the_feet_where_they_are_measured_and_all_else_as_it_is(
         simulator = build(gait)
         (*_, state) = walk(simulator, simulator.rest(), 5)
         error_m = np.random.default_rng(0).normal(0, 0.004, (3, 2))
-        true_m = np.array(simulator.pair_offsets(state))
+        true_m = np.array(simulator.group_offsets(state))
 
         estimate = simulator.estimate(state, error_m)
 
-        assert np.allclose(simulator.pair_offsets(estimate), true_m + error_m, atol=1e-9)
+        assert np.allclose(simulator.group_offsets(estimate), true_m + error_m, atol=1e-9)
         assert np.array_equal(simulator.pose(estimate)[:7], simulator.pose(state)[:7])
         assert (estimate.distance_m, estimate.steps) == (state.distance_m, state.steps)
         assert estimate.commanded == state.commanded
-        assert np.allclose(simulator.pair_offsets(state), true_m, atol=0)
+        assert np.allclose(simulator.group_offsets(state), true_m, atol=0)
 
 
 def test_estimate_without_an_error_is_the_state(build: Build, simulator: Simulator[Any]) -> None:

@@ -1,7 +1,9 @@
 """Worlds: which disturbances hold in a step, and which contradict each other."""
 
+import json
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,6 +21,7 @@ from hexapods.domain.disturbances import (
     Slope,
     Stuck,
     Weak,
+    as_text,
     parse_disturbance,
 )
 from hexapods.domain.errors import InvalidInput, UnknownName
@@ -33,6 +36,9 @@ from hexapods.domain.world import (
     parse_world,
     world,
 )
+
+CASES = json.loads((Path(__file__).parents[1] / "cases" / "conditions.json").read_text("utf-8"))
+"""What holds in a step; the page's test of its disturbances reads them too."""
 
 EXAMPLES = {
     "limp": "limp:legs=1,2",
@@ -216,3 +222,11 @@ def test_a_world_is_made_of_disturbances(given: Any) -> None:
     with pytest.raises(InvalidInput, match="made of disturbances, as World"):
         World(given)
     assert World([Limp(legs=(1,))]) == World((Limp(legs=(1,)),))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case['happens']} in {case['step']}")
+def test_what_holds_in_a_step_is_what_the_page_says(case: dict[str, Any]) -> None:
+    now = World(tuple(map(parse_disturbance, case["happens"]))).as_of(case["step"])
+    parts = [part for one in now.disturbances for part in one.parts().values()]
+    expected = [as_text(parse_disturbance(text)) for text in case["holds"]]
+    assert sorted(map(as_text, parts)) == sorted(expected)

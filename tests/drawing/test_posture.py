@@ -9,7 +9,7 @@ from hexapods.domain.disturbances import Lost
 from hexapods.domain.errors import InvalidInput, Unreachable
 from hexapods.domain.gait import NAMED_GAITS, resolve
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.kinematics import foot_positions
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.types import Cells
 from hexapods.domain.world import World
 from hexapods.drawing.footgrid import ABOVE_GROUND_M, FootGridDrawing
@@ -44,10 +44,10 @@ def test_feet_of_a_ghost_stand_in_the_cells_that_are_drawn(
     # So that the robot's forward direction is that of the grid's node.
     turn = np.radians(90 - spec.gait.forward_deg)
     pose = posture(spec, cells)
-    (feet,) = foot_positions(spec.robot, pose[None])
+    (feet,) = legs_of(spec.robot).foot_positions(pose[None])
 
     assert 2 * np.arctan2(pose[6], pose[3]) == pytest.approx(turn)
-    for pair, cell in zip(spec.gait.pairs, cells, strict=True):
+    for pair, cell in zip(spec.gait.groups, cells, strict=True):
         for leg in pair:
             assert feet[leg - 1, :2] == pytest.approx(drawn[leg - 1, cell, :2], abs=1e-3)
     soles = feet[:, 2] - spec.robot.foot_radius_m

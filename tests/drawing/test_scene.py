@@ -145,7 +145,7 @@ def test_cells_are_coloured_by_value_but_for_the_current_one(
     fills = scene_nodes(server)["/world/run/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3)
 
-    leader, partner = spec.gait.pairs[2]
+    leader, partner = spec.gait.groups[2]
     assert (colors[leader - 1] == colors[partner - 1]).all(), "a pair is of one mind"
     best, present = colors[leader - 1, 3], colors[leader - 1, 1]
     assert best[0] > 120
@@ -162,7 +162,7 @@ def test_a_cell_that_was_never_tried_is_grey_whatever_its_value(server: InProces
     fills = scene_nodes(server)["/world/run/lane0/grid/others/fills"]
     colors = fills["batched_colors"].reshape(6, 4, 3).astype(int)
 
-    leader = spec.gait.pairs[2][0] - 1
+    leader = spec.gait.groups[2][0] - 1
     is_grey = np.ptp(colors[leader], axis=1) < 20
     assert is_grey.tolist() == [False, True, True, True], "the present cell, and two of three"
 

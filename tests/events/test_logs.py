@@ -11,7 +11,6 @@ import pytest
 from app.events import logs
 from app.events.logs import LineFormatter
 from app.events.run_metrics import RunMetrics
-from app.events.run_view import run_view
 from tests.storage.stores import training
 
 
@@ -67,7 +66,7 @@ def test_steps_are_counted_and_state_changes_logged(written: io.StringIO) -> Non
 
     def publish(state: str, done: int, error: str | None = None) -> None:
         run = training("abc", state=state, done=done, error=error)
-        bus.publish("run", run_view(run), "abc")
+        bus.publish_run(run)
 
     for state_and_done in (("queued", 0), ("running", 0), ("running", 30), ("running", 100)):
         publish(*state_and_done)

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 from app.events.run_metrics import RunMetrics
-from app.events.run_view import run_view
 from app.storage.run import DamagedRun
 from tests.storage.stores import experiment, race, training
 
@@ -12,8 +11,8 @@ def test_steps_are_counted_from_a_runs_first_event_on() -> None:
     now = 0.0
     metrics = RunMetrics(now=lambda: now)
     for run in (training("a", done=100), race("b"), experiment("c")):
-        metrics.publish("run", run_view(run), run.id)
-        metrics.publish("run", run_view(replace(run, done=run.done + 20)), run.id)
+        metrics.publish_run(run)
+        metrics.publish_run(replace(run, done=run.done + 20))
     assert metrics.steps == 40, "trials are no steps"
     assert metrics.steps_per_s == 4
     now = 10.0
@@ -24,5 +23,5 @@ def test_damaged_run_can_be_published() -> None:
     metrics = RunMetrics()
     subscription = metrics.subscribe()
     damaged = DamagedRun(id="a", kind="training", damaged="its result cannot be read")
-    metrics.publish("run", run_view(damaged), damaged.id)
+    metrics.publish_run(damaged)
     assert [event.run_id for event in subscription.drain()] == ["a"]

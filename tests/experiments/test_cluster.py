@@ -16,7 +16,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.experiments import cluster
 from hexapods.experiments.cluster import ClusterSpec, connect
 from hexapods.experiments.engine import run_trials
-from hexapods.experiments.local_workers import LocalWorkers
+from hexapods.experiments.local_workers import local_workers
 from hexapods.experiments.worker import ClusterLost, WorkerDied
 from hexapods.machine import cores
 from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
@@ -47,30 +47,36 @@ def test_an_invalid_cluster_spec_is_refused(given: dict[str, Any], names: str) -
     assert names in str(refused.value)
 
 
+def ports_of(process: psutil.Process) -> set[Any]:
+    """Addresses at which a process and its children, those of earlier tests too, listen."""
+    everyone = (process, *process.children(recursive=True))
+    return {
+        connection.laddr
+        for one in everyone
+        for connection in one.net_connections()
+        if connection.status == psutil.CONN_LISTEN
+    }
+
+
 def test_workers_of_this_machine_open_no_port_and_leave_no_files_or_processes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     me = psutil.Process()
-    before = {c.laddr for c in me.net_connections()}
+    before = ports_of(me)
     with connect(ClusterSpec()) as workers:
         assert workers.count() == len(workers_of(me)) == cores()
-        for process in (me, *me.children(recursive=True)):
-            assert {c.laddr for c in process.net_connections()} <= before
+        assert ports_of(me) <= before
     assert not workers_of(me)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_worker_that_takes_too_much_memory_is_killed() -> None:
     endless = trials_of(small(seeds=1, steps=9_000_000))[-1]
-    workers = LocalWorkers(os.environ)
-    try:
-        workers.start(1, most_bytes=1 << 20)
+    with local_workers(1, most_bytes=1 << 20) as workers:
         task = workers.submit([endless.config])
         with pytest.raises(WorkerDied):
             workers.result(task)
-    finally:
-        workers.close()
     assert not workers_of(psutil.Process())
 
 

@@ -7,16 +7,15 @@ import pytest
 
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import (
     EXPERIMENTS,
     GRID,
     MAX_SEEDS,
     ExperimentConfig,
-    as_json,
     by_option,
     experiment_config,
-    from_json,
     settings_by_name,
 )
 
@@ -48,7 +47,7 @@ def test_a_sweep_can_vary_every_grid_parameter() -> None:
         "grid_side_m": (0.03, 0.04),
     }
     assert set(grid) == {*GRID, *settings_by_name(["q-learning"])}
-    shown = by_option(as_json(experiment_config("sweep", grid)))
+    shown = by_option(to_json(experiment_config("sweep", grid)))
     assert {name: tuple(shown[name]) for name in grid} == grid
     assert shown["observations"] == ["measured"]
 
@@ -71,9 +70,9 @@ def test_papers_experiments_keep_no_tolerance() -> None:
 
 def test_config_of_an_earlier_version_is_on_flat_ground() -> None:
     config = experiment_config("figure4", {})
-    stored = as_json(config)
+    stored = to_json(config)
     del stored["worlds"], stored["tolerance"]
-    assert from_json(stored) == config
+    assert from_json(ExperimentConfig, stored) == config
 
 
 def test_none_counts_as_not_given() -> None:
@@ -98,18 +97,18 @@ _OWN: dict[str, Any] = {
 @pytest.mark.parametrize("given", [{}, _OWN], ids=["defaults", "own"])
 def test_a_config_round_trips_through_json(experiment: str, given: dict[str, Any]) -> None:
     config = experiment_config(experiment, given)
-    assert from_json(json.loads(json.dumps(as_json(config)))) == config
+    assert from_json(ExperimentConfig, json.loads(json.dumps(to_json(config)))) == config
 
 
 @pytest.mark.parametrize(
     ("experiment", "given", "names"),
     [
         ("table2", {}, "table1, figure4, sweep, league, recovery"),
-        ("table1", {"seeds": 0}, f"seeds must be from 1 to {MAX_SEEDS:,}"),
+        ("table1", {"seeds": 0}, f"seeds must be a whole number from 1 to {MAX_SEEDS:,}"),
         ("table1", {"seeds": MAX_SEEDS + 1}, f"from 1 to {MAX_SEEDS:,}"),
         ("table1", {"seeds": 2.5}, "a whole number"),
         ("table1", {"seeds": True}, "a whole number"),
-        ("table1", {"seed": -1}, "seed must be at least 0"),
+        ("table1", {"seed": -1}, "seed must be a whole number of at least 0"),
         ("table1", {"alpha": (0.1,)}, "seeds, seed, gaits, observations, robots, simulator"),
         ("figure4", {"steps": (100,)}, "agents"),
         ("sweep", {"blocks": 3}, "grid_side_m"),

@@ -72,7 +72,7 @@ def test_stopped_workers_are_replaced(
     trials: list[Trial], expected: dict[str, TrialResult], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As by SIGSTOP: their connections stay open, so that nothing else shows it."""
-    monkeypatch.setattr("hexapods.experiments.local_workers.STALLED_S", 0.5)
+    monkeypatch.setattr("hexapods.worker_pool.STALLED_S", 0.5)
 
     def while_stopping_workers() -> Iterator[Outcome]:
         for number, outcome in enumerate(run_trials(trials, TWO)):

@@ -12,8 +12,9 @@ import pytest
 from annotated_types import Gt, Le
 
 from hexapods.domain.errors import HexapodError
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.settings import Setting, declare
-from hexapods.experiments.config import as_json, experiment_config, from_json
+from hexapods.experiments.config import experiment_config
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.folder import open_results
 from hexapods.experiments.plan import Plan, Trial
@@ -160,7 +161,7 @@ def test_choices_have_no_ends() -> None:
         ({"ranges": ("alpha=0.1:1", "alpha=0.2:1")}, "given twice"),
         ({"candidates": 0}, "candidates must be from 1 to 10,000, not 0"),
         ({"search_seeds": 0}, "search_seeds must be from 1"),
-        ({"seeds": 0}, "seeds must be from 1"),
+        ({"seeds": 0}, "from 1 to 10,000, not 0"),
         (
             {"candidates": 10_000, "search_seeds": 100},
             "the search has 1,000,000 trials, the most is",
@@ -192,7 +193,7 @@ def test_settings_are_named_as_their_options_too() -> None:
 
 def test_config_is_read_back_from_plain_types() -> None:
     one = config(ranges=("alpha=0.05:1",), beside=("linear-model",), objective="area")
-    assert from_json(json.loads(json.dumps(as_json(one))), TuningConfig) == one
+    assert from_json(TuningConfig, json.loads(json.dumps(to_json(one)))) == one
 
 
 def test_defaults_are_first_and_the_same_seed_gives_the_same_study() -> None:

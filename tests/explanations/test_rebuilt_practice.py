@@ -20,13 +20,13 @@ class Steps:
     """Steps of a training, as the service reads them from its log."""
 
     def __init__(self, log: Transitions) -> None:
-        self._steps = steps_of(log)
+        self.logged = steps_of(log)
 
     def __len__(self) -> int:
-        return len(self._steps)
+        return len(self.logged)
 
     def step(self, number: int) -> Logged:
-        return self._steps[number]
+        return self.logged[number]
 
 
 def steps_by(agent: str) -> Steps:
@@ -122,7 +122,7 @@ def test_a_practice_that_forgot_steps_or_changes_is_another() -> None:
     assert practice.fits(steps, (change, {"step": 9, "settings": {"alpha": 0.1}}))
     assert not practice.fits(steps, ())
     fewer = steps_by("q-learning")
-    del fewer._steps[5:]
+    del fewer.logged[5:]
     assert not practice.fits(fewer, (change,))
     with pytest.raises(NotRebuilt, match=r"step \d+ cannot be explained"):
         practice.learner_at(80, steps, (change,))
@@ -146,10 +146,10 @@ def test_the_newest_step_of_a_walk_is_learned_from_once_it_is_known_what_followe
     agent: str,
 ) -> None:
     practice, steps = practice_of(agent), steps_by(agent)
-    newest = steps._steps[20]
-    steps._steps[20] = newest._replace(next_observation=(), next_measured=())
+    newest = steps.logged[20]
+    steps.logged[20] = newest._replace(next_observation=(), next_measured=())
     assert practice.explain(21, steps, ()).update is None
-    steps._steps[20] = newest
+    steps.logged[20] = newest
 
     assert agent_state(practice.learner_at(30, steps, ()).agent) == states_after(agent, 30)
 

@@ -11,11 +11,11 @@ from mcap_protobuf.decoder import DecoderFactory
 from app.jobs.stopping import Stopping
 from app.storage.errors import Busy
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.kinematics import foot_positions, rotation_matrices
+from hexapods.domain.kinematics import legs_of
+from hexapods.domain.posture import rotation_matrices
 from hexapods.exports.export_format import Execution
 from hexapods.exports.mcap_log import mcap_log
 from hexapods.exports.recorded_walks import RecordedWalks
-from hexapods.exports.trajectory import joint_names
 
 Messages = dict[str, list[Any]]
 
@@ -72,7 +72,10 @@ def test_a_log_that_would_be_too_long_is_refused(raced: RecordedWalks) -> None:
 
 
 def test_joint_states_are_the_recorded_angles(raced: RecordedWalks, messages: Messages) -> None:
-    names, step_s = joint_names(raced.problem.built_robot), raced.problem.robot.step_s
+    names, step_s = (
+        [joint.label for joint in legs_of(raced.problem.built_robot).joints],
+        raced.problem.robot.step_s,
+    )
     for number, lane in enumerate(raced.lanes):
         states = messages[f"/lane{number}/joint_states"]
         motions = [lane.motion(index) for index in range(6)]
@@ -107,7 +110,7 @@ def test_frames_put_the_links_where_the_robot_was(raced: RecordedWalks, messages
         return position + rotation @ [t.x, t.y, t.z], rotation @ turn
 
     assert place_of("lane1/torso")[0] == pytest.approx(pose[0, :3])
-    feet = foot_positions(raced.problem.built_robot, pose)[0]
+    feet = legs_of(raced.problem.built_robot).foot_positions(pose)[0]
     for leg in range(1, 7):
         assert place_of(f"lane1/leg{leg}_foot")[0] == pytest.approx(feet[leg - 1], abs=1e-6)
     (origin,) = [

@@ -15,7 +15,7 @@ import pytest
 from app.exports.stored_walks import recorded_walks
 from app.storage.errors import Conflict
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.kinematics import foot_positions
+from hexapods.domain.kinematics import legs_of
 from hexapods.exports import extras, registry
 from hexapods.exports.recorded_walks import RecordedWalks, checked_lane
 from hexapods.exports.trajectory import column_names, trajectory_csv, trajectory_parquet
@@ -47,7 +47,7 @@ def test_rows_of_csv_are_the_recorded_frames_to_the_last_bit(raced: RecordedWalk
         assert np.array([float(row[2]) for row in own]) == pytest.approx(times, abs=1e-5)
         assert [row[1] for row in own][:2] == ["0", "1"]
         feet = np.array([row[10 + joints : 10 + 2 * joints] for row in own], float)
-        expected = foot_positions(robot, recorded.astype(float)).reshape(len(own), -1)
+        expected = legs_of(robot).foot_positions(recorded.astype(float)).reshape(len(own), -1)
         assert feet == pytest.approx(expected, abs=2e-6)
 
 

@@ -17,8 +17,8 @@ from PIL import Image, ImageSequence
 
 from app.exports.file_renderer import FileRenderer
 from app.exports.stored_walks import recorded_walks
-from app.jobs import process_pool
 from app.storage.errors import Busy
+from hexapods import processes
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.exports import video
 from hexapods.exports.export_format import Execution
@@ -124,7 +124,7 @@ def test_a_video_that_takes_too_long_or_cannot_be_encoded_fails_alone(
     encoder.chmod(0o700)
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(encoder))
     # The fork server has the environment that was there when it was started.
-    monkeypatch.setattr(process_pool, "process_context", lambda: get_context("spawn"))
+    monkeypatch.setattr(processes, "process_context", lambda: get_context("spawn"))
     stuck = FileRenderer(timeout_s=2.0)
     with pytest.raises(Busy, match="it took over 2 s"):
         rendered_by(stuck, raced, SMALL)

@@ -23,6 +23,7 @@ from hexapods.experiments.plan import Plan
 from hexapods.experiments.result import TrialCounts
 from tests.experiments.clusters import workers_of
 from tests.jobs.experiments import stored_results, sweep, tried
+from tests.jobs.test_jobs import pid_of
 from tests.jobs.waiting import wait_until, wait_until_ended
 from tests.served import is_job
 from tests.storage.ended_runs import experiment_result
@@ -84,9 +85,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     resumed = jobs.resume(run.id)
     assert (resumed.state, resumed.done, resumed.result) == ("queued", len(kept), None)
     wait_for_more_trials(store, run, len(kept))
-    job = jobs._supervisor.find(run.id)
-    assert job is not None
-    os.kill(job.process.pid or 0, signal.SIGKILL)
+    os.kill(pid_of(run), signal.SIGKILL)
     killed = wait_until_ended(store, run)
     assert killed.state == "failed"
     assert "SIGKILL" in (killed.error or "")

@@ -38,7 +38,7 @@ def fork_server(server: Served) -> psutil.Process:
 def is_fork_server(process: psutil.Process) -> bool:
     with suppress(psutil.Error):
         if process.status() != psutil.STATUS_ZOMBIE:
-            return process.name() == "fork server" or "forkserver" in " ".join(process.cmdline())
+            return "forkserver" in " ".join(process.cmdline())
     return False
 
 

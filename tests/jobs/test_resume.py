@@ -16,18 +16,19 @@ from app.storage.errors import Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run
 from hexapods.agents.protocol import Tabular
-from hexapods.assembly import build_learner, finish_training, rebuild_learner
+from hexapods.assembly import build_learner, rebuild_learner
 from hexapods.domain.disturbances import Limp, SensorNoise, disturbance
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.runs.config import TrainingConfig, WalkingProblem, training_config
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.records import StepTaken
+from hexapods.runs.results import training_result
 from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
 from tests.jobs.test_jobs import WALK, pid_of
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
-from tests.storage.ended_runs import ended_training, training_result
+from tests.storage.ended_runs import ended_training, result_of_training
 from tests.storage.stores import training
 
 SLOW = training_config(**vars(WALK), steps=100_000, pace=30, evaluate_every=20)
@@ -77,12 +78,12 @@ def test_training_resumes_from_its_checkpoint(
     assert [row["step"] for row in store.evaluations(run.id)][:2] == [20, 40]
     assert max(row["step"] for row in store.evaluations(run.id)) < 10_000
     assert store.get(run.id).started_at == before.started_at
-    recording = second._recordings.training(run.id)
+    stopped = second.stop(run.id)
+    assert stopped.state == "stopped"
+    recording = Recordings(store).training(run.id)
     assert recording is not None
     steps = [step.step for step in recording.steps]
     assert steps == sorted(set(steps)), "no step twice"
-    stopped = second.stop(run.id)
-    assert stopped.state == "stopped"
     with pytest.raises(Conflict, match="failed or interrupted or paused"):
         second.resume(run.id)
 
@@ -99,7 +100,7 @@ def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
     happened = [jobs.disturb(run.id, Limp(legs=(1, 4)))]
     wait_until(lambda: store.artifact(run.id, CHECKPOINT))
     happened.append(jobs.disturb(run.id, SensorNoise(sd_m=0.004)))
-    os.kill(pid_of(jobs, run), signal.SIGKILL)
+    os.kill(pid_of(run), signal.SIGKILL)
     assert wait_until_ended(store, run).state == "failed"
     resumed = jobs.resume(run.id)
     wait_until(lambda: store.get(run.id).state == "running")
@@ -115,7 +116,7 @@ def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
     made = [disturbance(one["disturbance"]) for one in ended.changes if "disturbance" in one]
     assert made == happened == list(unbroken.world.disturbances)
     assert 0 < happened[0].at_step < happened[1].at_step < 200
-    assert ended.result == finish_training(unbroken, config)
+    assert ended.result == training_result(unbroken, config)
 
     # Its log has each step once, so that its learner can be built again from it.
     log = Recordings(store).transitions(run.id)
@@ -124,7 +125,7 @@ def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
     for number in range(200):
         rebuilt.take(whole.step(number))
     assert isinstance(rebuilt.agent, Tabular)
-    assert rebuilt.agent.table.sha256() == training_result(ended).q_table_sha256
+    assert rebuilt.agent.table.sha256() == result_of_training(ended).q_table_sha256
 
 
 def test_training_without_a_checkpoint_restarts_from_its_table(

@@ -32,7 +32,7 @@ const TRACER = {
 
 /** @type {(title: string, changes: object) => import("../../static/js/types.js").FieldOption} */
 const field = (title, changes) =>
-  ({ ...setting(title, changes), is_list: false, is_required: false, ranges: null, ...changes });
+  ({ ...setting(title, changes), short: "", is_list: false, is_required: false, ranges: null, ...changes });
 const STEP_FIELDS = {
   at_step: field("Begins at step", { minimum: 0, is_whole: true, default: 0 }),
   until_step: field("Ends at step", { minimum: 1, is_whole: true }),
@@ -40,9 +40,15 @@ const STEP_FIELDS = {
 const LEGS = field("Legs", { minimum: 1, maximum: 12, is_whole: true, is_list: true, is_required: true });
 const DIRECTION = field("Direction", { minimum: -180, maximum: 180, unit: "°", default: 0 });
 const NUMBER = { minimum: 0, is_required: true };
+/** @type {Record<string, string>} */
+const SHORT = { at_step: "at", until_step: "until" };
+/** @param {object} fields */
+const withNames = (fields) => Object.fromEntries(
+  Object.entries(fields).map(([name, one]) => [name, { ...one, short: SHORT[name] ?? name }]));
 /** @type {(name: string, title: string, fields: object, more?: object) => any} */
 const kind = (name, title, fields, more = {}) =>
-  ({ ...described(name, title), fields: { ...fields, ...STEP_FIELDS }, size: null, nothing: 0, lasts: true,
+  ({ ...described(name, title), fields: withNames({ ...fields, ...STEP_FIELDS }), repairs: false, adjective: name,
+    size: null, nothing: 0, lasts: true,
     identified_by: [], part: [], simulators: ["mujoco"], ...more });
 const KINDS = [
   kind("limp", "Limp legs", { legs: LEGS }, { identified_by: ["legs"], part: ["power"] }),
@@ -58,7 +64,8 @@ const KINDS = [
   kind("weak", "Weak servos", {
     legs: LEGS, torque_share: field("Share of torque", { ...NUMBER, maximum: 1 }),
   }, { size: "torque_share", nothing: 1, identified_by: ["legs"], part: ["power"] }),
-  kind("repair", "Repaired legs", { legs: LEGS }, { identified_by: ["legs"] }),
+  kind("repair", "Repaired legs", { legs: LEGS },
+    { identified_by: ["legs"], repairs: true, adjective: "repaired" }),
   kind("slope", "Slope", {
     degrees: field("Slope", { ...NUMBER, maximum: 30, unit: "°" }), direction_deg: DIRECTION,
   }, { size: "degrees" }),
@@ -98,7 +105,8 @@ const IN_WORLDS = [...COMMON, "agents", "worlds", "tolerance", "steps"];
 const EVERY_AGENT = ["learner", "tracer", "greedy", "planner"];
 
 const SEARCH = {
-  learns: false, searches: true, needs_practice: false, keeps_learning: false, settings: {}, live_settings: {},
+  learns: false, searches: true, needs_practice: false,
+  keeps_learning: false, steps_ahead: null, settings: {}, live_settings: {},
 };
 
 /** @type {Options} */
@@ -111,16 +119,18 @@ export const OPTIONS = {
   robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" }, built: { friction: 1 } }],
   agents: [
     {
-      ...described("learner", "Learner"), color: "#111111", learns: true, searches: false, needs_practice: true,
+      ...described("learner", "Learner"), color: "#111111", steps_ahead: null,
+      learns: true, searches: false, needs_practice: true,
       keeps_learning: false, settings: LEARNER,
       live_settings: { alpha: LEARNER.alpha, gamma: LEARNER.gamma, epsilon: EPSILON },
     },
     {
-      ...described("tracer", "Tracer"), color: "#444444", learns: true, searches: false, needs_practice: true,
+      ...described("tracer", "Tracer"), color: "#444444", steps_ahead: null,
+      learns: true, searches: false, needs_practice: true,
       keeps_learning: true, settings: TRACER,
       live_settings: { alpha: TRACER.alpha, trace: TRACER.trace },
     },
-    { ...described("greedy", "Greedy"), color: "#222222", ...SEARCH },
+    { ...described("greedy", "Greedy"), color: "#222222", ...SEARCH, steps_ahead: 1 },
     {
       ...described("planner", "Planner"), color: "#333333", ...SEARCH,
       settings: { depth: setting("Depth", { minimum: 1, maximum: 5, is_whole: true, default: 3 }) },
@@ -180,6 +190,7 @@ export const OPTIONS = {
     tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120],
     import_bytes: [1, 2 ** 20] },
   help: { alpha: "Learning rate." },
+  titles: { gait: "Gait", agent: "Learner", lanes: "Lanes", name: "Name", robot: "Robot", world: "World" },
   exports: [
     { title: "Joints (CSV)", address: "joints?format=csv", method: "GET", ending: "csv", install: null },
     { title: "Joints (Parquet)", address: "joints?format=parquet", method: "GET", ending: "parquet",

@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { copySettings, secondaryActions } from "../../static/js/actions.js";
 import { changesInWords, configAtEnd, presentRates, rateChanges } from "../../static/js/changes.js";
-import { form, overrides, setFields } from "../../static/js/form.js";
+import { form, setFields } from "../../static/js/form.js";
+import { page } from "../../static/js/page-state.js";
 import { applyEvent, options, rates, runs } from "../../static/js/store.js";
 import { curve } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -15,7 +16,7 @@ const makeChanged = (changes = {}) => makeRun({ changes: CHANGES, progress: { do
 
 beforeEach(() => {
   options.value = OPTIONS;
-  overrides.value = {};
+  page.form.value = new URLSearchParams();
   applyEvent("snapshot", { runs: [], stage: STAGE, scene: null });
 });
 
@@ -65,7 +66,7 @@ test("the settings of a run are copied as they hold at its end", () => {
   copySettings(run);
   assert.deepEqual([form.value.alpha, form.value.epsilon_end, form.value.pace], [0.5, 0.25, 8]);
 
-  overrides.value = {};
+  page.form.value = new URLSearchParams();
   applyEvent("run", run);
   copySettings(makeRun({ kind: "race", config: { steps: 50, lanes: [{ agent: "learner", training_id: run.id }] } }));
   assert.equal(form.value.alpha, 0.5);
@@ -112,7 +113,7 @@ test("a race without practice is offered if all of its learners keep learning", 
 test("what happens by a run's config is copied, and replaces what the form had", () => {
   const { config } = makeRun({});
   const disturbances = [{ kind: "limp", at_step: 25, legs: [1, 4] }, { kind: "slope", at_step: 0, degrees: 8 }];
-  overrides.value = { world: "limp-pair", disturb: ["limp:legs=2"] };
+  page.form.value = new URLSearchParams("world=limp-pair&disturb=limp:legs%3D2");
   copySettings(makeRun({ config: { ...config, disturbances } }));
   assert.deepEqual([form.value.world, form.value.disturb], ["flat", ["limp:legs=1,4:at=25", "slope:degrees=8"]]);
   copySettings(makeRun({}));

@@ -3,10 +3,10 @@ import assert from "node:assert/strict";
 import { afterEach, beforeEach, mock, test } from "node:test";
 import { signal } from "@preact/signals";
 import {
-  compareAddress, compared, comparedAsQuery, comparedCurves, comparedIds, comparedResults, comparedSettings, leaveOut,
-  leftOut, MAX_COMPARED, readCompared,
+  compared, comparedCurves, comparedIds, comparedResults, comparedSettings, leaveOut, leftOut, MAX_COMPARED,
 } from "../../static/js/compare.js";
 import { askAgain, differencesOf, followTables, haveSameStates, tableOf } from "../../static/js/compare-policies.js";
+import { addressOf, page, read, write } from "../../static/js/page-state.js";
 import { absentIds } from "../../static/js/runs.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { conditionsOfRace, obstacle } from "../../static/js/table-race.js";
@@ -21,23 +21,23 @@ const trained = (changes, more = {}) => makeRun({ config: { ...config, ...change
 function compare(...runs) {
   const known = runs.filter((run) => "kind" in run);
   applyEvent("snapshot", { runs: known, stage: STAGE, scene: null, role: "operator" });
-  comparedIds.value = runs.map(({ id }) => id);
+  page.compared.value = runs.map(({ id }) => id);
 }
 
 beforeEach(() => {
   options.value = OPTIONS;
   absentIds.value = new Set();
-  readCompared(new URLSearchParams());
+  page.compared.value = [];
 });
 
 test("the address names the runs, each once, as many as can be told apart", () => {
-  readCompared(new URLSearchParams("runs=b, a,b,,c"));
+  read({ search: "", hash: "#compare?runs=b, a,b,,c" });
   assert.deepEqual(comparedIds.value, ["b", "a", "c"]);
-  assert.equal(comparedAsQuery(), "runs=b,a,c");
-  assert.equal(compareAddress(["a", "b c"]), "#compare?runs=a,b%20c");
+  assert.equal(write(), "#compare?runs=b,a,c");
+  assert.equal(addressOf({ view: "compare", compared: ["a", "b c"] }), "#compare?runs=a,b+c");
   leaveOut("a");
   assert.deepEqual(comparedIds.value, ["b", "c"]);
-  readCompared(new URLSearchParams({ runs: "abcdefghijk".split("").join(",") }));
+  read({ search: "", hash: `#compare?runs=${"abcdefghijk".split("").join(",")}` });
   assert.deepEqual([comparedIds.value.length, leftOut.value], [MAX_COMPARED, 3]);
 });
 

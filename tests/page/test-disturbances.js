@@ -1,5 +1,6 @@
 // Disturbances: conditions of a step, their words, and their text.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { beforeEach, test } from "node:test";
 import {
   changesSomething, chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, inTime, inWords,
@@ -17,6 +18,17 @@ const SLOPE = { kind: "slope", at_step: 0, degrees: 8, direction_deg: 0 };
 /** @type {(disturbances: any[], step: number) => string[]} */
 const wordsAt = (disturbances, step) =>
   conditionsInWords(conditionsAt(disturbances, step)).map((words) => words.replaceAll("\u00a0", " "));
+
+/** The server's test of its worlds reads them too. */
+const CASES = JSON.parse(readFileSync(new URL("../cases/conditions.json", import.meta.url), "utf8"));
+
+for (const { happens, step, holds } of CASES) {
+  test(`${happens.join(", ")}: what holds in step ${step}`, () => {
+    const disturbances = happens.map((/** @type {string} */ text) => parseText(text).value);
+    const texts = conditionsAt(disturbances, step).map((one) => textOf({ ...one, at_step: 0, until_step: null }));
+    assert.deepEqual(texts.sort(), holds.sort());
+  });
+}
 
 test("what happens holds from its step on, leg by leg, until it ends or is repaired", () => {
   const disturbances = [SLOPE, LIMP, { kind: "repair", at_step: 30, legs: [4] }, { ...SLOPE, at_step: 40, degrees: 0 }];

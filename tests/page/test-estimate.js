@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import { raceEstimate } from "../../static/js/estimate.js";
-import { readQuery, setField } from "../../static/js/form.js";
+import { setField } from "../../static/js/form.js";
+import { page } from "../../static/js/page-state.js";
 import { connection, options, role } from "../../static/js/store.js";
 import { OPTIONS } from "./options.js";
 
@@ -26,7 +27,7 @@ beforeEach(() => {
   options.value = OPTIONS;
   role.value = "operator";
   connection.value = "live";
-  readQuery(new URLSearchParams());
+  page.form.value = new URLSearchParams();
   asked = [];
 });
 

@@ -2,25 +2,25 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  chooseLearner, enter, form, link, mistakes, overrides, raceBody, readAddress, readQuery, setField, setFields,
-  toQuery, trainingBody, typed, unknownParts, whatIfBody, wrong,
+  chooseLearner, enter, form, isReadOnly, mistakes, openForm, raceBody, setField, setFields, stageTexts, trainingBody,
+  tryOwnSettings, whatIfBody, wrong,
 } from "../../static/js/form.js";
-import { options } from "../../static/js/store.js";
-import { visit } from "./browser.js";
+import { ignored, page } from "../../static/js/page-state.js";
+import { options, role } from "../../static/js/store.js";
 import { OPTIONS } from "./options.js";
 
-visit("/?alpha=0.5");
-const firstLink = link();
-
-test("until the server's defaults are known the page's link is its address", () => {
-  assert.equal(firstLink, "http://page.test/?alpha=0.5");
-});
+/** The form's texts, as a link has them. */
+const inLink = () => page.form.value;
+/** Open a link with these. @param {string | URLSearchParams} query */
+function open(query) {
+  page.form.value = new URLSearchParams(query);
+  ignored.query.value = [];
+  openForm();
+}
 
 beforeEach(() => {
-  visit("/");
   options.value = OPTIONS;
-  overrides.value = {};
-  typed.value = {};
+  open("");
 });
 
 test("the form begins with the server's defaults and nothing else", () => {
@@ -31,11 +31,11 @@ test("the form begins with the server's defaults and nothing else", () => {
     { ...training, ...settings, world: "flat", disturb: [], race_steps: 50, ...lanes, ...greedy, name: "" });
 });
 
-test("the address follows the form, and is clean again when the form is", () => {
+test("a link has what was changed, and is clean again when the form is", () => {
   setField("alpha", 0.7);
-  assert.match(location.search, /alpha=0.7/);
+  assert.equal(String(inLink()), "alpha=0.7");
   setField("alpha", OPTIONS.defaults.training.settings.alpha);
-  assert.equal(location.search, "");
+  assert.equal(String(inLink()), "");
 });
 
 test("a form read from its own query is the same form", () => {
@@ -43,19 +43,17 @@ test("a form read from its own query is the same form", () => {
     agent: "tracer", trace: 0.5, kind: "adding", gait: "wave", pace: 2, lanes: ["greedy"], name: "A & B",
   };
   setFields(changes);
-  const [before, query] = [form.value, toQuery()];
-  overrides.value = {};
-  readQuery(query);
+  const [before, query] = [form.value, String(inLink())];
+  open("");
+  open(query);
   assert.deepEqual(form.value, before);
   assert.deepEqual({ ...before, ...changes }, before);
   setField("pace", "max");
-  readQuery(toQuery());
-  assert.ok(!("pace" in overrides.value));
+  assert.ok(!inLink().has("pace"));
 });
 
 test("what is not valid in an address is kept as it is, explained, and stays in the address", () => {
-  visit("/?alpha=seven&steps=&gamma=0.5&pace=fast&agent=greedy&gait=nonsense&robot=tank&lanes=greedy,ghost&seed=-5");
-  readAddress();
+  open("alpha=seven&steps=&gamma=0.5&pace=fast&agent=greedy&gait=nonsense&robot=tank&lanes=greedy,ghost&seed=-5");
   assert.equal(form.value.gamma, 0.5);
   const texts = Object.fromEntries(Object.entries(wrong.value).map(([field, { text }]) => [field, text]));
   const expected = {
@@ -64,24 +62,23 @@ test("what is not valid in an address is kept as it is, explained, and stays in 
   };
   assert.deepEqual(texts, expected);
   assert.ok(Object.values(mistakes.value).every((mistake) => mistake.length > 0));
-  setField("name", "a change of another field");
-  const query = new URLSearchParams(location.search);
+  setField("name", "another field");
+  const query = inLink();
   assert.deepEqual(Object.fromEntries(Object.keys(expected).map((field) => [field, query.get(field)])), expected);
   setFields({ gait: "wave", robot: "stiff" });
   assert.ok(!("gait" in mistakes.value) && !("robot" in mistakes.value) && "alpha" in mistakes.value);
 });
 
 test("fields of an address that the form does not have are left out", () => {
-  visit("/?unknown=1&trace=0.5");
-  readAddress();
+  open("unknown=1&trace=0.5");
   assert.ok(!("unknown" in form.value) && !("trace" in form.value));
   assert.deepEqual(mistakes.value, {});
 });
 
 test("a link to a single setting sets it alone", () => {
-  visit("/?alpha=0.5");
-  readAddress();
-  assert.deepEqual(overrides.value, { alpha: 0.5 });
+  open("alpha=0.5");
+  assert.equal(String(inLink()), "alpha=0.5");
+  assert.equal(form.value.alpha, 0.5);
 });
 
 test("another learner brings its own settings and defaults, and keeps what a person set", () => {
@@ -106,7 +103,7 @@ test("a value that the chosen learner cannot read is explained, and its default 
 test("settings of the other learners of a race are checked too", () => {
   setFields({ lanes: ["learner", "tracer"], trace: 7 });
   assert.match(mistakes.value.trace, /from 0 to 1/);
-  assert.equal(toQuery().get("trace"), "7");
+  assert.equal(inLink().get("trace"), "7");
   setField("lanes", ["learner"]);
   assert.deepEqual(mistakes.value, {});
 });
@@ -128,7 +125,7 @@ test("what was typed is kept as it is until it is valid; the value stays the las
   enter("alpha", "7 ");
   assert.deepEqual([form.value.alpha, wrong.value.alpha.text], [0.7, "7 "]);
   assert.match(mistakes.value.alpha, /over 0 and at most 1/);
-  assert.equal(toQuery().get("alpha"), "7 ");
+  assert.equal(inLink().get("alpha"), "7 ");
   enter("alpha", "0.5");
   assert.deepEqual([form.value.alpha, mistakes.value], [0.5, {}]);
   enter("lanes", "");
@@ -141,7 +138,7 @@ test("a custom robot and a custom gait are kept whole, also by a link", () => {
   const robot = { preset: "stiff", femur_m: 0.1, legs: [{ azimuth_deg: 0, radius_m: 0.1 }] };
   const gait = { right_leg: 1, left_leg: 4, symmetry: "origin" };
   setFields({ robot, gait });
-  readQuery(toQuery());
+  open(inLink());
   assert.deepEqual([form.value.robot, form.value.gait], [robot, gait]);
   assert.deepEqual([trainingBody().robot, trainingBody().gait], [robot, gait]);
   assert.deepEqual(mistakes.value, {});
@@ -190,7 +187,7 @@ test("each learner of a race practises with its own settings, and a link has the
   const [learner, tracer] = practices();
   assert.deepEqual([learner?.alpha, learner?.gamma, learner?.trace], [0.3, 0.8, undefined]);
   assert.deepEqual([tracer?.alpha, tracer?.gamma, tracer?.trace], [0.1, undefined, 0.5]);
-  readQuery(toQuery());
+  open(inLink());
   assert.deepEqual(practices(), [learner, tracer]);
 });
 
@@ -203,11 +200,11 @@ test("a what-if does not depend on seed, pace, name, simulator and build toleran
 });
 
 test("what a link says that is no field is told, until another link is read", () => {
-  readQuery(new URLSearchParams("alhpa=0.5&alpha=0.4"));
-  assert.deepEqual(unknownParts.value, ["alhpa=0.5"]);
+  open("alhpa=0.5&alpha=0.4");
+  assert.deepEqual(ignored.query.value, ["alhpa=0.5"]);
   assert.equal(form.value.alpha, 0.4);
-  readQuery(new URLSearchParams("alpha=0.4"));
-  assert.deepEqual(unknownParts.value, []);
+  open("alpha=0.4");
+  assert.deepEqual(ignored.query.value, []);
 });
 
 test("a lane has its agent's settings, in the form, in the address and in the request", () => {
@@ -216,15 +213,14 @@ test("a lane has its agent's settings, in the form, in the address and in the re
   assert.deepEqual(raceBody().lanes.slice(1), [{ agent: "planner", settings: { depth: 3 } }, { agent: "greedy" }]);
   enter("planner.depth", "2");
   enter("tracer.keep_learning", "false");
-  const query = new URLSearchParams(location.search);
+  const query = inLink();
   assert.equal(query.get("planner.depth"), "2");
-  overrides.value = {};
-  readAddress();
+  open(inLink());
   const [tracer, planner] = /** @type {any[]} */ (raceBody().lanes);
   assert.deepEqual(planner, { agent: "planner", settings: { depth: 2 } });
   assert.equal(tracer.keep_learning, false);
   assert.ok(!Object.keys({ ...tracer.training, ...trainingBody() }).some((name) => name.includes(".")));
-  assert.deepEqual(unknownParts.value, []);
+  assert.deepEqual(ignored.query.value, []);
 });
 
 test("a lane that keeps learning as its agent does by default does not say so", () => {
@@ -263,20 +259,19 @@ test("a search reads its state as its lane says, in the link and in the request"
   enter("greedy.observation", "commanded");
   const lane = { agent: "greedy", observation: "commanded" };
   assert.deepEqual(raceBody().lanes[1], lane);
-  readQuery(toQuery());
+  open(inLink());
   assert.deepEqual([raceBody().lanes[1], form.value.observation], [lane, "measured"]);
-  assert.deepEqual(unknownParts.value, []);
+  assert.deepEqual(ignored.query.value, []);
   enter("greedy.observation", "felt");
   assert.match(mistakes.value["greedy.observation"], /“felt” is not valid/);
 });
 
 test("a world and what happens are in the link, one by one, and in the requests", () => {
   setFields({ world: "limp-pair", disturb: ["slope:degrees=8:at=25", "limp:legs=2"] });
-  const query = new URLSearchParams(location.search);
+  const query = inLink();
   assert.equal(query.get("world"), "limp-pair");
   assert.deepEqual(query.getAll("disturb"), ["slope:degrees=8:at=25", "limp:legs=2"]);
-  overrides.value = {};
-  readAddress();
+  open(inLink());
   const happens = {
     world: "limp-pair",
     disturbances: [{ kind: "slope", degrees: 8, at_step: 25 }, { kind: "limp", legs: [2], at_step: 0 }],
@@ -289,17 +284,16 @@ test("a world and what happens are in the link, one by one, and in the requests"
     assert.ok(!["world", "disturb", "disturbances"].some((field) => field in body));
   }
   setFields({ world: "flat", disturb: [] });
-  assert.equal(location.search, "");
+  assert.equal(String(inLink()), "");
   assert.ok(!("world" in trainingBody()) && !("disturbances" in trainingBody()));
 });
 
 test("what cannot happen is kept in the link as it is, explained, and holds the start", () => {
-  visit("/?disturb=limp:legs=1&disturb=fire:legs=2&world=moon");
-  readAddress();
+  open("disturb=limp:legs=1&disturb=fire:legs=2&world=moon");
   assert.match(mistakes.value.disturb, /“fire” is nothing that can happen/);
   assert.match(mistakes.value.world, /“moon” is not offered/);
-  setField("name", "a change of another field");
-  const query = new URLSearchParams(location.search);
+  setField("name", "another field");
+  const query = inLink();
   assert.deepEqual([query.getAll("disturb"), query.get("world")], [["limp:legs=1", "fire:legs=2"], "moon"]);
   setFields({ disturb: ["limp:legs=1"], world: "limp-pair", simulator: "kinematic" });
   assert.match(mistakes.value.disturb, /The kinematic simulator knows no limp: choose mujoco/);
@@ -312,10 +306,31 @@ test("a search plans with what it is told to, and by default is told nothing", (
   assert.deepEqual(raceBody().lanes[1], { agent: "greedy" });
   enter("greedy.plans_with", "nominal");
   assert.deepEqual(raceBody().lanes[1], { agent: "greedy", plans_with: "nominal" });
-  readQuery(toQuery());
+  open(inLink());
   assert.equal(form.value["greedy.plans_with"], "nominal");
   enter("greedy.plans_with", "hope");
   assert.match(mistakes.value["greedy.plans_with"], /“hope” is not valid/);
   enter("greedy.plans_with", "");
   assert.deepEqual([form.value["greedy.plans_with"], mistakes.value], [null, {}]);
+});
+
+test("what a spectator reads is not in the link; what they try is, even where it is the default", () => {
+  role.value = "spectator";
+  setFields({ alpha: 0.7, gamma: 0.9 });
+  assert.deepEqual([isReadOnly.value, form.value.alpha, String(inLink())], [true, 0.7, ""]);
+  tryOwnSettings();
+  assert.deepEqual([isReadOnly.value, inLink().get("alpha"), inLink().get("gamma")], [false, "0.7", "0.9"]);
+  setField("alpha", 0.3);
+  assert.deepEqual([isReadOnly.value, form.value.alpha], [false, 0.3]);
+  open("");
+  assert.deepEqual([isReadOnly.value, form.value.alpha], [true, 0.7], "back to those on stage");
+  role.value = "operator";
+  stageTexts.value = new URLSearchParams();
+});
+
+test("a whole form in a link of an earlier version leaves another learner its own defaults", () => {
+  open("agent=learner&gait=tripod&steps=500&alpha=0.3&gamma=0.5&lanes=learner,greedy&learner.keep_learning=false");
+  assert.equal(String(inLink()), "gamma=0.5");
+  chooseLearner("tracer");
+  assert.deepEqual([form.value.alpha, form.value.lanes], [0.1, ["tracer", "greedy"]]);
 });

@@ -1,30 +1,12 @@
-// Views, errors of the API, and titles.
+// Errors of the API, and titles.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { signal } from "@preact/signals";
 import { refusal } from "../../static/js/api.js";
-import { followQuery, goIfStillHere, place, viewOf } from "../../static/js/page.js";
 import { options } from "../../static/js/store.js";
 import { choicesOf, clockTitle, gaitTitle, observationTitle, simulatorTitle } from "../../static/js/titles.js";
-import { visit } from "./browser.js";
 import { OPTIONS } from "./options.js";
 
 beforeEach(() => (options.value = OPTIONS));
-
-test("the hash names the view", () => {
-  assert.deepEqual(["", "#", "#runs", "#experiments?run=1", "#nothing"].map(viewOf),
-    ["race", "race", "runs", "experiments", "race"]);
-});
-
-test("an action goes to its view only from the one in which it was begun", () => {
-  place.value = "runs";
-  const go = goIfStillHere();
-  place.value = "experiments";
-  go("#late");
-  assert.notEqual(location.hash, "#late");
-  goIfStillHere()("#there");
-  assert.equal(location.hash, "#there");
-});
 
 test("a problem document becomes a message and the fields that it is about", () => {
   const refused = refusal(422, {
@@ -45,16 +27,4 @@ test("names of the vocabulary, unless the server has a title", () => {
   assert.equal(gaitTitle("unknown"), "unknown");
   assert.deepEqual(choicesOf(OPTIONS.simulators, simulatorTitle),
     [["mujoco", "MuJoCo physics"], ["kinematic", "Ideal (no slip)"]]);
-});
-
-test("a view that was just left does not write its query over the new address", () => {
-  const search = signal("");
-  place.value = "runs";
-  visit("/#runs");
-  followQuery("runs", () => {}, () => search.value);
-  search.value = "search=ben";
-  assert.equal(location.hash, "#runs?search=ben");
-  visit("/#"); // the event that tells of it comes later
-  search.value = "search=anna";
-  assert.equal(location.hash, "");
 });

@@ -1,5 +1,6 @@
 // Typed text, read as numbers, lists and choices, or refused with the reason.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import {
   parseChoice, parseChoiceOrParts, parseChoices, parseName, parseNumber, parseNumbers, parseSetting, parseValues,
@@ -34,6 +35,14 @@ test("a text is read as the declaration says", () => {
   assert.deepEqual(values(["any words"], TEXT), ["any words"]);
   assert.deepEqual(values(["max", "2", "0,5", "min"], MIXED), ["max", 2, 0.5, undefined]);
   assert.match(mistake(parseSetting("min", MIXED)), /“min” is not valid: it must be max, or a number/);
+});
+
+test("numbers are read as the server reads them", () => {
+  const limits = { minimum: null, maximum: null, excludes_minimum: false, excludes_maximum: false };
+  for (const { text, is_whole, value } of
+    JSON.parse(readFileSync(new URL("../cases/numbers.json", import.meta.url), "utf8"))) {
+    assert.equal(parseNumber(text, limits, is_whole).value ?? null, value, text);
+  }
 });
 
 test("a decimal comma, a typographic minus and grouped digits are read", () => {

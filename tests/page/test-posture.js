@@ -5,7 +5,7 @@ import {
   chosenState, chooseState, followChosenState, giveUpState, moveAt, whyNoGhost,
 } from "../../static/js/posture.js";
 import { clickedCell, drawHere } from "../../static/js/page.js";
-import { ownRunId } from "../../static/js/replay.js";
+import { page } from "../../static/js/page-state.js";
 import { chosenLane, chosenMoment } from "../../static/js/steps.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -68,7 +68,7 @@ beforeEach(() => {
 });
 afterEach(() => {
   stop();
-  ownRunId.value = null;
+  page.run.value = null;
   globalThis.fetch = fetch;
 });
 
@@ -100,7 +100,7 @@ test("a chosen state is drawn in the 3D view until it is given up", async () => 
 
 test("a ghost goes with its run, its lane, the scene that it is in, and the panel", async () => {
   const leavings = [
-    () => stageRace(), () => (chosenLane.value = 0), () => (drawHere.value = () => {}), () => (ownRunId.value = "own"),
+    () => stageRace(), () => (chosenLane.value = 0), () => (drawHere.value = () => {}), () => (page.run.value = "own"),
     () => stop(),
   ];
   for (const leave of leavings) {

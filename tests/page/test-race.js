@@ -120,23 +120,23 @@ test("after its show a race has its result, ranked", () => {
   const [first, second] = standings.value ?? [];
   assert.deepEqual([first.title, first.rank, first.finished_m], ["Greedy", 1, 0.3]);
   assert.deepEqual([second.title, second.total_m, second.decision_s, second.simulated], ["Learner", 0.5, 0.1, 600]);
-  assert.equal(headline.value, "Greedy wins: 0.30\u00a0m when Learner had used its 50 steps");
+  assert.equal(headline.value, "Greedy wins by 10\u00a0cm: 0.30\u00a0m when Learner had used its 50 steps");
 });
 
 test("the headline says who won and what decided it", () => {
   showResult([laneResult("learner", 1, 0.37), laneResult("greedy", 2, 0.2, 22)]);
-  assert.equal(headline.value, "Learner wins: 0.37\u00a0m when it had used its 50 steps");
+  assert.equal(headline.value, "Learner wins by 17\u00a0cm: 0.37\u00a0m when it had used its 50 steps");
   showResult([laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.37)]);
-  assert.equal(headline.value, "Greedy wins: 0.37\u00a0m after 50 steps each");
+  assert.equal(headline.value, "Greedy wins by 17\u00a0cm: 0.37\u00a0m after 50 steps each");
   showResult([laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.37), laneResult("planner", 3, 0.1, 90)]);
-  assert.equal(headline.value, "Greedy wins: 0.37\u00a0m when Greedy and Learner had used their 50 steps");
+  assert.match(headline.value ?? "", /^Greedy wins by 17\u00a0cm: .* when Greedy and Learner had used their 50 steps$/);
 });
 
 test("ties and narrow margins are told", () => {
   showResult([laneResult("learner", 1, 0.3), laneResult("greedy", 1, 0.3, 22), laneResult("planner", 3, 0.1, 90)]);
   assert.equal(headline.value, "Learner and Greedy tie: 0.30\u00a0m when Learner had used its 50 steps");
   showResult([laneResult("learner", 2, 0.302), laneResult("greedy", 1, 0.304, 22)]);
-  assert.equal(headline.value, "Greedy wins by 2 mm: 0.30\u00a0m when Learner had used its 50 steps");
+  assert.equal(headline.value, "Greedy wins by 2\u00a0mm: 0.30\u00a0m when Learner had used its 50 steps");
 });
 
 test("a lane that failed does not time the race out, and no time-out is claimed without one", () => {
@@ -166,7 +166,7 @@ test("a race that was stopped says so at its last step, without ranks and withou
   show(makeRun({ ...race, state: "interrupted" }), { ...AT_END, lanes, time_out_s: null });
   assert.match(headline.value ?? "", /^Interrupted at steps 25 to 26 of 50/);
   show(race, { lanes, time_s: 3 });
-  assert.equal(headline.value, "Greedy leads with 0.31\u00a0m", "on its way there");
+  assert.equal(headline.value, "Greedy leads by 21\u00a0cm", "on its way there");
 });
 
 test("at the photo finish lanes that walk on have their totals once the race has finished", () => {
@@ -193,7 +193,7 @@ test("during its show nothing later than the scene is told", () => {
   assert.ok(!isTimedOut.value);
   const [first] = standings.value ?? [];
   assert.deepEqual([first.agent, first.finished_m, first.total_m, first.simulated], ["learner", null, null, null]);
-  assert.equal(headline.value, "Learner leads with 0.10\u00a0m");
+  assert.equal(headline.value, "Learner leads by 10\u00a0cm");
 });
 
 test("before the first step everyone is on the start line, and equal ranks are level", () => {
@@ -202,7 +202,7 @@ test("before the first step everyone is on the start line, and equal ranks are l
   showScene({
     phase: "race", time_s: 1, lanes: [sceneLane({ distance_m: 0.1 }), sceneLane({ lane: 1, distance_m: 0.1 })],
   });
-  assert.equal(headline.value, "Level");
+  assert.equal(headline.value, "Learner and Learner are level");
 });
 
 test("only long decisions are shown as thinking", () => {

@@ -2,9 +2,10 @@
 import assert from "node:assert/strict";
 import { afterEach, test } from "node:test";
 import { problems, setStage, showOnStage } from "../../static/js/actions.js";
-import { view } from "../../static/js/page.js";
+import { page } from "../../static/js/page-state.js";
+import { camera } from "../../static/js/page.js";
 import {
-  closeReplay, drawIn, endTime, followReplay, openReplay, ownRunId, playReplay, replayProblem, replayTime, seekReplay,
+  closeReplay, drawIn, endTime, followReplay, openReplay, playReplay, replayProblem, replayTime, seekReplay,
   setReplaySpeed, tick,
 } from "../../static/js/replay.js";
 import { stage } from "../../static/js/store.js";
@@ -60,7 +61,6 @@ function answerTo({ pathname, searchParams }) {
   return moment(Number(searchParams.get("time_s")));
 }
 globalThis.fetch = (address) => Promise.resolve(answerTo(new URL(String(address))));
-globalThis.history.pushState = () => {};
 globalThis.requestAnimationFrame = () => 0;
 followReplay();
 
@@ -116,10 +116,10 @@ test("a run that was deleted meanwhile is told, and asked for no more", async ()
 test("a held replay follows another robot at once", async () => {
   await openReplay("a", { time_s: 3, isPlaying: false });
   await wait(5);
-  view.value = "2";
+  camera.value = "2";
   await wait(2);
   assert.deepEqual(drawn.at(-1), { type: "SetPositionMessage", name: "/world", position: [-1, -3, 0], owner: "" });
-  view.value = "leader";
+  camera.value = "leader";
 });
 
 test("played again at its end it begins anew", async () => {
@@ -205,7 +205,7 @@ test("a clock whose plan comes after the replay was left does not open it again"
   plan = recordedPlan;
   arrive.wall();
   await settle();
-  assert.equal(ownRunId.value, null);
+  assert.equal(page.run.value, null);
 });
 
 test("a clock whose plan cannot be had leaves the clock and the moment as they were", async () => {
@@ -223,10 +223,10 @@ test("a replay stays open until the server shows another run on the stage", asyn
   await openReplay("a");
   stageAnswer = new Response(JSON.stringify({ detail: "It has no recording." }), { status: 409 });
   await showOnStage(run);
-  assert.deepEqual([problems.value[run.id]?.message, ownRunId.value], ["It has no recording.", "a"]);
+  assert.deepEqual([problems.value[run.id]?.message, page.run.value], ["It has no recording.", "a"]);
   stageAnswer = new Response("null");
   const shown = showOnStage(run);
-  assert.equal(ownRunId.value, "a");
+  assert.equal(page.run.value, "a");
   await shown;
-  assert.equal(ownRunId.value, null);
+  assert.equal(page.run.value, null);
 });

@@ -1,8 +1,8 @@
 // What the page follows is requested again after an error that may pass, and not after one that lasts.
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
-import { followSummary, summary, summaryError, wantedRun } from "../../static/js/experiments/runs.js";
-import { place } from "../../static/js/page.js";
+import { followSummary, summary, summaryError } from "../../static/js/experiments/runs.js";
+import { page } from "../../static/js/page-state.js";
 import { followTimeline, timeline, timelineProblem } from "../../static/js/race.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { curve, followCurves, trainingsInView } from "../../static/js/training.js";
@@ -36,7 +36,7 @@ followSummary();
 followCurves(trainingsInView);
 
 beforeEach(() => {
-  [options.value, connection.value, place.value] = [OPTIONS, "live", "race"];
+  [options.value, connection.value, page.view.value] = [OPTIONS, "live", "race"];
   applyEvent("snapshot", { runs: [], stage: STAGE, scene: null, role: "operator" });
   asked = [];
 });
@@ -83,29 +83,29 @@ test("the curve of a training, and the training that it continues", async () => 
 });
 
 test("the summary of an experiment", async () => {
-  place.value = "experiments";
+  page.view.value = "experiments";
   await show({ kind: "experiment", config: {} }, 503);
   assert.equal(asked.filter((one) => one === "summary").length, 2);
   assert.deepEqual([summaryError.value, summary.value?.settings], [null, []]);
 });
 
 test("the summary of another experiment is requested at once, that of the same one after a pause", async () => {
-  place.value = "experiments";
+  page.view.value = "experiments";
   const [first, other] = [1, 2].map(() => makeRun({ kind: "experiment", config: {} }));
   const summaries = () => asked.filter((one) => one === "summary").length;
   const tell = (/** @type {number} */ done) => applyEvent("summary", { run_id: first.id, done });
-  wantedRun.value = first.id;
+  page.report.value = first.id;
   applyEvent("snapshot", { runs: [first, other], stage: STAGE, scene: null, role: "operator" });
   tell(1);
   assert.equal(summaries(), 1);
-  wantedRun.value = other.id;
+  page.report.value = other.id;
   assert.equal(summaries(), 2);
-  wantedRun.value = first.id;
+  page.report.value = first.id;
   assert.equal(summaries(), 3);
   await pass();
   assert.equal(summaries(), 3);
   tell(2);
   assert.equal(summaries(), 4);
-  wantedRun.value = null;
+  page.report.value = null;
   await pass();
 });

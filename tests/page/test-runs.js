@@ -2,8 +2,9 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { importFiles, imports } from "../../static/js/run-import.js";
+import { page } from "../../static/js/page-state.js";
 import {
-  clearFilters, filters, filtersAsQuery, isFiltered, knownTags, readFilters, shownRuns,
+  clearFilters, filters, isFiltered, knownTags, setFilters, shownRuns,
 } from "../../static/js/run-list.js";
 import {
   clearSelection, deletable, deleteSelected, exported, selectAll, selected, setSelected,
@@ -19,13 +20,13 @@ const UNKNOWN = { id: "damaged-1", kind: null, name: null, created_at: null, dam
 
 beforeEach(() => {
   options.value = OPTIONS;
-  readFilters(new URLSearchParams());
+  page.list.value = new URLSearchParams();
   clearSelection();
   applyEvent("snapshot", { runs: [TRAINING, RACE, UNKNOWN], stage: STAGE, scene: null, role: "operator" });
 });
 
 const shown = (/** @type {object} */ changes) => {
-  filters.value = { ...filters.value, ...changes };
+  setFilters(changes);
   return shownRuns.value.map(({ id }) => id);
 };
 
@@ -73,16 +74,16 @@ test("tags filter as a whole, and are searched in parts, like notes", () => {
 });
 
 test("the address has what is chosen, and a link opens the same list", () => {
-  assert.equal(filtersAsQuery(), "");
-  filters.value = { ...filters.value, kind: "race", tag: "µ & co", sort: "name" };
-  const query = filtersAsQuery();
+  assert.equal(String(page.list.value), "");
+  setFilters({ kind: "race", tag: "µ & co", sort: "name" });
+  const query = String(page.list.value);
   assert.equal(query, "kind=race&tag=%C2%B5+%26+co&sort=name");
-  readFilters(new URLSearchParams());
+  page.list.value = new URLSearchParams();
   assert.equal(filters.value.sort, "newest");
-  readFilters(new URLSearchParams(query));
+  page.list.value = new URLSearchParams(query);
   assert.deepEqual(filters.value, { kind: "race", state: "", search: "", tag: "µ & co", sort: "name" });
   clearFilters();
-  assert.equal(filtersAsQuery(), "sort=name", "the order is no filter");
+  assert.equal(String(page.list.value), "sort=name", "the order is no filter");
 });
 
 test("a range is selected from the run before, and nothing is done with what is not shown", () => {
@@ -100,7 +101,7 @@ test("a range is selected from the run before, and nothing is done with what is 
   assert.deepEqual([exported.value.count, exported.value.address], [4, null], "more than an archive has");
   shown({ kind: "training" });
   setSelected(UNKNOWN.id, false);
-  filters.value = { ...filters.value, search: "tripod" };
+  setFilters({ search: "tripod" });
   assert.deepEqual(chosen(), [TRAINING.id]);
   assert.match(exported.value.address ?? "", new RegExp(`runs/export\\?id=${TRAINING.id}$`));
 });

@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { copySettings, primaryAction } from "../../static/js/actions.js";
-import { enter, form, overrides, setField, setFields, trainingBody, typed } from "../../static/js/form.js";
+import { enter, form, setField, setFields, trainingBody } from "../../static/js/form.js";
+import { page } from "../../static/js/page-state.js";
 import { shownTime } from "../../static/js/race.js";
 import {
   interruptedRun, isPlaying, isRaceRun, laneTables, liveTraining, matchingTable, myWork, offStage, playbackName,
@@ -30,8 +31,7 @@ const raceOf = (/** @type {{ id: string }} */ training, changes = {}) =>
 
 beforeEach(() => {
   options.value = OPTIONS;
-  overrides.value = {};
-  typed.value = {};
+  page.form.value = new URLSearchParams();
   show({});
 });
 

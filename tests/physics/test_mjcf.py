@@ -8,10 +8,9 @@ import pytest
 
 from hexapods.assets import models_dir
 from hexapods.domain.gait import NAMED_GAITS, resolve
-from hexapods.domain.kinematics import JOINT_LIMITS_RAD, Legs
+from hexapods.domain.kinematics import JOINT_LIMITS_RAD, legs_of
 from hexapods.domain.robot import Robot, ring, robot
 from hexapods.physics.mjcf import (
-    LINKS,
     VISIBLE_GROUP,
     compile_model,
     compile_visual_model,
@@ -25,7 +24,7 @@ def model() -> Any:
 
 
 def test_elements_are_named_by_leg_and_link(model: Any) -> None:
-    joints = [f"leg{leg}_{link}" for leg in range(1, 7) for link in LINKS]
+    joints = [f"leg{leg}_{link}" for leg in range(1, 7) for link in JOINT_LIMITS_RAD]
 
     assert [model.joint(i).name for i in range(model.njnt)] == ["torso", *joints]
     assert [model.actuator(i).name for i in range(model.nu)] == joints
@@ -182,7 +181,7 @@ def test_inverse_kinematics_and_the_model_agree_on_the_feet(gait: str) -> None:
     offsets = np.random.default_rng(0).uniform(-0.03, 0.03, (6, 3))
     data = mujoco.MjData(model)
     data.qpos[:7] = 0, 0, 0, 1, 0, 0, 0
-    data.qpos[7:] = Legs(Robot(), resolved).joint_angles(offsets).ravel()
+    data.qpos[7:] = legs_of(Robot()).under(resolved).joint_angles(offsets)
     mujoco.mj_kinematics(model, data)
 
     turn = np.deg2rad(resolved.forward_deg)

@@ -11,7 +11,7 @@ import pytest
 from hexapods.domain.errors import Diverged
 from hexapods.domain.gait import NAMED_GAITS, resolve
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.kinematics import foot_positions
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.observation import legal_actions
 from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.types import Action, FloatArray
@@ -84,7 +84,9 @@ def test_forward_kinematics_in_the_world_are_those_of_the_model(gait: str) -> No
     data.qpos[3:7] /= np.linalg.norm(data.qpos[3:7])
     mujoco.mj_kinematics(simulator.model, data)
 
-    assert foot_positions(made, data.qpos[None])[0] == pytest.approx(feet_of(data, 8), abs=1e-9)
+    assert legs_of(made).foot_positions(data.qpos[None])[0] == pytest.approx(
+        feet_of(data, 8), abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("legs", [4, 6, 8])

@@ -13,7 +13,6 @@ import random
 import shutil
 import signal
 import sys
-import threading
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -25,7 +24,6 @@ from sqlalchemy import Connection, Engine, event, select
 from app.archive import table_import
 from app.archive.transfer import export_run, import_run
 from app.events.bus import EventBus
-from app.jobs.job import Job
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
@@ -37,11 +35,13 @@ from app.storage.run import TABLE, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
 from app.storage.stored_tables import load_table
 from hexapods.agents.registry import OURS
-from hexapods.assembly import build_learner, finish_training
+from hexapods.assembly import build_learner
 from hexapods.runs.config import WalkingProblem, training_config
 from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.results import training_result
 from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
+from tests.jobs.played import played_job
 from tests.storage.ended_runs import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training
 
@@ -60,7 +60,7 @@ class Breaker:
     """Counts the writes of this process, and injects the fault at one of them."""
 
     def __init__(self, artifacts: Path, how: str, at: int) -> None:
-        self._artifacts, self._how, self._at = str(artifacts), how, at
+        self._artifacts, self._how, self.at = str(artifacts), how, at
         self.count = 0
 
     def install(self, engine: Engine) -> None:
@@ -77,11 +77,11 @@ class Breaker:
 
     @property
     def is_full(self) -> bool:
-        return self._how == "full" and 0 < self._at <= self.count
+        return self._how == "full" and 0 < self.at <= self.count
 
     def _count(self) -> None:
         self.count += 1
-        if self._how == "kill" and self.count == self._at:
+        if self._how == "kill" and self.count == self.at:
             os.kill(os.getpid(), signal.SIGKILL)
 
     def _audit(self, name: str, given: tuple[Any, ...]) -> None:
@@ -137,19 +137,16 @@ def start(store: RunStore, folder: Path) -> None:
 def finish(store: RunStore, folder: Path) -> None:
     """Feed a job the messages of its process: the last checkpoint, the table, the end."""
     run = store.get(LEARNING_ID)
-    recordings = Recordings(store)
-    order, shutdown = TrainingTask(CONFIG, None), threading.Event()
-    job = Job(run, order, store, recordings, EventBus(), shutdown=shutdown, niceness=0)
+    _, take = played_job(run, TrainingTask(CONFIG, None), store, EventBus())
     learner = build_learner(CONFIG)
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)
-    take = job._handle
     take(Began((rest,), 0))
     records = list(train(learner, CONFIG, record=True))
     take(Batch(tuple(r for r in records if isinstance(r, StepTaken | Evaluated)), CONFIG.steps))
     data = to_bytes(snapshot(learner, CONFIG, changes=[]))
     take(Checkpointed(data, CONFIG.steps))
     take(Saved(data))
-    take(Ended("finished", finish_training(learner, CONFIG)))
+    take(Ended("finished", training_result(learner, CONFIG)))
 
 
 def delete(store: RunStore, folder: Path) -> None:
@@ -213,7 +210,7 @@ def _do(folder: Path, operation: str, how: str, at: int) -> dict[str, Any]:
             store.create(run)
             store.change(LEARNING_ID, {"queued"}, "running")
         breaker = Breaker(folder / "artifacts", how, at)
-        breaker.install(store._database.engine)
+        breaker.install(store.database.engine)
         refused = None
         try:
             OPERATIONS[operation](store, folder)
@@ -222,14 +219,14 @@ def _do(folder: Path, operation: str, how: str, at: int) -> dict[str, Any]:
         count = breaker.count
         if how == "kill" and count < at:
             os.kill(os.getpid(), signal.SIGKILL)
-        breaker._at = 0
+        breaker.at = 0
         return {"writes": count, "refused": refused, "at_once": inspect_store(store, folder)}
 
 
 def inspect_store(store: RunStore, folder: Path) -> dict[str, Any]:
     """Return the contents of a store: its runs with their data, and inconsistencies of files."""
     runs = [_whole(store, run) for run in store.list().runs]
-    referenced = store._database.read(lambda c: c.execute(select(ARTIFACTS.c.file)).scalars().all())
+    referenced = store.database.read(lambda c: c.execute(select(ARTIFACTS.c.file)).scalars().all())
     on_disk = [path.name for path in folder.glob("artifacts/*/*") if path.is_file()]
     key = store.find_key(KEY.key)
     return {

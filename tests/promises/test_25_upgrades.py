@@ -159,13 +159,11 @@ def test_a_failed_migration_is_rolled_back(
         "    op.execute('UPDATE runs SET half = 1')\n"
         "    raise RuntimeError('halfway')\n"
     )
-    config = migration._config()
-    config.set_main_option("script_location", str(broken))
     with database_url(backend, postgresql) as url:
         with opened(tmp_path, url) as store:
             sample.put(store)
         with monkeypatch.context() as patch:
-            patch.setattr(migration, "_config", lambda: config)
+            patch.setattr(migration, "SCRIPT_LOCATION", str(broken))
             with pytest.raises(RuntimeError, match="halfway"), opened(tmp_path, url):
                 pass
         with opened(tmp_path, url) as store:

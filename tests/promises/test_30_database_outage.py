@@ -17,6 +17,7 @@ import pytest
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import TrainingStart
+from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from hexapods.runs.config import WalkingProblem, training_config
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
@@ -111,7 +112,7 @@ def test_after_the_longest_wait_a_job_is_interrupted_and_can_be_resumed(
             run = jobs.train(TrainingStart(config))
             wait_for_progress(store, run)
             outage(own_postgresql, "stops", 4.0)
-            wait_until(lambda: ready_store(jobs))
+            wait_until(lambda: ready_store(store))
             left = wait_until_ended(store, run)
             assert left.state == "interrupted"
             assert "PostgreSQL" in (left.error or "")
@@ -121,9 +122,9 @@ def test_after_the_longest_wait_a_job_is_interrupted_and_can_be_resumed(
             jobs.close()
 
 
-def ready_store(jobs: Jobs) -> bool:
+def ready_store(store: RunStore) -> bool:
     try:
-        jobs._store.list(limit=1)
+        store.list(limit=1)
     except Exception:
         return False
     return True

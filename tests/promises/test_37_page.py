@@ -81,7 +81,7 @@ class Visit:
         port = self._server.port
         self._server.kill()
         self._server = Serving(self._data, port)
-        expect(self._dashboard.page.locator(".live")).to_contain_text("live")
+        expect(self._dashboard.connection).to_contain_text("live")
 
     def settle(self) -> None:
         """Stop what is computed, except for what is on stage, and hold the picture."""
@@ -134,13 +134,13 @@ class Words:
 
     def __init__(self, dashboard: Dashboard) -> None:
         page = dashboard.page
-        self._label = page.locator(".picture .chip.strong").inner_text()
+        self._label = dashboard.shown_run.inner_text()
         self._title = page.title()
-        self.has_board = page.locator(".board").count() > 0
-        self._headline = self._text(page.locator(".headline"))
+        self.has_board = dashboard.standings.count() > 0
+        self._headline = self._text(dashboard.headline)
         self._rows = dashboard.rows.all_inner_texts()
-        self._actions = page.locator(".actions").inner_text()
-        self._notes = " ".join(page.locator(".stage-note").all_inner_texts())
+        self._actions = dashboard.actions.inner_text()
+        self._notes = dashboard.notes.inner_text()
 
     @staticmethod
     def _text(found: Any) -> str:

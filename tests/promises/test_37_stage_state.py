@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from app.events.bus import EventBus
+from app.events.bus import Channel, EventBus
 from app.stage.stage import ANNOUNCE_AFTER_S, NEXT_AFTER_S, Stage
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, State
@@ -187,7 +187,9 @@ class Audience:
         parts = self._parts
         parts.recordings, parts.bus = Recordings(parts.store), EventBus()
         self._told = parts.bus.subscribe(names=frozenset({"stage"}))
-        parts.stage = Stage(parts.store, parts.recordings, parts.bus, now=lambda: parts.now)
+        parts.stage = Stage(
+            parts.store, parts.recordings, Channel(parts.bus), now=lambda: parts.now
+        )
         parts.stage.restore()
         self._newest = parts.stage.state()
 

@@ -10,8 +10,8 @@ from app.storage.database.opening import DATABASE_FILE
 from app.storage.run import CHECKPOINT
 from hexapods.agents.protocol import Tunable
 from hexapods.assembly import build_learner
+from hexapods.domain.records import from_json
 from hexapods.runs.config import TrainingConfig
-from hexapods.runs.config_json import config_from_json
 from hexapods.runs.records import Evaluated, StepTaken
 from hexapods.runs.tables import from_bytes, snapshot, to_bytes
 from hexapods.runs.training import train
@@ -29,7 +29,7 @@ def uninterrupted(
     Returns:
         The file of its table, with random generator and robot; and its curve.
     """
-    config = config_from_json({k: v for k, v in shown.items() if k != "continue_from"})
+    config = from_json(TrainingConfig, {k: v for k, v in shown.items() if k != "continue_from"})
     assert isinstance(config, TrainingConfig)
     learner, curve, later = build_learner(config), [], list(changes)
     agent = learner.walker.agent

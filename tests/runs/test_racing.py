@@ -125,7 +125,7 @@ def test_race_is_deterministic() -> None:
         (
             "tests.own_agents:Cheat",
             1,
-            "Cheat chose Action(pair=0, cell=0), which is not a legal",
+            "Cheat chose Action(group=0, cell=0), which is not a legal",
         ),
     ],
 )

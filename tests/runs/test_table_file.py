@@ -55,7 +55,7 @@ def test_rows_equal_those_of_the_table(divisions: int, states: float) -> None:
     table, checkpoint = filled(divisions, states)
     read = opened(to_bytes(checkpoint))
 
-    assert (read.pairs, read.cells) == (table.pairs, table.cells)
+    assert (read.groups, read.cells) == (table.groups, table.cells)
     assert dict(read.meta) == dict(checkpoint.meta)
     rows = list(read.rows())
     assert len(rows) == table.states

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from hexapods.agents.q_learning import QLearning
-from hexapods.assembly import build_learner, finish_training
+from hexapods.assembly import build_learner
 from hexapods.domain.disturbances import Limp, SensorNoise, Slope
 from hexapods.domain.errors import IllegalAction, InvalidInput
 from hexapods.domain.world import World
 from hexapods.runs import seeding
 from hexapods.runs.config import SIMULATORS, SimulatorName, TrainingConfig, training_config
 from hexapods.runs.records import EpisodeEnded, Evaluated, Reference, StepTaken, TrainingRecord
-from hexapods.runs.results import TrainingResult
+from hexapods.runs.results import TrainingResult, training_result
 from hexapods.runs.tables import from_bytes, restore, snapshot, to_bytes
 from hexapods.runs.training import Learner, train
 from hexapods.runs.walker import Walker
@@ -330,7 +330,7 @@ def test_blocks_draw_different_random_numbers() -> None:
 
 def test_result_has_distance_greedy_distance_and_hash() -> None:
     learner, records = run(CONFIG)
-    result = finish_training(learner, CONFIG)
+    result = training_result(learner, CONFIG)
     last = records[-1]
 
     assert isinstance(last, Evaluated)
@@ -346,7 +346,7 @@ def test_result_has_distance_greedy_distance_and_hash() -> None:
 def test_result_is_the_same_without_evaluations() -> None:
     quiet = replace(CONFIG, evaluate_every=0)
 
-    assert finish_training(run(quiet)[0], quiet) == finish_training(run(CONFIG)[0], CONFIG)
+    assert training_result(run(quiet)[0], quiet) == training_result(run(CONFIG)[0], CONFIG)
 
 
 def test_user_supplied_agent_trains_and_resumes() -> None:
@@ -357,11 +357,11 @@ def test_user_supplied_agent_trains_and_resumes() -> None:
 
     assert float(state["earned_m"][0]) == pytest.approx(learner.walker.state.distance_m)
     assert onward.walker.agent.state() == state
-    assert finish_training(learner, config).q_table_sha256 is None
+    assert training_result(learner, config).q_table_sha256 is None
 
 
 def test_illegal_action_raises_an_error_that_names_agent_and_action() -> None:
-    with pytest.raises(IllegalAction, match=r"Cheat chose Action\(pair=0, cell=0\).*in legal"):
+    with pytest.raises(IllegalAction, match=r"Cheat chose Action\(group=0, cell=0\).*in legal"):
         run(replace(CONFIG, agent="tests.own_agents:Cheat"))
 
 
@@ -383,7 +383,7 @@ def test_the_robot_is_evaluated_where_the_world_changes_and_greedy_in_each_world
 
     assert evaluated == [10, 20, 30]
     assert len(references) == len(set(references)) == 2
-    assert finish_training(learner, EVENTFUL).greedy_distance_m == references[-1]
+    assert training_result(learner, EVENTFUL).greedy_distance_m == references[-1]
 
 
 def test_a_disturbed_training_resumes_to_the_last_bit() -> None:

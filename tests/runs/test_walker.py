@@ -24,8 +24,8 @@ def walkers(
 
 
 def root_of(walker: Walker) -> FutureNode:
-    assert walker._expand is not None
-    return walker._expand.here
+    assert walker.expand is not None
+    return walker.expand.here
 
 
 @pytest.mark.parametrize("simulator", ["kinematic", "mujoco"])
@@ -35,8 +35,8 @@ def test_a_search_plans_from_where_the_feet_are_measured(simulator: str) -> None
     for walker in walkers(noisy, simulator=simulator):
         for _ in range(3):
             walker.carry_out(walker.decide())
-            root, true_m = root_of(walker), walker.simulator.pair_offsets(walker.state)
-            planned_from_m = walker.simulator.pair_offsets(root.state)
+            root, true_m = root_of(walker), walker.simulator.group_offsets(walker.state)
+            planned_from_m = walker.simulator.group_offsets(root.state)
             assert np.allclose(planned_from_m, root.offsets_m, atol=1e-9)  # one draw for all
             assert np.abs(np.subtract(planned_from_m, true_m)).max() > 0.001
             assert root.state.distance_m == walker.state.distance_m

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.events.bus import EventBus
-from app.events.run_view import run_view
+from app.events.bus import Channel, EventBus
 from app.stage.stage import Stage
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
@@ -36,7 +35,8 @@ class StageParts:
     def __init__(self, store: RunStore) -> None:
         self.now = 100.0
         self.store, self.recordings, self.bus = store, Recordings(store), EventBus()
-        self.stage = Stage(self.store, self.recordings, self.bus, now=lambda: self.now)
+        self.channel = Channel(self.bus)
+        self.stage = Stage(self.store, self.recordings, self.channel, now=lambda: self.now)
         self._run_count = 0
 
     def watch(self, seconds: float) -> list[StageFrame]:
@@ -83,7 +83,7 @@ class StageParts:
 
     def publish(self, run: Run) -> None:
         """Publish a run that changed, as jobs do."""
-        self.bus.publish("run", run_view(run), run.id)
+        self.bus.publish_run(run)
 
     def delete(self, run: Run) -> None:
         """Delete an ended run."""

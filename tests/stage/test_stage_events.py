@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.events.bus import MAX_PENDING, EventBus
-from app.events.run_view import run_view
+from app.events.bus import MAX_PENDING, Channel, EventBus
 from app.settings import Settings
 from app.stage.stage import Stage
 from app.storage.database.opening import open_store
@@ -28,7 +27,7 @@ class Follower:
     def __init__(self, store: RunStore) -> None:
         self.store, self.bus, self.now = store, EventBus(), 0.0
         self.recordings = Recordings(store)
-        self.stage = Stage(store, self.recordings, self.bus, now=lambda: self.now)
+        self.stage = Stage(store, self.recordings, Channel(self.bus), now=lambda: self.now)
 
     def watch(self, frames: int = 60) -> str | None:
         """Draw frames, and return the run that is on stage then."""
@@ -47,7 +46,7 @@ class Follower:
         self.publish(self.store.change(run.id, LIVE, "finished"))
 
     def publish(self, run: Run) -> None:
-        self.bus.publish("run", run_view(run), run.id)
+        self.bus.publish_run(run)
 
 
 @pytest.fixture
@@ -94,7 +93,7 @@ def test_run_that_became_unreadable_leaves_the_stage(follower: Follower) -> None
     run = follower.running("a")
     follower.stage.set(run_id=run.id)
     damaged = DamagedRun(id=run.id, kind=run.kind, damaged="its result cannot be read")
-    follower.bus.publish("run", run_view(damaged), run.id)
+    follower.bus.publish_run(damaged)
     assert follower.watch(1) is None
 
 

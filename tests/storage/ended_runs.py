@@ -10,7 +10,7 @@ from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import TABLE, Run
 from app.storage.stored_trials import trials_as_csv
-from hexapods.assembly import build_learner, build_walkers, finish_training
+from hexapods.assembly import build_learner, build_walkers
 from hexapods.experiments.config import SUMMARY
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.result import ExperimentResult
@@ -22,7 +22,7 @@ from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.racing import record_race
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.records import Evaluated, StepTaken
-from hexapods.runs.results import RaceResult, TrainingResult, race_result
+from hexapods.runs.results import RaceResult, TrainingResult, race_result, training_result
 from hexapods.runs.tables import from_bytes, snapshot, to_bytes
 from hexapods.runs.training import train
 from tests.jobs.experiments import sweep
@@ -50,7 +50,7 @@ def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps
     recordings.log(run_id, taken)
     recordings.finish(run_id)
     store.put_artifact(run_id, TABLE, to_bytes(snapshot(learner, config)))
-    result = finish_training(learner, config)
+    result = training_result(learner, config)
     changes = ({"step": 3, "settings": {"alpha": 0.25}}, {"step": 9, "pace": "max"})
     return store.change(run_id, {"queued"}, "finished", done=steps, result=result, changes=changes)
 
@@ -109,7 +109,7 @@ def ended_experiment(store: RunStore, run_id: str) -> Run:
     return store.change(run_id, {"queued"}, "finished", done=plan.total, result=result)
 
 
-def training_result(run: Run) -> TrainingResult:
+def result_of_training(run: Run) -> TrainingResult:
     """Return the result of a training that has one."""
     assert isinstance(run.result, TrainingResult)
     return run.result

@@ -72,7 +72,10 @@ def test_counts_are_by_state(store: RunStore) -> None:
 @pytest.mark.parametrize(
     ("damage", "reason"),
     [
-        ({"result": TrainingResult(distance_m=1e9)}, "its result cannot be read: distance_m"),
+        (
+            {"result": TrainingResult(distance_m=1e9)},
+            "distance_m: Input should be less than or equal to",
+        ),
         ({"greedy_distance_m": math.inf}, "its greedy_distance_m has NaN or an infinity"),
         (
             {"changes": ({"step": 1, "settings": {"alpha": math.nan}},)},

@@ -19,8 +19,8 @@ from websockets.typing import Subprotocol
 
 from app.server import GRACE_S
 from app.viewer.hub import Hub
-from app.viewer.service import viewer_routes
 from app.viewer.session import websocket_options
+from app.viewer.viewer_page import viewer_routes
 from hexapods.drawing.viser_internals import stream
 from hexapods.drawing.viser_internals.server import InProcessViser
 
@@ -195,7 +195,7 @@ class Viewer:
 def serving(
     hub: Hub, *, more_routes: Sequence[BaseRoute] = (), **config: Any
 ) -> Iterator[ServedHub]:
-    """Serve the hub by uvicorn in a thread, with the app's options."""
+    """Serve the hub as `running` does."""
 
     @asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
@@ -203,7 +203,14 @@ def serving(
         yield
         await hub.stop()
 
-    app = Starlette(routes=[*viewer_routes(hub), *more_routes], lifespan=lifespan)
+    app = Starlette(routes=[*viewer_routes(hub.serve), *more_routes], lifespan=lifespan)
+    with running(app, **config) as port:
+        yield ServedHub(hub, port)
+
+
+@contextmanager
+def running(app: Starlette, **config: Any) -> Iterator[int]:
+    """Serve an app by uvicorn in a thread, with the server's options; yield its port."""
     # A client that was stopped in a closing handshake must not keep the server up.
     options = {
         **websocket_options(),
@@ -216,7 +223,7 @@ def serving(
     thread.start()
     try:
         wait_until(lambda: server.started)
-        yield ServedHub(hub, server.servers[0].sockets[0].getsockname()[1])
+        yield server.servers[0].sockets[0].getsockname()[1]
     finally:
         server.should_exit = True
         thread.join(PATIENCE_S)

@@ -10,6 +10,7 @@ import pytest
 from viser import _messages
 from websockets.exceptions import ConnectionClosed
 
+from app.limits.client_slots import ClientSlots
 from app.viewer.hub import Hub
 from hexapods.drawing.track import Position
 from hexapods.drawing.viser_internals import stream
@@ -197,7 +198,7 @@ def test_wrong_subprotocol_is_refused_with_reload(served: ServedHub, protocol: s
 
 
 def test_viewer_over_the_limit_is_refused_until_one_leaves(viser_server: InProcessViser) -> None:
-    with serving(Hub(viser_server.frames, max_viewers=1)) as served:
+    with serving(Hub(viser_server.frames, slots=ClientSlots(1, 10))) as served:
         with served.watch() as first:
             first.frame()
             with served.watch() as second:

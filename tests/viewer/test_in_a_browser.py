@@ -12,6 +12,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
 from starlette.routing import Route
 
+from app.limits.client_slots import ClientSlots
 from app.viewer.hub import Hub
 from hexapods.drawing.track import Position
 from hexapods.drawing.viser_internals import stream
@@ -318,7 +319,7 @@ def test_refusal_is_reported_to_the_dashboard(
     page: Page, viser_server: InProcessViser, places: int, share: int, told: str
 ) -> None:
     root = Route("/", lambda _: HTMLResponse(DASHBOARD))
-    hub = Hub(viser_server.frames, max_viewers=places, max_per_address=share)
+    hub = Hub(viser_server.frames, slots=ClientSlots(places, share))
     with serving(hub, more_routes=[root]) as served:
         page.goto(f"http://{served.host}/")
 

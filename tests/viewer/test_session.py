@@ -56,9 +56,12 @@ class FakeScene:
     def __init__(self) -> None:
         self.frames = "A"
         self.catch_up_calls = 0
+        self.is_broken = False
 
     def catch_up(self, session: Session) -> tuple[stream.Frame, int] | None:
         self.catch_up_calls += 1
+        if self.is_broken:
+            raise ZeroDivisionError
         missed = self.frames[session.version or 0 :]
         return (frame(missed), len(self.frames)) if missed else None
 
@@ -176,7 +179,7 @@ def test_blocked_send_is_cancelled_on_close() -> None:
 def test_error_in_the_session_is_raised() -> None:
     async def act(session: Session, browser: FakeBrowser, scene: FakeScene) -> None:
         await browser.read(1)
-        session._catch_up = lambda _: 1 / 0  # type: ignore[assignment, return-value]
+        scene.is_broken = True
         scene.show("BCDEFGH", session)
 
     with pytest.raises(ZeroDivisionError):

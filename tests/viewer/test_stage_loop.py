@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.events.bus import EventBus
+from app.events.bus import Channel, EventBus
 from app.stage.stage import Stage
 from app.viewer.stage_loop import IDLE_FRAMES_PER_S, StageLoop
 from hexapods.drawing.scene import StageScene
@@ -44,7 +44,7 @@ class CountingScene(StageScene):
 def test_loop_draws_within_its_block(parts: StageParts) -> None:
     with in_process_viser() as server:
         scene = StageScene(server)
-        with StageLoop(parts.stage, scene, EventBus(), lambda: True):
+        with StageLoop(parts.stage, scene, Channel(EventBus()), lambda: True):
             wait_until(lambda: scene.follow_position("leader"))
 
     assert "stage" not in {thread.name for thread in threading.enumerate()}
@@ -55,7 +55,7 @@ def test_error_in_a_frame_is_logged_once_and_drawing_continues(
 ) -> None:
     with in_process_viser() as server, caplog.at_level(logging.INFO):
         scene = FailingScene(server)
-        with StageLoop(parts.stage, scene, EventBus(), lambda: True):
+        with StageLoop(parts.stage, scene, Channel(EventBus()), lambda: True):
             wait_until(lambda: scene.follow_position("leader"))
 
     messages = [record.message for record in caplog.records if "stage" in record.name]
@@ -64,7 +64,7 @@ def test_error_in_a_frame_is_logged_once_and_drawing_continues(
 
 def test_moving_race_publishes_scenes(parts: StageParts) -> None:
     run = parts.finished_race()
-    stage = Stage(parts.store, parts.recordings, parts.bus)
+    stage = Stage(parts.store, parts.recordings, parts.channel)
     stage.set(run_id=run.id)
 
     async def first_scenes() -> list[dict[str, Any]]:
@@ -78,7 +78,7 @@ def test_moving_race_publishes_scenes(parts: StageParts) -> None:
 
     with in_process_viser() as server:
         scene = StageScene(server)
-        with StageLoop(stage, scene, parts.bus, lambda: True):
+        with StageLoop(stage, scene, parts.channel, lambda: True):
             scenes = asyncio.run(first_scenes())
             wait_until(lambda: (scene.follow_position("1") or (0, 0))[1] > 0.001)
 
@@ -93,7 +93,7 @@ def test_end_of_a_show_is_published_at_once(
 ) -> None:
     monkeypatch.setattr("app.viewer.stage_loop.SCENES_PER_S", 1e-3)
     run = parts.finished_race()
-    stage = Stage(parts.store, parts.recordings, parts.bus)
+    stage = Stage(parts.store, parts.recordings, parts.channel)
     stage.set(run_id=run.id, speed=8.0)
 
     async def scenes_until_the_end() -> list[tuple[str, str]]:
@@ -107,7 +107,7 @@ def test_end_of_a_show_is_published_at_once(
 
     with (
         in_process_viser() as server,
-        StageLoop(stage, StageScene(server), parts.bus, lambda: True),
+        StageLoop(stage, StageScene(server), parts.channel, lambda: True),
     ):
         scenes = asyncio.run(asyncio.wait_for(scenes_until_the_end(), 30))
 
@@ -117,12 +117,12 @@ def test_end_of_a_show_is_published_at_once(
 
 def test_without_viewers_a_motion_is_drawn_at_the_rate_of_stillness(parts: StageParts) -> None:
     run = parts.finished_race()
-    stage = Stage(parts.store, parts.recordings, parts.bus)
+    stage = Stage(parts.store, parts.recordings, parts.channel)
     stage.set(run_id=run.id)
     with in_process_viser() as server:
         scene = CountingScene(server)
         began = time.monotonic()
-        with StageLoop(stage, scene, parts.bus, lambda: False):
+        with StageLoop(stage, scene, parts.channel, lambda: False):
             wait_until(lambda: (scene.follow_position("1") or (0, 0))[1] > 0.001)
         # With one frame at the start, and one that is caught up.
         assert scene.frames <= (time.monotonic() - began) * IDLE_FRAMES_PER_S + 2

@@ -36,7 +36,7 @@ def test_operators_go_first_and_others_in_order() -> None:
         threads = []
         for name in ("spectator 1", "spectator 2", "operator 1", "operator 2"):
             threads.append(started(ask(name)))
-            wait_until(lambda: len(turns._waiting) == len(threads))
+            wait_until(lambda: turns.waiting == len(threads))
     for thread in threads:
         thread.join(LONG_S)
     assert order == ["operator 1", "operator 2", "spectator 1", "spectator 2"]
@@ -78,7 +78,7 @@ def test_who_has_left_or_finds_too_many_waits_no_more() -> None:
 
     with turns.turn(False, nothing):
         threads = [started(ask) for _ in range(MAX_WAITING)]
-        wait_until(lambda: len(turns._waiting) == MAX_WAITING)
+        wait_until(lambda: turns.waiting == MAX_WAITING)
         with pytest.raises(Busy, match="are waiting"), turns.turn(False, nothing):
             raise AssertionError
         has_left.set()
@@ -86,4 +86,4 @@ def test_who_has_left_or_finds_too_many_waits_no_more() -> None:
             thread.join(LONG_S)
     assert len(left) == MAX_WAITING
     with turns.turn(False, nothing):
-        assert turns._waiting == []
+        assert turns.waiting == 0

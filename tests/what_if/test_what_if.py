@@ -23,6 +23,7 @@ from hexapods.domain.world import World
 from hexapods.experiments.plan import trial_seed
 from hexapods.experiments.trial import TrialConfig, run_trial
 from hexapods.runs.config import TrainingConfig, training_config
+from tests.jobs.waiting import wait_until
 
 SHORT = training_config(gait="left-right-origin", steps=40)
 
@@ -133,11 +134,17 @@ def test_invalid_training_is_refused_with_the_reason(
 
 
 def test_killed_worker_fails_one_request_only(what_if: WhatIf, pool: ProcessPool) -> None:
-    what_if.ask(changed({"alpha": 0.31}))
-    for pid in pool.pids:
-        os.kill(pid, signal.SIGKILL)
+    def kill_at_work() -> None:
+        for pid in pool.pids:
+            os.kill(pid, signal.SIGKILL)
+
     with pytest.raises(Busy, match="try again"):
-        what_if.ask(changed({"alpha": 0.32}))
+        what_if.ask(changed({"alpha": 0.32}), Asker(check=kill_at_work))
+    what_if.ask(changed({"alpha": 0.31}))
+    pids = pool.pids
+    for pid in pids:
+        os.kill(pid, signal.SIGKILL)
+    wait_until(lambda: not any(map(psutil.pid_exists, pids)))
     assert what_if.ask(changed({"alpha": 0.32}))["chosen"]["settings"]["alpha"] == 0.32
 
 

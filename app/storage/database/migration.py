@@ -11,6 +11,7 @@ from sqlalchemy import Connection
 from app.storage.database.engine import Database
 from hexapods.domain.errors import InvalidInput
 
+SCRIPT_LOCATION = "app.storage.database:migrations"
 CONNECTION = "connection"
 """Key of the open connection among the attributes of Alembic's config (see `migrations/env`)."""
 
@@ -57,7 +58,7 @@ def newest_revision() -> str:
 
 def _config() -> Config:
     config = Config()
-    config.set_main_option("script_location", "app.storage.database:migrations")
+    config.set_main_option("script_location", SCRIPT_LOCATION)
     # Silences a deprecation warning; the setting matters to Alembic's own command only.
     config.set_main_option("path_separator", "os")
     return config

@@ -10,22 +10,19 @@ from typing import Any, TypeVar
 from app.storage.database.columns import decode_json, decode_tags
 from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged
-from app.storage.json_text import is_finite
+from app.storage.json_text import finite, is_finite
 from app.storage.run import (
     CONFIGS,
     KINDS,
+    RESULTS,
     STATES,
     AnyRun,
     Config,
     DamagedRun,
-    Result,
     Run,
-    config_as_json,
     ranking_distance_m,
-    result_as_json,
-    result_from_json,
-    run_config_from_json,
 )
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.text import MAX_MESSAGE, NOTES_CONTROLS, message, visible
 from hexapods.runs.race_config import RaceConfig
 
@@ -48,15 +45,14 @@ def encode_run(run: Run) -> dict[str, Any]:
 def encode_fields(values: Mapping[str, Any]) -> dict[str, Any]:
     """Encode some fields of a run as column values."""
     columns = dict(values)
-    config: Config | None = columns.get("config")
-    if config is not None:
-        columns["config"] = config_as_json(config)
+    for name in ("config", "result"):
+        if columns.get(name) is not None:
+            columns[name] = to_json(columns[name])
     for name in _LISTS:
         if name in columns:
             columns[name] = [dict(v) if isinstance(v, Mapping) else v for v in columns[name]]
     if "result" in columns:
-        result: Result | None = columns["result"]
-        columns |= {"result": result_as_json(result), "distance_m": ranking_distance_m(result)}
+        columns["distance_m"] = ranking_distance_m(values["result"])
     if columns.get("error") is not None:
         columns["error"] = message(columns["error"])
     return columns
@@ -101,10 +97,10 @@ def _decode_fields(row: Mapping[str, Any]) -> dict[str, Any]:
         values[name] = tuple(_list(name, values[name], kinds))
     parse = _config if len(row["config"]) <= _MAX_CACHED_CONFIG_CHARS else _config.__wrapped__
     values["config"] = config = parse(row["kind"], row["config"])
-    if not isinstance(config, CONFIGS[row["kind"]]):
-        raise ValueError("its config is that of another kind")
     if values["result"] is not None:
-        values["result"] = result_from_json(row["kind"], values["result"])
+        # NaN, which earlier versions stored, is what was not measured.
+        result = finite(values["result"])
+        values["result"] = from_json(RESULTS[row["kind"]], result, extra="ignore")
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
         raise ValueError("its numbers of lanes and of training ids differ")
     return values
@@ -113,7 +109,7 @@ def _decode_fields(row: Mapping[str, Any]) -> dict[str, Any]:
 @lru_cache(maxsize=512)
 def _config(kind: str, text: str) -> Config:
     """Parse a config, cached: parsing dominates a listing, and many runs have the same config."""
-    return run_config_from_json(kind, _json("config", text))
+    return from_json(CONFIGS[kind], _json("config", text))  # type: ignore[index]  # it is checked
 
 
 def _check_scalars(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:

@@ -66,11 +66,13 @@ class RunStore:
     changed then.
 
     Attributes:
+        database: where the rows are.
+        files: where the artifacts are.
         sessions: storage of operators' browser sessions, in the same database.
     """
 
     def __init__(self, database: Database, files: ArtifactFiles) -> None:
-        self._database, self._files = database, files
+        self.database, self.files = database, files
         self._progress = ProgressCache()
         self._artifacts = Artifacts(database, files)
         self._curves, self._trials, self._keys = Curves(database), Trials(database), Keys(database)
@@ -82,7 +84,7 @@ class RunStore:
         Raises:
             StorageFull: if there is too little, or would be while the run runs.
         """
-        self._files.check_disk_space(START_BYTES)
+        self.files.check_disk_space(START_BYTES)
 
     def check_writable(self) -> None:
         """Check that the last write to the database succeeded, or one that was tried since then.
@@ -90,7 +92,7 @@ class RunStore:
         Raises:
             StorageFailed: if it failed.
         """
-        if (problem := self._database.write_problem) is not None:
+        if (problem := self.database.write_problem) is not None:
             raise StorageFailed(str(problem))
 
     def create(self, *runs: Run, key: IdempotencyKey | None = None) -> None:
@@ -109,7 +111,7 @@ class RunStore:
             connection.execute(insert(RUNS), rows)
             self._keys.insert(connection, key, [runs[-1].id])
 
-        self._database.write(work)
+        self.database.write(work)
 
     def add(
         self,
@@ -156,14 +158,14 @@ class RunStore:
             # never a row without its files.
             for (_, content), files in zip(imported, stored, strict=True):
                 for name, data in content.artifacts.items():
-                    files[name] = self._files.write(data)
+                    files[name] = self.files.write(data)
             was_submitted = True
-            return self._database.write(work)
+            return self.database.write(work)
         except BaseException as error:
             # After an outage the transaction may have been committed with its reply lost. The
             # files stay then; if they are orphans, the next start deletes them.
             if not (was_submitted and isinstance(error, StorageFailed)):
-                self._files.remove(*(one.file for files in stored for one in files.values()))
+                self.files.remove(*(one.file for files in stored for one in files.values()))
             raise
 
     def _insert(
@@ -208,7 +210,7 @@ class RunStore:
         # Read before the row: an entry is dropped only after its row was written, so that the
         # progress seen by a reader never decreases.
         progress = self._progress.get(run_id)
-        row = self._database.read(lambda connection: fetch_run_row(connection, run_id))
+        row = self.database.read(lambda connection: fetch_run_row(connection, run_id))
         return try_decode_run(_with_progress(row, progress))
 
     def list(
@@ -231,7 +233,7 @@ class RunStore:
         """
         listing = Listing(kind, state, limit, cursor, search, tag, sort)
         progress = self._progress.snapshot()
-        rows, cursor = self._database.read(lambda connection: fetch_page(connection, listing))
+        rows, cursor = self.database.read(lambda connection: fetch_page(connection, listing))
         return ListedRuns(
             [try_decode_run(_with_progress(row, progress.get(row["id"], {}))) for row in rows],
             cursor,
@@ -240,7 +242,7 @@ class RunStore:
     def counts(self) -> Mapping[State, int]:
         """Return the number of runs by state, for states that have any."""
         query = select(RUNS.c.state, func.count()).group_by(RUNS.c.state)
-        rows = self._database.read(lambda connection: connection.execute(query).all())
+        rows = self.database.read(lambda connection: connection.execute(query).all())
         return {state: count for state, count in rows}  # noqa: C416 - as a dict of plain types
 
     def change(
@@ -271,7 +273,7 @@ class RunStore:
                 raise Conflict(f"{run['kind']} {run_id} is {run['state']}", run["state"])
             return changed[0]
 
-        row = self._database.write(work)
+        row = self.database.write(work)
         if to_state in LIVE:
             self._progress.drop_estimate(run_id)
         else:
@@ -292,7 +294,7 @@ class RunStore:
             changed = fetch_rows(connection, statement)
             return changed[0] if changed else fetch_run_row(connection, run_id)
 
-        row = self._database.write(work)
+        row = self.database.write(work)
         self._invalidate_progress(run_id, fields)
         return decode_run(
             _with_progress(row, {k: v for k, v in progress.items() if k not in fields})
@@ -313,7 +315,7 @@ class RunStore:
                 fetch_run_row(connection, run_id)  # raises NotFound
 
         if self._progress.put(run_id, {"done": done, "eta_s": eta_s}):
-            self._database.write(work)
+            self.database.write(work)
 
     def delete(self, run_id: str) -> None:
         """Delete an ended run with its curve, trials and artifacts.
@@ -333,7 +335,7 @@ class RunStore:
             connection.execute(delete(RUNS).where(is_this_run))
             return names
 
-        self._files.remove(*self._database.write(work))
+        self.files.remove(*self.database.write(work))
         self._progress.drop(run_id)
 
     def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -407,14 +409,14 @@ class RunStore:
 
     def artifact(self, run_id: str, name: str) -> bytes | None:
         """Return the content of a file of the run; None if it has no file of this name."""
-        return self._artifacts.read(run_id, name, self._files.read)
+        return self._artifacts.read(run_id, name, self.files.read)
 
     def open_artifact(self, run_id: str, name: str) -> ArtifactFile | None:
         """Open a file of the run for reading in chunks; None if it has no file of this name.
 
         The caller closes it.
         """
-        return self._artifacts.read(run_id, name, self._files.open)
+        return self._artifacts.read(run_id, name, self.files.open)
 
     def artifact_files(self, run_id: str) -> Mapping[str, StoredFile]:
         """Return the files of a run, by their names, as they are at one moment.
@@ -437,7 +439,7 @@ class RunStore:
         Raises:
             DamagedFile: if it is damaged, or not there: also if it was replaced or deleted.
         """
-        opened = self._files.open_verified if is_verified else self._files.open
+        opened = self.files.open_verified if is_verified else self.files.open
         try:
             return opened(stored, label)
         except FileNotFoundError as error:
@@ -464,9 +466,7 @@ class RunStore:
             )
             .returning(RUNS.c.id)
         )
-        return self._database.write(
-            lambda connection: connection.execute(statement).scalars().all()
-        )
+        return self.database.write(lambda connection: connection.execute(statement).scalars().all())
 
     def delete_orphans(self) -> int:
         """Delete the artifact files that no run references; only safe before the first write.

@@ -5,7 +5,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from hexapods.experiments.config import REPORT, SUMMARY, TRIALS_TABLE, from_json
+from hexapods.domain.records import from_json
+from hexapods.experiments.config import REPORT, SUMMARY, TRIALS_TABLE, ExperimentConfig
 from hexapods.experiments.report.drawing import FORMATS, render
 from hexapods.experiments.report.figures import sheets
 from hexapods.experiments.report.page import page
@@ -27,7 +28,10 @@ def report_files(
     """
     yield SUMMARY, (json.dumps(summary, allow_nan=False) + "\n").encode()
     set_aside = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
-    yield TRIALS_TABLE, trials_csv(from_json(summary["config"]), results, set_aside)
+    yield (
+        TRIALS_TABLE,
+        trials_csv(from_json(ExperimentConfig, summary["config"]), results, set_aside),
+    )
     for kind in FORMATS:
         # Drawn again for each format: rendering changes a figure's constrained layout slightly.
         for picture in sheets(summary):

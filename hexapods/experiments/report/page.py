@@ -12,10 +12,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoes
 from markupsafe import Markup
 
 from hexapods.agents.appearance import title_of
+from hexapods.domain.records import to_json
 from hexapods.experiments.claims.cases import Case, cases_of
 from hexapods.experiments.config import (
     ExperimentConfig,
-    as_json,
     by_option,
     default_agents,
     experiment_config,
@@ -89,7 +89,7 @@ def command(config: Mapping[str, Any]) -> str:
     if "agents" in fields_of(name):
         given["agents"] = tuple(config["agents"])
     usual = {"agents": default_agents(name), "simulator": ExperimentConfig.simulator}
-    defaults = by_option(as_json(experiment_config(name, given))) | usual
+    defaults = by_option(to_json(experiment_config(name, given))) | usual
     arguments = ["hexapods", *(["sweep"] if name == "sweep" else ["experiment", name])]
     for field in dict.fromkeys((*_FIRST, *chosen)):
         if field in chosen and (field in ("seeds", "seed") or chosen[field] != defaults.get(field)):

@@ -7,15 +7,15 @@ from typing import Any, ClassVar, Literal, get_args
 from hexapods.agents.registry import learns
 from hexapods.domain.checks import check_whole
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import GaitSpec
+from hexapods.domain.gait import AnyGait
 from hexapods.domain.observation import Observation
+from hexapods.domain.records import to_json
 from hexapods.domain.settings import DeclaredSetting
 from hexapods.experiments.config import (
     MAX_SEEDS,
     MAX_TRIALS,
     ExperimentConfig,
     ExperimentName,
-    as_json,
 )
 from hexapods.experiments.tuning.ranges import (
     SearchRange,
@@ -63,7 +63,7 @@ class TuningConfig(ExperimentConfig):
     }
 
     experiment: ExperimentName = "league"
-    gaits: tuple[str | GaitSpec, ...]
+    gaits: tuple[AnyGait, ...]
     observations: tuple[Observation, ...] = ("measured",)
     candidates: int = 40
     search_seeds: int = 8
@@ -101,7 +101,7 @@ class TuningConfig(ExperimentConfig):
 def config_json(config: TuningConfig) -> dict[str, Any]:
     """Convert a config to plain types as a summary has it: `seeds` are called `held_out_seeds`."""
     names = {"seeds": "held_out_seeds"}
-    return {names.get(name, name): value for name, value in as_json(config).items()}
+    return {names.get(name, name): value for name, value in to_json(config).items()}
 
 
 def tuning_config(

@@ -2,17 +2,17 @@
 import { effect } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { primaryAction, runPrimaryAction, togglePause } from "../actions.js";
+import { page } from "../page-state.js";
 import {
-  clickedCell, closeLesson, helpIsOpen, isNarrow, isPresenting, keepInView, leavePresenter, lesson, nextTheme,
-  openLesson, place, present, setShortcuts, shortcuts, stepsAreOpen, theme, view,
+  camera, clickedCell, closeLesson, helpIsOpen, isNarrow, keepInView, leavePresenter, lesson, nextTheme, openLesson,
+  present, share, shortcuts, theme, toastMessage,
 } from "../page.js";
 import { announcement } from "../headline.js";
-import { ownRunId, stepReplay } from "../replay.js";
+import { stepReplay } from "../replay.js";
 import { isOperator } from "../selectors.js";
-import { share, toastMessage } from "../share.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { Controls } from "./controls.js";
-import { html, Icon, LazyPanel, Loaded, loaded } from "./elements.js";
+import { Dialog, html, Icon, LazyPanel, Loaded, loaded } from "./elements.js";
 import { ActionValues, LearningChart } from "./learning.js";
 import { RaceChart, Scoreboard } from "./race.js";
 import { Stage } from "./stage.js";
@@ -35,8 +35,8 @@ function Main() {
   if (isLockedOut.value) return html`<${LockedOut} />`;
   if (options.value === null) return html`<${Loading} />`;
   return html`
-    <${RaceView} isHidden=${place.value !== "race"} />
-    ${place.value !== "race" && html`<${LoadedView} name=${place.value} key=${place.value} />`}
+    <${RaceView} isHidden=${page.view.value !== "race"} />
+    ${page.view.value !== "race" && html`<${LoadedView} name=${page.view.value} key=${page.view.value} />`}
   `;
 }
 
@@ -85,7 +85,7 @@ const RaceView = ({ isHidden }) => html`
       <${ActionValues} />
       <${StepsPanel} />
     </div>
-    ${isPresenting.value && html`<${Loaded} name="address for others" load=${loadAudience} />`}
+    ${page.isPresenting.value && html`<${Loaded} name="address for others" load=${loadAudience} />`}
   </div>
 `;
 
@@ -111,10 +111,10 @@ const loadSteps = () => import("./steps/steps.js").then(({ Steps }) => Steps);
 
 function StepsPanel() {
   const panel = useRef(/** @type {HTMLElement | null} */ (null));
-  const isOpen = stepsAreOpen.value;
+  const isOpen = page.isExplaining.value;
   useEffect(() => effect(() => {
     if (!clickedCell.value) return;
-    stepsAreOpen.value = true;
+    page.isExplaining.value = true;
     if (panel.current) keepInView(panel.current, "start");
   }), []);
   return html`
@@ -123,7 +123,7 @@ function StepsPanel() {
         <h2 id="steps-title">Step by step</h2>
         <p class="dim">Why it took each step, how its values changed, and its whole table</p>
         <button class="secondary compact" aria-expanded=${isOpen ? "true" : "false"}
-          onClick=${() => (stepsAreOpen.value = !isOpen)}>${isOpen ? "Close" : "Explain this step"}</button>
+          onClick=${() => (page.isExplaining.value = !isOpen)}>${isOpen ? "Close" : "Explain this step"}</button>
       </div>
       ${isOpen && html`<${Loaded} name="steps" load=${loadSteps} />`}
     </section>
@@ -186,8 +186,8 @@ const VIEWS = [["race", "Race", "#"], ["experiments", "Experiments", "#experimen
 
 /** Runs are compared from their list. @param {string} name */
 const currentOf = (name) => {
-  if (place.value === "compare" && name === "runs") return "true";
-  return place.value === name ? "page" : undefined;
+  if (page.view.value === "compare" && name === "runs") return "true";
+  return page.view.value === name ? "page" : undefined;
 };
 
 const Header = () => html`
@@ -200,7 +200,7 @@ const Header = () => html`
     </nav>
     <${Connection} />
     <div class="switches">
-      <button class="quiet" onClick=${share} title="Copy a link that contains every setting">
+      <button class="quiet" onClick=${share} title="Copy a link that opens the page as it is">
         <${Icon} name="link" /><span class="wide-only">Share</span>
         <span class="sr-only narrow-only">Share</span>
       </button>
@@ -222,7 +222,7 @@ function Connection() {
   const state = isLockedOut.value ? "no access" : connection.value;
   const watching = viewers.value ? html` · ${viewers.value}<span class="roomy"> watching</span>` : "";
   return html`
-    <p class=${`live ${state.replace(" ", "-")}`}>
+    <p class=${`live ${state.replace(" ", "-")}`} role="group" aria-label="Connection">
       <span class="dot" aria-hidden="true"></span>
       <span>${state === "live" ? html`live${watching}` : state}</span>
     </p>
@@ -259,13 +259,13 @@ const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:no
  */
 function press(key) {
   // All but the help act on the race, which a reader of another view does not see.
-  if (place.value !== "race" && key !== "?") return false;
+  if (page.view.value !== "race" && key !== "?") return false;
   if (key === " ") togglePause();
   else if (key === "r" || key === "R") runPrimaryAction();
-  else if (/^[1-8]$/.test(key)) view.value = key;
-  else if (key === "0") view.value = "free";
-  else if (ownRunId.value !== null && (key === "," || key === ".")) stepReplay(key === "." ? 1 : -1);
-  else if (key === "p" || key === "P") (isPresenting.value ? leavePresenter : present)();
+  else if (/^[1-8]$/.test(key)) camera.value = key;
+  else if (key === "0") camera.value = "free";
+  else if (page.run.value !== null && (key === "," || key === ".")) stepReplay(key === "." ? 1 : -1);
+  else if (key === "p" || key === "P") (page.isPresenting.value ? leavePresenter : present)();
   else if (key === "?") toggleHelp();
   else return false;
   return true;
@@ -302,7 +302,7 @@ export function listenForMenus() {
   for (const type of ["pointerdown", "focusin"]) addEventListener(type, ({ target }) => closeOtherMenus(target));
 }
 
-const leaveIfPresenting = () => isPresenting.value && leavePresenter();
+const leaveIfPresenting = () => page.isPresenting.value && leavePresenter();
 
 export function listenForKeys() {
   addEventListener("keydown", (event) => {
@@ -310,7 +310,7 @@ export function listenForKeys() {
     // The dialog itself, since it tells of its end only later.
     const isInDialog = document.querySelector("dialog[open]") !== null;
     if (key === "Escape" && !event.defaultPrevented && !isInDialog) leaveIfPresenting();
-    if (event.ctrlKey || event.altKey || event.metaKey || repeat || !shortcuts.value) return;
+    if (event.ctrlKey || event.altKey || event.metaKey || repeat || shortcuts.value === "off") return;
     const isIn = (/** @type {string} */ selector) => target instanceof Element && target.closest(selector);
     if (isIn(TEXT)) return;
     if (key === " " && isIn(PRESSED_BY_SPACE)) return;
@@ -320,56 +320,41 @@ export function listenForKeys() {
   addEventListener("message", ({ origin, data }) => {
     if (origin !== location.origin || data?.type !== "hexapods:key") return;
     if (data.key === "Escape") leaveIfPresenting();
-    else if (shortcuts.value) press(data.key);
+    else if (shortcuts.value === "on") press(data.key);
   });
 }
 
 // ---- the help dialog: keys, and what the page shows
 
-function HelpDialog() {
-  const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
-  // An effect of the signal itself, at once: those of hooks wait for the next picture, and a key may
-  // open the dialog again before that.
-  useEffect(() => effect(() => {
-    if (!helpIsOpen.value) dialog.current?.close();
-    else if (!dialog.current?.open) dialog.current?.showModal();
-  }), []);
-  const close = () => (helpIsOpen.value = false);
-  const onClose = () => !dialog.current?.open && close();
-  /** @param {MouseEvent} event */
-  const onBackdrop = (event) => event.target === dialog.current && close();
-  return html`
-    <dialog class="help" id="help" ref=${dialog} onClose=${onClose} onClick=${onBackdrop} aria-labelledby="help-title">
-      <div class="help-body">
-        <h2 id="help-title">Keys</h2>
-        <dl class="keys">
-          ${KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
-        </dl>
-        <label class="check">
-          <input type="checkbox" checked=${shortcuts.value}
-            onChange=${(/** @type {Changed} */ { target }) => setShortcuts(target.checked)} />
-          Use single keys
-        </label>
-        <h2>Charts</h2>
-        <dl class="keys">
-          ${CHART_KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
-        </dl>
-        <h2>Learning and racing</h2>
-        <p>
-          A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and
-          keeps in a table what each move is worth. Then it races against two robots that simulate their moves
-          before they make one: greedy looks one step ahead, two-step looks two. Thinking costs time. At time-out,
-          when the first robot has used its steps, the one that is farthest wins. The red line is the finish line;
-          a flag shows who crossed it.
-        </p>
-        <form method="dialog">
-          <button type="button" class="secondary" onClick=${openLesson}>Show the first lesson</button>
-          <button class="secondary" autofocus>Close</button>
-        </form>
-      </div>
-    </dialog>
-  `;
-}
+const HelpDialog = () => html`
+  <${Dialog} id="help" labelledBy="help-title" isOpen=${helpIsOpen}>
+    <h2 id="help-title">Keys</h2>
+    <dl class="keys">
+      ${KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
+    </dl>
+    <label class="check">
+      <input type="checkbox" checked=${shortcuts.value === "on"}
+        onChange=${(/** @type {Changed} */ { target }) => (shortcuts.value = target.checked ? "on" : "off")} />
+      Use single keys
+    </label>
+    <h2>Charts</h2>
+    <dl class="keys">
+      ${CHART_KEYS.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
+    </dl>
+    <h2>Learning and racing</h2>
+    <p>
+      A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and
+      keeps in a table what each move is worth. Then it races against two robots that simulate their moves
+      before they make one: greedy looks one step ahead, two-step looks two. Thinking costs time. At time-out,
+      when the first robot has used its steps, the one that is farthest wins. The red line is the finish line;
+      a flag shows who crossed it.
+    </p>
+    <form method="dialog">
+      <button type="button" class="secondary" onClick=${openLesson}>Show the first lesson</button>
+      <button class="secondary" autofocus>Close</button>
+    </form>
+  <//>
+`;
 
 /** A message that disappears by itself. */
 const Toast = () => html`

@@ -4,10 +4,9 @@ import { useEffect, useState } from "preact/hooks";
 import { getSpectators } from "../api.js";
 import { canStart, primaryAction, runPrimaryAction } from "../actions.js";
 import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
-import { ruleOf } from "../headline.js";
+import { reason, ruleOf } from "../headline.js";
 import { canPlay, clock } from "../on-stage.js";
 import { standings } from "../race.js";
-import { reason } from "../reason.js";
 import { isOperator } from "../selectors.js";
 import { connection, viewers } from "../store.js";
 import { clockTitle } from "../titles.js";
@@ -51,7 +50,7 @@ function Rule() {
   return row && html`
     <div class="audience-rule">
       <p>${ruleOf(row.steps, clockTitle(clock.value))}</p>
-      ${reason.value.map((line) => html`<p><b>${line}</b></p>`)}
+      ${reason.value && html`<p><b>${reason.value}</b></p>`}
     </div>
   `;
 }

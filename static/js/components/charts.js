@@ -3,7 +3,7 @@ import { useMemo, useRef, useState } from "preact/hooks";
 import { crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf } from "../chart.js";
 import { metres, sentence, whole as wholeNumber } from "../format.js";
 import { placeCaptions } from "../labels.js";
-import { isPresenting } from "../page.js";
+import { page } from "../page-state.js";
 import { thinned, ticks } from "../scale.js";
 import { served } from "../store.js";
 import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
@@ -206,7 +206,8 @@ function useSize() {
   const [host, width] = useWidth();
   // Not at each drawing, which would compute styles in between.
   const larger = useMemo(
-    () => parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_FONT_PX, [width, isPresenting.value],
+    () => parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_FONT_PX,
+    [width, page.isPresenting.value],
   );
   return [host, Math.round(width / larger), larger];
 }

@@ -6,9 +6,10 @@ import {
 } from "../actions.js";
 import { practiseAtPaceOfPicture } from "../live-changes.js";
 import { raceEstimate } from "../estimate.js";
-import { chooseLearner, form, mistakes, unknownParts } from "../form.js";
+import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
 import { count, listed, sentence, whole } from "../format.js";
-import { hasOwnSettings, isNarrow, isReadOnly } from "../page.js";
+import { ignored, page } from "../page-state.js";
+import { isNarrow } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, steering, work } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
 import { agentOf, learners, ratesInWords } from "../settings.js";
@@ -62,14 +63,14 @@ function Actions() {
   const isDisabled = isBusy || !canStart.value;
   const isHeld = !isBusy && Object.keys(mistakes.value).length > 0;
   return html`
-    <div class="actions">
+    <div class="actions" role="group" aria-label="Actions">
       <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
         aria-describedby=${isHeld ? "held-start" : undefined}>
         ${!isBusy && html`<${Icon} name="play" />`}${label}
       </button>
       ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
       ${!isBusy && html`<${EstimateNote} words=${raceEstimate} />`}
-      <${UnknownParts} parts=${unknownParts} />
+      <${UnknownParts} parts=${ignored.query} />
       <${Problem} at="start" />
       ${!isBusy && html`<${MissingLane} />`}
       ${!myWork.value && html`<${SecondaryActions} />`}
@@ -240,12 +241,12 @@ function Spectator() {
           ? html`<${Loaded} name="choices" load=${loadOwnChoices} />`
           : html`
             <div class="row">
-              <button class="secondary compact" onClick=${() => (hasOwnSettings.value = false)}>
+              <button class="secondary compact" onClick=${() => (page.form.value = new URLSearchParams())}>
                 Back to the settings on stage
               </button>
             </div>
           `}
-        ${!isReadOnly.value && html`<${UnknownParts} parts=${unknownParts} />`}
+        <${UnknownParts} parts=${ignored.query} />
       </div>
       <${FoldedSettings} />
     </section>

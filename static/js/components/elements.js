@@ -1,5 +1,5 @@
 // The `html` template tag, and the elements that all views share: icons, glyphs, errors, bars, switches.
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import htm from "htm";
 import { h } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
@@ -148,6 +148,35 @@ export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`
 
 /** Estimated duration of a start, if that is long. `words`: signal. @param {{ words: ReadonlySignal<string> }} props */
 export const EstimateNote = ({ words }) => html`<p class="estimate dim" role="status">${words}</p>`;
+
+/**
+ * A dialog over the page, opened and closed by a signal; Escape and a click beside it close it too.
+ * @param {object} props
+ * @param {Signal<boolean>} props.isOpen
+ * @param {string} props.id
+ * @param {string} props.labelledBy
+ * @param {string} [props.style] class
+ * @param {ComponentChildren} props.children
+ */
+export function Dialog({ isOpen, id, labelledBy, style = "", children }) {
+  const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
+  // An effect of the signal itself, at once: those of hooks wait for the next picture, and a key may
+  // open the dialog again before that.
+  useEffect(() => effect(() => {
+    if (!isOpen.value) dialog.current?.close();
+    else if (!dialog.current?.open) dialog.current?.showModal();
+  }), []);
+  const close = () => (isOpen.value = false);
+  const onClose = () => !dialog.current?.open && close();
+  /** @param {MouseEvent} event */
+  const onBackdrop = (event) => event.target === dialog.current && close();
+  return html`
+    <dialog class=${`dialog ${style}`} id=${id} ref=${dialog} onClose=${onClose} onClick=${onBackdrop}
+      aria-labelledby=${labelledBy}>
+      <div class="dialog-body">${children}</div>
+    </dialog>
+  `;
+}
 
 /** Focus a field, in whatever is folded around it. @param {string} id */
 export function goToField(id) {

@@ -1,8 +1,9 @@
 // What a spectator can do on their own page, while the stage goes on for all.
 import { downloads } from "../files.js";
 import { tryOwnSettings } from "../form.js";
-import { keepInView, stepsAreOpen } from "../page.js";
-import { closeReplay, openReplay, ownRunId } from "../replay.js";
+import { page } from "../page-state.js";
+import { keepInView } from "../page.js";
+import { closeReplay, openReplay } from "../replay.js";
 import { clock, shownRun } from "../on-stage.js";
 import { isActive } from "../selectors.js";
 import { scene } from "../store.js";
@@ -14,16 +15,16 @@ export function OwnChoices() {
   const run = shownRun.value;
   const canReplay = run?.kind !== "experiment" && Boolean(run?.progress?.done);
   const explain = () => {
-    stepsAreOpen.value = true;
+    page.isExplaining.value = true;
     const panel = document.getElementById("steps-title")?.closest("section");
     if (panel) keepInView(panel, "start");
   };
   return html`
     <div class="own-choices">
-      ${ownRunId.value !== null && html`
+      ${page.run.value !== null && html`
         <button class="secondary compact" onClick=${closeReplay}>Back to the stage</button>
       `}
-      ${ownRunId.value === null && run && canReplay && html`
+      ${page.run.value === null && run && canReplay && html`
         <button class="secondary compact" onClick=${() => replay(run)}
           title="Play, seek and go step by step on this page only"><${Icon} name="replay" />Replay it here</button>
       `}

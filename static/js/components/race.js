@@ -3,7 +3,7 @@ import { seekIn } from "../actions.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
-import { headline, ruleOf } from "../headline.js";
+import { headline, practiceTitle, reason, ruleOf } from "../headline.js";
 import {
   clipped, distanceAt, isOver, isTimedOut, shownEarlyEnd, shownTime, standings, timeline, timelineProblem,
 } from "../race.js";
@@ -22,10 +22,6 @@ import { html, Icon } from "./elements.js";
 
 // ---- the scoreboard: ranks, distances, decision times and simulated transitions
 
-/** Number of steps that the look-ahead agents simulate. */
-/** @type {Record<string, number>} */
-const DEPTHS = { greedy: 1, "two-step": 2 };
-
 export function Scoreboard() {
   const rows = standings.value;
   return html`
@@ -33,15 +29,21 @@ export function Scoreboard() {
       <h2 id="scoreboard-title" class=${rows ? "sr-only" : ""}>Scoreboard</h2>
       ${rows
         ? html`
-          <p class="headline">${headline.value}</p>
+          <${Headline} words=${headline.value} />
           <p class="dim">${ruleOf(rows[0].steps, clockTitle(clock.value))}</p>
           <${BranchWords} />
           <${Board} rows=${rows} />
         `
-        : html`<${StartList} />`}
+        : html`<${Headline} words=${practiceTitle.value} /><${StartList} />`}
     </section>
   `;
 }
+
+/** How it stands, and why, in a line each. @param {{ words: string | null }} props */
+const Headline = ({ words }) => words && html`
+  <p class="headline" role="heading" aria-level="3">${words}</p>
+  ${reason.value && html`<p class="reason">${reason.value}</p>`}
+`;
 
 /** Disturbances of the race, and the race of which it is a branch. */
 function BranchWords() {
@@ -102,7 +104,7 @@ function BestKnown() {
 
 /** @param {{ row: Standing, longest: number }} props */
 const Lane = ({ row, longest }) => html`
-  <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }}>
+  <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }} aria-label=${row.title}>
     <tr>
       <td class="rank">${row.rank ?? "–"}</td>
       <th scope="row" class="agent"><span class="swatch"></span>${row.title}</th>
@@ -203,9 +205,9 @@ function agentSummary(agent, trainingId) {
       ? `${count(practisedSteps(training), "step")} of practice, then looks up its table`
       : raceInView.value ? "Learns while it races" : "Practises, then looks up its table";
   }
-  const depth = DEPTHS[agent];
-  if (!depth) return agentOf(agent).description;
-  const simulated = simulatedPerDecision(depth, raceInView.value?.config ?? form.value);
+  const { description, steps_ahead } = agentOf(agent);
+  if (!steps_ahead) return description;
+  const simulated = simulatedPerDecision(steps_ahead, raceInView.value?.config ?? form.value);
   return `Simulates ${whole(simulated)} moves before each step`;
 }
 
@@ -231,7 +233,7 @@ function StartList() {
   const lanes = race?.config?.lanes ?? raceBody().lanes;
   return html`
     <p class="dim">${startSentence(race)}</p>
-    <ul class="start-list">
+    <ul class="start-list" aria-label="Lanes of the race">
       ${lanes.map((lane) => html`
         <li style=${{ "--agent": agentOf(lane.agent).color }}>
           <span class="swatch"></span><b>${laneTitle(lane)}</b>

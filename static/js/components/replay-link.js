@@ -1,5 +1,5 @@
 // A link to a replay, which opens on this page.
-import { replayAddress } from "../page.js";
+import { addressOf } from "../page-state.js";
 import { openReplay } from "../replay.js";
 import { html } from "./elements.js";
 
@@ -15,6 +15,6 @@ export function ReplayLink({ id, ghost = null, label = null, children }) {
     openReplay(id, { ghost });
   };
   return html`
-    <a class="to-report" href=${replayAddress({ id, ghost })} aria-label=${label} onClick=${open}>${children}</a>
+    <a class="to-report" href=${addressOf({ run: id, ghost })} aria-label=${label} onClick=${open}>${children}</a>
   `;
 }

@@ -3,9 +3,8 @@ import { useState } from "preact/hooks";
 import { tune } from "../live-changes.js";
 import { presentRates, rateInWords } from "../changes.js";
 import { inTime, parseText } from "../disturbances.js";
-import { chooseLearner, enter, form, setField, wrong } from "../form.js";
+import { chooseLearner, enter, form, setField, wrong, isReadOnly } from "../form.js";
 import { count, listed } from "../format.js";
-import { isReadOnly } from "../page.js";
 import { liveTraining, trainingInView } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
 import {

@@ -4,10 +4,11 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { metres, sentence, times, whole } from "../format.js";
-import { clickedCell, drawHere, isPresenting, shownTheme, view } from "../page.js";
+import { page } from "../page-state.js";
+import { clickedCell, drawHere, shownTheme, camera } from "../page.js";
 import { headline } from "../headline.js";
 import { standings } from "../race.js";
-import { closeReplay, drawIn, ghostId, isBuffering, ownRunId, replayProblem } from "../replay.js";
+import { closeReplay, drawIn, isBuffering, replayProblem } from "../replay.js";
 import {
   conditionsShown, isDecided, playbackName, raceScene, resumableOnStage, shownRun,
 } from "../on-stage.js";
@@ -30,14 +31,14 @@ const laneColours = computed(() => (scene.value?.lanes ?? []).map(({ color }) =>
 export function Stage() {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
   const [status, setStatus] = useState("loading");
-  const followed = ownRunId.value === null ? view.value : ELSEWHERE;
+  const followed = page.run.value === null ? camera.value : ELSEWHERE;
   // The first address has both; later changes are sent to the frame, which must not load again.
   const [address] = useState(() => `viewer/?view=${followed}&theme=${shownTheme.peek()}`);
 
   useEffect(() => {
     const onMessage = (/** @type {MessageEvent} */ { origin, source, data }) => {
       if (origin !== location.origin || source !== frame.current?.contentWindow) return;
-      if (data?.type === "hexapods:click" && !isPresenting.peek()) {
+      if (data?.type === "hexapods:click" && !page.isPresenting.peek()) {
         clickedCell.value = { node: data.node, instance: data.instance, run_id: scene.peek()?.run_id ?? null };
       }
       if (data?.type !== "hexapods:status") return;
@@ -62,10 +63,10 @@ export function Stage() {
   useEffect(() => {
     const message = {
       type: "hexapods:show", view: followed, theme: shownTheme.value, lanes: colours.split(" "),
-      covered: covered.value, isPresenting: isPresenting.value,
+      covered: covered.value, isPresenting: page.isPresenting.value,
     };
     frame.current?.contentWindow?.postMessage(message, location.origin);
-  }, [followed, shownTheme.value, status, colours, covered.value, isPresenting.value]);
+  }, [followed, shownTheme.value, status, colours, covered.value, page.isPresenting.value]);
 
   const isAway = connection.value === "reconnecting" || status === "reconnecting";
   return html`
@@ -102,7 +103,7 @@ const ReplayProblem = () => replayProblem.value && html`
 // ---- notes under the picture: what ended and how to go on, and what comes next
 
 const StageNotes = () => html`
-  <div class="stage-notes">
+  <div class="stage-notes" role="group" aria-label="Notes on the shown run">
     <${EarlyEndNote} />
     <${DecidedNote} />
     <${AnnouncementNote} />
@@ -113,7 +114,7 @@ const StageNotes = () => html`
 function EarlyEndNote() {
   const run = shownRun.value;
   const resumable = resumableOnStage.value;
-  if (!run || !resumable || ownRunId.value !== null || (stage.value && !stage.value.ended)) return null;
+  if (!run || !resumable || page.run.value !== null || (stage.value && !stage.value.ended)) return null;
   const { done, total } = run.progress;
   const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
   const verb = run.state === "failed" ? "failed" : "was interrupted";
@@ -134,7 +135,7 @@ function EarlyEndNote() {
 const DecidedNote = () => isDecided.value && html`
   <div class="stage-note">
     <p><b>${headline.value}</b></p>
-    ${isOperator.value && ownRunId.value === null && stage.value?.end_at_time_out && html`
+    ${isOperator.value && page.run.value === null && stage.value?.end_at_time_out && html`
       <button class="secondary compact" onClick=${keepWatching}>Keep watching</button>
     `}
   </div>
@@ -142,7 +143,7 @@ const DecidedNote = () => isDecided.value && html`
 
 /** The replay that begins by itself. */
 function AnnouncementNote() {
-  const announced = ownRunId.value === null ? stage.value?.announced : null;
+  const announced = page.run.value === null ? stage.value?.announced : null;
   const [left, setLeft] = useState(0);
   useEffect(() => {
     if (!announced) return undefined;
@@ -224,7 +225,7 @@ function StageLabels() {
     return () => removeEventListener("resize", measure);
   }, []);
   return html`
-    <div class="labels" ref=${labels}>
+    <div class="labels" role="group" aria-label="Labels of the picture" ref=${labels}>
       <${SceneChips} />
       <div class="chips">
         ${thinking.map((row) => html`
@@ -257,14 +258,14 @@ function SceneChips() {
   const now = scene.value;
   return html`
     <div class="chips">
-      <p class="chip strong">${now?.label || "On the start line"}</p>
+      <p class="chip strong" role="group" aria-label="Shown run">${now?.label || "On the start line"}</p>
       ${now?.phase === "photo-finish" && html`<p class="chip accent">Time-out: photo finish</p>`}
       ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that is still deciding</p>`}
       <${WorldChip} />
-      ${ownRunId.value !== null
+      ${page.run.value !== null
         ? html`<p class="chip accent">${isBuffering.value ? "Loading your replay…" : "Your own replay"}</p>`
         : now?.replay && html`<p class="chip">Replay</p>`}
-      ${ghostId.value !== null && html`<${GhostChip} ghosts=${now?.ghost_lanes ?? []} />`}
+      ${page.ghost.value !== null && html`<${GhostChip} ghosts=${now?.ghost_lanes ?? []} />`}
       <${SpeedChip} now=${now} />
     </div>
   `;
@@ -272,7 +273,7 @@ function SceneChips() {
 
 /** Key of the ghosts: the run they are of, and their distances. @param {{ ghosts: Scene["ghost_lanes"] }} props */
 function GhostChip({ ghosts }) {
-  const run = runs.value.get(ghostId.value ?? "");
+  const run = runs.value.get(page.ghost.value ?? "");
   const title = run ? run.name || sentence(run.kind) : "another run";
   const distances = ghosts.map(({ name, distance_m }) => `${name} ${metres(distance_m)}`).join(", ");
   return html`

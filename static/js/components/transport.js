@@ -3,10 +3,9 @@
 import { endAtTimeOut, setStage, skipToEnd, togglePlaying } from "../actions.js";
 import { conditionsAt, conditionsInWords, disturbancesOf } from "../disturbances.js";
 import { clockTime, count, metres, sentence } from "../format.js";
-import { isNarrow, view } from "../page.js";
-import {
-  closeReplay, endTime, openReplay, ownRunId, plan, replayTime, seekReplay, stepReplay,
-} from "../replay.js";
+import { page } from "../page-state.js";
+import { isNarrow, camera } from "../page.js";
+import { closeReplay, endTime, openReplay, plan, replayTime, seekReplay, stepReplay } from "../replay.js";
 import { canPlay, clock, isPlaying, playbackName, shownRun } from "../on-stage.js";
 import { isActive, isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
@@ -20,7 +19,7 @@ const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
 
 export function Transport() {
   const now = scene.value;
-  const isOwn = ownRunId.value !== null;
+  const isOwn = page.run.value !== null;
   return html`
     <div class=${`transport ${isOwn ? "own" : ""}`}>
       ${canPlay.value && html`<${PlayButton} />`}
@@ -41,7 +40,7 @@ export function Transport() {
 
 function PlayButton() {
   const verb = isPlaying.value ? "Pause" : "Play";
-  const whose = ownRunId.value === null ? " for everyone" : "";
+  const whose = page.run.value === null ? " for everyone" : "";
   const label = stage.value?.ended ? `Play again${whose}` : `${verb} ${playbackName.value}${whose}`;
   return html`
     <button class="quiet square" disabled=${!stage.value?.run_id} onClick=${togglePlaying}
@@ -154,7 +153,7 @@ export const SharedChoices = () => canPlay.value && html`<${EndAtTimeOut} /><${S
 
 /** Whether the show of a race ends with its photo finish: its last robots may walk on for a minute. */
 function EndAtTimeOut() {
-  if (ownRunId.value !== null || scene.value?.kind !== "race" || scene.value.lanes.length < 2) return null;
+  if (page.run.value !== null || scene.value?.kind !== "race" || scene.value.lanes.length < 2) return null;
   return html`
     <label class="check end-at-time-out" title="For every page: end with the photo finish, which settles the ranking">
       <input type="checkbox" name="end_at_time_out" checked=${stage.value?.end_at_time_out ?? true}
@@ -171,7 +170,7 @@ const isOneLaneLeft = (now) =>
 
 /** @param {{ now: Scene }} props */
 function Seek({ now }) {
-  if (ownRunId.value !== null) return html`<${OwnSeek} />`;
+  if (page.run.value !== null) return html`<${OwnSeek} />`;
   if (!now || now.kind === "idle") return html`<span class="seek"></span>`;
   const { time_s, computed_s } = now;
   const isComputing = isActive(shownRun.value);
@@ -240,11 +239,11 @@ function Follow() {
   const robots = lanes.map((lane, n) =>
     [String(n + 1), `Follow ${"name" in lane ? lane.name : agentOf(lane.agent).title}`]);
   const choices = [["leader", "Follow leader"], ...robots, ["free", "Free camera"]];
-  if (!choices.some(([one]) => one === view.value)) choices.push([view.value, `lane ${view.value}`]);
+  if (!choices.some(([one]) => one === camera.value)) choices.push([camera.value, `lane ${camera.value}`]);
   return html`
-    <${Choice} label="Follow" isSelfEvident name="follow" getValue=${() => view.value} choices=${choices}
+    <${Choice} label="Follow" isSelfEvident name="follow" getValue=${() => camera.value} choices=${choices}
       title="The robot that your camera follows; keys 1 to 8, 0 for a free camera"
-      onValue=${(/** @type {string} */ value) => (view.value = value)} />
+      onValue=${(/** @type {string} */ value) => (camera.value = value)} />
   `;
 }
 
@@ -253,7 +252,7 @@ function Speed() {
   const speed = getSpeed();
   const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
   const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
-  const isOwn = ownRunId.value !== null;
+  const isOwn = page.run.value !== null;
   const automatic = isOwn ? [] : [["time-lapse", "Auto speed"]];
   const choices = [...automatic, ...numbers.map((n) => [n, `×${n}`])];
   return html`

@@ -1,10 +1,9 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
-import { useEffect, useState } from "preact/hooks";
 import { canStart, continueTraining, practiseMore } from "../actions.js";
-import { form, mistakes, validSteps } from "../form.js";
+import { form, mistakes, validSteps, isReadOnly } from "../form.js";
 import { count, metres, whole } from "../format.js";
-import { isNarrow, isReadOnly } from "../page.js";
-import { matchingTable, work } from "../on-stage.js";
+import { page } from "../page-state.js";
+import { matchingTable } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
 import { agentOf, learns } from "../settings.js";
 import {
@@ -20,22 +19,18 @@ const HEADROOM = 1.06;
 
 /** Folded on a phone, and while a run needs the room, unless it was opened. */
 export function WhatIf() {
-  const [choice, setChoice] = useState(/** @type {boolean | null} */ (null));
-  const isOpen = choice ?? (!isNarrow.value && !work.value);
-  useEffect(() => {
-    isPanelOpen.value = isOpen;
-  }, [isOpen]);
+  const isOpen = isPanelOpen.value;
   if (!form.value.lanes.some(learns)) return null;
   /** @param {MouseEvent} event */
   const onClick = (event) => {
     event.preventDefault();
-    setChoice(!isOpen);
+    page.whatIf.value = isOpen ? "closed" : "open";
   };
   return html`
     <section class="panel what-if" aria-labelledby="what-if-title">
       <details open=${isOpen}>
         <summary onClick=${onClick}><h2 id="what-if-title">What if?</h2><span class="dim">${teaser()}</span></summary>
-        ${isOpen && html`<${Comparison} onContinue=${() => setChoice(true)} />`}
+        ${isOpen && html`<${Comparison} onContinue=${() => (page.whatIf.value = "open")} />`}
       </details>
     </section>
   `;

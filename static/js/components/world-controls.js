@@ -6,7 +6,7 @@ import { disturb } from "../live-changes.js";
 import { branchRace, pending } from "../actions.js";
 import {
   chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, isSimulated,
-  kindNamed, legStates, nothingOf, pressed, PUSH, withUnit,
+  kindNamed, legStates, nothingOf, pressed, withUnit,
 } from "../disturbances.js";
 import { listed } from "../format.js";
 import { azimuthsOf } from "../robots.js";
@@ -111,7 +111,7 @@ const PAUSE_MS = 500;
 const shareIn = (value, { min, max }) => ({ "--share": `${(100 * (value - min)) / (max - min)}%` });
 
 /** Action of its button. @type {Record<string, string>} */
-const PRESS_WORDS = { [PUSH]: "Push it", patch: "Lay it" };
+const PRESS_WORDS = { push: "Push it", patch: "Lay it" };
 
 /**
  * Whether it waits for its button: a push, and what has no size at which nothing happens.
@@ -341,7 +341,7 @@ function BranchOf({ race }) {
   const conditions = conditionsAt([...before, ...chosen].map((one) => ({ ...one, at_step: 0 })), 0, config.robot);
   /** @param {string[]} now */
   const words = (now) => {
-    const pushes = chosen.filter(({ kind }) => kind === PUSH).length ? ["a push"] : [];
+    const pushes = chosen.some(({ kind }) => kindNamed(kind)?.lasts === false) ? ["a push"] : [];
     return html`<b>From step ${from}:</b> ${[...now, ...pushes].join(", ") || "as it was"}`;
   };
   /** @param {Toggled & { currentTarget: EventTarget }} event */
@@ -351,7 +351,7 @@ function BranchOf({ race }) {
     branchRace(race, from - 1, chosen);
   };
   return html`
-    <details class="more branch" open=${isBranchOpen.value}
+    <details class="more branch" aria-label="Disturb this race" open=${isBranchOpen.value}
       onToggle=${onToggle}>
       <summary>Disturb this race</summary>
       <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}

@@ -1,5 +1,5 @@
 // The form's worlds: those with a name as small pictures, and disturbances with their steps.
-import { kindNamed, LEG_WORDS, legStates, shortName, splitText, textOf, withField } from "../disturbances.js";
+import { adjectiveOf, kindNamed, legStates, shortName, splitText, textOf, withField } from "../disturbances.js";
 import { form, mistakeInText, setField, wrong } from "../form.js";
 import { azimuthsOf } from "../robots.js";
 import { fullTitle } from "../settings.js";
@@ -125,14 +125,14 @@ function DisturbanceRow({ text, number, onText, onRemove }) {
   const mistake = mistakeInText(text, form.value.simulator);
   const { robot, gait } = form.value;
   /** @param {string} field */
-  const given = (field) => fields.find(([one]) => one === field || one === shortName(field))?.[1] ?? "";
+  const given = (field) => fields.find(([one]) => one === field || one === shortName(name, field))?.[1] ?? "";
   const legs = given("legs").split(",").map(Number).filter(Boolean);
   /** @param {number} leg */
   const toggle = (leg) => {
     const chosen = legs.includes(leg) ? legs.filter((one) => one !== leg) : [...legs, leg].sort((a, b) => a - b);
     onText(withField(text, "legs", chosen.join(",")));
   };
-  const words = LEG_WORDS[name] ?? name;
+  const words = adjectiveOf(name);
   return html`
     <div class="disturbance-row" role="group" aria-label=${kind?.title ?? text}>
       <div class="disturbance-head">

@@ -1,13 +1,13 @@
 // The form of a new experiment. Only values that differ from the experiment's defaults are kept and sent.
-import { computed, signal } from "@preact/signals";
+import { computed } from "@preact/signals";
 import { isSimulated, parseWorld, splitWorlds } from "../disturbances.js";
+import { makeTexts, parseChoice, parseChoices, parseName, parseNumber, parseValues } from "../parse.js";
 import { unknownTo } from "../form.js";
-import { parseChoice, parseChoices, parseName, parseNumber, parseValues } from "../parse.js";
+import { ignored, page } from "../page-state.js";
 import { presetOf } from "../robots.js";
 import { learns, limitsOf, settingsOf } from "../settings.js";
 import { options, served } from "../store.js";
 
-/** @import { Signal } from "@preact/signals" */
 /** @import { Parsed } from "../parse.js" */
 /** @import { ExperimentKind, ExperimentValue, ExperimentValues, SettingValue } from "../types.js" */
 
@@ -73,27 +73,18 @@ function countInWorld(values, world) {
 
 // ---- the form
 
-/** Empty: the first one that the server offers. */
-const chosenName = signal("");
-/** Field → value that differs from the default. @type {Signal<Record<string, ExperimentValue>>} */
-export const overrides = signal({});
-/**
- * Field → its text, as it was typed or as a link has it, while it is not valid. The field's value stays the last
- * valid one until then.
- * @type {Signal<Record<string, string>>}
- */
-export const typed = signal({});
-/** Parts of a link that are no field of the form, as "alhpa=0.5". @type {Signal<string[]>} */
-export const unknownParts = signal([]);
+/** Texts set by a person or a link; all else is the default. */
+const texts = page.experiment;
+const { set, keep, valueOf } = makeTexts(() => texts);
 
-export const chosenExperiment = computed(() => experimentOf(chosenName.value));
+export const chosenExperiment = computed(() => experimentOf(texts.value.get("experiment") ?? ""));
 
 /** The settings of all agents by name. */
 const everySetting = computed(() => settingsOf((options.value?.agents ?? []).map(({ name }) => name)));
 
 const chosenAgents = computed(() => {
   const kind = chosenExperiment.value;
-  const given = kind.fields.includes("agents") ? overrides.value.agents : null;
+  const given = kind.fields.includes("agents") ? valueOf("agents", READERS.agents, null) : null;
   return /** @type {string[]} */ (given ?? kind.defaults.agents);
 });
 
@@ -119,13 +110,17 @@ function defaultOf(name) {
 export const defaults = computed(() => {
   const kind = chosenExperiment.value;
   const own = Object.keys(agentSettings.value).map((name) => [name, defaultOf(name)]);
-  const ofSimulator = kind.simulator_defaults[String(overrides.value.simulator ?? kind.defaults.simulator)];
+  const ofSimulator = kind.simulator_defaults[valueOf("simulator", READERS.simulator, kind.defaults.simulator)];
   return /** @type {ExperimentValues} */ ({ ...kind.defaults, ...ofSimulator, ...Object.fromEntries(own) });
 });
 
+/** The fields that were set, and that the chosen experiment takes. */
+const givenFields = () => [...new Set(texts.value.keys())].filter(takesField);
+
 /** The values that the experiment would be started with. */
 export const values = computed(() => {
-  const own = Object.entries(overrides.value).filter(([field]) => takesField(field));
+  const own = givenFields().map((field) =>
+    [field, valueOf(field, (text) => parse(field, text), defaults.value[field])]);
   return /** @type {ExperimentValues} */ ({ ...defaults.value, ...Object.fromEntries(own) });
 });
 
@@ -196,16 +191,10 @@ export function parse(field, text) {
 export const wrong = computed(() => {
   /** @type {Record<string, { text: string, mistake: string }>} */
   const found = {};
-  const check = (/** @type {string} */ field, /** @type {string} */ text) => {
-    const { mistake } = parse(field, text);
-    if (mistake !== undefined) found[field] = { text, mistake };
-  };
-  for (const [field, text] of Object.entries(typed.value)) {
-    if (field === "experiment" || takesField(field)) check(field, text);
-  }
-  // Values that are valid for some agents only, after others were chosen.
-  for (const [field, value] of Object.entries(overrides.value)) {
-    if (takesField(field) && !(field in typed.value)) check(field, joined(value, ", "));
+  for (const field of ["experiment", ...givenFields()]) {
+    const text = texts.value.get(field);
+    const { mistake: why } = text === null ? {} : parse(field, text);
+    if (text !== null && why !== undefined) found[field] = { text, mistake: why };
   }
   const mistake = takesField("worlds") ? mistakeInWorlds() : null;
   if (mistake) found.worlds ??= { text: joined(values.value.worlds, ","), mistake };
@@ -218,39 +207,11 @@ export const mistakes = computed(() =>
 );
 
 /** @param {string} name */
-export function chooseExperiment(name) {
-  chosenName.value = name;
-  typed.value = without(typed.value, "experiment");
-  takeTyped();
-}
+export const chooseExperiment = (name) => set({ experiment: name === experiments.value[0].name ? [] : [name] });
 
-/** Take the texts that have become valid, because another experiment or other agents were chosen. */
-function takeTyped() {
-  const own = Object.entries(typed.value).filter(([field]) => field !== "experiment" && takesField(field));
-  for (const [field, text] of own) enter(field, text);
-}
-
-/**
- * @template Value
- * @param {Record<string, Value>} record
- * @param {string} field
- */
-function without(record, field) {
-  const { [field]: _, ...others } = record;
-  return others;
-}
-
-/**
- * @param {string} field
- * @param {ExperimentValue} value
- */
-export function setField(field, value) {
-  const others = without(overrides.value, field);
-  const isDefault = String(value) === String(defaults.value[field] ?? "");
-  typed.value = without(typed.value, field);
-  overrides.value = isDefault ? others : { ...others, [field]: value };
-  if (field === "agents") takeTyped();
-}
+/** @type {(field: string, value: ExperimentValue) => void} */
+export const setField = (field, value) =>
+  set({ [field]: String(value) === String(defaults.value[field] ?? "") ? [] : [inAddress(field, value)] });
 
 /**
  * Take what was typed or chosen in a field: its value if the text is valid, else the text as it is.
@@ -260,14 +221,14 @@ export function setField(field, value) {
 export function enter(field, text) {
   const { value, mistake } = parse(field, text);
   if (mistake === undefined) setField(field, value);
-  else typed.value = { ...typed.value, [field]: text };
+  else keep(field, text);
 }
 
 /** The request's body. @returns {Record<string, unknown>} */
 export function requestBody() {
-  const own = Object.entries(overrides.value).filter(([field]) => takesField(field));
-  const fields = Object.fromEntries(own.filter(([field]) => !(field in everySetting.value)));
-  const settings = Object.fromEntries(own.filter(([field]) => field in everySetting.value));
+  const own = givenFields().map((field) => [field, values.value[field]]);
+  const fields = Object.fromEntries(own.filter(([field]) => !(String(field) in everySetting.value)));
+  const settings = Object.fromEntries(own.filter(([field]) => String(field) in everySetting.value));
   const { name = "", ...others } = fields;
   const trimmed = String(name).trim();
   return {
@@ -286,38 +247,14 @@ const joined = (value, separator) => (Array.isArray(value) ? value.join(separato
  * @type {(field: string, value: ExperimentValue) => string}
  */
 function inAddress(field, value) {
-  const text = joined(value, ",");
-  return parse(field, text).mistake === undefined ? text : joined(value, ";");
+  const both = [",", ";"].map((separator) => joined(value, separator));
+  return both.find((text) => parse(field, text).mistake === undefined) ?? both[0];
 }
 
-/** The form as parameters of an address, what is not valid as it was typed: [name, value]. */
-export const toQuery = () => {
-  const valid = Object.entries(overrides.value).filter(([field]) => !(field in typed.value));
-  const experiment = chosenExperiment.value === experiments.value[0] ? [] : [chosenExperiment.value.name];
-  return [
-    ...experiment.filter(() => !("experiment" in typed.value)).map((name) => ["experiment", name]),
-    ...valid.map(([field, value]) => [field, inAddress(field, value)]),
-    ...Object.entries(typed.value),
-  ];
-};
-
-/**
- * Set the form from the parameters of an address; what is not valid is kept as it is, and unknown ones are told.
- * @param {URLSearchParams} query
- */
-export function readQuery(query) {
-  const known = ["name", ...experiments.value.flatMap((kind) => kind.fields)];
-  overrides.value = {};
-  typed.value = {};
-  chosenName.value = query.get("experiment") ?? "";
-  // The agents first, because settings are read as theirs.
-  const fields = ["experiment", "agents", ...query.keys()].filter((field) => query.has(field));
-  for (const field of new Set(fields)) {
-    const text = query.get(field) ?? "";
-    const { value, mistake } = field === "experiment" || known.includes(field) ? parse(field, text) : {};
-    if (mistake !== undefined) typed.value = { ...typed.value, [field]: text };
-    else if (value !== undefined && field !== "experiment") overrides.value = { ...overrides.value, [field]: value };
-  }
-  const isUnknown = (/** @type {string} */ field) => ![...known, "experiment", "run"].includes(field);
-  unknownParts.value = [...query].filter(([field]) => isUnknown(field)).map((part) => part.join("="));
+/** Read the form of the link that was opened: what is no field of it is told. */
+export function openExperimentForm() {
+  const known = ["experiment", "name", ...experiments.value.flatMap((kind) => kind.fields)];
+  const given = [...texts.peek()];
+  ignored.experiments.value = given.filter(([field]) => !known.includes(field)).map((part) => part.join("="));
+  texts.value = new URLSearchParams(given.filter(([field]) => known.includes(field)));
 }

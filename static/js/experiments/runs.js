@@ -5,35 +5,17 @@ import * as api from "../api.js";
 import { askForNewest, getSummary } from "../api.js";
 import { makeEstimate } from "../estimate.js";
 import { count, duration, whole } from "../format.js";
-import { followQuery, place } from "../page.js";
 import { announcement } from "../headline.js";
+import { page } from "../page-state.js";
 import { absentIds, followRuns, makeList, NO_FILTERS } from "../runs.js";
 import { everyRun, isActive, isOperator } from "../selectors.js";
 import { connection, isDeleted, options, requestRun, runs, setEntry, summarised } from "../store.js";
 import { runTitle } from "../titles.js";
-import { chosenExperiment, mistakes, readQuery, requestBody, toQuery, trials } from "./form.js";
+import { chosenExperiment, mistakes, requestBody, trials } from "./form.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../api.js" */
 /** @import { Run, Summary, Verb } from "../types.js" */
-
-// ---- the address: `#experiments?experiment=sweep&alpha=0.1,0.3&run=…`
-
-/** The id of the requested experiment; null for the newest. @type {Signal<string | null>} */
-export const wantedRun = signal(null);
-
-const query = () => {
-  const search = new URLSearchParams(toQuery());
-  if (wantedRun.value) search.set("run", wantedRun.value);
-  return search.toString().replaceAll("%2C", ",").replaceAll("%3B", ";");
-};
-
-/** Keep the form and the address the same. Call it once the options are known. */
-export const followAddress = () =>
-  followQuery("experiments", (search) => {
-    readQuery(search);
-    wantedRun.value = search.get("run");
-  }, query);
 
 // ---- the known experiments, newest first, and the one whose report is shown
 
@@ -42,7 +24,7 @@ export const experimentRuns = computed(() => everyRun.value.filter(({ kind }) =>
 /** The requested one, else the active one, else the newest. */
 export const chosenRun = computed(() => {
   const all = experimentRuns.value;
-  if (wantedRun.value) return all.find(({ id }) => id === wantedRun.value) ?? null;
+  if (page.report.value) return all.find(({ id }) => id === page.report.value) ?? null;
   return all.find(isActive) ?? all[0] ?? null;
 });
 
@@ -51,7 +33,7 @@ export const experimentList = makeList(signal({ ...NO_FILTERS, kind: "experiment
 
 /** Whether the requested run is no experiment of this server, by its answer. */
 export const isMissing = computed(() => {
-  const id = wantedRun.value;
+  const id = page.report.value;
   if (id === null) return false;
   const run = runs.value.get(id);
   return run ? run.kind !== "experiment" : absentIds.value.has(id) || isDeleted(id);
@@ -59,7 +41,7 @@ export const isMissing = computed(() => {
 
 export function followExperiments() {
   experimentList.follow("experiments");
-  followRuns(computed(() => (place.value === "experiments" && wantedRun.value ? [wantedRun.value] : [])));
+  followRuns(computed(() => (page.view.value === "experiments" && page.report.value ? [page.report.value] : [])));
 }
 
 // ---- the summary of the chosen experiment, requested again as its trials end
@@ -108,7 +90,7 @@ export function followSummary() {
     return askForNewest({
       key: () => {
         const run = chosenRun.value;
-        if (run?.id !== id || place.value !== "experiments" || connection.value !== "live") return "";
+        if (run?.id !== id || page.view.value !== "experiments" || connection.value !== "live") return "";
         return [id, run.state, summarised.value[id] ?? ""].join(" ");
       },
       ask: () => loadSummary(id),
@@ -158,7 +140,7 @@ const SHORT_TRIALS = 100;
 
 /** Estimated duration of the form's experiment, in words. */
 export const experimentEstimate = makeEstimate(computed(() =>
-  place.value === "experiments" && options.value && canStart() && trials.value > SHORT_TRIALS
+  page.view.value === "experiments" && options.value && canStart() && trials.value > SHORT_TRIALS
     ? { path: "experiments", body: requestBody() }
     : null,
 ));
@@ -167,7 +149,7 @@ export const experimentEstimate = makeEstimate(computed(() =>
 export const start = () =>
   attempt("experiment", async () => {
     const run = await requestRun(() => api.startExperiment(requestBody()));
-    wantedRun.value = run.id;
+    page.report.value = run.id;
     return run.id;
   });
 
@@ -180,7 +162,7 @@ export const command = (run, verb) =>
 /** @param {Run} run */
 export const deleteExperiment = async (run) => {
   await deleteRun(run);
-  if (wantedRun.value === run.id) wantedRun.value = null;
+  if (page.report.value === run.id) page.report.value = null;
 };
 
 // ---- announcements

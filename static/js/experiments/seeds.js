@@ -3,7 +3,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { adopt, attempt } from "../actions.js";
 import * as api from "../api.js";
 import { isLasting } from "../api.js";
-import { goIfStillHere } from "../page.js";
+import { changeIfStillHere } from "../page-state.js";
 import { isActive } from "../selectors.js";
 import { connection, requestRuns, runs } from "../store.js";
 import { fieldTitle, isNamedByValue, messageOf, valueTitle, variedFields } from "../titles.js";
@@ -191,9 +191,9 @@ export function seedsOf(id, setting) {
 /** Run a trial here, and go to the stage, which shows it. @type {(experiment: Run, key: string) => unknown} */
 export const runTrial = ({ id }, key) =>
   attempt("trials", async () => {
-    const go = goIfStillHere();
+    const go = changeIfStillHere();
     await adopt(() => api.startTrial(id, key));
-    go("");
+    go({ view: "race" });
   });
 
 /** Whether a run can be replayed: it has ended and not failed. @param {Run | null} run */

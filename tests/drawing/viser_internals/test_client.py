@@ -13,8 +13,7 @@ from starlette.applications import Starlette
 from starlette.testclient import TestClient
 
 from app.viewer.hub import Hub
-from app.viewer.service import viewer_routes
-from app.viewer.viewer_page import STAGE_SCRIPTS, ViewerPage
+from app.viewer.viewer_page import STAGE_SCRIPTS, ViewerPage, viewer_routes
 from hexapods import assets
 from hexapods.drawing.viser_internals.client import OFFLINE_SCRIPTS, batch_colors, content_policy
 
@@ -26,7 +25,7 @@ DIGITS = "!#$%()*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[\\]^_abcdefghijk
 
 @pytest.fixture(scope="module")
 def client() -> TestClient:
-    routes = viewer_routes(Hub())
+    routes = viewer_routes(Hub().serve)
     return TestClient(Starlette(routes=routes), follow_redirects=False)
 
 

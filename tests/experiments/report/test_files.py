@@ -15,13 +15,12 @@ from app.cli import sweep as sweep_command
 from app.cli.options import CommandParser, settings_from
 from app.cli.trial_options import trial_grid_from
 from hexapods.domain.gait import GaitSpec
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import (
     GRID,
     ExperimentConfig,
-    as_json,
     experiment_config,
-    from_json,
 )
 from hexapods.experiments.report.files import report_files, write_report
 from hexapods.experiments.report.page import POLICY, command, page
@@ -181,7 +180,7 @@ def test_the_command_on_the_page_reproduces_the_experiment(
     name: str, given: dict[str, Any]
 ) -> None:
     tried = experiment_config(name, given)
-    typed = shlex.split(command(as_json(tried)))
+    typed = shlex.split(command(to_json(tried)))
     assert _understood(typed) == tried
 
 
@@ -282,7 +281,7 @@ def test_an_experiment_without_trials_has_a_page(shown: Page, tmp_path: Path) ->
 
 def _csv(summary: Any, results: Results) -> bytes:
     aside = {one["key"]: one["reason"] for one in summary["trials"]["set_aside"]}
-    return trials_csv(from_json(summary["config"]), results, aside)
+    return trials_csv(from_json(ExperimentConfig, summary["config"]), results, aside)
 
 
 def _rows(content: bytes) -> list[dict[str, str]]:

@@ -1,41 +1,58 @@
 // The form of a new experiment.
-import { useState } from "preact/hooks";
+import { effect, signal } from "@preact/signals";
+import { useEffect, useState } from "preact/hooks";
 import { pending, refusedFields } from "../../actions.js";
 import { splitWorlds } from "../../disturbances.js";
 import {
   agentSettings, chooseExperiment, chosenExperiment, defaults, enter, experiments, mistakes, offeredAgents, parse,
-  setField, takesField, unknownParts, values, wrong,
+  setField, takesField, trials, values, wrong,
 } from "../../experiments/form.js";
 import { canStart, experimentEstimate, start, startLabel } from "../../experiments/runs.js";
-import { listed, sentence, whole } from "../../format.js";
-import { isNarrow } from "../../page.js";
+import { count, listed, sentence, whole } from "../../format.js";
+import { ignored, page } from "../../page-state.js";
 import { fullTitle, settingOf, shortTitle } from "../../settings.js";
 import { options, served } from "../../store.js";
 import {
   agentTitle, choicesOf, fieldTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle,
 } from "../../titles.js";
-import { EstimateNote, goToField, Held, html, Icon, Mistake, Problem, UnknownParts } from "../elements.js";
+import { Dialog, goToField, Held, html, Icon, Mistake, Problem, UnknownParts } from "../elements.js";
 import { helpFor } from "../fields.js";
 import { WorldPicture } from "../world.js";
 
 /** @import { Changed, ExperimentValue, SettingOption, SettingValue } from "../../types.js" */
 /** @import { ComponentChildren } from "preact" */
 
-/** Folded on a phone once there is a report. @param {{ isFirst: boolean }} props */
-export function ExperimentForm({ isFirst }) {
-  const [isOpen, setOpen] = useState(false);
-  const isFolded = isNarrow.value && !isFirst;
-  /** @param {{ target: HTMLDetailsElement }} event */
-  const onToggle = ({ target }) => isFolded && setOpen(target.open);
+/** Whether the dialog of a new experiment is open. */
+export const formIsOpen = signal(false);
+
+/** The dialog opens by itself for an address that says what to run: with fields of the form, and no run to be shown. */
+export function ExperimentDialog() {
+  useEffect(() => {
+    const stop = effect(() => {
+      const saysWhat = page.experiment.value.size > 0 || ignored.experiments.value.length > 0;
+      if (saysWhat && page.report.peek() === null) formIsOpen.value = true;
+    });
+    return () => {
+      stop();
+      formIsOpen.value = false;
+    };
+  }, []);
   return html`
-    <section class="panel experiment-form" aria-labelledby="new-experiment">
-      <details class="folded" open=${isOpen || !isFolded} onToggle=${onToggle}>
-        <summary hidden=${!isFolded}><span>New experiment</span></summary>
-        <h2 id="new-experiment" class=${isFolded ? "sr-only" : ""}>New experiment</h2>
-        <${Fields} />
-      </details>
-    </section>
+    <${Dialog} id="experiment-dialog" labelledBy="new-experiment" isOpen=${formIsOpen}>
+      <div class="dialog-head">
+        <h2 id="new-experiment">New experiment</h2>
+        <button class="quiet square" aria-label="Close" onClick=${() => (formIsOpen.value = false)}>✕</button>
+      </div>
+      <p class="cost" role="status">${costInWords()}</p>
+      <${Fields} />
+    <//>
   `;
+}
+
+/** What the form would start, before anything else: how many trials, and for how long if that is long. */
+function costInWords() {
+  if (!canStart()) return "No trials yet: something below is missing.";
+  return [html`<b>${count(trials.value, "trial")}.</b>`, " ", experimentEstimate.value || "Done soon."];
 }
 
 /**
@@ -62,7 +79,7 @@ const Fields = () => html`
     <${Grid} fields=${gridOf(true)}>${takesField("tolerance") && html`<${ToleranceField} />`}<//>
     <${More} />
     <${StartButton} />
-    <${UnknownParts} parts=${unknownParts} />
+    <${UnknownParts} parts=${ignored.experiments} />
     <${Problem} at="experiment" />
   </div>
 `;
@@ -70,10 +87,9 @@ const Fields = () => html`
 const agentChoices = () =>
   choicesOf(served().agents.filter(({ name }) => offeredAgents().includes(name)), agentTitle);
 
-/** Start, and show the report, which a long form has scrolled away. */
+/** Start, and show the report. */
 async function startAndShow() {
-  if (await start() === null) return;
-  requestAnimationFrame(() => document.querySelector(".report-head")?.scrollIntoView({ block: "nearest" }));
+  if (await start() !== null) formIsOpen.value = false;
 }
 
 function StartButton() {
@@ -85,7 +101,6 @@ function StartButton() {
       aria-describedby=${isHeld ? "held-experiment" : undefined}>
       ${pending.value.experiment ? "Starting…" : html`<${Icon} name="play" />${startLabel()}`}
     </button>
-    <${EstimateNote} words=${experimentEstimate} />
     ${isHeld && html`
       <${Held} id="held-experiment" mistakes=${mistakes.value} nameOf=${nameOf}
         onField=${(/** @type {string} */ field) => goToField(`experiment-${field}`)} />

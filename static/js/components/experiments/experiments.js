@@ -1,14 +1,13 @@
-// The experiments view: form and list on one side, the report on the other.
-import {
-  chosenRun, experimentList, experimentRuns, isMissing, paceOf, wantedRun,
-} from "../../experiments/runs.js";
+// The experiments view: the list on one side, the report on the other; the form is a dialog.
+import { chosenRun, experimentList, experimentRuns, isMissing, paceOf } from "../../experiments/runs.js";
 import { ago } from "../../format.js";
+import { addressOf, page } from "../../page-state.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { agentOf } from "../../settings.js";
 import { connection, served } from "../../store.js";
 import { describeRun, runTitle } from "../../titles.js";
 import { html, ProgressBar } from "../elements.js";
-import { ExperimentForm } from "./experiment-form.js";
+import { ExperimentDialog, formIsOpen } from "./experiment-form.js";
 import { StripKey } from "./report-tools.js";
 import { Report } from "./report.js";
 
@@ -19,30 +18,28 @@ export function Experiments() {
   const isOffline = connection.value === "reconnecting";
   return html`
     <div class=${`experiments ${isOffline ? "cut-off" : ""}`}>
-      <div class="ask">
-        ${isOperator.value && html`<${ExperimentForm} isFirst=${!run} />`}
-        <${ExperimentList} />
-      </div>
+      <${ExperimentList} />
       <div class="answer">
         ${isOffline && html`<${OfflineNote} />`}
         ${run ? html`<${Report} key=${run.id} run=${run} />` : html`<${NoReport} />`}
       </div>
+      ${isOperator.value && html`<${ExperimentDialog} />`}
     </div>
   `;
 }
 
 function NoReport() {
   if (isMissing.value) return html`<${MissingRun} />`;
-  return experimentList.isListed.value && !wantedRun.value && html`<${Invitation} />`;
+  return experimentList.isListed.value && !page.report.value && html`<${Invitation} />`;
 }
 
 const MissingRun = () => html`
   <section class="panel invitation" aria-labelledby="missing-title">
     <h2 id="missing-title">This experiment is not here</h2>
     <p role="alert">
-      The link names the experiment ${wantedRun.value}. It was deleted, or it is on another server.
+      The link names the experiment ${page.report.value}. It was deleted, or it is on another server.
     </p>
-    <p><button class="secondary" onClick=${() => (wantedRun.value = null)}>Show the newest experiment</button></p>
+    <p><button class="secondary" onClick=${() => (page.report.value = null)}>Show the newest experiment</button></p>
   </section>
 `;
 
@@ -56,11 +53,17 @@ const OfflineNote = () => html`
 
 function ExperimentList() {
   const all = experimentRuns.value;
-  if (!all.length) return null;
   return html`
     <section class="panel experiment-list" aria-labelledby="experiment-list">
-      <h2 id="experiment-list">Experiments</h2>
-      <ul>${all.map((run) => html`<${Row} key=${run.id} run=${run} />`)}</ul>
+      <div class="list-head">
+        <h2 id="experiment-list">Experiments</h2>
+        ${isOperator.value && html`
+          <button class="secondary compact" onClick=${() => (formIsOpen.value = true)}>New experiment</button>
+        `}
+      </div>
+      ${all.length > 0
+        ? html`<ul>${all.map((run) => html`<${Row} key=${run.id} run=${run} />`)}</ul>`
+        : experimentList.isListed.value && html`<p class="dim">None yet.</p>`}
       ${experimentList.hasMore.value && html`<${Older} />`}
     </section>
   `;
@@ -77,11 +80,11 @@ function Row({ run }) {
   /** @param {MouseEvent} event */
   const choose = (event) => {
     event.preventDefault();
-    wantedRun.value = run.id;
+    page.report.value = run.id;
   };
   return html`
     <li>
-      <a class="experiment-row" href=${`#experiments?run=${encodeURIComponent(run.id)}`}
+      <a class="experiment-row" href=${addressOf({ view: "experiments", report: run.id })}
         aria-current=${isChosen ? "true" : undefined} onClick=${choose}>
         <span class="row-title">
           <b>${runTitle(run)}</b> <time class="dim" datetime=${run.created_at}>${ago(run.created_at)}</time>
@@ -108,7 +111,7 @@ const ROWS = [
 const SCATTER_PX = [0, -7, 6];
 
 const OPERATOR_WORDS =
-  "Choose an experiment and press the button. Its report fills here while trials end; it can be paused and resumed.";
+  "Its report fills here while trials end; it can be paused and resumed.";
 const SPECTATOR_WORDS = "No experiment has been run here. The report of the first one will fill here.";
 
 /** @param {{ points: number[], published: number, y: number }} props */
@@ -134,6 +137,9 @@ function Invitation() {
         `)}
       </svg>
       <${StripKey} signs=${["seed", "greedy", "published"]} color=${color} />
+      ${isOperator.value && html`
+        <p><button class="primary" onClick=${() => (formIsOpen.value = true)}>Choose an experiment</button></p>
+      `}
       <p class="dim">${isOperator.value ? OPERATOR_WORDS : SPECTATOR_WORDS}</p>
     </section>
   `;

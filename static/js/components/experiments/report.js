@@ -70,9 +70,9 @@ function ReportHead({ run }) {
   const pace = paceOf(run);
   const isUnderWay = isActive(run) || run.state === "interrupted";
   return html`
-    <section class="panel report-head" aria-labelledby="report-title">
+    <section class="panel report-head" aria-label=${`Experiment: ${runTitle(run)}`}>
       <div class="title-row">
-        <h2 id="report-title">${runTitle(run)}</h2>
+        <h2>${runTitle(run)}</h2>
         <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</p>
         <${Actions} run=${run} />
       </div>

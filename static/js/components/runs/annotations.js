@@ -33,7 +33,7 @@ export function Name({ run, title, aside }) {
   }
   return html`
     <p class="run-name">
-      <b>${title}</b>
+      <b role="heading" aria-level="3">${title}</b>
       ${aside && html`<span class="dim">${aside}</span>`}
       ${isOperator.value && html`
         <button class="quiet square small" aria-label=${`Rename ${title}`} title="Rename"
@@ -58,7 +58,7 @@ export function Tags({ run }) {
   /** @param {string} tag */
   const isChosen = (tag) => folded(tag) === folded(filters.value.tag);
   return html`
-    <p class="tags">
+    <p class="tags" role="group" aria-label="Tags">
       ${tags.map((tag) => html`
         <button key=${tag} class="chip" aria-pressed=${isChosen(tag) ? "true" : "false"}
           title=${isChosen(tag) ? "Show runs without it too" : "Show only runs with this tag"}

@@ -8,6 +8,7 @@ import { archiveAddress, downloads, notInstalled, rendered, saveExport } from ".
 import { ago, count, listed, metres, sentence, whole } from "../../format.js";
 import { formRobot, isSame } from "../../robots.js";
 import { isSelected, setSelected } from "../../run-selection.js";
+import { addressOf } from "../../page-state.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { agentOf, laneTitle, ratesInWords } from "../../settings.js";
 import { served } from "../../store.js";
@@ -76,9 +77,9 @@ const StateOf = ({ run: { state, queue_position } }) => html`
 /** @param {Run} run */
 function summaryOf(run) {
   const { config } = run;
-  const { robot, simulator, agent } = served().defaults.training;
+  const { robot, simulator } = served().defaults.training;
+  const learner = config.agent && !run.name.includes(agentOf(config.agent).title) ? agentOf(config.agent).title : "";
   // Defaults are not named.
-  const learner = [undefined, agent].includes(config.agent) ? "" : agentOf(config.agent).title;
   const place = [
     isSame(formRobot(config.robot), robot) ? "" : robotTitle(config.robot),
     config.simulator === simulator ? "" : simulatorTitle(config.simulator),
@@ -135,7 +136,7 @@ function Actions({ run }) {
         <button class="secondary compact" disabled=${isPending} onClick=${() => resumeRun(run)}>Resume</button>
       `}
       ${run.kind === "experiment"
-        ? html`<a class="to-report" href=${`#experiments?run=${encodeURIComponent(run.id)}`}>Report</a>`
+        ? html`<a class="to-report" href=${addressOf({ view: "experiments", report: run.id })}>Report</a>`
         : html`
           ${run.progress.done > 0 && html`<${ReplayLink} id=${run.id}>Replay<//>`}
           ${isOperator.value && html`
@@ -222,7 +223,7 @@ function DamagedRow({ run }) {
       <${Box} run=${run} title=${title} />
       <p class="state failed"><span class="dot" aria-hidden="true"></span>damaged</p>
       <div class="what">
-        <p><b>${title}</b> <span class="dim">${run.id}</span></p>
+        <p><b role="heading" aria-level="3">${title}</b> <span class="dim">${run.id}</span></p>
         <p class="bad">${run.damaged}</p>
       </div>
       <p class="outcome num"></p>

@@ -37,7 +37,7 @@ export function Runs() {
       ${shown.length === 0
         ? html`<${NoRuns} />`
         : html`
-          <ul class="run-list" onKeyDown=${moveByKey}>
+          <ul class="run-list" aria-label="Runs" onKeyDown=${moveByKey}>
             ${shown.map((run) => html`<${RunRow} key=${run.id} run=${run} />`)}
           </ul>
         `}
@@ -152,7 +152,7 @@ function ImportButton() {
 }
 
 const Imports = () => html`
-  <ul class="imports" aria-live="polite">
+  <ul class="imports" aria-label="Imports" aria-live="polite">
     ${imports.value.map(({ key, name, state, words }) => html`
       <li key=${key} class=${state === "refused" ? "problem" : "notice"}>
         <span>

@@ -2,11 +2,12 @@
 import { useState } from "preact/hooks";
 import { pending } from "../../actions.js";
 import { count } from "../../format.js";
+import { addressOf } from "../../page-state.js";
 import { shownRuns } from "../../run-list.js";
 import {
   clearSelection, deletable, deleteSelected, exported, selectAll, selected, tagSelected,
 } from "../../run-selection.js";
-import { compareAddress, MAX_COMPARED } from "../../compare.js";
+import { MAX_COMPARED } from "../../compare.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html, Problem } from "../elements.js";
@@ -48,7 +49,8 @@ function CompareThem() {
   const ids = selected.value.filter(({ kind }) => kind !== "experiment").map(({ id }) => id);
   if (ids.length < 2) return null;
   if (ids.length > MAX_COMPARED) return html`<span class="dim">Up to ${MAX_COMPARED} runs compare.</span>`;
-  return html`<a class="secondary compact button" href=${compareAddress(ids)}>Compare ${ids.length}</a>`;
+  const address = addressOf({ view: "compare", compared: ids });
+  return html`<a class="secondary compact button" href=${address}>Compare ${ids.length}</a>`;
 }
 
 function TagThem() {

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import pytest
 
-from hexapods.domain.gait import GaitSpec
+from hexapods.domain.gait import GaitSpec, read_gait
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import world
 from hexapods.runs.config import TrainingConfig, training_config
-from hexapods.runs.config_json import as_json, config_from_json, gait_from_json
 from hexapods.runs.lane import LaneConfig, lane_config
 from hexapods.runs.race_config import RaceConfig
 
@@ -25,9 +25,9 @@ def test_config_in_plain_types_is_valid_json_and_has_the_same_gait(
     gait: str | GaitSpec,
 ) -> None:
     made = robot({"preset": "compliant", "n_legs": 6, "friction": 0.5})
-    shown = json.loads(json.dumps(as_json(training_config(gait=gait, robot=made))))
+    shown = json.loads(json.dumps(to_json(training_config(gait=gait, robot=made))))
 
-    assert gait_from_json(shown.pop("gait")) == gait
+    assert read_gait(shown.pop("gait")) == gait
     assert robot(shown.pop("robot")) == made
     assert shown.pop("disturbances") == []
     assert training_config(gait=gait, robot=made, **shown) == training_config(gait=gait, robot=made)
@@ -60,12 +60,12 @@ def test_config_in_plain_types_is_valid_json_and_has_the_same_gait(
     ],
 )
 def test_config_round_trips_through_json(config: TrainingConfig | RaceConfig) -> None:
-    assert config_from_json(json.loads(json.dumps(as_json(config)))) == config
+    assert from_json(type(config), json.loads(json.dumps(to_json(config)))) == config
 
 
 def test_lane_in_plain_types_has_its_settings_as_a_member() -> None:
     race = RaceConfig(gait=GAIT, lanes=(lane_config("look-ahead", depth=2),))
-    assert as_json(race)["lanes"] == [
+    assert to_json(race)["lanes"] == [
         {
             "agent": "look-ahead",
             "observation": "measured",
@@ -77,14 +77,14 @@ def test_lane_in_plain_types_has_its_settings_as_a_member() -> None:
 
 
 def test_race_of_an_earlier_version_has_lanes_that_do_not_keep_learning() -> None:
-    stored = {**as_json(RaceConfig(gait=GAIT, lanes=LANES))}
+    stored = {**to_json(RaceConfig(gait=GAIT, lanes=LANES))}
     stored["lanes"] = [{"agent": "greedy", "observation": "measured", "settings": {}}]
-    assert config_from_json(stored) == RaceConfig(gait=GAIT, lanes=LANES)
+    assert from_json(RaceConfig, stored) == RaceConfig(gait=GAIT, lanes=LANES)
 
 
 def test_a_stored_end_after_the_run_is_read_as_it_was_accepted() -> None:
     """Requests are refused one since; listings and archives of earlier runs must go on."""
     long = {"kind": "slope", "degrees": 8.0, "at_step": 0, "until_step": 900}
     for config in (training_config(gait=GAIT), RaceConfig(gait=GAIT, lanes=LANES)):
-        stored = {**as_json(config), "disturbances": [long]}
-        assert config_from_json(stored) == replace(config, world=world([long]))
+        stored = {**to_json(config), "disturbances": [long]}
+        assert from_json(type(config), stored) == replace(config, world=world([long]))

@@ -1,0 +1,90 @@
+"""A stage with all by which many people watch it: viewer, events, roles and address."""
+
+import asyncio
+from contextlib import ExitStack
+from typing import Self
+
+from app.events.bus import Channel, EventBus
+from app.limits.client_slots import ClientSlots
+from app.stage.roles import Roles
+from app.stage.stage import Stage
+from app.storage.database.store import RunStore
+from app.storage.recordings import Recordings
+from app.viewer.hub import Hub
+from app.viewer.session import Session
+from app.viewer.stage_loop import StageLoop
+from hexapods.drawing.scene import StageScene
+from hexapods.drawing.track import Position
+from hexapods.drawing.viser_internals.server import in_process_viser
+
+
+class SharedStage:
+    """A stage, viser that draws it, the hub that relays the picture, and who may watch and operate.
+
+    Several may be in one process, beside each other: they share the runs, their recordings and the
+    bus, and the slots for viewers. Within `async with` viser, the drawing thread and the hub run.
+
+    Attributes:
+        path: of its page, without a slash at its end, such as ""; that of the API begins with it.
+        roles: who may do what.
+        channel: its events, and those of the runs.
+        stage: what is shown.
+        hub: relays the picture to viewers.
+    """
+
+    def __init__(
+        self,
+        store: RunStore,
+        recordings: Recordings,
+        bus: EventBus,
+        *,
+        roles: Roles,
+        viewer_slots: ClientSlots[Session],
+        path: str = "",
+    ) -> None:
+        """Create it with an empty stage; entering the context starts the rest.
+
+        Args:
+            store: store of the runs.
+            recordings: recordings of the runs.
+            bus: tells of changed and deleted runs; receives the events of the stage.
+            roles: see the class.
+            viewer_slots: limit the viewers of all stages.
+            path: see the class.
+        """
+        self.path, self.roles = path, roles
+        self.channel = Channel(bus)
+        self.stage = Stage(store, recordings, self.channel)
+        self.hub = Hub(
+            follow_position=self._follow_position,
+            slots=viewer_slots,
+            on_viewers_changed=lambda count: self.channel.publish("viewers", {"count": count}),
+        )
+        self._scene: StageScene | None = None
+        self._resources = ExitStack()
+
+    async def __aenter__(self) -> Self:
+        await asyncio.to_thread(self._open)
+        self.hub.start()
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """End its event streams, close its viewers, and stop drawing. May be called twice."""
+        self.channel.close()
+        await self.hub.stop()
+        await asyncio.to_thread(self._resources.close)
+
+    def _open(self) -> None:
+        server = self._resources.enter_context(in_process_viser())
+        self.hub.upstream = server.frames
+        self._scene = StageScene(server)
+        loop = StageLoop(
+            self.stage, self._scene, self.channel, lambda: self.hub.counters.viewers > 0
+        )
+        self._resources.enter_context(loop)
+
+    def _follow_position(self, view: str) -> Position | None:
+        return None if self._scene is None else self._scene.follow_position(view)

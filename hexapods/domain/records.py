@@ -1,0 +1,124 @@
+"""Records as JSON: a dataclass is declared once, and what reads, writes and describes it follows.
+
+Requests, answers, the OpenAPI document, the database, archives and files all use the dataclass, by
+Pydantic. A type with a form of its own in JSON, such as a robot, says it by a `JsonForm`.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, ClassVar, TypeVar
+
+T = TypeVar("T")
+Schema = dict[str, Any]
+
+
+class Record:
+    """Base class of dataclasses that are sent and stored as JSON objects of exactly their fields.
+
+    Attributes:
+        json_names: names in JSON of the fields that have another name there.
+    """
+
+    # Of Pydantic, which is imported only where a record is read or written.
+    __pydantic_config__: ClassVar[Mapping[str, Any]] = {
+        "extra": "forbid",
+        "json_schema_serialization_defaults_required": True,
+    }
+    json_names: ClassVar[Mapping[str, str]] = {}
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
+        schema = handler(source)
+        about = (source.__doc__ or "").partition("\n\n")[0].replace("\n", " ")
+        schema.setdefault("metadata", {})["pydantic_js_updates"] = {"description": about}
+        for one in schema["schema"]["fields"]:
+            if one["name"] in cls.json_names:
+                name = cls.json_names[one["name"]]
+                one |= {"validation_alias": name, "serialization_alias": name}
+        return schema
+
+
+@dataclass(frozen=True, eq=False)
+class JsonForm:
+    """Annotation: how a type is read from JSON, written and described.
+
+    Attributes:
+        read: converts what was given; it raises `InvalidInput` for what is not valid.
+        write: converts to plain types.
+        given: JSON schema of what may be given, or a function that returns it.
+        sent: JSON schema of what is written; None if it is `given`.
+    """
+
+    read: Callable[[Any], Any]
+    write: Callable[[Any], Any]
+    given: Schema | Callable[[], Schema]
+    sent: Schema | None = None
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        def describe(_: Any, schema_of: Any) -> Schema:
+            if schema_of.mode == "serialization" and self.sent is not None:
+                return dict(self.sent)
+            return dict(self.given() if callable(self.given) else self.given)
+
+        return plain_form(self.read, self.write, describe)
+
+
+def plain_form(
+    read: Callable[[Any], Any],
+    write: Callable[[Any], Any],
+    describe: Callable[[Any, Any], Schema],
+) -> Any:
+    """Return Pydantic's schema of a type that is read and written by functions.
+
+    Args:
+        read: converts what was given.
+        write: converts to plain types.
+        describe: returns the JSON schema, as Pydantic's `pydantic_js_functions` do.
+    """
+    from pydantic_core import core_schema  # noqa: PLC0415 - as in `_adapter`
+
+    return core_schema.no_info_plain_validator_function(
+        read,
+        serialization=core_schema.plain_serializer_function_ser_schema(write),
+        metadata={"pydantic_js_functions": [describe]},
+    )
+
+
+def to_json(record: Any) -> dict[str, Any]:
+    """Convert a record to plain types, as in requests, answers, the database and files."""
+    adapter = _adapter(type(record))  # type: ignore[arg-type]  # mypy: no hash
+    plain: dict[str, Any] = adapter.dump_python(record, mode="json", by_alias=True)
+    return plain
+
+
+def from_json(kind: type[T], data: Any, **how: Any) -> T:
+    """Parse the output of `to_json`; fields that earlier versions did not have may be left out.
+
+    Args:
+        kind: class of the record.
+        data: plain types, or bytes of JSON.
+        how: arguments for Pydantic, such as `strict=True`.
+
+    Raises:
+        InvalidInput: if a value is invalid.
+        ValueError: if the structure is not that of the output of `to_json`.
+    """
+    from pydantic import ValidationError  # noqa: PLC0415 - as in `_adapter`
+
+    adapter = _adapter(kind)  # type: ignore[arg-type]  # mypy: no hash
+    read = adapter.validate_json if isinstance(data, bytes) else adapter.validate_python
+    try:
+        record: T = read(data, **how)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+        raise ValueError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from None
+    return record
+
+
+@cache
+def _adapter(kind: Any) -> Any:
+    # Its import takes 0.2 s, which most uses of the library need not wait for.
+    from pydantic import TypeAdapter  # noqa: PLC0415
+
+    return TypeAdapter(kind)

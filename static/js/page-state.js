@@ -1,0 +1,208 @@
+// The page's state: one document, which a link carries and "back" restores. Each of its fields is declared once, in
+// `FIELDS`. The only module that reads and writes the address and the history.
+import { batch, effect, signal } from "@preact/signals";
+
+/** @import { Signal } from "@preact/signals" */
+
+/**
+ * How a value stands in an address: `read` is undefined for a text that is none, `write` null for what a link leaves
+ * out.
+ * @template Value
+ * @typedef {{ read: (text: string) => Value | undefined, write: (value: Value) => string | null }} Codec
+ */
+
+/**
+ * `part`: the query of the address, its hash, or the query after a view in its hash. `name`: the name there; null for
+ * all that no other field of the part has, as texts. `isEntry`: whether a change is a new entry of the history, to
+ * which "back" returns.
+ * @template Value
+ * @typedef {Codec<Value> & { part: string, name: string | null, initial: Value, isEntry?: boolean }} Field
+ */
+
+/** @type {Codec<string | null>} */
+const TEXT = { read: (text) => text || null, write: (text) => text };
+/** @type {Codec<string[]>} */
+const LIST = {
+  read: (text) => [...new Set(text.split(",").map((one) => one.trim()).filter(Boolean))],
+  write: (list) => list.join(",") || null,
+};
+/** Without a value, as a person types it. @type {Codec<boolean>} */
+const FLAG = { read: () => true, write: (isOn) => (isOn ? "" : null) };
+/** @type {Codec<number | null>} */
+const SECONDS = {
+  read: (text) => (Number(text) >= 0 && text.trim() ? Number(text) : undefined),
+  write: (time_s) => time_s?.toFixed(2) ?? null,
+};
+/**
+ * One of several words, of which the first is left out.
+ * @template Word
+ * @param {Word[]} words
+ * @returns {Codec<Word>}
+ */
+const oneOf = (words) => ({
+  read: (text) => words.find((word) => word === text),
+  write: (word) => (word === words[0] ? null : String(word)),
+});
+const NO_TEXTS = new URLSearchParams();
+const TEXTS = { name: null, initial: NO_TEXTS, read: () => undefined, write: String };
+
+/** The fields, in the order in which an address has them. */
+const FIELDS = {
+  /** The open view: race, experiments, runs or compare. */
+  view: { part: "hash", name: "view", initial: "race", ...oneOf(["race", "experiments", "runs", "compare"]),
+    isEntry: true },
+  /** What was set of the next run, by field, as it was typed. */
+  form: { part: "query", ...TEXTS },
+  /** Id of the run that this page replays by itself; null for the stage that all share. */
+  run: { part: "query", name: "run", initial: null, ...TEXT, isEntry: true },
+  /** Id of the run whose robots walk along as ghosts. */
+  ghost: { part: "query", name: "ghost", initial: null, ...TEXT, isEntry: true },
+  /** Where the own replay is held [s]; null while it plays. */
+  moment: { part: "query", name: "t", initial: null, ...SECONDS },
+  /** Whether the panel of single steps is open. */
+  isExplaining: { part: "query", name: "explain", initial: false, ...FLAG },
+  /** Whether the panel "What if?" is open; null where that depends on the room. */
+  whatIf: { part: "query", name: "what-if", initial: null, ...oneOf([null, "open", "closed"]) },
+  /** Whether the page is presented: full screen, large type. */
+  isPresenting: { part: "query", name: "present", initial: false, ...FLAG },
+  /** What was set of the next experiment, by field, as it was typed. */
+  experiment: { part: "experiments", ...TEXTS },
+  /** Id of the experiment whose report is shown; null for the newest. */
+  report: { part: "experiments", name: "run", initial: null, ...TEXT },
+  /** Filters and order of the list of runs. */
+  list: { part: "runs", ...TEXTS },
+  /** Ids of the runs that are compared, in their order. */
+  compared: { part: "compare", name: "runs", initial: /** @type {string[]} */ ([]), ...LIST },
+};
+
+/** @typedef {typeof FIELDS} Fields */
+/** @typedef {{ [Name in keyof Fields]: ReturnType<Fields[Name]["read"]> | Fields[Name]["initial"] }} Loose */
+/** @typedef {{ [Name in keyof Loose]: Exclude<Loose[Name], undefined> }} PageState */
+
+const ENTRIES = /** @type {[keyof PageState, Field<any>][]} */ (Object.entries(FIELDS));
+const INITIAL = /** @type {PageState} */ (Object.fromEntries(ENTRIES.map(([name, { initial }]) => [name, initial])));
+
+/** The document: a signal of each field. */
+export const page = /** @type {{ [Name in keyof PageState]: Signal<PageState[Name]> }} */ (
+  Object.fromEntries(ENTRIES.map(([name, { initial }]) => [name, signal(initial)])));
+
+/**
+ * What a link says that has no effect, as "alhpa=0.5", by the form beside which that is told.
+ * @type {Record<string, Signal<string[]>>}
+ */
+export const ignored = { query: signal([]), experiments: signal([]) };
+
+/** Change fields together. @param {Partial<PageState>} changes */
+export const change = (changes) => batch(() => {
+  for (const [name, value] of Object.entries(changes)) /** @type {any} */ (page)[name].value = value;
+});
+
+/** Note the open view; what is returned changes fields, unless the user has left the view since. */
+export function changeIfStillHere() {
+  const before = page.view.peek();
+  return (/** @type {Partial<PageState>} */ changes) => {
+    if (page.view.peek() === before) change(changes);
+  };
+}
+
+// ---- as an address
+
+/** A text within a query. @param {string} text */
+const encoded = (text) => String(new URLSearchParams([["", text]])).slice(1);
+
+/** A query that people can read: separators stand in its values as they are. @param {Iterable<string[]>} pairs */
+const queryOf = (pairs) => [...pairs]
+  .map(([name, text]) => encoded(name) + (text && `=${encoded(text).replace(/%(2C|3A|3B|3D)/g, decodeURIComponent)}`))
+  .join("&");
+
+/** @type {(field: Field<any>, value: any) => string[][]} */
+function pairsOf({ name, write }, value) {
+  if (name === null) return [...value];
+  const text = write(value);
+  return text === null ? [] : [[name, text]];
+}
+
+/** @type {(values: PageState) => string} */
+function written(values) {
+  const inPart = (/** @type {string} */ part) => queryOf(ENTRIES.flatMap(([name, field]) =>
+    (field.part === part ? pairsOf(field, values[name]) : [])));
+  const [query, ofView] = [inPart("query"), inPart(values.view)];
+  const hash = values.view === INITIAL.view ? "" : `#${values.view}${ofView && `?${ofView}`}`;
+  return `${query && `?${query}`}${hash}`;
+}
+
+const present = () =>
+  /** @type {PageState} */ (Object.fromEntries(ENTRIES.map(([name]) => [name, page[name].value])));
+
+/** The document as an address, from its query on. */
+export const write = () => written(present());
+
+/** The address of a page in which only these fields are set. @param {Partial<PageState>} values */
+export const addressOf = (values) => written({ ...INITIAL, ...values });
+
+/** The fields of which a change is a new entry of the history, as a text. */
+export const entry = () => queryOf(ENTRIES.flatMap(([name, field]) =>
+  (field.isEntry ? pairsOf(field, page[name].value) : [])));
+
+/** @type {(address: { search: string, hash: string }) => Record<string, URLSearchParams | undefined>} */
+function partsOf({ search, hash }) {
+  const [view, query] = hash.slice(1).split("?");
+  const hashPart = new URLSearchParams(view ? { view } : {});
+  const ofView = query ? { [view]: new URLSearchParams(query) } : {};
+  return { ...ofView, query: new URLSearchParams(search), hash: hashPart };
+}
+
+/** @type {(field: Field<any>, query: URLSearchParams) => any} */
+function readField({ part, name, initial, read }, query) {
+  if (name === null) {
+    const others = ENTRIES.filter(([, field]) => field.part === part).map(([, field]) => field.name);
+    return new URLSearchParams([...query].filter(([one]) => !others.includes(one)));
+  }
+  const text = query.get(name);
+  const value = text === null ? initial : read(text);
+  if (value !== undefined) return value;
+  ignored.query.value = [...ignored.query.value, `${name}=${text}`];
+  return initial;
+}
+
+/**
+ * Set the document to what an address says. The bare name of a view leaves what is set there as it was.
+ * @param {{ search: string, hash: string }} address
+ */
+export const read = (address) => batch(() => {
+  const parts = partsOf(address);
+  for (const [name, field] of ENTRIES) {
+    const query = parts[field.part];
+    if (!query) continue;
+    const [before, value] = [page[name].peek(), readField(field, query)];
+    if (queryOf(pairsOf(field, before)) !== queryOf(pairsOf(field, value))) change({ [name]: value });
+  }
+});
+
+/** Keep the address and the page's state the same. The address that was opened is read first. */
+export function followHistory() {
+  let known = "";
+  // At once, so that what follows from it is written over this entry of the history, and not to a new one.
+  const readAddress = () => batch(() => {
+    read(location);
+    known = entry();
+  });
+  readAddress();
+  addEventListener("popstate", readAddress);
+  effect(() => {
+    const [address, now] = [write(), entry()];
+    const isOther = now !== known;
+    known = now;
+    if (address === `${location.search}${location.hash}`) return;
+    history[isOther ? "pushState" : "replaceState"](history.state, "", `${location.pathname}${address}`);
+  });
+}
+
+/** A link to the page as it is, or with only these fields set. @param {Partial<PageState>} [values] */
+export const linkTo = (values) => `${location.origin}${location.pathname}${values ? addressOf(values) : write()}`;
+
+/** Write a link into the address bar. @param {string} address */
+export const showAddress = (address) => history.replaceState(history.state, "", address);
+
+/** Load the page anew. */
+export const reload = () => location.reload();

@@ -1,0 +1,119 @@
+// Why the leader is ahead, from recorded figures only.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import { practiceReason, reasonOf, stepEnds, workOf } from "../../static/js/headline.js";
+import { options } from "../../static/js/store.js";
+import { OPTIONS } from "./options.js";
+
+/**
+ * A lane of steps of 1 s, of the lengths given [m], each thought of for `thinking` seconds before.
+ * @param {number[]} lengths
+ * @param {{ thinking?: number, futures?: number }} [search]
+ */
+function track(lengths, { thinking = 0, futures = 0 } = {}) {
+  /** @type {any} */
+  const lane = { points: [[0, 0]], thinking: [], futures: lengths.map(() => futures) };
+  let [time, distance] = [0, 0];
+  for (const length of lengths) {
+    if (thinking) {
+      lane.thinking.push([time, time + thinking]);
+      lane.points.push([(time += thinking), distance]);
+    }
+    lane.points.push([(time += 1), (distance += length)]);
+  }
+  return { ...lane, total_s: time };
+}
+
+/** @type {(count: number, length: number) => number[]} */
+const steps = (count, length) => Array.from({ length: count }, () => length);
+
+/** @param {object} [changes] */
+const row = (lane = 0, title = "Greedy", changes = {}) =>
+  ({ lane, title, fell_at_step: null, isMarching: false, ...changes });
+const [A, B] = [row(0, "Greedy"), row(1, "Q-learning")];
+
+/** @type {(rows: any[], tracks: any[], disturbances?: any[]) => string | null} */
+const told = (rows, tracks, disturbances = []) => reasonOf(rows, tracks, 1000, disturbances);
+
+beforeEach(() => {
+  options.value = OPTIONS;
+});
+
+test("steps count once they have ended, with the distance that they made", () => {
+  const slow = track([0.03, 0.03], { thinking: 1 });
+  assert.deepEqual(stepEnds(track([0.01, 0.01]), 1.9), [0, 0.01]);
+  assert.deepEqual([1.5, 3.5, 4].map((time) => stepEnds(slow, time)), [[0], [0, 0.03], [0, 0.03, 0.06]]);
+  assert.equal(stepEnds({ ...slow, points: [[0, 0], [2, 0.02]] }, 2), null);
+});
+
+test("nothing is told without figures of both, nor of lanes that are level", () => {
+  assert.equal(told([A], [track([0.1])]), null);
+  assert.equal(told([A, B], [track([0.1])]), null);
+  assert.equal(told([A, B], [track([0.1]), track([])]), null);
+  assert.equal(told([A, B], [track(steps(5, 0.01)), track(steps(5, 0.009))]), null);
+});
+
+test("1: the other has fallen, and the leader has not", () => {
+  const tracks = [track(steps(9, 0.01)), track(steps(9, 0.002))];
+  assert.equal(told([A, row(1, "Q-learning", { fell_at_step: 6 })], tracks), "Q-learning has fallen at step 7.");
+  const both = [row(0, "Greedy", { fell_at_step: 3 }), row(1, "Q-learning", { fell_at_step: 6 })];
+  assert.match(told(both, tracks) ?? "", /^Its steps are longer/);
+});
+
+test("2: the other marches on the spot", () => {
+  const tracks = [track(steps(12, 0.01)), track([0.02, 0.02, ...steps(10, 0.0004)])];
+  const words = told([A, row(1, "Q-learning", { isMarching: true })], tracks);
+  assert.equal(words, "Q-learning marches on the spot: 0.4\u00a0cm in its last ten steps.");
+});
+
+test("3: a disturbance shortened the other's steps, and more than the leader's", () => {
+  const limp = { kind: "limp", at_step: 5, legs: [1] };
+  const tracks = [track(steps(10, 0.01)), track([...steps(5, 0.01), ...steps(5, 0.004)])];
+  const words = "Leg\u00a01 limp from step 6: Q-learning went 10.0\u00a0mm a step before, 4.0\u00a0mm after.";
+  assert.equal(told([A, B], tracks, [limp]), words);
+  assert.doesNotMatch(told([A, B], tracks, [{ ...limp, at_step: 9 }]) ?? "", /limp/, "two steps after tell nothing");
+  const alike = [track([...steps(5, 0.02), ...steps(5, 0.005)]), tracks[1]];
+  assert.doesNotMatch(told([A, B], alike, [limp]) ?? "", /limp/, "the leader lost more by it");
+});
+
+test("4: its steps are longer, with the moves that it simulates before each, if it does", () => {
+  const other = track(steps(8, 0.007));
+  assert.equal(told([A, B], [track(steps(8, 0.01), { futures: 12 }), other]),
+    "Its steps are longer: 10.0\u00a0mm against 7.0\u00a0mm of Q-learning. It simulates 12 moves before each.");
+  const table = told([A, B], [track(steps(8, 0.01)), other]);
+  assert.equal(table, "Its steps are longer: 10.0\u00a0mm against 7.0\u00a0mm of Q-learning.");
+  const uneven = { ...track(steps(2, 0.02)), futures: [10, 13] };
+  assert.match(told([A, B], [uneven, track(steps(2, 0.007))]) ?? "", /It simulates about 12 moves before each\.$/);
+});
+
+test("5: it thinks less and has made more steps", () => {
+  const words = told([A, B], [track(steps(8, 0.01)), track(steps(4, 0.01), { thinking: 1 })]);
+  assert.equal(words, "It thinks less: 8 steps made against 4 of Q-learning.");
+});
+
+test("6: both walk alike, and the lead is that of the first ten steps", () => {
+  const first = track([...steps(5, 0.014), ...steps(35, 0.01)]);
+  assert.equal(told([A, B], [first, track(steps(40, 0.01))]), "Both walk alike; Greedy began 2\u00a0cm better.");
+  assert.equal(told([A, B], [track([...steps(35, 0.01), ...steps(5, 0.014)]), track(steps(40, 0.01))]), null);
+});
+
+test("a reason has at most 25 words", () => {
+  const long = row(1, "Posterior sampling (deep)", { isMarching: true, fell_at_step: 41 });
+  const tracks = [track(steps(50, 0.0123), { futures: 7800 }), track(steps(50, 0.001), { futures: 7 })];
+  for (const other of [long, { ...long, fell_at_step: null }, row(1, long.title)]) {
+    assert.ok((told([A, other], tracks) ?? "").split(" ").length <= 25);
+  }
+});
+
+test("at the end it is told how the winner spent its time", () => {
+  const winner = track(steps(4, 0.01), { thinking: 1 });
+  assert.equal(workOf(A, [winner], 6, 50), "It thought for 50 % of the time, and made 3 steps of 50.");
+  assert.equal(workOf(undefined, [winner], 6, 50), null);
+  assert.equal(workOf(A, [], 6, 50), null);
+});
+
+test("practice says how many of its steps are random, while there are any", () => {
+  assert.equal(practiceReason(0.334), "33 of 100 steps are still random (ε\u00a00.33): it finds out which moves pay.");
+  assert.equal(practiceReason(0), null);
+  assert.equal(practiceReason(undefined), null);
+});
