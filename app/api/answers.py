@@ -13,6 +13,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.stage.presentation import Presentation
 from app.stage.state_machine import Origin, Phase
 from app.storage.run import State
 from hexapods.domain.disturbances import AnyDisturbance
@@ -223,6 +224,7 @@ class StageView(Answer):
     next_run_id: str | None
     holder: str | None
     announced: Announcement | None
+    presentation: Presentation
 
 
 class EstimateView(Answer):

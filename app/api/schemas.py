@@ -20,6 +20,7 @@ from app.api.fields import (
     number,
 )
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
+from app.stage.presentation import Presentation
 from app.storage.run import ANNOTATIONS
 from hexapods.domain.disturbances import AnyDisturbance
 from hexapods.domain.errors import InvalidInput
@@ -257,4 +258,5 @@ class StageBody(Body):
         ]
         | None
     ) = None
+    presentation: Presentation | None = None
     stay: Annotated[bool, Field(strict=True, description="keep the run that is on stage")] = False

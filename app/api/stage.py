@@ -19,5 +19,5 @@ def get_stage(shared: StageDep) -> Response:
 @router.put("", response_model=StageView, summary="Show a run, or change the stage's playback")
 def put_stage(shared: StageDep, body: StageBody) -> Response:
     """Change the given fields; the others are unchanged."""
-    shared.stage.set(**body.model_dump())
+    shared.stage.set(**dict(body))
     return JSONResponse(shared.stage.state())

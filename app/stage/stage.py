@@ -9,11 +9,13 @@ from typing import Any, Literal
 
 from app.events.bus import Channel, Event, Subscription
 from app.stage.playback import show_of
+from app.stage.presentation import Presentation
 from app.stage.state_machine import Origin, StagedRun, StageState
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
 from hexapods.domain.errors import HexapodError
+from hexapods.domain.records import to_json
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
@@ -63,6 +65,7 @@ class Stage:
         """All that happens in the run on stage, as far as it is known."""
         self._changes = channel.subscribe(run_ids=())
         """Events about the runs of the playlist."""
+        self._presentation = Presentation()
         self._playing = True
         self._speed: float | None = None
         """Speed chosen by a user; None for the show's automatic speed."""
@@ -137,6 +140,7 @@ class Stage:
         speed: float | Literal["time-lapse"] | None = None,
         clock: Clock | None = None,
         end_at_time_out: bool | None = None,
+        presentation: Presentation | None = None,
         stay: bool = False,
     ) -> None:
         """Execute playback commands, which the API has validated; None leaves a setting unchanged.
@@ -150,6 +154,7 @@ class Stage:
             clock: times a race; see `hexapods.runs.clocks`.
             end_at_time_out: whether the show of a race ends with its photo finish, where the
                 ranking is settled, or goes on until its last lane has ended.
+            presentation: what presenters' windows show beside the stage.
             stay: keep the run on stage, as if a person had chosen it.
 
         Raises:
@@ -169,6 +174,8 @@ class Stage:
                 self._speed = None if isinstance(speed, str) else speed
             if end_at_time_out is not None:
                 self._show.ends_at_time_out = end_at_time_out
+            if presentation is not None:
+                self._presentation = presentation
             if playing and self._show.ended and time_s is None:
                 time_s = 0.0
             if playing is not None:
@@ -199,6 +206,7 @@ class Stage:
                 "next_run_id": ids[1] if len(ids) > 1 else None,
                 "holder": ids[-1] if state.is_held else None,
                 "announced": self._announcement(),
+                "presentation": to_json(self._presentation),
             }
 
     def frame(self) -> StageFrame:

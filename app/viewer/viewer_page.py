@@ -15,7 +15,7 @@ from starlette.websockets import WebSocket
 
 from hexapods.drawing.viser_internals.client import content_policy, patched_page
 
-STAGE_SCRIPTS = ("client.js", "patch.js", "clicks.js", "labels.js")
+STAGE_SCRIPTS = ("client.js", "patch.js", "clicks.js", "legs.js", "labels.js")
 ALLOWED_QUERY = frozenset(
     {
         "view",

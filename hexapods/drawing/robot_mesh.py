@@ -60,6 +60,17 @@ class RobotMesh:
         }
         """The joint that moves a link, by the link's body id."""
 
+    def part_name(self, number: int) -> str:
+        """Return the name of a part's scene node: whose links its instances are.
+
+        `1/legs-1-2-3` has the links of these legs, in this order, of each lane; `static/viewer/legs.js`
+        finds by it which leg was clicked.
+        """
+        joints = [self._joint_of_link.get(link) for link in self.parts[number].links.tolist()]
+        if None in joints:
+            return f"{number}/torso"
+        return f"{number}/legs-{'-'.join(str(joint.leg) for joint in joints if joint)}"
+
     @property
     def default_qpos(self) -> FloatArray:
         """The model's reference configuration `qpos0`, (7 + joints,)."""

@@ -58,7 +58,7 @@ class Robots:
             colors, _ = self._looks(part)
             positions, wxyzs = self._instances(number)
             handle = server.scene.add_batched_meshes_simple(
-                f"{root}/{number}",
+                f"{root}/{number if is_ghost else mesh.part_name(number)}",
                 part.shape.vertices,
                 part.shape.faces,
                 batched_positions=positions,

@@ -8,7 +8,7 @@ import {
 } from "./form.js";
 import { count, listed, whole } from "./format.js";
 import { changeIfStillHere, page } from "./page-state.js";
-import { canPlay, isPlaying, isRaceRun, laneTables, myWork, shownRun, work } from "./on-stage.js";
+import { canPlay, isPlaying, isRaceRun, laneTables, matchingTable, myWork, shownRun, work } from "./on-stage.js";
 import { isActive, isOperator, markAsMine } from "./selectors.js";
 import { closeReplay, playReplay, seekReplay, setReplayClock, setReplaySpeed } from "./replay.js";
 import { formRobot } from "./robots.js";
@@ -98,7 +98,7 @@ export const missingLane = computed(() => {
 });
 
 /** "Practise 500 more" */
-export const practiseMore = () => {
+const practiseMore = () => {
   const steps = validSteps();
   return steps === null ? "Practise more" : `Practise ${whole(steps)} more`;
 };
@@ -124,6 +124,8 @@ export const secondaryActions = computed(() => {
   const actions = [];
   if (isRaceRun.value) actions.push({ label: "Start over", run: () => startRace() });
   else actions.push({ label: "Train, don’t race", run: () => startTraining() });
+  const table = matchingTable.value;
+  if (table) actions.push({ label: `${practiseMore()}, don’t race`, run: () => continueTraining(table) });
   const tables = laneTables.value;
   if (tables) actions.push({ label: "Race only", run: () => startRace({ tables }) });
   if (racingLearners.value.every((agent) => form.value[`${agent}.keep_learning`])) {
@@ -157,10 +159,10 @@ const startRace = (how) => attempt("start", () => adopt(() => api.startRace(race
 const startTraining = () => attempt("start", () => adopt(() => api.startTraining(trainingBody())));
 
 /**
- * Continue the training of a table with the form's rates.
+ * Continue the training of a table with the form's rates, without a race.
  * @param {Run} table
  */
-export const continueTraining = (table) =>
+const continueTraining = (table) =>
   attempt("start", () => adopt(() => api.startTraining(trainingBody(table.id))));
 
 // ---- running work
@@ -233,6 +235,9 @@ export function setStage(changes) {
   // Not one at a time: the newest choice is obeyed.
   return setReplayClock(clock).catch((error) => setEntry(problems, "stage", error));
 }
+
+/** Change the stage that all pages share, whatever this page shows. @param {StageChanges} changes */
+export const setShared = (changes) => stageChanges.request(changes);
 
 const stageChanges = oneAtATime(
   "stage", (/** @type {StageChanges} */ changes) => requestStage(() => api.putStage(changes)),

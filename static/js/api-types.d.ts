@@ -977,6 +977,28 @@ export interface StageView {
   next_run_id: string | null;
   holder: string | null;
   announced: Announcement | null;
+  presentation: Presentation;
+}
+/**
+ * What presenters' windows show beside the stage; told by their keys or by a remote.
+ */
+export interface Presentation {
+  /**
+   * number of the lesson's card, from 1; null before the first
+   */
+  card: number | null;
+  /**
+   * whether the step that is shown is explained
+   */
+  shows_why: boolean;
+  /**
+   * whether they show nothing
+   */
+  is_blank: boolean;
+  /**
+   * size of the QR code of the spectators' address
+   */
+  code: "large" | "small" | "none";
 }
 /**
  * The moment of a run that the stage shows, without poses.

@@ -24,8 +24,6 @@ const partLength = () => longestWindow() / 2;
 export const BEFORE_S = 3;
 export const AFTER_S = 1.5;
 
-/** Whether the panel is in the window: what nobody sees is not requested. */
-export const isWatched = signal(false);
 /** Of a training: its practice, or its newest evaluation. @type {Signal<"practice" | "evaluation">} */
 export const part = signal("practice");
 /** Whether the whole walk is drawn, instead of what is around the present moment. */
@@ -124,7 +122,7 @@ const beginOf = (shown) => Math.max(0, (shown - 0.5) * partLength());
 export const followGait = () => askForNewest({
   key: () => {
     const about = subject.value;
-    if (!isWatched.value || !about?.run.progress.done || connection.value !== "live") return "";
+    if (!about?.run.progress.done || connection.value !== "live") return "";
     const { run } = about;
     return [run.id, about.part, partShown.value, run.state, run.progress.done].join(" ");
   },

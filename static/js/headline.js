@@ -11,6 +11,7 @@ import { agentOf } from "./settings.js";
 import { connection } from "./store.js";
 import { curve } from "./training.js";
 
+/** @import { Signal } from "@preact/signals" */
 /** @import { Standing } from "./race.js" */
 /** @import { Disturbance, TimelineLane } from "./types.js" */
 
@@ -25,8 +26,21 @@ export const headline = computed(() => {
   if (!rows?.length) return null;
   const steps = raceInView.value?.config.steps ?? 0;
   if (shownEarlyEnd.value) return earlyEndOf(rows, shownEarlyEnd.value, steps);
-  return isTimedOut.value ? verdictOf(rows, firstTimedOut.value, steps) : leadOf(rows);
+  return isTimedOut.value ? verdictOf(rows) : leadOf(rows);
 });
+
+/** The colour of who leads, or of the learner that practises. */
+export const leaderColor = computed(() => {
+  const [first] = standings.value ?? [];
+  const agent = shownRun.value?.config.agent;
+  return first?.color ?? (agent ? agentOf(agent).color : "transparent");
+});
+
+/**
+ * The move that the explanation is about, told by its tab while it is open; null without one.
+ * @type {Signal<{ title: string, reason: string, color: string } | null>}
+ */
+export const moveTold = signal(null);
 
 export function announceOutcomes() {
   const decided = computed(() =>
@@ -46,7 +60,6 @@ export function announceOutcomes() {
 }
 
 // ---- who leads or has won and by which rule, in sentences
-
 
 
 /** @type {(row: Standing) => number} */
@@ -74,33 +87,30 @@ function leadIn(rows) {
 }
 
 /**
- * The outcome of a race, with the moment that decided it: "Greedy wins: 0.37 m when Q-learning had used its 50 steps".
+ * The outcome of a race: "Greedy wins by 3 cm".
  * @param {Standing[]} rows
- * @param {number[]} first numbers of the lanes that used all their steps first; none if no lane did
+ */
+function verdictOf(rows) {
+  const winners = rows.filter(({ rank }) => rank === 1);
+  if (winners.length > 1) return `${titlesOf(winners)} tie`;
+  const [{ title, failure, step }] = winners;
+  if (failure) return `${title} wins, stopped at step ${step}`;
+  return `${title} wins ${rows.length > 1 ? `by ${distanceApart(leadIn(rows))}` : `with ${metres(distanceOf(winners[0]))}`}`;
+}
+
+/**
+ * The moment that decided a race: "when Q-learning had used its 50 steps".
+ * @param {Standing[]} rows
+ * @param {number[]} first numbers of the lanes that used all their steps first; none while that is not known
  * @param {number} steps of each lane
  */
-function verdictOf(rows, first, steps) {
-  const winners = rows.filter(({ rank }) => rank === 1);
-  const distance = metres(distanceOf(winners[0]));
-  const when = momentOf(rows, winners, first, steps);
-  if (winners.length > 1) return `${titlesOf(winners)} tie: ${distance} ${when}`;
-  const [{ title, failure, step }] = winners;
-  const margin = rows.length > 1 ? ` by ${distanceApart(leadIn(rows))}` : "";
-  return `${title} wins${failure ? `, stopped at step ${step}` : margin}: ${distance} ${when}`;
-}
-
-/** @type {(rows: Standing[], winners: Standing[], first: number[], steps: number) => string} */
-function momentOf(rows, winners, first, steps) {
+function decidedWhen(rows, first, steps) {
   const used = count(steps, "step");
-  // Neither the timeline nor the result is loaded yet.
-  if (!first.length) return "at time-out";
-  if (first.length === rows.length) return `after ${used} each`;
+  if (!first.length) return "";
+  if (first.length === rows.length) return `, after ${used} each`;
   const timedOut = rows.filter(({ lane }) => first.includes(lane));
-  const isOwn = timedOut.length === 1 && winners.length === 1 && timedOut[0] === winners[0];
-  return `when ${isOwn ? "it" : titlesOf(timedOut)} had used ${timedOut.length > 1 ? "their" : "its"} ${used}`;
+  return `, when ${titlesOf(timedOut)} had used ${timedOut.length > 1 ? "their" : "its"} ${used}`;
 }
-
-
 
 /**
  * How far the lanes came in a race that ended before its time-out: "Stopped at step 26 of 50: Greedy came farthest, …".
@@ -122,14 +132,16 @@ function earlyEndOf(rows, end, steps) {
 const EARLY_END_VERBS = { Stopped: "was stopped", Failed: "failed", Interrupted: "was interrupted" };
 
 /**
- * The rule of the ranking, in one sentence.
- * @param {number} steps of each lane
+ * By what the lanes are ranked, and once they are, when: in one sentence.
+ * @param {Standing[]} rows
  * @param {string} clockTitle
  */
-export function ruleOf(steps, clockTitle) {
+export function ruleOf(rows, clockTitle) {
+  const [{ steps }] = rows;
   const verb = EARLY_END_VERBS[shownEarlyEnd.value ?? ""];
-  return verb
-    ? `No ranking: the race ${verb} before its time-out (${clockTitle}).`
+  if (verb) return `No ranking: the race ${verb} before its time-out (${clockTitle}).`;
+  return isTimedOut.value
+    ? `Ranked at time-out${decidedWhen(rows, firstTimedOut.value, steps)} (${clockTitle}).`
     : `The farthest at time-out wins: when the first robot has used its ${count(steps, "step")} (${clockTitle}).`;
 }
 
@@ -311,10 +323,15 @@ export function practiceReason(epsilon) {
 /** The training on stage: how far it walks and what it does, by its newest evaluation that is shown. */
 const practice = computed(() => {
   const training = shownRun.value?.kind === "training" ? shownRun.value : null;
-  const newest = training && curve.value?.run.id === training.id ? curve.value.points.at(-1) : null;
-  if (!training || !newest?.step) return null;
+  if (!training) return null;
+  const newest = curve.value?.run.id === training.id ? curve.value.points.at(-1) : null;
+  const { title } = agentOf(training.config.agent);
+  if (!newest?.step) {
+    const { evaluate_every } = training.config;
+    return { title: `${title} practises`, reason: evaluate_every ? `Its first test is at step ${evaluate_every}.` : null };
+  }
   return {
-    title: `${agentOf(training.config.agent).title} walks ${metres(newest.distance_m)} so far`,
+    title: `${title} walks ${metres(newest.distance_m)} so far`,
     reason: practiceReason(newest.epsilon),
   };
 });

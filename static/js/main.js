@@ -2,21 +2,22 @@
 import { effect, signal, untracked } from "@preact/signals";
 import { render } from "preact";
 import { getOptions, getStage, openEvents, RequestError } from "./api.js";
-import { App, listenForKeys, listenForMenus } from "./components/app.js";
+import { App } from "./components/app.js";
 import { html } from "./components/elements.js";
+import { listenForKeys, listenForMenus } from "./components/keyboard.js";
 import { openExperimentForm } from "./experiments/form.js";
 import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
 import { followHistory, page, reload } from "./page-state.js";
 import { followPresenter, followTheme } from "./page.js";
+import { followPresentation } from "./presentation.js";
 import { announceOutcomes, headline, practiceTitle } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
 import { applyEvent, connection, eventNames, isLockedOut, options, role, version } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
-import { followWhatIf } from "./what-if.js";
 
 const FIRST_RETRY_MS = 500;
 const LONGEST_RETRY_MS = 8000;
@@ -37,7 +38,7 @@ async function loadOptions(attempt = 0) {
   openForm();
   openExperimentForm();
   followSpectators();
-  followWhatIf();
+
 }
 
 /** Load the module of spectators' pages; if that fails, again once the connection is back. */
@@ -70,6 +71,7 @@ const followTitle = () => effect(() => {
 followHistory();
 followTheme();
 followPresenter();
+followPresentation();
 reloadAfterUpgrade();
 followRuns(stageIds);
 followCurves(trainingsInView);

@@ -6,9 +6,9 @@ import { batch, effect, signal } from "@preact/signals";
 
 /**
  * How a value stands in an address: `read` is undefined for a text that is none, `write` null for what a link leaves
- * out.
+ * out; `words` are those that are valid, where they are few.
  * @template Value
- * @typedef {{ read: (text: string) => Value | undefined, write: (value: Value) => string | null }} Codec
+ * @typedef {{ read: (text: string) => Value | undefined, write: (value: Value) => string | null, words?: unknown[] }} Codec
  */
 
 /**
@@ -42,9 +42,41 @@ const SECONDS = {
 const oneOf = (words) => ({
   read: (text) => words.find((word) => word === text),
   write: (word) => (word === words[0] ? null : String(word)),
+  words,
 });
+/**
+ * Several of a few words.
+ * @param {string[]} words
+ * @returns {Codec<string[]>}
+ */
+const severalOf = (words) => ({
+  ...LIST,
+  read: (text) => {
+    const given = LIST.read(text) ?? [];
+    return given.every((one) => words.includes(one)) ? given : undefined;
+  },
+  words,
+});
+/** @type {Codec<string>} */
+const CAMERA = {
+  read: (text) => (/^(leader|free|[1-8])$/.test(text) ? text : undefined),
+  write: (target) => (target === "leader" ? null : target),
+  words: ["leader", "free", "1 to 8"],
+};
+/** @type {Codec<number | null>} */
+const WHOLE = {
+  read: (text) => (/^[1-9]\d?$/.test(text) ? Number(text) : undefined),
+  write: (number) => (number === null ? null : String(number)),
+};
 const NO_TEXTS = new URLSearchParams();
 const TEXTS = { name: null, initial: NO_TEXTS, read: () => undefined, write: String };
+
+/** How much of the page is shown, from little to all. */
+export const DEPTHS = ["watch", "try", "study"];
+/** The tabs of the panel, in their order. */
+export const TABS = ["board", "train", "world", "why", "gait", "table", "what-if"];
+/** Parts of the page that can be hidden. */
+export const HIDEABLE = ["panel", "card"];
 
 /** The fields, in the order in which an address has them. */
 const FIELDS = {
@@ -59,12 +91,26 @@ const FIELDS = {
   ghost: { part: "query", name: "ghost", initial: null, ...TEXT, isEntry: true },
   /** Where the own replay is held [s]; null while it plays. */
   moment: { part: "query", name: "t", initial: null, ...SECONDS },
-  /** Whether the panel of single steps is open. */
-  isExplaining: { part: "query", name: "explain", initial: false, ...FLAG },
-  /** Whether the panel "What if?" is open; null where that depends on the room. */
-  whatIf: { part: "query", name: "what-if", initial: null, ...oneOf([null, "open", "closed"]) },
+  /** Clock of the own replay of a race. */
+  clock: { part: "query", name: "clock", initial: "paper", ...oneOf(["paper", "wall", "free"]) },
+  /** Where the own replay of a race ends: at its time-out, or with its last lane. */
+  end: { part: "query", name: "end", initial: "time-out", ...oneOf(["time-out", "all"]) },
+  /** How much of the page is shown; null where the browser's own choice holds. */
+  depth: { part: "query", name: "depth", initial: null, ...oneOf([null, ...DEPTHS]) },
+  /** The open tab of the panel; null for the first. */
+  tab: { part: "query", name: "tab", initial: null, ...oneOf([null, ...TABS]), isEntry: true },
+  /** A second tab, pinned beside the first where there is room. */
+  pinned: { part: "query", name: "pinned", initial: null, ...oneOf([null, ...TABS]) },
+  /** Target of the camera: "leader", "free", or the number of a lane, from "1". */
+  camera: { part: "query", name: "camera", initial: "leader", ...CAMERA },
+  /** What is hidden of the page. */
+  hidden: { part: "query", name: "hidden", initial: /** @type {string[]} */ ([]), ...severalOf(HIDEABLE) },
+  /** The number of the lesson's card, from 1; null where no lesson is open. */
+  card: { part: "query", name: "card", initial: null, ...WHOLE },
   /** Whether the page is presented: full screen, large type. */
   isPresenting: { part: "query", name: "present", initial: false, ...FLAG },
+  /** Whether the page is the remote of a presentation. */
+  isRemote: { part: "query", name: "remote", initial: false, ...FLAG },
   /** What was set of the next experiment, by field, as it was typed. */
   experiment: { part: "experiments", ...TEXTS },
   /** Id of the experiment whose report is shown; null for the newest. */
@@ -144,16 +190,30 @@ export const addressOf = (values) => written({ ...INITIAL, ...values });
 export const entry = () => queryOf(ENTRIES.flatMap(([name, field]) =>
   (field.isEntry ? pairsOf(field, page[name].value) : [])));
 
+/** What a link of version 0.1 said of a panel → the tab that it is now. @type {Record<string, string>} */
+const EARLIER_PANELS = { "explain": "why", "what-if": "what-if" };
+
+/** A query as this version writes it. @param {string} search */
+function currentQuery(search) {
+  const query = new URLSearchParams(search);
+  for (const [panel, tab] of Object.entries(EARLIER_PANELS)) {
+    if (!query.has(panel)) continue;
+    if (query.get(panel) !== "closed" && !query.has("tab")) query.set("tab", tab);
+    query.delete(panel);
+  }
+  return query;
+}
+
 /** @type {(address: { search: string, hash: string }) => Record<string, URLSearchParams | undefined>} */
 function partsOf({ search, hash }) {
   const [view, query] = hash.slice(1).split("?");
   const hashPart = new URLSearchParams(view ? { view } : {});
   const ofView = query ? { [view]: new URLSearchParams(query) } : {};
-  return { ...ofView, query: new URLSearchParams(search), hash: hashPart };
+  return { ...ofView, query: currentQuery(search), hash: hashPart };
 }
 
 /** @type {(field: Field<any>, query: URLSearchParams) => any} */
-function readField({ part, name, initial, read }, query) {
+function readField({ part, name, initial, read, words }, query) {
   if (name === null) {
     const others = ENTRIES.filter(([, field]) => field.part === part).map(([, field]) => field.name);
     return new URLSearchParams([...query].filter(([one]) => !others.includes(one)));
@@ -161,7 +221,8 @@ function readField({ part, name, initial, read }, query) {
   const text = query.get(name);
   const value = text === null ? initial : read(text);
   if (value !== undefined) return value;
-  ignored.query.value = [...ignored.query.value, `${name}=${text}`];
+  const valid = words?.filter((word) => word !== null).join(", ");
+  ignored.query.value = [...ignored.query.value, `${name}=${text}${valid ? ` (valid: ${valid})` : ""}`];
   return initial;
 }
 

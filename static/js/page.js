@@ -1,5 +1,5 @@
-// What concerns this page alone and is in no link: the camera, dialogs, the full screen, what the browser keeps; and
-// texts and links that are copied, which is told for a few seconds.
+// What concerns this page alone and is in no link: dialogs, the full screen, the window's size, what the browser keeps;
+// and texts and links that are copied, which is told for a few seconds.
 import { computed, effect, signal } from "@preact/signals";
 import { change, linkTo, page, showAddress } from "./page-state.js";
 import { replayLink } from "./replay.js";
@@ -7,8 +7,6 @@ import { replayLink } from "./replay.js";
 /** @import { Signal } from "@preact/signals" */
 /** @import { Message } from "./replay-frames.js" */
 
-/** Target of the camera: "leader", "free", or the number of a lane, from "1". */
-export const camera = signal("leader");
 export const helpIsOpen = signal(false);
 
 /**
@@ -17,7 +15,7 @@ export const helpIsOpen = signal(false);
  * @param {string} byDefault
  * @returns {Signal<string>}
  */
-function storedText(key, byDefault) {
+export function storedText(key, byDefault) {
   const attempt = (/** @type {(kept: Storage) => string | null | void} */ act) => {
     try {
       return act(localStorage);
@@ -65,35 +63,24 @@ export function followPresenter() {
   });
 }
 
-// ---- the first lesson
-
-/** Whether the first lesson was done or skipped: "done". */
-const lessonKept = storedText("lesson", "open");
-/** Whether the first lesson is open: at the first visit ("first"), or from the help ("again"). */
-export const lesson = signal(lessonKept.peek() === "done" ? "" : "first");
-
-export const closeLesson = () => {
-  lesson.value = "";
-  lessonKept.value = "done";
-};
-
-export const openLesson = () => {
-  change({ view: "race" });
-  helpIsOpen.value = false;
-  lesson.value = "again";
-};
-
 // ---- the layout
 
-const narrowScreen = matchMedia("(max-width: 1080px)");
-/** Whether the page has one column. */
-export const isNarrow = signal(narrowScreen.matches);
-narrowScreen.addEventListener("change", ({ matches }) => (isNarrow.value = matches));
+/** A signal of whether a media query holds. @param {string} query */
+function mediaSignal(query) {
+  const list = matchMedia(query);
+  const isSo = signal(list.matches);
+  list.addEventListener("change", ({ matches }) => (isSo.value = matches));
+  return isSo;
+}
+
+/** Whether the panel is below the stage, and its tabs at the thumb. As in style/workspace.css. */
+export const isPhone = mediaSignal("(max-width: 760px)");
+/** Whether there is room for a second panel beside the first. */
+export const isWide = mediaSignal("(min-width: 1700px)");
 
 // ---- the colour theme: light, dark, or the system's; the stage follows it
 
-const systemDark = matchMedia("(prefers-color-scheme: dark)");
-const systemIsDark = signal(systemDark.matches);
+const systemIsDark = mediaSignal("(prefers-color-scheme: dark)");
 const THEMES = ["auto", "light", "dark"];
 const kept = storedText("theme", "auto");
 
@@ -108,7 +95,6 @@ export const shownTheme = computed(() =>
 export const nextTheme = () => (kept.value = THEMES[(THEMES.indexOf(theme.value) + 1) % THEMES.length]);
 
 export function followTheme() {
-  systemDark.addEventListener("change", ({ matches }) => (systemIsDark.value = matches));
   effect(() => {
     if (theme.value === "auto") delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = theme.value;
@@ -127,33 +113,6 @@ export function followTheme() {
 export const drawHere = signal(/** @type {((messages: Message[]) => void) | null} */ (null));
 /** The last click on a foot grid, until it is answered. @type {Signal<Click | null>} */
 export const clickedCell = signal(null);
-
-const SETTLED_MS = 3000;
-const BY_HAND = ["wheel", "touchmove", "keydown", "pointerdown"];
-
-/** Ends what keeps the element that was scrolled to last in view. */
-let stopKeeping = () => {};
-
-/**
- * Scroll to an element, and keep it in view while what is above it loads and grows, until somebody scrolls or another
- * one is scrolled to.
- * @param {Element} element
- * @param {ScrollLogicalPosition} block where in the window
- */
-export function keepInView(element, block) {
-  stopKeeping();
-  const scroll = () => element.scrollIntoView({ block, behavior: "instant" });
-  const watcher = new ResizeObserver(scroll);
-  watcher.observe(document.body);
-  const stop = () => {
-    watcher.disconnect();
-    BY_HAND.forEach((type) => removeEventListener(type, stop));
-  };
-  BY_HAND.forEach((type) => addEventListener(type, stop, { passive: true }));
-  setTimeout(stop, SETTLED_MS);
-  stopKeeping = stop;
-  scroll();
-}
 
 /** The message that is shown for a few seconds. @type {Signal<string | null>} */
 export const toastMessage = signal(null);

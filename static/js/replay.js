@@ -2,7 +2,6 @@
 // The server gives frames (`replay-frames.js`); which run it is, and where it is held, is of the page's state.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getReplay, getReplayFrames, isLasting } from "./api.js";
-import { camera } from "./page.js";
 import { change, linkTo, page } from "./page-state.js";
 import { decode, endOf, Follower, inRecording, placeOf, SceneState, Segments } from "./replay-frames.js";
 import { connection, ownScene, ownStage } from "./store.js";
@@ -32,11 +31,18 @@ export const replayTime = signal(0);
 export const isBuffering = signal(false);
 const playing = computed(() => page.moment.value === null);
 const speed = signal(FIRST_SPEED);
-/** @type {Signal<Clock>} */
-const clock = signal("paper");
+const clock = /** @type {Signal<Clock>} */ (page.clock);
 
+/** Time-out of the race, if the replay is to end there [s]; null where it is to go on, or is later already. */
+const endAtTimeOut = computed(() => {
+  const timeOut = plan.value?.marks.find(({ kind }) => kind === "time-out")?.time_s ?? null;
+  const isLater = timeOut !== null && replayTime.value > timeOut + SAME_S;
+  return page.end.value === "time-out" && !isLater ? timeOut : null;
+});
 /** The last moment that can be shown [s]. */
-export const endTime = computed(() => (plan.value ? endOf(plan.value) : 0));
+const wholeEnd = computed(() => (plan.value ? endOf(plan.value) : 0));
+/** The moment at which the replay ends [s]. */
+export const endTime = computed(() => endAtTimeOut.value ?? wholeEnd.value);
 const hasEnded = computed(() => plan.value?.complete === true && replayTime.value >= endTime.value - SAME_S);
 
 // ---- what is loaded
@@ -162,8 +168,7 @@ async function request(address, query = {}) {
 
 /** Seek to a time [s], or to the nearest that is recorded. @param {number} time_s */
 export function seekReplay(time_s) {
-  const last = endTime.peek();
-  replayTime.value = plan.peek() ? Math.min(Math.max(time_s, 0), last) : Math.max(time_s, 0);
+  replayTime.value = Math.min(Math.max(time_s, 0), plan.peek() ? wholeEnd.peek() : Infinity);
   // Not at each pixel of a drag: browsers slow down pages that write their address often.
   clearTimeout(heldTimer);
   heldTimer = setTimeout(() => playing.peek() || hold(true), HELD_MS);
@@ -225,7 +230,7 @@ export function stepReplay(direction) {
 /** The ends of the steps of the lane that the camera follows, or of all [s], in order. */
 const stepEnds = computed(() => {
   const lanes = plan.value?.step_ends_s ?? [];
-  return lanes[Number(camera.value) - 1] ?? lanes.flat().sort((a, b) => a - b);
+  return lanes[Number(page.camera.value) - 1] ?? lanes.flat().sort((a, b) => a - b);
 });
 
 // ---- playing
@@ -240,15 +245,16 @@ export function tick(now) {
   const known = plan.peek();
   if (!known || !scene || replayProblem.peek() !== null) return;
   if (playing.peek() && !hasEnded.peek() && !isBuffering.peek()) {
-    replayTime.value = inRecording(known.recorded_s, replayTime.peek() + elapsed_s * speed.peek());
+    const next = inRecording(known.recorded_s, replayTime.peek() + elapsed_s * speed.peek());
+    replayTime.value = Math.min(next, endTime.peek());
   }
   if (playing.peek() && !hasEnded.peek()) playFrame(known, now, elapsed_s);
   else showMoment(now);
   const isNearEnd = endTime.peek() - replayTime.peek() <= speed.peek() * GROWTH_MS / 1000;
   if (!known.complete && isNearEnd) grow(now);
-  if (shown.frame && shown.view !== camera.peek()) {
-    draw([follower.centring(scene, shown.frame, camera.peek(), Infinity)]);
-    shown = { ...shown, view: camera.peek() };
+  if (shown.frame && shown.view !== page.camera.peek()) {
+    draw([follower.centring(scene, shown.frame, page.camera.peek(), Infinity)]);
+    shown = { ...shown, view: page.camera.peek() };
   }
 }
 
@@ -268,13 +274,13 @@ function playFrame(/** @type {ReplayPlan} */ known, /** @type {number} */ now, /
   const state = /** @type {SceneState} */ (scene);
   const newest = loaded.frames[index];
   const messages = state.showFrame(loaded.frames, index, shown.address === address ? shown.index : -1);
-  draw([...messages, follower.centring(state, newest, camera.peek(), elapsed_s)]);
-  shown = { address, index, time_s: newest.time_s, frame: newest, view: camera.peek() };
+  draw([...messages, follower.centring(state, newest, page.camera.peek(), elapsed_s)]);
+  shown = { address, index, time_s: newest.time_s, frame: newest, view: page.camera.peek() };
   tell(loaded.frames.slice(0, index + 1).findLast((one) => one.scene) ?? newest, now);
 }
 
 /** @param {string} address */
-const segmentAt = (address) => segments.get(address, plan.peek()?.segment_frames ?? 0, endTime.peek());
+const segmentAt = (address) => segments.get(address, plan.peek()?.segment_frames ?? 0, wholeEnd.peek());
 
 let grewAt = -Infinity;
 
@@ -312,8 +318,8 @@ async function showMoment(/** @type {number} */ now) {
 
 /** @type {(state: SceneState, frame: Frame, time_s: number, now: number) => void} */
 function drawMoment(state, frame, time_s, now) {
-  draw([...state.jump(frame.messages), follower.centring(state, frame, camera.peek(), Infinity)]);
-  shown = { ...NOTHING, time_s, frame, view: camera.peek() };
+  draw([...state.jump(frame.messages), follower.centring(state, frame, page.camera.peek(), Infinity)]);
+  shown = { ...NOTHING, time_s, frame, view: page.camera.peek() };
   if (frame.time_s > time_s + SAME_S && replayTime.peek() === time_s) {
     // In a gap of the recording: the next moment is shown.
     replayTime.value = frame.time_s;
@@ -345,7 +351,8 @@ export function followReplay() {
     if (id === null) return;
     ownStage.value = {
       run_id: id, next_run_id: null, phase: ownPhase(), origin: "chosen", playing: playing.value,
-      ended: hasEnded.value, speed: speed.value, clock: clock.value, end_at_time_out: false, announced: null,
+      ended: hasEnded.value, speed: speed.value, clock: clock.value, announced: null,
+      end_at_time_out: page.end.value === "time-out",
     };
   });
   // A server that was away may have come back with the run.

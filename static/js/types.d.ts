@@ -72,7 +72,8 @@ export type Clock = Api.TimelineView["clock"];
 export type Stage = Pick<
   Api.StageView,
   "run_id" | "next_run_id" | "phase" | "origin" | "playing" | "ended" | "speed" | "clock" | "end_at_time_out" | "announced"
->;
+> & Partial<Pick<Api.StageView, "presentation">>;
+export type Presentation = Api.PresentationView;
 /** A timeline, with the id of its race. */
 export type Timeline = Api.TimelineView & { id: string };
 export type ClockResult = Api.FiguresUnderClock;

@@ -2,9 +2,6 @@
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { form, mistakes, whatIfBody, isReadOnly } from "./form.js";
-import { work } from "./on-stage.js";
-import { page } from "./page-state.js";
-import { isNarrow } from "./page.js";
 import { limitsOf } from "./settings.js";
 import { options, role } from "./store.js";
 
@@ -15,9 +12,6 @@ import { options, role } from "./store.js";
 /** A slider that has not moved for so long counts as released. */
 const QUIET_MS = 300;
 
-/** Whether the panel is open; a closed one computes nothing. */
-export const isPanelOpen = computed(() =>
-  (page.whatIf.value === null ? !isNarrow.value && !work.value : page.whatIf.value === "open"));
 /** The newest answer, and the settings that it is for. @type {Signal<(WhatIfAnswer & { settings: string }) | null>} */
 export const answer = signal(null);
 /** @type {Signal<RequestError | null>} */
@@ -35,7 +29,7 @@ export const seeds = computed(() => options.value?.defaults.what_if.seeds ?? 0);
 export const isCurrent = computed(() => answer.value?.settings === settings.value);
 
 /** A form that follows the stage would ask from every page at once. */
-const canAsk = () => role.value !== null && !isReadOnly.value && isPanelOpen.value && !isTooLong.value &&
+const canAsk = () => role.value !== null && !isReadOnly.value && !isTooLong.value &&
   Object.keys(mistakes.value).length === 0;
 
 let hasMissed = false;
@@ -61,19 +55,27 @@ export async function evaluateSettings() {
   if (hasMissed && canAsk() && !isCurrent.peek()) evaluateSettings();
 }
 
-/** Request an answer each time the form has come to rest with other settings. */
+/**
+ * Request an answer now, unless the settings are read only, and each time the form has come to rest with other settings;
+ * until the function that is returned is called.
+ */
 export function followWhatIf() {
-  let known = settings.peek();
+  let known = "";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
-  effect(() => {
+  const stop = effect(() => {
     const now = settings.value;
     const isAllowed = canAsk();
     clearTimeout(timer);
     if (now === known || !isAllowed) return;
+    const isFirst = known === "";
     timer = setTimeout(() => {
       known = now;
       if (!isCurrent.peek()) evaluateSettings();
-    }, QUIET_MS);
+    }, isFirst ? 0 : QUIET_MS);
   });
+  return () => {
+    clearTimeout(timer);
+    stop();
+  };
 }

@@ -103,6 +103,27 @@
     }
   };
 
+  // ---- in a picture that is narrower than 16:9 the camera sees more above and below, so that no lane is cut off
+  const WIDE = 16 / 9;
+  const WIDEST_DEG = 80;
+  let fitted = null;
+  let base = null;
+  const fit = () => {
+    const { camera, canvas, requestRender } = window.__viserMutable ?? {};
+    if (!camera?.isPerspectiveCamera || !canvas?.clientHeight) return;
+    // What is not ours, the stage has set.
+    if (camera.fov !== fitted) base = camera.fov;
+    const factor = Math.max(1, WIDE / (canvas.clientWidth / canvas.clientHeight));
+    const half = Math.atan(Math.tan((base * Math.PI) / 360) * factor);
+    const wanted = Math.min((half * 360) / Math.PI, Math.max(base, WIDEST_DEG));
+    if (camera.fov === wanted) return;
+    camera.fov = fitted = wanted;
+    camera.updateProjectionMatrix();
+    requestRender?.();
+  };
+  addEventListener("resize", () => setTimeout(fit, 50));
+  setInterval(fit, 400);
+
   // ---- the dashboard's shortcuts work while the viewer has the focus
   addEventListener("keydown", (event) => {
     const { key, code, shiftKey } = event;

@@ -6,6 +6,7 @@ import { placeCaptions } from "../labels.js";
 import { page } from "../page-state.js";
 import { thinned, ticks } from "../scale.js";
 import { served } from "../store.js";
+import { isAtLeast } from "../workspace.js";
 import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html, useWidth } from "./elements.js";
 import { cssColour, LineLabels, MarkLines, roomFor, widthOf } from "./line-labels.js";
@@ -71,20 +72,28 @@ export function Chart(props) {
       <div class="chart-picture" ref=${host} style=${{ height: `${scale * HEIGHT}px` }}>
         ${width > 0 && html`
           <${Picture} label=${label} x=${x} y=${y} lines=${lines} marks=${marks} frame=${frame} scale=${scale} />
-          <${Crosshair} ...${axis} name=${name} lines=${lines} marks=${marks} x=${x} y=${y} inset=${inset} />
+          ${canRead() && html`
+            <${Crosshair} ...${axis} name=${name} lines=${lines} marks=${marks} x=${x} y=${y} inset=${inset} />
+          `}
         `}
       </div>
-      ${children}
-      <div class="chart-foot">
-        <${ChartAsTable} caption=${label} chart=${chart} />
-        <div class="chart-tools">
-          ${zoom && html`<button class="link" onClick=${() => zoomBy(axis, 0)}>Show all</button>`}
-          <${ChartMenu} chart=${chart} axis=${axis} host=${host} />
+      ${isFull() && html`
+        ${children}
+        <div class="chart-foot">
+          <${ChartAsTable} caption=${label} chart=${chart} />
+          <div class="chart-tools">
+            ${zoom && html`<button class="link" onClick=${() => zoomBy(axis, 0)}>Show all</button>`}
+            <${ChartMenu} chart=${chart} axis=${axis} host=${host} />
+          </div>
         </div>
-      </div>
+      `}
     </div>
   `;
 }
+
+/** In the view of the race who watches sees lines, who tries reads them, and who studies has their numbers and files. */
+const canRead = () => page.view.value !== "race" || isAtLeast("try");
+const isFull = () => page.view.value !== "race" || isAtLeast("study");
 
 /** @typedef {Frame & { xTicks: number[], yTicks: number[] }} TickedFrame */
 /** @typedef {Parameters<typeof Chart>[0]} ChartProps */

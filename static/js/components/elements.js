@@ -36,8 +36,10 @@ const PATHS = {
   import: "M8 2v7.5M4.8 6.5 8 9.7l3.2-3.2M2.5 11v2.5h11V11",
   present: "M2.5 3.5h11v7.5h-11zM8 11v2.5M5 13.5h6",
   flag: "M4 14V2.5h8.5L10.8 5.3l1.7 2.7H4",
+  pin: "M6 2.5h4v4l2 2.5H4L6 6.5zM8 9v5",
+  panel: "M2.5 3h11v10h-11zM9.5 3v10",
 };
-const OUTLINED = new Set(["link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present"]);
+const OUTLINED = new Set(["link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present", "pin", "panel"]);
 const SIZE = 16;
 
 /** An icon, drawn in the colour of the text beside it. @param {{ name: keyof typeof PATHS }} props */

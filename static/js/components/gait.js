@@ -2,7 +2,7 @@
 import { useEffect, useMemo } from "preact/hooks";
 import { count } from "../format.js";
 import {
-  AFTER_S, analysis, BEFORE_S, canSeek, colorOf, cycleSentence, extentOf, FIGURES, followGait, isWatched, isWhole,
+  AFTER_S, analysis, BEFORE_S, canSeek, colorOf, cycleSentence, extentOf, FIGURES, followGait, isWhole,
   legsInOrder, legsInTheAir, lineOf, momentOf, part, problem, rangeInWords, seek, SERIES, subject, swingsOf,
 } from "../gait.js";
 import { percent, shareOf, ticks } from "../scale.js";
@@ -17,22 +17,20 @@ import { html, Segments } from "./elements.js";
 
 const INVITATION = "When a robot walks, its footfalls are drawn here: a bar where a foot is on the ground.";
 
-/** @param {{ isNear: boolean }} props whether the panel can be seen */
-export function Gait({ isNear }) {
-  useEffect(() => {
-    isWatched.value = isNear;
-  }, [isNear]);
+export function Gait() {
   useEffect(followGait, []);
   const known = analysis.value;
   const { run, part: shown } = subject.value ?? {};
   const lanes = useMemo(() => known && run && lanesOf(known, run), [known, run?.config, colorOf(0)]);
   return html`
-    <p class="dim">When each foot is on the ground, in robot time: without the time that decisions take</p>
-    ${run && run.progress.done > 0 && html`<${Choices} shown=${shown} />`}
-    <div role="alert">${problem.value && html`<p class="problem">${problem.value}</p>`}</div>
-    ${lanes?.length
-      ? html`<${Figures} lanes=${lanes} known=${known} />`
-      : html`<${Empty} words=${known ? "Nothing is recorded of this part of the walk." : INVITATION} />`}
+    <section class="gait-tab" aria-label="Gait analysis">
+      <p class="dim">When each foot is on the ground, in robot time: without the time that decisions take</p>
+      ${run && run.progress.done > 0 && html`<${Choices} shown=${shown} />`}
+      <div role="alert">${problem.value && html`<p class="problem">${problem.value}</p>`}</div>
+      ${lanes?.length
+        ? html`<div><${Figures} lanes=${lanes} known=${known} /></div>`
+        : html`<${Empty} words=${known ? "Nothing is recorded of this part of the walk." : INVITATION} />`}
+    </section>
   `;
 }
 

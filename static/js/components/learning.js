@@ -7,7 +7,9 @@ import { largest, valueColours } from "../scale.js";
 import { shownRun } from "../on-stage.js";
 import { agentOf } from "../settings.js";
 import { options, scene, served } from "../store.js";
+import { scale } from "../time.js";
 import { bestMove, cellName, curve } from "../training.js";
+import { isAtLeast } from "../workspace.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { HexapodGlyph, html } from "./elements.js";
 
@@ -27,8 +29,7 @@ export function LearningChart() {
   const known = curve.value;
   return html`
     <section class="panel chart" aria-labelledby="learning-title">
-      <h2 id="learning-title">Learning</h2>
-      <p class="dim">Distance in 50 steps, after so many steps of practice</p>
+      <h2 id="learning-title">Learning: distance in 50 steps</h2>
       ${known ? html`<${Curve} known=${known} />` : html`<${Empty} words=${CURVE_INVITATION} />`}
     </section>
   `;
@@ -38,7 +39,8 @@ export function LearningChart() {
  * Lines: greedy's and the best known distance, where one training continued another, what changed, what happened.
  * @param {NonNullable<typeof curve.value>} one
  */
-const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run }) => [
+const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run, from }) => [
+  ...momentOf(run, from),
   ...(greedy_m ? [greedyMark(greedy_m)] : []),
   ...(best_known_m === null ? [] : [bestKnownMark(best_known_m)]),
   ...blocks.map((x) => ({ x, color: "--line" })),
@@ -51,6 +53,14 @@ const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run })
     return one.until_step ? [...begins, { ...mark, x: one.until_step, text: `no ${inWords(one)}` }] : begins;
   }),
 ];
+
+/** The step in the picture, and the one that is computed, while they are not at the end. @param {Run} run @param {number} from */
+function momentOf(run, from) {
+  const known = shownRun.value?.id === run.id ? scale.value : null;
+  if (!known) return [];
+  const picture = { x: from + known.picture, color: "--ink", width: 1.5 };
+  return known.isComputing ? [picture, { x: from + known.computed, color: "--accent", dash: [2, 3] }] : [picture];
+}
 
 /** @param {number} y */
 const greedyMark = (y) => ({
@@ -110,22 +120,15 @@ function seekToStep({ run, from }) {
 // ---- the action values: one for each pair of legs and each place on the foot grid
 
 const ABOUT = "Millimetres forward that it expects from moving a pair of legs to a place, and from what follows";
-const TABLE_INVITATION =
-  "When a learner is on stage, its table is shown here: one value for each pair of legs and each place.";
 
 export function ActionValues() {
   const known = scene.value?.action_values;
-  return html`
+  return known && html`
     <section class="panel action-values" aria-labelledby="action-values-title">
-      <h2 id="action-values-title">Action values in this state</h2>
-      <p class="dim">${ABOUT}</p>
-      ${known
-        ? html`
-          <${Values} known=${known} />
-          ${known.visits && html`<${ValuesKey} />`}
-          <p class="next-move"><${NextMove} known=${known} /></p>
-        `
-        : html`<${Empty} shape="cells" words=${TABLE_INVITATION} />`}
+      <h3 id="action-values-title" title=${ABOUT}>Values in this state [mm]</h3>
+      <${Values} known=${known} />
+      ${known.visits && isAtLeast("study") && html`<${ValuesKey} />`}
+      <p class="next-move"><${NextMove} known=${known} /></p>
     </section>
   `;
 }

@@ -2,7 +2,6 @@
 import { downloads } from "../files.js";
 import { tryOwnSettings } from "../form.js";
 import { page } from "../page-state.js";
-import { keepInView } from "../page.js";
 import { closeReplay, openReplay } from "../replay.js";
 import { clock, shownRun } from "../on-stage.js";
 import { isActive } from "../selectors.js";
@@ -14,11 +13,6 @@ import { html, Icon } from "./elements.js";
 export function OwnChoices() {
   const run = shownRun.value;
   const canReplay = run?.kind !== "experiment" && Boolean(run?.progress?.done);
-  const explain = () => {
-    page.isExplaining.value = true;
-    const panel = document.getElementById("steps-title")?.closest("section");
-    if (panel) keepInView(panel, "start");
-  };
   return html`
     <div class="own-choices">
       ${page.run.value !== null && html`
@@ -28,11 +22,9 @@ export function OwnChoices() {
         <button class="secondary compact" onClick=${() => replay(run)}
           title="Play, seek and go step by step on this page only"><${Icon} name="replay" />Replay it here</button>
       `}
-      ${canReplay && html`<button class="secondary compact" onClick=${explain}>Step by step</button>`}
       <button class="secondary compact" onClick=${tryOwnSettings}>Try other settings</button>
     </div>
     ${canReplay && !isActive(run) && html`<${Files} run=${run} />`}
-    <p class="dim">Your camera follows a robot with <b>Follow</b> below the picture, or with its number’s key.</p>
   `;
 }
 

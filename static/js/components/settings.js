@@ -1,63 +1,88 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
-import { useState } from "preact/hooks";
 import { tune } from "../live-changes.js";
 import { presentRates, rateInWords } from "../changes.js";
-import { inTime, parseText } from "../disturbances.js";
 import { chooseLearner, enter, form, setField, wrong, isReadOnly } from "../form.js";
 import { count, listed } from "../format.js";
 import { liveTraining, trainingInView } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,
-  ratesInWords, settingOf, settingsOf, sliderOf,
+  settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
 import { choicesOf, gaitTitle, labelOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
+import { isAtLeast } from "../workspace.js";
 import { HexapodGlyph, html } from "./elements.js";
 import {
   attributesOf, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
 import { Disturbances, WorldPicker } from "./world.js";
 
-/** @import { Changed, Run, SettingOption, SettingValue, Toggled } from "../types.js" */
+/** @import { Changed, Run, SettingOption, SettingValue } from "../types.js" */
 /** @import { ComponentChildren } from "preact" */
 /** @import { MainSetting } from "../settings.js" */
 
 /** Maximum of the slider of the practice, less than the server accepts: any other number can be typed. */
 const PRACTICE = { min: 50, max: 2000, step: 50 };
 
-/** Each group is one line when folded. */
-export const Settings = () => html`
-  <fieldset class="settings" disabled=${isReadOnly.value} aria-label="Settings">
-    <${Group} title="Training" chosen=${trainingChosen()} fields=${trainingFields()} isFirst><${TrainingGroup} /><//>
-    <${Group} title="Robot and world" chosen=${worldChosen()} fields=${WORLD_FIELDS}><${WorldGroup} /><//>
-    <${Group} title="Race" chosen=${raceChosen()} fields=${raceFields()}><${RaceGroup} /><//>
+/**
+ * Settings of the next training and race: what those who try change, and for those who study all of them. A spectator
+ * reads those of the run that is shown.
+ */
+export function TrainSettings() {
+  const isFull = isAtLeast("study");
+  return html`
+    <fieldset class="settings" disabled=${isReadOnly.value} aria-label="Settings">
+      <div class="sliders">
+        <${Learner} />
+        <${PracticeSteps} />
+        <${LearnerSettings} />
+        ${!isFull && html`
+          <${SelectField} field="world" label="World" choices=${served().worlds.map(({ name, title }) => [name, title])} />
+        `}
+      </div>
+      <${GaitPicker} />
+      ${isFull && html`
+        <${SeedAndObservation} />
+        <${Group} title="More settings" chosen=${[form.value.name]} fields=${furtherFields()}><${MoreSettings} /><//>
+        <${Group} title="Race" chosen=${raceChosen()} fields=${raceFields()}><${RaceGroup} /><//>
+      `}
+    </fieldset>
+  `;
+}
+
+/** The settings of the practice alone, as "What if" tries them. */
+export const PracticeSettings = () => html`
+  <fieldset class="settings" disabled=${isReadOnly.value} aria-label="Settings of the practice">
+    <div class="sliders"><${LearnerSettings} /><${PracticeSteps} /></div>
   </fieldset>
 `;
 
-/**
- * Show the opened fields where the settings scroll inside their panel.
- * @param {{ target: HTMLDetailsElement }} event
- */
-const showOpened = ({ target }) => {
-  const scroller = /** @type {HTMLElement | null} */ (target.closest(".folded"));
-  if (scroller && target.open) scroller.scrollTo({ top: target.offsetTop - scroller.offsetTop });
-};
+/** Settings of the world and the robot: the worlds as pictures, and for those who study what happens, and the robot. */
+export const WorldSettings = () => html`
+  <fieldset class="settings" disabled=${isReadOnly.value} aria-label="World settings">
+    <${WorldPicker} />
+    ${isAtLeast("study") && html`
+      <${Disturbances} />
+      <${Group} title="Robot" chosen=${robotChosen()} fields=${ROBOT_FIELDS}><${RobotGroup} /><//>
+    `}
+  </fieldset>
+`;
+
+/** The tab in which a field of the form is, and whether only those who study see it. @param {string} field */
+export const placeOf = (field) => ({
+  tab: ["world", "disturb", ...ROBOT_FIELDS].includes(field) ? "world" : "train",
+  isFull: !["agent", "steps", "gait", "world", ...mainSettings(form.value.agent).map(({ name }) => name)].includes(field),
+});
 
 /**
- * `fields` are those inside: one that is not valid is named by the summary.
- * @param {{ title: string, chosen: unknown[], fields: string[], isFirst?: boolean, children: ComponentChildren }} props
+ * Settings that are folded into one line. `fields` are those inside: one that is not valid is named by the summary.
+ * @param {{ title: string, chosen: unknown[], fields: string[], children: ComponentChildren }} props
  */
-function Group({ title, chosen, fields, isFirst = false, children }) {
-  const [isOpen, setOpen] = useState(isFirst);
+function Group({ title, chosen, fields, children }) {
   const mistaken = fields.filter((field) => field in wrong.value).map(labelOf);
-  /** @param {Toggled} event */
-  const onToggle = (event) => {
-    if (event.target.open !== isOpen && !isFirst) showOpened(event);
-    setOpen(event.target.open);
-  };
   return html`
-    <details class="group" open=${isOpen} onToggle=${onToggle}>
+    <details class="group">
       <summary>
         <b>${title}</b>${" "}
         ${mistaken.length
@@ -71,39 +96,27 @@ function Group({ title, chosen, fields, isFirst = false, children }) {
 
 // ---- the training
 
-const trainingFields = () => [
-  "agent", "steps", "seed", "observation", "pace", "steps_per_episode", "evaluate_every", "name",
-  ...Object.keys(settingsOf([form.value.agent])),
-];
-
-function trainingChosen() {
-  const { agent, steps, seed } = form.value;
-  return [agentOf(agent).title, count(steps, "step"), ...ratesInWords(agent, form.value), seed && `seed ${seed}`];
-}
-
-const TrainingGroup = () => html`
-    <div class="sliders">
-      <${Learner} />
-      <${Slider} field="steps" ...${PRACTICE}
-        value=${form.value.steps} onValue=${(/** @type {number} */ value) => setField("steps", value)} />
-      <${LearnerSettings} />
+const SeedAndObservation = () => html`
+  <div class="inline-fields">
+    <div class="field">
+      <label for="field-seed">${settingOf("seed").title}</label>
+      <${NumberField} field="seed" value=${form.value.seed}
+        onValue=${(/** @type {number} */ value) => setField("seed", value)} />
+      <${Description} field="seed" />
     </div>
-    <div class="inline-fields">
-      <div class="field">
-        <label for="field-seed">${settingOf("seed").title}</label>
-        <${NumberField} field="seed" value=${form.value.seed}
-          onValue=${(/** @type {number} */ value) => setField("seed", value)} />
-        <${Description} field="seed" />
-      </div>
-      <${SelectField} field="observation" label="Observation"
-        choices=${choicesOf(options.value?.observations, observationTitle)} />
-    </div>
-    <${MoreSettings} />
+    <${SelectField} field="observation" label="Observation"
+      choices=${choicesOf(options.value?.observations, observationTitle)} />
+  </div>
 `;
 
 const Learner = () => html`
   <${SelectField} field="agent" label="Learner" onValue=${chooseLearner} words=${agentOf(form.value.agent).description}
     choices=${learners.value.map(({ name, title }) => [name, title])} />
+`;
+
+const PracticeSteps = () => html`
+  <${Slider} field="steps" ...${PRACTICE} value=${form.value.steps}
+    onValue=${(/** @type {number} */ value) => setField("steps", value)} />
 `;
 
 /** The training whose present values stand in the fields: operators change them, others may read those of the stage. */
@@ -228,39 +241,35 @@ const PACES = [
   ["max", "As fast as possible"], [0.5, "Half real time"], [1, "Real time"], [2, "×2"], [4, "×4"], [8, "×8"],
 ];
 
+const furtherFields = () => [
+  "pace", ...furtherSettings(form.value.agent).map(([name]) => name), "steps_per_episode", "evaluate_every", "name",
+];
+
 const MoreSettings = () => html`
-  <details class="more" onToggle=${showOpened}>
-    <summary>More settings</summary>
-    <div class="more-fields">
-      <${Pace} />
-      ${furtherSettings(form.value.agent).map(([name, setting]) => html`
-        <${SettingField} key=${name} name=${name} setting=${setting} />
-      `)}
-      <${Figure} field="steps_per_episode" />
-      <${Figure} field="evaluate_every" />
-      <${Name} />
-    </div>
-  </details>
+  <div class="more-fields">
+    <${Pace} />
+    ${furtherSettings(form.value.agent).map(([name, setting]) => html`
+      <${SettingField} key=${name} name=${name} setting=${setting} />
+    `)}
+    <${Figure} field="steps_per_episode" />
+    <${Figure} field="evaluate_every" />
+    <${Name} />
+  </div>
 `;
 
-// ---- robot and world: gait, robot, world and disturbances
+// ---- the robot
 
-const WORLD_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "world", "disturb"];
+const ROBOT_FIELDS = ["robot", "simulator", "divisions", "grid_side_m", "tolerance"];
 
-function worldChosen() {
-  const { gait, robot, simulator, tolerance, world, disturb } = form.value;
-  const happens = disturb.flatMap((text) => parseText(text).value ?? []).map(inTime);
+function robotChosen() {
+  const { robot, simulator, tolerance } = form.value;
   return [
-    gaitTitle(gait), robotTitle(robot), tolerance && `${settingOf("tolerance").title.toLowerCase()} ${tolerance}`,
+    robotTitle(robot), tolerance && `${settingOf("tolerance").title.toLowerCase()} ${tolerance}`,
     simulator !== served().defaults.training.simulator && simulatorTitle(simulator),
-    served().worlds.find(({ name }) => name === world)?.title, ...happens,
   ];
 }
 
-const WorldGroup = () => html`
-  <${GaitPicker} />
-  <${WorldPicker} />
-  <${Disturbances} />
+const RobotGroup = () => html`
   <div class="more-fields">
     <${SelectField} field="robot" label="Robot" choices=${robotChoices()} />
     <${SelectField} field="simulator" label="Simulator"

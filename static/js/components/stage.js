@@ -5,8 +5,8 @@ import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { metres, sentence, times, whole } from "../format.js";
 import { page } from "../page-state.js";
-import { clickedCell, drawHere, shownTheme, camera } from "../page.js";
-import { headline } from "../headline.js";
+import { legPoints, legsOf, picked } from "../legs.js";
+import { clickedCell, drawHere, shownTheme } from "../page.js";
 import { standings } from "../race.js";
 import { closeReplay, drawIn, isBuffering, replayProblem } from "../replay.js";
 import {
@@ -15,8 +15,9 @@ import {
 import { isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
+import { isAtLeast } from "../workspace.js";
 import { html, Icon, Problem } from "./elements.js";
-import { Transport } from "./transport.js";
+import { LegMarks, LegMenu } from "./leg-menu.js";
 
 /** @import { Message } from "../replay-frames.js" */
 /** @import { Scene } from "../types.js" */
@@ -31,7 +32,7 @@ const laneColours = computed(() => (scene.value?.lanes ?? []).map(({ color }) =>
 export function Stage() {
   const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
   const [status, setStatus] = useState("loading");
-  const followed = page.run.value === null ? camera.value : ELSEWHERE;
+  const followed = page.run.value === null ? page.camera.value : ELSEWHERE;
   // The first address has both; later changes are sent to the frame, which must not load again.
   const [address] = useState(() => `viewer/?view=${followed}&theme=${shownTheme.peek()}`);
 
@@ -41,6 +42,8 @@ export function Stage() {
       if (data?.type === "hexapods:click" && !page.isPresenting.peek()) {
         clickedCell.value = { node: data.node, instance: data.instance, run_id: scene.peek()?.run_id ?? null };
       }
+      if (data?.type === "hexapods:pick" && canPick()) picked.value = data.pick;
+      if (data?.type === "hexapods:legs") legPoints.value = data.legs;
       if (data?.type !== "hexapods:status") return;
       setStatus(data.status);
       if (data.status !== "connected") return;
@@ -63,10 +66,10 @@ export function Stage() {
   useEffect(() => {
     const message = {
       type: "hexapods:show", view: followed, theme: shownTheme.value, lanes: colours.split(" "),
-      covered: covered.value, isPresenting: page.isPresenting.value,
+      covered: covered.value, isPresenting: page.isPresenting.value, legsOf: legsOf.value,
     };
     frame.current?.contentWindow?.postMessage(message, location.origin);
-  }, [followed, shownTheme.value, status, colours, covered.value, page.isPresenting.value]);
+  }, [followed, shownTheme.value, status, colours, covered.value, page.isPresenting.value, legsOf.value]);
 
   const isAway = connection.value === "reconnecting" || status === "reconnecting";
   return html`
@@ -75,6 +78,9 @@ export function Stage() {
         <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
         ${(status === "loading" || isRefused(status)) && html`<${StagePlaceholder} status=${status} />`}
         <${StageLabels} />
+        <${LegMarks} />
+        <${LegMenu} />
+        <${StageNotes} />
         <${ReplayProblem} />
         ${isAway && html`
           <p class="away-note" role="status">
@@ -83,11 +89,12 @@ export function Stage() {
           </p>
         `}
       </div>
-      <${StageNotes} />
-      <${Transport} />
     </section>
   `;
 }
+
+/** Those who try disturb what they click; who presents does not. */
+const canPick = () => isAtLeast("try") && !page.isPresenting.peek();
 
 /** The view of the frame while this page draws a replay of its own. */
 const ELSEWHERE = "elsewhere";
@@ -100,7 +107,7 @@ const ReplayProblem = () => replayProblem.value && html`
   </div>
 `;
 
-// ---- notes under the picture: what ended and how to go on, and what comes next
+// ---- notes over the picture: what ended and how to go on, and what comes next
 
 const StageNotes = () => html`
   <div class="stage-notes" role="group" aria-label="Notes on the shown run">
@@ -131,15 +138,11 @@ function EarlyEndNote() {
   `;
 }
 
-/** At the photo finish: who won, while other lanes still walk. */
-const DecidedNote = () => isDecided.value && html`
-  <div class="stage-note">
-    <p><b>${headline.value}</b></p>
-    ${isOperator.value && page.run.value === null && stage.value?.end_at_time_out && html`
-      <button class="secondary compact" onClick=${keepWatching}>Keep watching</button>
-    `}
-  </div>
-`;
+/** At the photo finish, while other lanes still walk. */
+const DecidedNote = () => isDecided.value && isAtLeast("try") && isOperator.value && page.run.value === null &&
+  stage.value?.end_at_time_out && html`
+    <button class="secondary compact" onClick=${keepWatching} title="Some robots still walk">Keep watching</button>
+  `;
 
 /** The replay that begins by itself. */
 function AnnouncementNote() {
@@ -160,7 +163,9 @@ function AnnouncementNote() {
     <div class="stage-note">
       <p role="status">Next: ${what}</p>
       <p class="dim num" aria-hidden="true">in ${left} s</p>
-      ${isOperator.value && html`<button class="secondary compact" onClick=${stay}>Stay</button>`}
+      ${isOperator.value && isAtLeast("try") && html`
+        <button class="secondary compact" onClick=${stay}>Stay</button>
+      `}
     </div>
   `;
 }

@@ -1,50 +1,38 @@
 // What-if: distances of kinematic robots that practise with these settings, and with the defaults.
-import { canStart, continueTraining, practiseMore } from "../actions.js";
-import { form, mistakes, validSteps, isReadOnly } from "../form.js";
-import { count, metres, whole } from "../format.js";
-import { page } from "../page-state.js";
-import { matchingTable } from "../on-stage.js";
-import { isOperator } from "../selectors.js";
+import { useEffect } from "preact/hooks";
+import { form, mistakes, isReadOnly } from "../form.js";
+import { metres, whole } from "../format.js";
 import { agentOf, learns } from "../settings.js";
 import {
-  answer, error, evaluateSettings, isComputing, isCurrent, isPanelOpen, isTooLong, mostSteps, seeds,
+  answer, error, evaluateSettings, followWhatIf, isComputing, isCurrent, isTooLong, mostSteps, seeds,
 } from "../what-if.js";
 import { messageOf } from "../titles.js";
 import { DotStrip } from "./dot-strip.js";
 import { html } from "./elements.js";
+import { PracticeSettings } from "./settings.js";
 
 /** @import { WhatIfAnswer, WhatIfHalf } from "../types.js" */
 
 const HEADROOM = 1.06;
 
-/** Folded on a phone, and while a run needs the room, unless it was opened. */
+/** It computes beside the race, and changes nothing on the stage. */
 export function WhatIf() {
-  const isOpen = isPanelOpen.value;
-  if (!form.value.lanes.some(learns)) return null;
-  /** @param {MouseEvent} event */
-  const onClick = (event) => {
-    event.preventDefault();
-    page.whatIf.value = isOpen ? "closed" : "open";
-  };
+  useEffect(followWhatIf, []);
+  if (!form.value.lanes.some(learns)) {
+    return html`<p class="dim">No learner is in the race: add one in Train, and its settings can be tried here.</p>`;
+  }
   return html`
-    <section class="panel what-if" aria-labelledby="what-if-title">
-      <details open=${isOpen}>
-        <summary onClick=${onClick}><h2 id="what-if-title">What if?</h2><span class="dim">${teaser()}</span></summary>
-        ${isOpen && html`<${Comparison} onContinue=${() => (page.whatIf.value = "open")} />`}
-      </details>
+    <section class="what-if" aria-label="What if">
+      <${PracticeSettings} />
+      <h3>${seeds.value} ideal robots: distance in 50 steps</h3>
+      <${Comparison} />
     </section>
   `;
 }
 
-const teaser = () => {
-  const steps = validSteps();
-  return `${seeds.value} ideal robots practise${steps === null ? "" : ` ${count(steps, "step")}`}`;
-};
-
 const hasMistakes = () => Object.keys(mistakes.value).length > 0;
 
-/** @param {{ onContinue: (() => unknown) | null }} props */
-function Comparison({ onContinue }) {
+function Comparison() {
   const known = answer.value;
   const isOld = isComputing.value || isTooLong.value || hasMistakes() || (known && !isCurrent.value);
   const far = known && HEADROOM * Math.max(known.greedy_m, ...known.chosen.distances_m, ...known.default.distances_m);
@@ -55,7 +43,6 @@ function Comparison({ onContinue }) {
       ${known && html`<${Axis} known=${known} far=${far} />`}
     </div>
     <${Status} known=${known} />
-    ${isOperator.value && html`<${Continue} onContinue=${onContinue} />`}
   `;
 }
 
@@ -137,25 +124,3 @@ const Request = ({ isFirst }) => html`
     <button class="link" onClick=${evaluateSettings}>Try ${isFirst ? "the settings as they are" : "these"}</button>
   </p>
 `;
-
-/**
- * Continue the training of the matching table with these rates; the panel stays open and keeps the focus.
- * @param {{ onContinue: (() => unknown) | null }} props
- */
-function Continue({ onContinue }) {
-  const table = matchingTable.value;
-  if (!table) return null;
-  const onClick = () => {
-    if (!canStart.value) return;
-    onContinue?.();
-    continueTraining(table);
-  };
-  return html`
-    <div class="row">
-      <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"} onClick=${onClick}
-        title="Continues the newest table that fits with these settings, and starts no race">
-        ${practiseMore()}, don’t race
-      </button>
-    </div>
-  `;
-}

@@ -1,6 +1,5 @@
 // Disturbances of a robot and its ground: a drawn hexapod whose legs are pressed, and sliders; for the training that
 // runs, and for a race that is held, which is raced on from there.
-import { signal } from "@preact/signals";
 import { useRef, useState } from "preact/hooks";
 import { disturb } from "../live-changes.js";
 import { branchRace, pending } from "../actions.js";
@@ -13,11 +12,11 @@ import { azimuthsOf } from "../robots.js";
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
+import { isAtLeast } from "../workspace.js";
 import { html, LegPicker, Problem } from "./elements.js";
 import { Description, NumberField, SettingRow, Slider } from "./fields.js";
 
 /** @import { Changed, Disturbance, DisturbanceKind, FieldOption, Run, RunConfig, SettingValue } from "../types.js" */
-/** @import { Toggled } from "../types.js" */
 /** @import { ComponentChildren } from "preact" */
 
 /** @typedef {{ kind: string, [field: string]: SettingValue }} Wish */
@@ -28,7 +27,7 @@ import { Description, NumberField, SettingRow, Slider } from "./fields.js";
 // ---- what a press on a leg does
 
 /** Kinds of disturbances of legs, as the server lists them. */
-const legKinds = () => served().disturbances.filter(({ fields }) => fields.legs || fields.leg);
+export const legKinds = () => served().disturbances.filter(({ fields }) => fields.legs || fields.leg);
 
 const NO_OWN_FIELDS = ["leg", "at_step", "until_step"];
 
@@ -37,7 +36,7 @@ const ownFieldsOf = (kind) =>
   Object.entries(kind?.fields ?? {}).filter(([name, field]) => !field.is_list && !NO_OWN_FIELDS.includes(name));
 
 /** A kind with the first values of its own fields. @param {string} name */
-function firstWish(name) {
+export function firstWish(name) {
   const first = firstFields(name);
   return { kind: name, ...Object.fromEntries(ownFieldsOf(kindNamed(name)).map(([field]) => [field, first[field]])) };
 }
@@ -296,17 +295,26 @@ function WorldControls({ id, config, conditions, onDisturb, sentenceOf, children
       </div>
     </div>
     ${!reason && html`<${WishFields} id=${id} wish=${wish} onWish=${setWish} />`}
-    <details class="more">
-      <summary>Ground, load and servos</summary>
-      <div class="sliders">
-        ${kindsWithSize().map((kind) => html`
-          <${KindSlider} key=${kind.name} kind=${kind} conditions=${conditions} config=${config}
-            onDisturb=${onDisturb} />
-        `)}
-      </div>
-    </details>
+    <${Sliders} kinds=${kindsWithSize().filter(isMain)} conditions=${conditions} config=${config} onDisturb=${onDisturb} />
+    ${isAtLeast("study") && html`
+      <details class="more">
+        <summary>Ground, load and servos</summary>
+        <${Sliders} kinds=${kindsWithSize().filter((kind) => !isMain(kind))} conditions=${conditions} config=${config}
+          onDisturb=${onDisturb} />
+      </details>
+    `}
   `;
 }
+
+/** What those who try change; the other kinds are for those who study. */
+const MAIN_KINDS = ["friction", "slope", "payload", "delay", "push"];
+/** @param {SizedKind} kind */
+const isMain = ({ name }) => MAIN_KINDS.includes(name);
+
+/** @param {{ kinds: SizedKind[], conditions: Disturbance[], config: Walk, onDisturb: OnDisturb }} props */
+const Sliders = ({ kinds, ...rest }) => html`
+  <div class="sliders">${kinds.map((kind) => html`<${KindSlider} key=${kind.name} kind=${kind} ...${rest} />`)}</div>
+`;
 
 /** Panel of the disturbances of the training that runs. */
 export function LiveWorld() {
@@ -328,9 +336,6 @@ export function LiveWorld() {
 /** Shown while the replay of a race is held. */
 export const Branch = () => heldRace.value && html`<${BranchOf} key=${heldRace.value.id} race=${heldRace.value} />`;
 
-/** Kept while the replay goes on to another moment. */
-const isBranchOpen = signal(false);
-
 /** @param {{ race: Run }} props */
 function BranchOf({ race }) {
   const [chosen, setChosen] = useState(/** @type {Disturbance[]} */ ([]));
@@ -344,16 +349,9 @@ function BranchOf({ race }) {
     const pushes = chosen.some(({ kind }) => kindNamed(kind)?.lasts === false) ? ["a push"] : [];
     return html`<b>From step ${from}:</b> ${[...now, ...pushes].join(", ") || "as it was"}`;
   };
-  /** @param {Toggled & { currentTarget: EventTarget }} event */
-  const onToggle = ({ target, currentTarget }) => target === currentTarget && (isBranchOpen.value = target.open);
-  const start = () => {
-    isBranchOpen.value = false;
-    branchRace(race, from - 1, chosen);
-  };
+  const start = () => branchRace(race, from - 1, chosen);
   return html`
-    <details class="more branch" aria-label="Disturb this race" open=${isBranchOpen.value}
-      onToggle=${onToggle}>
-      <summary>Disturb this race</summary>
+    <section class="branch" aria-label="Disturb this race">
       <${WorldControls} id="branch" config=${config} conditions=${conditions} sentenceOf=${words}
         onDisturb=${(/** @type {Disturbance} */ one) => setChosen((all) => chosenWith(all, one, before, config.robot))}>
         <button type="button" class="secondary" disabled=${!chosen.length || pending.value.branch} onClick=${start}>
@@ -366,6 +364,6 @@ function BranchOf({ race }) {
       <//>
       <p class="sentence">Until then both races are the same. Hold the replay elsewhere for another step.</p>
       <${Problem} at="branch" />
-    </details>
+    </section>
   `;
 }

@@ -1,5 +1,4 @@
 // The state that was chosen in the table, or in the scene: where it is seen, and how to give it up.
-import { isNarrow } from "../../page.js";
 import { ghost, whyNoGhost } from "../../posture.js";
 import { moveInWords, stateInWords } from "../../steps.js";
 import { messageOf } from "../../titles.js";
@@ -25,9 +24,6 @@ export function ChosenStateNote({ chosen, grid, isRead, onGiveUp }) {
       <p class="sr-only" role="status">
         ${isGhost && `The ghost in the scene stands in this state: ${stateInWords(chosen.cells, grid)}.`}
       </p>
-      ${isGhost && !isNarrow.value && html`
-        <button class="secondary compact" onClick=${showScene}>Show it</button>
-      `}
       ${chosen && html`
         <button class="secondary compact" onClick=${onGiveUp}>${isGhost ? "Take it away" : "Clear"}</button>
       `}
@@ -36,9 +32,6 @@ export function ChosenStateNote({ chosen, grid, isRead, onGiveUp }) {
 }
 
 const isGhostShown = () => ghost.value.answer !== null && whyNoGhost.value === null;
-
-/** On a narrow page the scene is always in view. */
-const showScene = () => document.querySelector(".stage")?.scrollIntoView({ block: "nearest" });
 
 /** @param {ChosenState | null} chosen @param {FootCells} grid */
 function wordsOf(chosen, grid) {

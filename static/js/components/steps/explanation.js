@@ -13,16 +13,14 @@ const unbroken = (text) => text.replaceAll(" · ", "\u00a0·\u00a0");
 const MAX_MOVES = 6;
 const SHORTEST_BAR = 0.02;
 
-/** @param {{ told: Explanation }} props */
-export function ExplainedStep({ told }) {
-  return html`
-    <div class="told">
-      <${Happened} told=${told} />
-      <${Choice} told=${told} />
-      <${Update} told=${told} />
-    </div>
-  `;
-}
+/** `isFull`: with the update of its values, as the rule with its numbers. @param {{ told: Explanation, isFull: boolean }} props */
+export const ExplainedStep = ({ told, isFull }) => html`
+  <div class="told">
+    <${Happened} told=${told} />
+    <${Choice} told=${told} />
+    ${isFull && html`<${Update} told=${told} />`}
+  </div>
+`;
 
 /** @param {{ told: Explanation }} props */
 function Happened({ told }) {
@@ -59,14 +57,14 @@ function Choice({ told }) {
   if (!choice) {
     return html`
       <section>
-        <h4>Why this move</h4>
+        <h3>Why this move</h3>
         <p class="dim">${sentenceOf(unexplained ?? "Its agent does not explain it")}</p>
       </section>
     `;
   }
   return html`
     <section>
-      <h4>Why this move</h4>
+      <h3>Why this move</h3>
       ${choice.sentences.map((one) => html`<p>${one}</p>`)}
       <${Scores} told=${told} />
     </section>
@@ -85,7 +83,7 @@ function Search({ told }) {
   }));
   return html`
     <section>
-      <h4>Why this move</h4>
+      <h3>Why this move</h3>
       ${sentences.map((one) => html`<p>${one}</p>`)}
       <${Ranking} told=${told} caption=${compares} rows=${rows} />
     </section>
@@ -144,11 +142,11 @@ function Update({ told }) {
   const { update } = told;
   if (!update && !told.choice) return null;
   if (!update) {
-    return html`<section><h4>Update</h4><p class="dim">Nothing: it does not learn here.</p></section>`;
+    return html`<section><h3>Update</h3><p class="dim">Nothing: it does not learn here.</p></section>`;
   }
   return html`
     <section>
-      <h4>Update</h4>
+      <h3>Update</h3>
       <p>${update.summary}</p>
       ${update.direct && html`<${Rule} update=${update.direct} stored=${update.stored} />`}
       ${update.beliefs.length > 0 && html`<${Beliefs} beliefs=${update.beliefs} />`}

@@ -5,7 +5,7 @@ import {
   cellInWords, cellKind, columnOf, fineMillimetres, moveOf, stateCells, stateIndex, triedMoves, valueRange,
 } from "../../steps.js";
 import { percentage, sentence, whole } from "../../format.js";
-import { keepInView, theme } from "../../page.js";
+import { theme } from "../../page.js";
 import { html } from "../elements.js";
 import { ChosenStateNote } from "./chosen-state.js";
 
@@ -124,7 +124,7 @@ function Grid({ shown, last, place, words, onPlace, onChoose, isChosen, chosen, 
     if (heldRow === null) return;
     scrollTo(scroller.current, heldRow);
     const heatmap = scroller.current?.closest(".heat");
-    if (chosen?.from === "scene" && heatmap) keepInView(heatmap, "nearest");
+    if (chosen?.from === "scene") heatmap?.scrollIntoView({ block: "nearest" });
   }, [heldRow, held?.column, chosen?.from]);
   /** @param {KeyboardEvent} event */
   const onKeyDown = (event) => {

@@ -1,61 +1,27 @@
-// The controls: settings, the primary button, the running work, and what failed.
-import { useState } from "preact/hooks";
+// The foot of the panel: the primary button, the running work, what failed, and what a spectator can do.
 import {
   canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
   showOnStage, stop,
 } from "../actions.js";
-import { practiseAtPaceOfPicture } from "../live-changes.js";
 import { raceEstimate } from "../estimate.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
-import { count, listed, sentence, whole } from "../format.js";
+import { sentence, whole } from "../format.js";
 import { ignored, page } from "../page-state.js";
-import { isNarrow } from "../page.js";
-import { interruptedRun, myWork, offStage, progress, shownRun, steering, work } from "../on-stage.js";
+import { isPhone } from "../page.js";
+import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
-import { agentOf, learners, ratesInWords } from "../settings.js";
+import { agentOf, learners } from "../settings.js";
 import { scene } from "../store.js";
-import { gaitTitle, inFormWords, labelOf } from "../titles.js";
+import { inFormWords } from "../titles.js";
+import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
 import {
   EstimateNote, goToField, Held, html, Icon, Loaded, Problem, ProgressBar, UnknownParts,
 } from "./elements.js";
-import { Settings } from "./settings.js";
-import { Branch, LiveWorld } from "./world-controls.js";
+import { placeOf } from "./settings.js";
 
 /** @import { Run } from "../types.js" */
 
-export function Controls() {
-  if (!isOperator.value) return html`<${Spectator} />`;
-  // On a phone the button comes first. Keys keep what is unfolded when the phone is turned.
-  const actions = html`<${Actions} key="actions" />`;
-  const settings = html`<${FoldedSettings} key="settings" />`;
-  return html`
-    <section class="panel controls" aria-label="Train and race">
-      ${isNarrow.value ? [actions, settings] : [settings, actions]}
-    </section>
-  `;
-}
-
-/** The settings; on a phone one line until they are opened. */
-function FoldedSettings() {
-  const [isOpen, setOpen] = useState(false);
-  const { gait, steps, agent } = form.value;
-  const wrong = Object.keys(mistakes.value).map(labelOf);
-  const about = wrong.length
-    ? [`Not valid: ${listed(wrong)}`]
-    : [gaitTitle(gait), count(steps, "step"), agentOf(agent).title, ...ratesInWords(agent, form.value)];
-  /** @param {{ target: HTMLDetailsElement }} event */
-  const onToggle = ({ target }) => isNarrow.value && setOpen(target.open);
-  return html`
-    <details class="folded" open=${isOpen || !isNarrow.value} onToggle=${onToggle}
-      tabindex=${isReadOnly.value ? "0" : undefined}>
-      <summary hidden=${!isNarrow.value}>
-        <span>Settings</span>
-        <span class="dim">${about.join(", ")}</span>
-      </summary>
-      <${Settings} />
-    </details>
-  `;
-}
+export const Foot = () => (isOperator.value ? html`<${Actions} />` : html`<${Spectator} />`);
 
 function Actions() {
   const isBusy = Boolean(myWork.value) || pending.value.start;
@@ -64,38 +30,41 @@ function Actions() {
   const isHeld = !isBusy && Object.keys(mistakes.value).length > 0;
   return html`
     <div class="actions" role="group" aria-label="Actions">
-      <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
-        aria-describedby=${isHeld ? "held-start" : undefined}>
-        ${!isBusy && html`<${Icon} name="play" />`}${label}
-      </button>
-      ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
-      ${!isBusy && html`<${EstimateNote} words=${raceEstimate} />`}
-      <${UnknownParts} parts=${ignored.query} />
+      <${Interrupted} />
+      <${Failure} />
+      <${OffStage} />
       <${Problem} at="start" />
-      ${!isBusy && html`<${MissingLane} />`}
-      ${!myWork.value && html`<${SecondaryActions} />`}
-      <${Progress} />
-      ${work.value && html`<${WorkActions} />`}
-      <${Steering} />
-      <${LiveWorld} />
-      <${Branch} />
       <${Problem} at="work" />
       <${Problem} at="tune" />
-      <${OffStage} />
-      <${Failure} />
-      <${Interrupted} />
+      <${UnknownParts} parts=${ignored.query} />
+      ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
+      ${!isBusy && html`<${EstimateNote} words=${raceEstimate} />`}
+      ${!isBusy && html`<${MissingLane} />`}
+      ${work.value && html`<${Progress} />`}
+      ${work.value && isAtLeast("try") && html`<${WorkActions} />`}
+      ${!myWork.value && html`
+        <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
+          aria-describedby=${isHeld ? "held-start" : undefined}>
+          ${!isBusy && html`<${Icon} name="play" />`}${label}
+        </button>
+        ${isAtLeast("try") && hasRoomForOthers() && html`<${SecondaryActions} />`}
+      `}
     </div>
   `;
 }
 
 /**
- * Focus a field; a setting of another learner of the race has one once that learner is chosen.
+ * Focus a field, in the tab and the depth that have it; a setting of another learner of the race has one once that
+ * learner is chosen.
  * @param {string} field
  */
 function showField(field) {
   const { agent, lanes } = form.value;
   const owner = learners.value.find(({ name, settings }) => lanes.includes(name) && field in settings);
   if (owner && !(field in agentOf(agent).settings)) chooseLearner(owner.name);
+  const place = placeOf(field);
+  if (place.isFull) setDepth("study");
+  openTab(place.tab);
   requestAnimationFrame(() => goToField(`field-${field}`));
 }
 
@@ -117,8 +86,11 @@ function MissingLane() {
   `;
 }
 
+/** The tabs in which runs are prepared; on a phone the others need the room. */
+const hasRoomForOthers = () => ["train", "world", ...(isPhone.value ? [] : ["board"])].includes(tab.value);
+
 const SecondaryActions = () => html`
-  <div class="row">
+  <div class="others">
     ${secondaryActions.value.map(({ label, run }) => html`
       <button class="secondary" onClick=${run} aria-disabled=${canStart.value ? undefined : "true"}>${label}</button>
     `)}
@@ -154,27 +126,6 @@ function Progress() {
     </div>
   `;
 }
-
-/** What a live setting acts on while the computation is ahead of the picture: its next step, or the next training. */
-function Steering() {
-  const state = steering.value;
-  if (state === null) return null;
-  const isOver = state === "computed";
-  const words = isOver
-    ? "This training is computed to its end; the picture is still on its way. A change acts on the next training."
-    : `A change acts on step ${whole(state.step)}, which is computed next${seenStep(state)}.`;
-  return html`
-    <div class="steering">
-      <p>${words}</p>
-      <button class="link" onClick=${practiseAtPaceOfPicture}>
-        ${isOver ? "Let the next one practise" : "Practise on"} at the pace of the picture, to steer it
-      </button>
-    </div>
-  `;
-}
-
-/** @param {{ shown: number | null }} state */
-const seenStep = ({ shown }) => (shown === null ? "; it is not on stage" : `; the picture shows step ${whole(shown)}`);
 
 function OffStage() {
   const run = offStage.value;
@@ -220,35 +171,27 @@ function Interrupted() {
   `;
 }
 
-// ---- spectators: every setting, to read or to try
+// ---- spectators: what is shown, and what they can do on their own page
 
 const loadOwnChoices = () => import("./own-choices.js").then(({ OwnChoices }) => OwnChoices);
 
-/** Shown to spectators in place of the controls. */
+/** In place of the actions on the pages of those who may not start runs. */
 function Spectator() {
-  const kind = shownRun.value?.kind;
-  const of = kind ? `the ${kind} that is shown` : "the next run, as they are by default";
-  const words = isReadOnly.value
-    ? `These are the settings of ${of}. The operator starts runs. On your own page you can:`
-    : "Only “What if?” tries these settings; the stage goes on as it is.";
   return html`
-    <section class="panel controls" aria-label="Run on stage">
-      <div class="watching">
-        <h2>You are watching</h2>
-        <p class="dim">${words}</p>
-        ${progress.value && html`<${Progress} />`}
-        ${isReadOnly.value
-          ? html`<${Loaded} name="choices" load=${loadOwnChoices} />`
-          : html`
-            <div class="row">
-              <button class="secondary compact" onClick=${() => (page.form.value = new URLSearchParams())}>
-                Back to the settings on stage
-              </button>
-            </div>
-          `}
-        <${UnknownParts} parts=${ignored.query} />
-      </div>
-      <${FoldedSettings} />
+    <section class="actions watching" aria-label="You are watching">
+      <${UnknownParts} parts=${ignored.query} />
+      ${isReadOnly.value
+        ? html`<p class="dim">You are watching. The operator starts runs.</p>`
+        : html`
+          <p class="dim">Only “What if” tries your settings; the stage goes on as it is.</p>
+          <div class="row">
+            <button class="secondary compact" onClick=${() => (page.form.value = new URLSearchParams())}>
+              Back to the settings on stage
+            </button>
+          </div>
+        `}
+      <${Progress} />
+      ${isReadOnly.value && isAtLeast("try") && html`<${Loaded} name="choices" load=${loadOwnChoices} />`}
     </section>
   `;
 }

@@ -1,0 +1,29 @@
+"""What presenters' windows show beside the stage: a card of the lesson, and how."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Le
+from pydantic import Field
+
+from hexapods.domain.records import Record
+
+MAX_CARDS = 99
+
+
+@dataclass(frozen=True, kw_only=True)
+class Presentation(Record):
+    """What presenters' windows show beside the stage; told by their keys or by a remote."""
+
+    card: Annotated[
+        Annotated[int, Ge(1), Le(MAX_CARDS)] | None,
+        Field(description="number of the lesson's card, from 1; null before the first"),
+    ] = None
+    shows_why: Annotated[
+        bool, Field(strict=True, description="whether the step that is shown is explained")
+    ] = False
+    is_blank: Annotated[bool, Field(strict=True, description="whether they show nothing")] = False
+    code: Annotated[
+        Literal["large", "small", "none"],
+        Field(description="size of the QR code of the spectators' address"),
+    ] = "large"

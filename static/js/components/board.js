@@ -1,0 +1,373 @@
+// The board: the lanes of the race with ranks, distances and times, the same race by each clock, and its curve.
+import { setStage } from "../actions.js";
+import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
+import { downloads } from "../files.js";
+import { form, raceBody } from "../form.js";
+import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
+import { ruleOf } from "../headline.js";
+import { isOver, isTimedOut, shownEarlyEnd, standings } from "../race.js";
+import { canPlay, clock, earlyEnd, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
+import { page } from "../page-state.js";
+import { replayProblem } from "../replay.js";
+import { isActive, simulatedPerDecision } from "../selectors.js";
+import { agentOf, laneTitle, learns } from "../settings.js";
+import { runs, scene, served, stage } from "../store.js";
+import { choicesOf, clockTitle, flatParts, planningModelTitle } from "../titles.js";
+import { practisedSteps } from "../training.js";
+import { isAtLeast } from "../workspace.js";
+import { html, Icon } from "./elements.js";
+import { LearningChart } from "./learning.js";
+import { RaceChart } from "./race-chart.js";
+
+/** @import { Standing } from "../race.js" */
+/** @import { Changed, Clock, LaneConfig, Run } from "../types.js" */
+
+export function Board() {
+  const rows = standings.value;
+  const isPractice = shownRun.value?.kind === "training";
+  return html`
+    <section class="board-tab" aria-label="Scoreboard">
+      ${rows ? html`<${Standings} rows=${rows} />` : html`<${StartList} />`}
+      ${isAtLeast("try") && html`<${Choices} />`}
+      ${rows && isTimedOut.value && html`<${ByEachClock} rows=${rows} />`}
+      ${rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`}
+      ${rows && html`
+        <p class="dim fine">${ruleOf(rows, clockTitle(clock.value))}${
+          isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>
+      `}
+      ${isAtLeast("study") && html`<${Files} />`}
+    </section>
+  `;
+}
+
+// ---- the lanes
+
+/** @param {{ rows: Standing[] }} props */
+function Standings({ rows }) {
+  const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
+  const isDeep = isAtLeast("study");
+  return html`
+    <${BranchWords} />
+    <table class="board">
+      <caption class="sr-only">Standings (${clockTitle(clock.value)})</caption>
+      <thead class=${isDeep ? "" : "sr-only"}>
+        <tr>
+          <th scope="col"><span class="sr-only">Rank</span></th>
+          <th scope="col"><span class="sr-only">Agent</span></th>
+          <th scope="col" title="Distance at time-out: when the first lane has used its steps">${distanceTitle()}</th>
+          ${isDeep && html`<th scope="col" title="Distance after all of its own steps">Total</th>`}
+          ${isAtLeast("try") && html`
+            <th scope="col" title="Measured time of one decision, on average">Decision</th>
+          `}
+          ${isDeep && html`<th scope="col" title="Transitions simulated in order to decide">Simulated</th>`}
+        </tr>
+      </thead>
+      ${rows.map((row) => html`<${Lane} key=${row.lane} row=${row} longest=${longest} />`)}
+      ${isDeep && html`<${BestKnown} />`}
+    </table>
+    <p class="dim fine">Solid: walking. Hatched: thinking.</p>
+  `;
+}
+
+/** Disturbances of the race, and the race of which it is a branch. */
+function BranchWords() {
+  const race = raceInView.value;
+  const branch = race?.config.branch_from;
+  const happens = joinedBySteps(race ? disturbancesOf(race) : []).map(inTime).join("; ");
+  if (!branch) return happens && html`<p class="happened">${sentence(happens)}.</p>`;
+  const original = originalRace.value;
+  const title = original?.name || "another race";
+  return html`
+    <p class="happened">
+      The same as <a href=${`#runs?search=${branch.race_id}`}>${title}</a> before step ${branch.step + 1}.
+      ${happens && ` ${sentence(happens)}.`}
+    </p>
+  `;
+}
+
+function distanceTitle() {
+  if (isTimedOut.value) return html`<span class="sr-only">Distance </span>At time-out`;
+  return shownEarlyEnd.value ? "Reached" : "Now";
+}
+
+function BestKnown() {
+  const best_m = raceInView.value?.best_known_m ?? null;
+  return best_m !== null && html`
+    <tfoot>
+      <tr title=${served().help.best_known}>
+        <td></td><th scope="row" class="agent">Best known</th><td></td><td>${metres(best_m)}</td><td></td><td></td>
+      </tr>
+    </tfoot>
+  `;
+}
+
+/** @param {{ row: Standing, longest: number }} props */
+function Lane({ row, longest }) {
+  const isDeep = isAtLeast("study");
+  return html`
+    <tbody class=${row.isThinking ? "thinking" : ""} style=${{ "--agent": row.color }} aria-label=${row.title}>
+      <tr>
+        <td class="rank">${row.rank ?? "–"}</td>
+        <th scope="row" class="agent">
+          <div><${LaneName} row=${row} />${!isDeep && html`<span class="dim note">${noteOf(row)}</span>`}</div>
+        </th>
+        <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
+        ${isDeep && html`
+          <td class=${row.isDone ? "" : "dim"}>${isTimedOut.value ? metres(row.total_m ?? distanceSoFar(row)) : "–"}</td>
+        `}
+        ${isAtLeast("try") && html`<td class="dim">${decision(row.decision_s)}</td>`}
+        ${isDeep && html`<td>${whole(row.simulated)}</td>`}
+      </tr>
+      <tr class="under">
+        <td></td>
+        <td colspan="5">
+          <${TimeStrip} spent=${row.spent} longest=${longest} />
+          ${linesBelow(row).map(([kind, words]) => html`<p class=${kind}>${words}</p>`)}
+        </td>
+      </tr>
+    </tbody>
+  `;
+}
+
+/** The lane's robot, which those who try follow with a press. @param {{ row: Standing }} props */
+function LaneName({ row }) {
+  const name = html`<span class="swatch"></span>${row.title}`;
+  if (!isAtLeast("try") || page.isPresenting.value) return html`<span>${name}</span>`;
+  const target = String(row.lane + 1);
+  const isFollowed = page.camera.value === target;
+  return html`
+    <button class="lane-name" aria-pressed=${isFollowed ? "true" : "false"}
+      title=${isFollowed ? "Follow the leader again" : `Follow with the camera, as key ${target} does`}
+      onClick=${() => (page.camera.value = isFollowed ? "leader" : target)}>${name}</button>
+  `;
+}
+
+/** How it decides, in a few words. @param {Standing} row */
+function noteOf({ agent, training_id }) {
+  if (learns(agent)) {
+    const training = runs.value.get(training_id ?? "");
+    return training ? `${count(practisedSteps(training), "step")} of practice` : "learns as it races";
+  }
+  const { steps_ahead } = agentOf(agent);
+  const config = raceInView.value?.config;
+  if (!steps_ahead || !config) return "";
+  return `${count(simulatedPerDecision(steps_ahead, config), "move")} a step`;
+}
+
+/** What is told below the strip, each with its style: what is unusual always, the rest where there is room for it. */
+/** @param {Standing} row @returns {[string, unknown][]} */
+function linesBelow(row) {
+  const isDeep = isAtLeast("study");
+  /** @type {[string, unknown][]} */
+  const lines = [];
+  if (isDeep || row.failure || row.isHalted || (row.isThinking && !isOver.value && isAtLeast("try"))) {
+    lines.push(["dim", html`${row.hasCrossed && isDeep && html`<${Icon} name="flag" />`}${activityOf(row)}`]);
+  }
+  if (postureOf(row)) lines.push(["happened", postureOf(row)]);
+  if (row.original && isAtLeast("try")) {
+    const { finished_m, total_m } = row.original;
+    lines.push(["dim", `Original: ${metres(finished_m)} at time-out, total ${metres(total_m)}`]);
+  }
+  if (isDeep && row.plans_with) lines.push(["dim", `plans with the ${planningModelTitle(row.plans_with)}`]);
+  if (row.isMarching) {
+    lines.push(["marching", html`<b>Marching on the spot${isAtLeast("try") ? ": " : "."}</b>${
+      isAtLeast("try") ? reasonForMarching(row) : ""}`]);
+  }
+  return lines;
+}
+
+/** Distance of a lane that walks on after time-out; none once the show has ended there. @param {Standing} row */
+const distanceSoFar = (row) => (isOver.value ? null : row.distance_m);
+
+/** @param {{ spent: { walked: number, thought: number }, longest: number }} props */
+function TimeStrip({ spent: { walked, thought }, longest }) {
+  /** @param {number} seconds */
+  const width = (seconds) => ({ width: `${(100 * seconds) / longest}%` });
+  const label = `Walking ${clockTime(walked)}, thinking ${clockTime(thought)} (minutes:seconds)`;
+  return html`
+    <div class="strip" role="img" aria-label=${label}>
+      <i class="walked" style=${width(walked)}></i>
+      <i class="thought" style=${width(thought)}></i>
+    </div>
+  `;
+}
+
+/** A robot that has turned less is said to walk straight [°]. */
+const MIN_TURN_DEG = 20;
+
+/** Whether it fell or turned. @param {Standing} one */
+function postureOf({ fell_at_step, heading_deg }) {
+  const fell = typeof fell_at_step === "number" && `fell at step ${whole(fell_at_step + 1)}`;
+  const turn = heading_deg ?? 0;
+  const turned = Math.abs(turn) > MIN_TURN_DEG &&
+    `turned ${Math.round(Math.abs(turn))}° ${turn > 0 ? "left" : "right"}`;
+  return sentence([fell, turned].filter(Boolean).join(", "));
+}
+
+/** @param {Standing} row */
+function activityOf(row) {
+  if (row.failure) return `Stopped: ${row.failure}`;
+  if (row.isDone) {
+    const crossed = row.hasCrossed ? ", crossed the finish line" : "";
+    const steps = count(row.steps, "step");
+    return row.elapsed_s ? `${steps} in ${clockTime(row.elapsed_s)}${crossed}` : steps;
+  }
+  if (row.isHalted) return `${earlyEnd(raceInView.value) ?? "Stopped"} at step ${row.step}`;
+  const step = `Step ${row.step} of ${row.steps}`;
+  if (isOver.value && row.step) return `${step} at time-out`;
+  if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} simulated`;
+  return row.step ? step : agentSummary(row.agent, row.training_id);
+}
+
+/** @param {{ agent: string }} one */
+const reasonForMarching = ({ agent }) =>
+  learns(agent)
+    ? "under 1 cm in ten steps: moves that undo each other still have the highest values. More practice changes that."
+    : "under 1 cm in ten steps: no move that it simulates gains distance on this robot.";
+
+/**
+ * Decision rule of an agent, in a few words.
+ * @param {string} agent
+ * @param {string | null | undefined} trainingId
+ */
+function agentSummary(agent, trainingId) {
+  if (learns(agent)) {
+    const training = runs.value.get(trainingId ?? "");
+    return training
+      ? `${count(practisedSteps(training), "step")} of practice, then looks up its table`
+      : raceInView.value ? "Learns while it races" : "Practises, then looks up its table";
+  }
+  const { description, steps_ahead } = agentOf(agent);
+  if (!steps_ahead) return description;
+  const simulated = simulatedPerDecision(steps_ahead, raceInView.value?.config ?? form.value);
+  return `Simulates ${whole(simulated)} moves before each step`;
+}
+
+// ---- before the race
+
+/** @param {Run | null} race */
+function startSentence(race) {
+  if (!race) return "The lanes of the next race.";
+  if (shownRun.value === race) {
+    const end = earlyEnd(race);
+    if (end && !race.progress.done) return `${end} before it began.`;
+    return race.progress.done ? "Its figures come with the picture." : "The race is about to begin.";
+  }
+  return "The race starts when practice is over.";
+}
+
+/** The lanes before the race. */
+function StartList() {
+  const race = raceInView.value;
+  if (!race && stage.value?.run_id && !shownRun.value) {
+    const words = replayProblem.value ? "No run is shown, so there are no figures." : "Loading the run on stage…";
+    return html`<p class="dim" role="status">${words}</p>`;
+  }
+  /** @type {LaneConfig[]} */
+  const lanes = race?.config?.lanes ?? raceBody().lanes;
+  return html`
+    <p class="dim">${startSentence(race)}</p>
+    <ul class="start-list" aria-label="Lanes of the race">
+      ${lanes.map((lane) => html`
+        <li style=${{ "--agent": agentOf(lane.agent).color }}>
+          <span class="swatch"></span><b>${laneTitle(lane)}</b>
+          <span class="dim">${agentSummary(lane.agent, lane.training_id)}</span>
+        </li>
+      `)}
+    </ul>
+    ${raceScene.value && html`<p class="dim">On the start line.</p>`}
+  `;
+}
+
+// ---- the clock and the camera
+
+const Choices = () => html`
+  <div class="board-choices">
+    ${canPlay.value && raceInView.value && html`<${ClockChoice} />`}
+    <${Follow} />
+  </div>
+`;
+
+function ClockChoice() {
+  const about = served().clocks.find(({ name }) => name === clock.value)?.description ?? "";
+  const whose = page.run.value === null ? "For every page. " : "";
+  /** @param {Changed} event */
+  const onChange = async ({ target }) => {
+    await setStage({ clock: /** @type {Clock} */ (target.value) });
+    // A choice that was refused is undone.
+    target.value = clock.value;
+  };
+  return html`
+    <label class="choice" title=${`${whose}${sentence(clockTitle(clock.value))}. ${about}`}>
+      <span class="sr-only">Clock</span>
+      <select name="clock" onChange=${onChange}>
+        ${choicesOf(served().clocks, clockTitle).map(([one, words]) => html`
+          <option value=${one} selected=${one === clock.value}>${words}</option>
+        `)}
+      </select>
+    </label>
+  `;
+}
+
+function Follow() {
+  const lanes = scene.value?.lanes ?? shownRun.value?.config?.lanes ?? [];
+  const robots = lanes.map((lane, n) =>
+    [String(n + 1), `Follow ${"name" in lane ? lane.name : agentOf(lane.agent).title}`]);
+  const choices = [["leader", "Follow leader"], ...robots, ["free", "Free camera"]];
+  const target = page.camera.value;
+  if (!choices.some(([one]) => one === target)) choices.push([target, `Follow lane ${target}`]);
+  return html`
+    <label class="choice" title="The robot that your camera follows; keys 1 to 8, 0 for a free camera">
+      <span class="sr-only">Follow</span>
+      <select name="follow" onChange=${(/** @type {Changed} */ event) => (page.camera.value = event.target.value)}>
+        ${choices.map(([one, words]) => html`<option value=${one} selected=${one === target}>${words}</option>`)}
+      </select>
+    </label>
+  `;
+}
+
+// ---- the same race by each clock, once it is ranked
+
+/** @type {Clock[]} */
+const CLOCKS = ["paper", "wall", "free"];
+
+/** @param {{ rows: Standing[] }} props */
+function ByEachClock({ rows }) {
+  const race = raceInView.value;
+  const lanes = race?.result?.lanes;
+  if (!lanes || isActive(race) || rows.length < 2) return null;
+  const shown = rows.map(({ lane, title }) => ({ title, clocks: lanes[lane].clocks }));
+  return html`
+    <table class="by-clock">
+      <caption>The same race by each clock</caption>
+      <thead><tr><td></td>${shown.map(({ title }) => html`<th scope="col">${title}</th>`)}</tr></thead>
+      <tbody>
+        ${CLOCKS.map((one) => html`
+          <tr class=${one === clock.value ? "chosen" : ""}>
+            <th scope="row">${sentence(clockTitle(one))}</th>
+            ${shown.map(({ clocks }) => html`
+              <td>${clocks[one].rank === 1
+                ? html`<b>${metres(clocks[one].finished_distance_m)}</b>`
+                : metres(clocks[one].finished_distance_m)}</td>
+            `)}
+          </tr>
+        `)}
+      </tbody>
+    </table>
+  `;
+}
+
+// ---- files of the run on stage
+
+function Files() {
+  const run = shownRun.value;
+  if (!run || isActive(run) || !run.progress.done) return null;
+  return html`
+    <details class="more">
+      <summary>Download this ${run.kind}</summary>
+      <div class="own-choices">
+        ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download>${label}</a>`)}
+      </div>
+    </details>
+  `;
+}

@@ -1,0 +1,110 @@
+// The presenter's desk below the stage: the card, what comes next, and how others can watch; and its remote.
+import { useEffect, useState } from "preact/hooks";
+import { getSpectators } from "../api.js";
+import { canStart, primaryAction, runPrimaryAction } from "../actions.js";
+import { ruleOf } from "../headline.js";
+import { card, cards } from "../lesson.js";
+import { canPlay, clock } from "../on-stage.js";
+import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
+import { presentation, toggleBlank, turnCode, turnPage } from "../presentation.js";
+import { isTimedOut, standings } from "../race.js";
+import { isOperator } from "../selectors.js";
+import { connection, scene, viewers } from "../store.js";
+import { clockTitle, flatParts } from "../titles.js";
+import { html } from "./elements.js";
+import { Prediction } from "./lesson.js";
+
+/** @import { Spectators } from "../types.js" */
+
+export function Desk() {
+  const { code, is_blank } = presentation.value;
+  const known = useSpectators();
+  return html`
+    <section class=${`panel desk code-${code}`} aria-label="Presenter's desk">
+      <h1 class="sr-only">Racing Hexapods</h1>
+      <${Act} />
+      <${Facts} />
+      <${Keys} />
+      ${code !== "none" && html`<${Address} known=${known} />`}
+    </section>
+    ${is_blank && html`
+      <button class="blank" onClick=${toggleBlank} aria-label="Show the page again"></button>
+    `}
+  `;
+}
+
+/** Where others can watch; asked again when the server comes back, as it may have another address. */
+export function useSpectators() {
+  const [known, setKnown] = useState(/** @type {Spectators & { problem?: string } | null} */ (null));
+  const state = connection.value;
+  useEffect(() => {
+    if (state !== "live") return;
+    getSpectators().then(setKnown, ({ message }) => setKnown(/** @type {any} */ ({ problem: message })));
+  }, [state]);
+  return known;
+}
+
+/** The card that is shown, and the one that comes next. */
+function Act() {
+  const { card: number } = presentation.value;
+  const shown = number === null ? null : cards.value[number - 1] ?? card.value;
+  const next = cards.value[number ?? 0];
+  return html`
+    <div class="act">
+      ${number !== null && html`<span class="card-number">Card ${number} of ${cards.value.length}</span>`}
+      <h2>${shown ? shown.title : "Racing Hexapods"}</h2>
+      <p>${shown ? shown.text : "They learn to walk by trial and error, and race against two that think ahead."}</p>
+      ${shown?.ask && html`<${Prediction} />`}
+      ${next && html`<p class="dim">Next: card ${(number ?? 0) + 1}, “${next.title}”.</p>`}
+    </div>
+  `;
+}
+
+/** By what a race is ranked and timed, and how long it still takes. */
+function Facts() {
+  const rows = standings.value;
+  if (!rows) return null;
+  const { time_s = 0, time_out_s = null } = scene.value ?? {};
+  const left = time_out_s === null ? null : Math.max(0, time_out_s - time_s);
+  return html`
+    <dl class="facts-of-race">
+      <div><dt>Rule</dt><dd>${ruleOf(rows, clockTitle(clock.value))}</dd></div>
+      <div><dt>Clock</dt><dd>${flatParts(clock.value)}</dd></div>
+      ${left !== null && html`
+        <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>
+      `}
+    </dl>
+  `;
+}
+
+/** @param {{ known: ReturnType<typeof useSpectators> }} props */
+const Address = ({ known }) => html`
+  <div class="watch-along">
+    ${known?.qr_code && html`<img class="qr-code" src=${known.qr_code} alt=${`QR code of ${known.address}`} />`}
+    <div>
+      <h2>Watch along</h2>
+      ${known?.address
+        ? html`<p class="address">${known.address.replace(/^http:\/\/|\/$/g, "")}</p>`
+        : html`<p class="dim" role="status">${known?.reason ?? known?.problem}</p>`}
+      <p class="watching-count"><b>${viewers.value ?? known?.watching ?? "…"}</b> watching</p>
+    </div>
+  </div>
+`;
+
+const Keys = () => html`
+  <div class="presenter-keys">
+    ${isOperator.value && html`
+      <button class="primary" onClick=${() => turnPage(1)}>Next card</button>
+      <button class="quiet" onClick=${() => turnPage(1)} tabindex="-1" aria-hidden="true"><kbd>→</kbd> next</button>
+      <button class="quiet" onClick=${runPrimaryAction} aria-disabled=${canStart.value ? undefined : "true"}>
+        <kbd>R</kbd> ${primaryAction.value.label}
+      </button>
+      <button class="quiet" onClick=${turnCode}><kbd>Q</kbd> code</button>
+    `}
+    ${canPlay.value && html`<p><kbd>Space</kbd> pause</p>`}
+    ${!isFullScreen.value && document.fullscreenEnabled && html`
+      <button class="quiet" onClick=${enterFullScreen}>Full screen</button>
+    `}
+    <button class="quiet" onClick=${leavePresenter}><kbd>Esc</kbd> leave</button>
+  </div>
+`;

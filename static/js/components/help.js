@@ -1,0 +1,117 @@
+// The help dialog: keys, what the page shows, and where to read on; and how to cite the run on stage.
+import { useState } from "preact/hooks";
+import { openLesson } from "../lesson.js";
+import { shownRun } from "../on-stage.js";
+import { linkTo } from "../page-state.js";
+import { copy, helpIsOpen, shortcuts } from "../page.js";
+import { getCode } from "../api.js";
+import { version } from "../store.js";
+import { messageOf } from "../titles.js";
+import { Dialog, html } from "./elements.js";
+
+/** @import { Changed, Run } from "../types.js" */
+
+/** [key, what it does] */
+const KEYS = [
+  ["Space", "play and pause; the training on stage too"],
+  [", .", "one robot step back or on, in your own replay"],
+  ["[ ]", "to what happened before or next"],
+  ["Home End", "to the start, and to what is computed"],
+  ["E", "explain this step"],
+  ["1 – 8", "follow the robot in that lane; 0 frees the camera"],
+  ["L", "the legs of the robot that is followed; arrows choose, Enter opens"],
+  ["R", "press the main button"],
+  ["D", "show more: Watch, Try, Study"],
+  ["\\", "hide the panel, or show it"],
+  ["P", "present: full screen and large type"],
+  ["?", "show this list; Escape closes what is on top"],
+];
+
+/** Of a chart that has the focus. */
+const CHART_KEYS = [
+  ["← →", "read the values, in all charts over the same axis; or point, or touch"],
+  ["Enter", "show that moment on stage, for those who may; or click"],
+  ["+ −", "zoom in and out; or drag, or move two fingers"],
+  ["0", "show all; or click twice"],
+];
+
+/** @param {{ keys: string[][] }} props */
+const Keys = ({ keys }) => html`
+  <dl class="keys">
+    ${keys.map(([key, does]) => html`<div><dt><kbd>${key}</kbd></dt><dd>${does}</dd></div>`)}
+  </dl>
+`;
+
+export const HelpDialog = () => html`
+  <${Dialog} id="help" labelledBy="help-title" isOpen=${helpIsOpen}>
+    <h2 id="help-title">Keys</h2>
+    <${Keys} keys=${KEYS} />
+    <label class="check">
+      <input type="checkbox" checked=${shortcuts.value === "on"}
+        onChange=${(/** @type {Changed} */ { target }) => (shortcuts.value = target.checked ? "on" : "off")} />
+      Use single keys
+    </label>
+    <h2>Charts</h2>
+    <${Keys} keys=${CHART_KEYS} />
+    <h2>Learning and racing</h2>
+    <p>
+      A hexapod learns by trial and error: it moves two legs at a time, measures how far that took it, and
+      keeps in a table what each move is worth. Then it races against two robots that simulate their moves
+      before they make one: greedy looks one step ahead, two-step looks two. Thinking costs time. At time-out,
+      when the first robot has used its steps, the one that is farthest wins. The red line is the finish line;
+      a flag shows who crossed it.
+    </p>
+    <${Reading} />
+    <${Citation} />
+    <form method="dialog">
+      <button type="button" class="secondary" onClick=${startLesson}>Show the first lesson</button>
+      <button class="secondary" autofocus>Close</button>
+    </form>
+  <//>
+`;
+
+function startLesson() {
+  helpIsOpen.value = false;
+  openLesson();
+}
+
+const Reading = () => html`
+  <h2>To read on</h2>
+  <ul class="reading">
+    <li><a href="docs">The REST API of this server</a>, with every request and answer</li>
+    <li><a href="about/paper">The paper</a> that this page implements, and what differs from it</li>
+    <li><a href="about/source">The source</a>, with its documentation</li>
+  </ul>
+`;
+
+/** How to name a run so that it can be repeated: the version, its seed, its hash and its command. */
+function Citation() {
+  const run = shownRun.value;
+  const [text, setText] = useState("");
+  if (!run || !run.progress.done) return null;
+  const cite = async () => {
+    try {
+      const { command } = await getCode(run.id);
+      const words = citationOf(run, command);
+      setText((await copy(words, "Citation copied.")) ? `Copied: ${words}` : words);
+    } catch (error) {
+      setText(messageOf(/** @type {Error} */ (error)));
+    }
+  };
+  return html`
+    <h2>Cite this run</h2>
+    <p class="dim">${run.name}: version, seed, hash of what it learned or recorded, and the command that repeats it.</p>
+    <p><button type="button" class="secondary compact" onClick=${cite}>Copy the citation</button></p>
+    ${text && html`<pre class="citation" tabindex="0" role="region" aria-label="Citation">${text}</pre>`}
+  `;
+}
+
+/** @type {(run: Run, command: string) => string} */
+function citationOf(run, command) {
+  const hash = run.result?.q_table_sha256 ?? run.result?.recording_sha256;
+  return [
+    `Racing Hexapods ${version.value}, ${run.kind} "${run.name}" (${run.id}), ${run.created_at.slice(0, 10)}`,
+    `seed ${run.config.seed}${hash ? `, SHA-256 ${hash}` : ""}`,
+    linkTo({ run: run.id }), command.trim(),
+  ].join("\n");
+}

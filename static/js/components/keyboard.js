@@ -1,0 +1,118 @@
+// Keys that act on the whole page, pressed on it or forwarded by the stage's frame; and menus, which close by themselves.
+import { runPrimaryAction, togglePause } from "../actions.js";
+import { page } from "../page-state.js";
+import { helpIsOpen, leavePresenter, present, shortcuts } from "../page.js";
+import { stepReplay } from "../replay.js";
+import { closeLegs, legsAreOpen, openLegs } from "../legs.js";
+import { turnCode, turnPage } from "../presentation.js";
+import { scale, seekTo, seekToMark } from "../time.js";
+import { isAtLeast, nextDepth, openTab, toggleHidden } from "../workspace.js";
+
+const TEXT = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable]";
+const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:not([type=range])";
+/** Elements to which these keys belong while they have the focus. */
+const MOVED_BY_KEYS = "input[type=range], [role=slider], [role=tab], [role=grid], .body, .pinned";
+
+/** Keys of the view of the race. @type {Record<string, () => unknown>} */
+const RACE_KEYS = {
+  " ": togglePause,
+  "r": runPrimaryAction,
+  "0": () => (page.camera.value = "free"),
+  ",": () => page.run.value !== null && stepReplay(-1),
+  ".": () => page.run.value !== null && stepReplay(1),
+  "[": () => seekToMark(-1),
+  "]": () => seekToMark(1),
+  "Home": () => seekTo(0),
+  "End": () => seekTo(scale.value?.end ?? 0),
+  "e": () => openTab("why"),
+  "d": nextDepth,
+  "l": () => isAtLeast("try") && openLegs(),
+  "\\": () => toggleHidden("panel"),
+  "p": () => (page.isPresenting.value ? leavePresenter : present)(),
+};
+
+/** Keys of the presenter's window, as those of a remote control for slides. @type {Record<string, () => unknown>} */
+const PRESENTER_KEYS = {
+  "ArrowRight": () => turnPage(1), "PageDown": () => turnPage(1),
+  "ArrowLeft": () => turnPage(-1), "PageUp": () => turnPage(-1),
+  "q": turnCode,
+};
+
+/** Perform the action of a key; false if it has none. @param {string} pressed */
+function press(pressed) {
+  const key = pressed.length === 1 ? pressed.toLowerCase() : pressed;
+  if (key === "?") {
+    toggleHelp();
+    return true;
+  }
+  // All but the help act on the race, which a reader of another view does not see.
+  if (page.view.value !== "race") return false;
+  if (/^[1-8]$/.test(key)) {
+    page.camera.value = key;
+    return true;
+  }
+  const action = (page.isPresenting.value ? PRESENTER_KEYS[key] : undefined) ?? RACE_KEYS[key];
+  action?.();
+  return action !== undefined;
+}
+
+/** Open the help, or close it. The dialog itself is asked: it tells of its end only later. */
+export function toggleHelp() {
+  const wasOpen = document.querySelector("#help[open]") !== null;
+  helpIsOpen.value = false;
+  helpIsOpen.value = !wasOpen;
+}
+
+/** Close the open menus in which a target is not. @param {EventTarget | null} target */
+const closeOtherMenus = (target) => {
+  for (const menu of document.querySelectorAll("details.menu[open]")) {
+    if (!(target instanceof Node && menu.contains(target))) menu.removeAttribute("open");
+  }
+};
+
+/** Close the open menu, and give the focus back to what opened it; false if there is none. */
+function leaveMenu() {
+  const menu = document.querySelector("details.menu[open]");
+  if (!menu) return false;
+  menu.removeAttribute("open");
+  menu.querySelector("summary")?.focus();
+  return true;
+}
+
+/** Close what is on top; false if nothing is. */
+function leaveTop() {
+  if (leaveMenu()) return true;
+  if (legsAreOpen.value) {
+    closeLegs();
+    return true;
+  }
+  if (!page.isPresenting.value) return false;
+  leavePresenter();
+  return true;
+}
+
+/** Menus close with Escape, and when a click or the focus goes elsewhere. */
+export function listenForMenus() {
+  for (const type of ["pointerdown", "focusin"]) addEventListener(type, ({ target }) => closeOtherMenus(target));
+}
+
+export function listenForKeys() {
+  addEventListener("keydown", (event) => {
+    const { key, target, repeat } = event;
+    // The dialog itself, since it tells of its end only later.
+    const isInDialog = document.querySelector("dialog[open]") !== null;
+    if (key === "Escape" && !event.defaultPrevented && !isInDialog && leaveTop()) event.preventDefault();
+    if (event.ctrlKey || event.altKey || event.metaKey || repeat || shortcuts.value === "off") return;
+    const isIn = (/** @type {string} */ selector) => target instanceof Element && target.closest(selector);
+    if (isIn(TEXT)) return;
+    if (key === " " && isIn(PRESSED_BY_SPACE)) return;
+    if (key.length > 1 && isIn(MOVED_BY_KEYS)) return;
+    if (isInDialog && key !== "?") return;
+    if (press(key)) event.preventDefault();
+  });
+  addEventListener("message", ({ origin, data }) => {
+    if (origin !== location.origin || data?.type !== "hexapods:key") return;
+    if (data.key === "Escape") leaveTop();
+    else if (shortcuts.value === "on") press(data.key);
+  });
+}

@@ -1,0 +1,159 @@
+// What can happen to the leg, the body or the ground that was picked in the picture, where it was picked.
+import { useEffect, useRef, useState } from "preact/hooks";
+import { branchRace, pending } from "../actions.js";
+import { chosenWith, conditionsAt, conditionsNow, disturbancesOf, kindNamed, pressed } from "../disturbances.js";
+import { closeLegs, legPoints, legsOf, picked, pickLeg } from "../legs.js";
+import { disturb } from "../live-changes.js";
+import { heldRace, liveTraining, stepShown } from "../on-stage.js";
+import { isOperator } from "../selectors.js";
+import { scene } from "../store.js";
+import { positionInWords, scale } from "../time.js";
+import { openTab } from "../workspace.js";
+import { html, Problem } from "./elements.js";
+import { firstWish, legKinds } from "./world-controls.js";
+
+/** @import { Disturbance, Run } from "../types.js" */
+/** @import { Pick } from "../legs.js" */
+
+/** The numbers of the legs of the followed robot, to choose from. */
+export function LegMarks() {
+  const group = useRef(/** @type {HTMLElement | null} */ (null));
+  const lane = legsOf.value;
+  useEffect(() => {
+    // The first of them as soon as they are there.
+    if (lane !== null && legPoints.value.length && !group.current?.contains(document.activeElement)) {
+      /** @type {HTMLElement | null | undefined} */ (group.current?.querySelector("button"))?.focus();
+    }
+  }, [lane, legPoints.value.length]);
+  if (lane === null) return null;
+  /** @param {KeyboardEvent} event */
+  const onKeyDown = (event) => {
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const all = /** @type {HTMLElement[]} */ ([...group.current?.querySelectorAll("button") ?? []]);
+    const at = all.indexOf(/** @type {HTMLElement} */ (document.activeElement));
+    all[(at + step + all.length) % all.length]?.focus();
+  };
+  const name = scene.value?.lanes[lane]?.name ?? "the robot";
+  return html`
+    <div class="leg-marks" role="group" aria-label=${`Legs of ${name}`} ref=${group} onKeyDown=${onKeyDown}>
+      ${legPoints.value.map(({ leg, x, y }) => html`
+        <button key=${leg} style=${{ left: `${x}px`, top: `${y}px` }} aria-label=${`Leg ${leg}`}
+          aria-pressed=${picked.value?.leg === leg ? "true" : "false"} onClick=${() => pickLeg(leg)}>${leg}</button>
+      `)}
+    </div>
+  `;
+}
+
+const WIDTH_PX = 320;
+const HEIGHT_PX = 250;
+const EDGE_PX = 12;
+
+export function LegMenu() {
+  const at = picked.value;
+  return at && html`<${MenuAt} at=${at} key=${`${at.lane} ${at.what} ${at.leg}`} />`;
+}
+
+/** @param {{ at: Pick }} props */
+function MenuAt({ at }) {
+  const menu = useRef(/** @type {HTMLElement | null} */ (null));
+  useEffect(() => {
+    /** @type {HTMLElement | null | undefined} */
+    const first = menu.current?.querySelector("button, select");
+    first?.focus({ preventScroll: true });
+  }, []);
+  const { width = 0, height = 0 } = menu.current?.parentElement?.getBoundingClientRect() ?? {};
+  const place = {
+    left: `${Math.max(EDGE_PX, Math.min(at.x + EDGE_PX, (width || 640) - WIDTH_PX - EDGE_PX))}px`,
+    top: `${Math.max(EDGE_PX, Math.min(at.y + EDGE_PX, (height || 480) - HEIGHT_PX - EDGE_PX))}px`,
+  };
+  const name = scene.value?.lanes[at.lane]?.name ?? "Robot";
+  const title = { leg: `${name}, leg ${at.leg}`, body: `${name}, body`, ground: "Ground" }[at.what];
+  return html`
+    <section class="leg-menu" style=${place} aria-label=${title} ref=${menu}>
+      <div class="leg-menu-head">
+        <h3>${title}</h3>
+        <button class="quiet square small" aria-label="Close" onClick=${closeLegs}>✕</button>
+      </div>
+      <${Offer} at=${at} />
+    </section>
+  `;
+}
+
+/** @param {{ at: Pick }} props */
+function Offer({ at }) {
+  const training = liveTraining.value;
+  const race = heldRace.value;
+  if (!isOperator.value) return html`<p class="dim">The operator disturbs the robots.</p>`;
+  if (training) return html`<${OfTraining} run=${training} at=${at} />`;
+  if (race) return html`<${OfRace} race=${race} at=${at} />`;
+  return html`<p class="dim">Hold a race that has been computed, or start a training: then this can be disturbed.</p>`;
+}
+
+/** The kinds that can happen to what was picked. @param {Pick} at */
+const kindsFor = ({ what }) =>
+  (what === "leg" ? legKinds().map(({ name }) => name) : { body: ["payload", "push"], ground: ["friction", "slope"] }[what]);
+
+/** @param {{ at: Pick, value: string, onValue: (kind: string) => void }} props */
+const Kinds = ({ at, value, onValue }) => html`
+  <div class="kinds" role="group" aria-label="What happens">
+    ${kindsFor(at).filter(kindNamed).map((name) => html`
+      <button key=${name} aria-pressed=${name === value ? "true" : "false"} onClick=${() => onValue(name)}>
+        ${shortTitle(name)}
+      </button>
+    `)}
+  </div>
+`;
+
+/** "Limp" of "Limp legs". @param {string} name */
+const shortTitle = (name) => (kindNamed(name)?.title ?? name).replace(/ (legs?|joint)$/, "");
+
+/** What a press does, as a disturbance without its step. @type {(at: Pick, kind: string, conditions: Disturbance[]) => Disturbance} */
+const meant = (at, kind, conditions) => /** @type {Disturbance} */ (at.what === "leg"
+  ? pressed(conditions, at.leg ?? 1, firstWish(kind)) : { ...firstWish(kind), kind });
+
+/** @param {{ run: Run, at: Pick }} props */
+function OfTraining({ run, at }) {
+  const [kind, setKind] = useState(kindsFor(at)[0]);
+  const next = (run.progress?.done ?? 0) + 1;
+  const act = async () => {
+    await disturb(run, meant(at, kind, conditionsNow(run)));
+    closeLegs();
+  };
+  return html`
+    <${Kinds} at=${at} value=${kind} onValue=${setKind} />
+    <p class="acts"><b>Acts from step ${next}</b>, the computed one.</p>
+    <button class="primary" onClick=${act}>Let it happen</button>
+    <${Problem} at="disturb" />
+    <${Further} />
+  `;
+}
+
+/** @param {{ race: Run, at: Pick }} props */
+function OfRace({ race, at }) {
+  const [kind, setKind] = useState(kindsFor(at)[0]);
+  const { config } = race;
+  const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
+  const before = conditionsAt(disturbancesOf(race), from - 1, config.robot);
+  const moment = scale.value && stepShown.value !== null ? positionInWords(scale.value, scale.value.picture) : `step ${from}`;
+  const act = async () => {
+    const chosen = chosenWith([], meant(at, kind, before), before, config.robot);
+    if (await branchRace(race, from - 1, chosen)) closeLegs();
+  };
+  return html`
+    <${Kinds} at=${at} value=${kind} onValue=${setKind} />
+    <p class="acts"><b>Acts from ${moment}</b>, as a new race. The old race is kept.</p>
+    <button class="primary" disabled=${pending.value.branch} onClick=${act}>Race on from ${moment}</button>
+    <${Problem} at="branch" />
+    <${Further} />
+  `;
+}
+
+const Further = () => html`
+  <button class="link" onClick=${() => {
+    closeLegs();
+    openTab("world");
+  }}>More: angles, sizes, several at once</button>
+`;

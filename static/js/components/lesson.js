@@ -1,0 +1,56 @@
+// The lesson's card below the time bar: a question or a task, one's own prediction, and the way to the next one.
+import { card, cardNumber, cards, closeLesson, outcome, predict, predictable, prediction, turnCard } from "../lesson.js";
+import { listed } from "../format.js";
+import { isPhone } from "../page.js";
+import { isAtLeast } from "../workspace.js";
+import { html } from "./elements.js";
+
+export function LessonCard() {
+  const shown = card.value;
+  if (!shown) return null;
+  const isLast = cardNumber.value === cards.value.length;
+  return html`
+    <section class="card-bar" aria-label="Lesson">
+      <span class="card-number">Card ${cardNumber} of ${cards.value.length}</span>
+      <p aria-live="polite"><b>${shown.title}${/[?.]$/.test(shown.title) ? "" : "."}</b>${" "}
+        ${!isPhone.value && html`<span>${shown.ask && outcome.value ? "" : shown.text}</span>`}</p>
+      ${shown.ask && html`<${Prediction} />`}
+      <button class="secondary compact" onClick=${() => turnCard(1)}>${isLast ? "Done" : "Next"}</button>
+      ${isAtLeast("try") && html`
+        <button class="quiet square small" aria-label="Hide the lesson" title="Hide the lesson" onClick=${closeLesson}>
+          ✕
+        </button>
+      `}
+    </section>
+  `;
+}
+
+/** The lanes to choose from; then what was chosen, and at time-out what came of it. */
+export function Prediction() {
+  const lanes = predictable.value;
+  const own = lanes.find(({ lane }) => lane === prediction.value);
+  const winners = outcome.value;
+  if (winners?.length) {
+    const isRight = winners.some(({ lane }) => lane === prediction.value);
+    const verdict = `It ${winners.length > 1 ? "is level:" : "was"} ${listed(winners.map(({ title }) => title))}.`;
+    return html`<p class="prediction" role="status">${verdict}${own ? (isRight ? " You were right." : " You chose ") : ""}
+      ${own && !isRight ? html`<b>${own.title}.</b>` : ""}</p>`;
+  }
+  if (own) {
+    return html`
+      <p class="prediction" style=${{ "--agent": own.color }}>
+        Your prediction: <span class="swatch"></span><b>${own.title}</b>
+      </p>
+    `;
+  }
+  return html`
+    <span class="prediction" role="group" aria-label="Your prediction">
+      ${lanes.map(({ lane, title, color }) => html`
+        <button class="chip" style=${{ "--agent": color }} onClick=${() => predict(lane)}>
+          <span class="swatch"></span>${title}
+        </button>
+      `)}
+      ${lanes.length === 0 && html`<span class="dim">Start a race first.</span>`}
+    </span>
+  `;
+}

@@ -1,0 +1,264 @@
+// The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { practiseAtPaceOfPicture } from "../live-changes.js";
+import { whole } from "../format.js";
+import { headline, leaderColor, moveTold, practiceTitle, reason } from "../headline.js";
+import { heldRace, liveTraining, phase, shownRun, steering } from "../on-stage.js";
+import { page } from "../page-state.js";
+import { isPhone } from "../page.js";
+import { isOperator } from "../selectors.js";
+import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
+import {
+  canPin, isAtLeast, isPanelHidden, openTab, pinnedTab, tab, tabAbout, tabs, tabTitle, togglePin,
+} from "../workspace.js";
+import { Board } from "./board.js";
+import { html, Icon, Loaded } from "./elements.js";
+import { Foot } from "./foot.js";
+import { LearningChart } from "./learning.js";
+import { TrainSettings, WorldSettings } from "./settings.js";
+import { WhatIf } from "./what-if.js";
+import { Branch, LiveWorld } from "./world-controls.js";
+
+/** @import { FunctionComponent } from "preact" */
+
+export function Panel() {
+  if (isPanelHidden.value) return null;
+  if (page.isRemote.value && isOperator.value) {
+    return html`<aside class="panel-column" aria-label="Panel"><${Loaded} name="remote" load=${loadRemote} /></aside>`;
+  }
+  return html`
+    <aside class=${`panel-column ${pinnedTab.value ? "two" : ""}`} aria-label="Panel">
+      <${Reason} />
+      ${isAtLeast("try") && !isPhone.value && html`<${Tabs} />`}
+      <${Body} name=${tab.value} key=${tab.value} />
+      ${pinnedTab.value && html`<${Pinned} name=${pinnedTab.value} key=${`pinned ${pinnedTab.value}`} />`}
+      <div class="foot"><${Foot} /></div>
+    </aside>
+  `;
+}
+
+// ---- how it stands, and why; in the tab that explains a step, the move
+
+function Reason() {
+  const isOfMove = tab.value === "why";
+  const told = isOfMove ? moveTold.value : null;
+  const title = isOfMove ? told?.title : headline.value ?? practiceTitle.value;
+  const color = isOfMove ? told?.color : leaderColor.value;
+  return html`
+    <header class="reason" aria-label=${isOfMove ? "The move" : "How it stands"}>
+      ${isOfMove && !isAtLeast("try") && html`
+        <button class="link back" onClick=${() => openTab("board")}>‹ Back to the board</button>
+      `}
+      <h2 style=${{ "--agent": color ?? "transparent" }}>
+        ${title && html`<span class="swatch" aria-hidden="true"></span>`}${title ?? invitation()}
+      </h2>
+      <p>${title ? told?.reason ?? (isOfMove ? "" : reason.value) : about()}</p>
+      ${!isOfMove && canExplain() && !isAtLeast("try") && html`
+        <button class="link" onClick=${() => openTab("why")}>
+          Explain ${phase.value === "ended" ? "the last" : "this"} step
+        </button>
+      `}
+    </header>
+  `;
+}
+
+const canExplain = () => Boolean(shownRun.value?.progress.done) && scale.value !== null;
+
+const invitation = () => {
+  if (page.run.value !== null || shownRun.value) return shownRun.value ? "On the start line" : "Loading…";
+  return "A hexapod learns to walk";
+};
+const about = () =>
+  (shownRun.value ? "" : "It tries moves, keeps what each was worth, and races against two that think ahead.");
+
+// ---- the tabs
+
+/** Arrow keys go from tab to tab, as in every list of tabs. @param {KeyboardEvent} event */
+function moveByKey(event) {
+  const names = tabs.value;
+  const at = names.indexOf(tab.value);
+  const next = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: names.length - 1 }[event.key];
+  if (next === undefined) return;
+  event.preventDefault();
+  event.stopPropagation();
+  const name = names[(next + names.length) % names.length];
+  openTab(name);
+  requestAnimationFrame(() => document.getElementById(`tab-${name}`)?.focus());
+}
+
+const Tabs = () => html`
+  <div class="tabs" role="tablist" aria-label="Panel" onKeyDown=${moveByKey}>
+    ${tabs.value.map((name) => html`<${Tab} key=${name} name=${name} />`)}
+    ${canPin.value && html`
+      <button class="quiet square small pin" role="presentation" aria-pressed=${pinnedTab.value ? "true" : "false"}
+        tabindex="-1" onClick=${togglePin} title=${pinnedTab.value ? "One tab" : "Pin this tab, and open another beside it"}
+        aria-label=${pinnedTab.value ? "Show one tab" : "Pin this tab"}><${Icon} name="pin" /></button>
+    `}
+  </div>
+`;
+
+/** @param {{ name: string }} props */
+function Tab({ name }) {
+  const isOpen = tab.value === name;
+  return html`
+    <button id=${`tab-${name}`} role="tab" aria-selected=${isOpen ? "true" : "false"} tabindex=${isOpen ? "0" : "-1"}
+      aria-controls=${isOpen ? "panel-body" : undefined} title=${tabAbout(name)} onClick=${() => openTab(name)}>
+      ${tabTitle(name)}
+    </button>
+  `;
+}
+
+/** On a phone the tabs are at the thumb: those of its depth, and of who watches the two that explain. */
+export function ThumbTabs() {
+  const names = isAtLeast("try") ? tabs.value : ["board", "why"];
+  return html`
+    <div class="thumb-tabs" role="tablist" aria-label="Panel" onKeyDown=${moveByKey}>
+      ${names.map((name) => html`<${Tab} key=${name} name=${name} />`)}
+    </div>
+  `;
+}
+
+// ---- what the open tab shows
+
+const loadRemote = () => import("./remote.js").then(({ Remote }) => Remote);
+const loadWhy = () => import("./steps/why.js").then(({ Why }) => Why);
+const loadTable = () => import("./steps/table.js").then(({ Table }) => Table);
+const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
+
+/** @type {Record<string, FunctionComponent>} */
+const CONTENTS = {
+  "board": Board,
+  "train": TrainTab,
+  "world": WorldTab,
+  "why": () => html`<${Loaded} name="explanation" load=${loadWhy} />`,
+  "gait": () => html`<${Loaded} name="gait analysis" load=${loadGait} />`,
+  "table": () => html`<${Loaded} name="table" load=${loadTable} />`,
+  "what-if": WhatIf,
+};
+
+/** @param {{ name: string }} props */
+function Body({ name }) {
+  const hasTabs = isAtLeast("try") || isPhone.value;
+  const body = useRef(/** @type {HTMLElement | null} */ (null));
+  const followed = useFade(body);
+  const attributes = hasTabs
+    ? { "role": "tabpanel", "aria-labelledby": `tab-${name}` }
+    : { "role": "region", "aria-label": tabTitle(name) };
+  return html`
+    <div class=${`body ${followed ? "follows" : ""}`} id="panel-body" ref=${body} tabindex=${followed ? 0 : undefined}
+      ...${attributes}>
+      <${CONTENTS[name]} />
+    </div>
+  `;
+}
+
+/** The tab that is pinned beside the open one. @param {{ name: string }} props */
+const Pinned = ({ name }) => html`
+  <section class="pinned" aria-label=${`Pinned: ${tabTitle(name)}`} tabindex="0">
+    <div class="pinned-head">
+      <h2>${tabTitle(name)}</h2>
+      <button class="quiet square small" aria-label=${`Unpin ${tabTitle(name)}`} onClick=${togglePin}>✕</button>
+    </div>
+    <${CONTENTS[name]} />
+  </section>
+`;
+
+/** Whether more of a scrolled element follows below. @param {{ current: HTMLElement | null }} host */
+function useFade(host) {
+  const [follows, setFollows] = useState(false);
+  const measure = () => {
+    const { scrollTop = 0, clientHeight = 0, scrollHeight = 0 } = host.current ?? {};
+    setFollows(scrollHeight - clientHeight - scrollTop > 8);
+  };
+  useLayoutEffect(measure);
+  useEffect(() => {
+    const element = /** @type {HTMLElement} */ (host.current);
+    const watcher = new ResizeObserver(measure);
+    watcher.observe(element);
+    element.addEventListener("scroll", measure, { passive: true });
+    return () => watcher.disconnect();
+  }, []);
+  return follows;
+}
+
+// ---- Train
+
+function TrainTab() {
+  return html`
+    <div class="train-tab">
+      <${TrainSettings} />
+      <${Steering} />
+      <${LearningChart} />
+    </div>
+  `;
+}
+
+/** What a live setting acts on while the computation is ahead of the picture: its next step, or the next training. */
+function Steering() {
+  const state = steering.value;
+  if (state === null) return null;
+  const isOver = state === "computed";
+  const words = isOver
+    ? html`<b>Acts on the next training:</b> this one is computed to its end; the picture is still on its way.`
+    : html`<b>Acts from step ${whole(state.step)}</b>, which is computed next${seenStep(state)}.`;
+  return html`
+    <div class="steering" role="note">
+      <p>${words}</p>
+      <button class="link" onClick=${practiseAtPaceOfPicture}>
+        ${isOver ? "Let the next one practise" : "Practise on"} at the pace of the picture, to steer it
+      </button>
+    </div>
+  `;
+}
+
+/** @param {{ shown: number | null }} state */
+const seenStep = ({ shown }) => (shown === null ? "; it is not on stage" : `; the picture shows step ${whole(shown)}`);
+
+// ---- World
+
+/** What can be disturbed now comes before the world of the next run. */
+function WorldTab() {
+  const canDisturb = liveTraining.value !== null || heldRace.value !== null;
+  return html`
+    <div class="world-tab">
+      ${canDisturb && html`<${FromNow} />`}
+      <${Happened} />
+      <${WorldSettings} />
+      ${!canDisturb && html`
+        <p class="dim fine">
+          Hold a race that has been computed, or start a training: then its robots can be disturbed here, or by a click
+          on a leg.
+        </p>
+      `}
+    </div>
+  `;
+}
+
+const FromNow = () => html`
+  <section aria-label="From the moment shown">
+    <h3>From the moment shown${shownMoment()}</h3>
+    ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
+  </section>
+`;
+
+const shownMoment = () => (scale.value ? `, ${positionInWords(scale.value, scale.value.picture)}` : "");
+
+/** What happened in the run on stage so far, each with a way to its moment. */
+function Happened() {
+  const all = marks.value.filter(({ kind }) => ["disturbance", "fall", "change"].includes(kind));
+  const known = scale.value;
+  if (!known || !all.length) return null;
+  return html`
+    <details class="more happened-list" open>
+      <summary>What happened<span class="dim"> · ${all.length}</span></summary>
+      <ul>
+        ${all.map((one) => html`
+          <li>
+            <b class="num">${positionInWords(known, one.at)}</b> <span>${markInWords(one)}</span>
+            <button class="link" onClick=${() => seekTo(one.at, { isHeld: true })}>Go there</button>
+          </li>
+        `)}
+      </ul>
+    </details>
+  `;
+}

@@ -1,0 +1,59 @@
+// One step explained: the move, what it was worth, why it was made, and the update of the values.
+import { useEffect } from "preact/hooks";
+import { sentence, whole } from "../../format.js";
+import { moveTold } from "../../headline.js";
+import { agentOf } from "../../settings.js";
+import { explanation, fineMillimetres, isFollowing, moment, moveInWords } from "../../steps.js";
+import { isAtLeast } from "../../workspace.js";
+import { html } from "../elements.js";
+import { ActionValues } from "../learning.js";
+import { ExplainedStep } from "./explanation.js";
+import { Navigator, Trouble, useMoment, Waiting } from "./navigator.js";
+
+/** @import { Moment } from "../../steps.js" */
+/** @import { Explanation } from "../../types.js" */
+
+export function Why() {
+  useMoment();
+  const at = moment.value;
+  const told = toldAbout(at);
+  useEffect(() => {
+    if (at) moveTold.value = told ? wordsOf(told) : { title: `Step ${whole(at.step)}`, reason: "", color: "transparent" };
+  }, [told, at?.step]);
+  useEffect(() => () => (moveTold.value = null), []);
+  if (!at) return html`<p class="dim">Once a run is on stage, each of its steps is explained here.</p>`;
+  const { error, again } = explanation.value;
+  return html`
+    <section class="why-tab" aria-label="Explanation" aria-busy=${told && told.step !== at.step ? "true" : "false"}>
+      <${Navigator} at=${at} />
+      <${Trouble} error=${error} again=${again} />
+      ${at.step === 0 && html`<p class="dim">It stands on the start line. Its first step comes next.</p>`}
+      ${isFollowing.value && html`<${ActionValues} />`}
+      ${told && html`<${ExplainedStep} told=${told} isFull=${isAtLeast("study")} />`}
+      ${!told && !error && at.step > 0 && html`<${Waiting} />`}
+    </section>
+  `;
+}
+
+/** The explanation that can be shown of a moment's lane: of its step, or of one before while the answer is on its way. */
+/** @param {Moment | null} at @returns {Explanation | null} */
+function toldAbout(at) {
+  const { answer, error, again } = explanation.value;
+  if (!at || !answer || (error && !again)) return null;
+  return answer.run_id === at.run_id && (answer.lane ?? 0) === at.lane ? answer : null;
+}
+
+/** @param {Explanation} told */
+const wordsOf = (told) => ({
+  title: sentence(moveInWords(told.action, told)), reason: reasonOf(told), color: agentOf(told.agent).color,
+});
+
+/** What the step brought, and what the move is worth since. @param {Explanation} told */
+function reasonOf({ reward_m, update }) {
+  const went = `The step brought ${fineMillimetres(reward_m)}`;
+  const direct = update?.direct;
+  if (!direct) return `${went}.`;
+  const [before, after] = [direct.before, direct.after].map(fineMillimetres);
+  if (before === after) return `${went}: the value of the move stays ${after}.`;
+  return `${went}: the value of the move ${direct.after > direct.before ? "rises" : "falls"} from ${before} to ${after}.`;
+}

@@ -1,0 +1,239 @@
+// The time bar below the stage: play, the moment in the picture, how far the run is computed, what happened, and how it
+// is shown. It is shared by every page, unless this one plays a replay of its own.
+import { endAtTimeOut, setStage, skipToEnd } from "../actions.js";
+import { canPlay, clock, isPlaying, playbackName, shownRun } from "../on-stage.js";
+import { page } from "../page-state.js";
+import { isPhone } from "../page.js";
+import { closeReplay, openReplay, stepReplay } from "../replay.js";
+import { percent, shareOf, ticks } from "../scale.js";
+import { isOperator } from "../selectors.js";
+import { scene, stage } from "../store.js";
+import { laneRows, markInWords, marks, positionInWords, scale, seekTo, toggleTime } from "../time.js";
+import { isAtLeast } from "../workspace.js";
+import { html, Icon, Problem, useWidth } from "./elements.js";
+import { widthOf } from "./line-labels.js";
+
+/** @import { Mark, Scale } from "../time.js" */
+/** @import { Changed, Scene } from "../types.js" */
+
+const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 64];
+
+export function TimeBar() {
+  const known = scale.value;
+  const isOwn = page.run.value !== null;
+  return html`
+    <div class=${`time-bar ${isOwn ? "own" : ""}`} role="group" aria-label="Time">
+      ${known && html`<${PlayButton} />`}
+      ${isOwn && html`<${StepButtons} />`}
+      ${known ? html`<${Track} known=${known} />` : html`<p class="dim no-time">${nothingToSee()}</p>`}
+      ${isOneLaneLeft(scene.value) && canPlay.value && html`
+        <button class="quiet square" onClick=${skipToEnd} aria-label="Skip to the end" title="Skip to the end">
+          <${Icon} name="skip" />
+        </button>
+      `}
+      ${known && isAtLeast("try") && !isPhone.value && canPlay.value && html`<${EndAtTimeOut} /><${Speed} />`}
+      ${isOwn ? html`<${BackToStage} />` : known && html`<${ReplayButton} />`}
+      <${Problem} at="stage" />
+    </div>
+  `;
+}
+
+const nothingToSee = () => {
+  if (page.run.value !== null) return "Loading your replay…";
+  return stage.value?.run_id ? "Its first steps are being computed." : "The robots stand on the start line.";
+};
+
+function PlayButton() {
+  const verb = isPlaying.value ? "Pause" : "Play";
+  const isShared = canPlay.value && page.run.value === null;
+  const whose = isShared ? " for everyone" : "";
+  const label = stage.value?.ended ? `Play again${whose}` : `${verb} ${playbackName.value}${whose}`;
+  return html`
+    <button class="play" disabled=${!stage.value?.run_id} onClick=${toggleTime} aria-label=${label} title=${label}>
+      <${Icon} name=${isPlaying.value ? "pause" : "play"} />
+    </button>
+  `;
+}
+
+// ---- a replay of this page's own
+
+/** Operators have the stage's own bar; who has none replays as soon as the bar is touched. */
+function ReplayButton() {
+  const run = shownRun.value;
+  if (!run?.progress?.done || !(isAtLeast("try") || isPhone.value)) return null;
+  const open = () => openReplay(run.id, { time_s: scene.value?.time_s ?? 0, clock: clock.value });
+  return html`
+    <button class="quiet square" onClick=${open} aria-label="Replay on this page"
+      title="Replay: play and seek on this page only; the stage goes on for all">
+      <${Icon} name="replay" />
+    </button>
+  `;
+}
+
+const BackToStage = () => html`
+  <button class="secondary compact to-stage" onClick=${closeReplay} title="Watch the stage with everybody">
+    <span class="dot" aria-hidden="true"></span>Live
+  </button>
+`;
+
+/** @param {{ direction: 1 | -1, label: string, icon: string }} props */
+const StepButton = ({ direction, label, icon }) => html`
+  <button class="quiet square" onClick=${() => stepReplay(direction)} aria-label=${label} title=${label}>
+    <${Icon} name=${icon} />
+  </button>
+`;
+
+const StepButtons = () => html`
+  <${StepButton} direction=${-1} label="One robot step back" icon="stepBack" />
+  <${StepButton} direction=${1} label="One robot step on" icon="stepOn" />
+`;
+
+// ---- the track: both times, and what happened
+
+const SMALL_PX = 12;
+const LABEL_GAP_PX = 6;
+
+/** @param {{ known: Scale }} props */
+function Track({ known }) {
+  const [host, width] = useWidth();
+  const { unit, end, picture, computed, isComputing } = known;
+  const place = (/** @type {number} */ at) => percent(shareOf(at, 0, end));
+  const words = isComputing ? `, computed up to ${positionInWords(known, computed)}` : "";
+  /** @param {{ target: HTMLInputElement }} event */
+  const seek = ({ target }) => seekTo(Number(target.value));
+  // The replay of this page's own follows the thumb; a stage that many watch is asked once.
+  const handlers = page.run.value !== null ? { onInput: seek } : { onChange: seek };
+  const step = unit === "s" ? (page.run.value === null ? 0.1 : 0.01) : 1;
+  return html`
+    <div class="track" ref=${host} style=${{ "--picture": place(picture), "--computed": place(computed) }}>
+      <div class="above" aria-hidden="true">
+        ${labelsAbove(known, width).map(({ kind, at, text, left }) => html`
+          <span key=${`${kind} ${at}`} class=${kind} style=${{ left: `${left}px` }}>${text}</span>
+        `)}
+      </div>
+      <div class="rail">
+        <input type="range" min="0" max=${end} step=${step} value=${picture} ...${handlers}
+          aria-label=${page.run.value === null ? "Moment that is shown" : "Moment of your replay"}
+          aria-valuetext=${`${positionInWords(known, picture)} of ${positionInWords(known, end)}${words}`} />
+        ${isComputing && html`<i class="computed-end" style=${{ left: place(computed) }} aria-hidden="true"></i>`}
+        <${Marks} place=${place} />
+      </div>
+      ${isAtLeast("study") && laneRows.value.map((row) => html`<${LaneRow} key=${row.name} row=${row} end=${end} />`)}
+      <${Below} known=${known} width=${width} place=${place} />
+    </div>
+  `;
+}
+
+/**
+ * The labels above the rail that fit beside each other: how far it is computed, and what happened.
+ * @param {Scale} known
+ * @param {number} width [px]
+ */
+function labelsAbove(known, width) {
+  const { computed, isComputing, end } = known;
+  const first = isComputing && computed < end
+    ? [{ kind: "computed", at: computed, text: `computed ${positionInWords(known, computed)}` }] : [];
+  const named = marks.value.filter(({ isMinor }) => !isMinor).toSorted((a, b) => weightOf(a) - weightOf(b));
+  /** @type {{ kind: string, at: number, text: string, left: number, right: number }[]} */
+  const placed = [];
+  for (const one of [...first, ...named]) {
+    const size = widthOf(one.text, 600);
+    const left = Math.min(Math.max(0, shareOf(one.at, 0, end) * width - size / 2), width - size);
+    const right = left + size;
+    if (left < 0 || placed.some((other) => left < other.right + LABEL_GAP_PX && right > other.left - LABEL_GAP_PX)) {
+      continue;
+    }
+    placed.push({ ...one, left, right });
+  }
+  return placed;
+}
+
+/** @param {Mark} one */
+const weightOf = ({ kind }) => ["time-out", "fall", "disturbance", "change", "crossing"].indexOf(kind);
+
+/** Each mark: a line, and for those who try a button that goes there. @param {{ place: (at: number) => string }} props */
+const Marks = ({ place }) => html`
+  <span class="marks">
+    ${marks.value.map((one) => (one.isMinor || !isAtLeast("try")
+      ? html`<i class=${one.kind} style=${{ left: place(one.at) }} aria-hidden="true"></i>`
+      : html`
+        <button class=${one.kind} style=${{ left: place(one.at) }} title=${markInWords(one)}
+          aria-label=${`Go to: ${one.text}`} onClick=${() => seekTo(one.at, { isHeld: true })}></button>
+      `))}
+  </span>
+`;
+
+/** How a lane spent its time. @param {{ row: typeof laneRows.value[number], end: number }} props */
+const LaneRow = ({ row: { name, color, thinking, until }, end }) => html`
+  <div class="lane-row" role="img" aria-label=${`${name}: walking solid, thinking hatched`} style=${{ "--agent": color }}>
+    <i class="walked" style=${{ width: percent(shareOf(Math.min(until, end), 0, end)) }}></i>
+    ${thinking.filter(([from]) => from < end).map(([from, to]) => html`
+      <i class="thought" style=${{
+        left: percent(shareOf(from, 0, end)), width: percent(shareOf(Math.min(to, end) - from, 0, end)),
+      }}></i>
+    `)}
+  </div>
+`;
+
+const MIN_TICK_GAP_PX = 90;
+
+/** The scale, and on it the moment in the picture. @param {{ known: Scale, width: number, place: (at: number) => string }} props */
+function Below({ known, width, place }) {
+  const { unit, end, picture } = known;
+  const wanted = Math.max(2, Math.min(6, Math.floor(width / MIN_TICK_GAP_PX)));
+  const last = unit === "s" ? `${Number(end.toFixed(1))}\u00a0s` : `${end} steps`;
+  const room = widthOf(last, 400) + 2 * SMALL_PX;
+  const inner = ticks(end, wanted).filter((at) => (1 - at / end) * width > room);
+  const bubble = unit === "s" ? `${picture.toFixed(1)}\u00a0s` : `step ${Math.round(picture)}`;
+  const half = widthOf(bubble, 600) / 2 + SMALL_PX;
+  const at = Math.min(Math.max(shareOf(picture, 0, end) * width, half), Math.max(half, width - half));
+  const isFree = (/** @type {number} */ x) => Math.abs(x - at) > half + SMALL_PX;
+  return html`
+    <div class="below-rail" aria-hidden="true">
+      ${inner.map((one) => isFree(shareOf(one, 0, end) * width) && html`
+        <span style=${{ left: place(one) }}>${one}</span>
+      `)}
+      ${isFree(width - widthOf(last, 400) / 2) && html`<span class="last">${last}</span>`}
+      <b style=${{ left: `${at}px` }}>${bubble}</b>
+    </div>
+  `;
+}
+
+// ---- how it is shown
+
+/** @param {Scene | null} now */
+const isOneLaneLeft = (now) =>
+  now?.kind === "race" && now.phase !== "finished" && now.lanes?.length > 1 && now.duration_s &&
+  now.lanes.filter(({ done, halted }) => !done && !halted).length === 1;
+
+/** Whether the show of a race ends with its photo finish: its last robots may walk on for a minute. */
+function EndAtTimeOut() {
+  if (scene.value?.kind !== "race" || scene.value.lanes.length < 2) return null;
+  const isOwn = page.run.value !== null;
+  const isOn = isOwn ? page.end.value === "time-out" : stage.value?.end_at_time_out ?? true;
+  const toggle = () => (isOwn ? (page.end.value = isOn ? "all" : "time-out") : endAtTimeOut(!isOn));
+  return html`
+    <label class="switch" title=${`${isOwn ? "" : "For every page: "}end with the photo finish, which settles the ranking`}>
+      <input type="checkbox" role="switch" name="end_at_time_out" checked=${isOn} onChange=${toggle} />
+      End at time-out
+    </label>
+  `;
+}
+
+function Speed() {
+  const isOwn = page.run.value !== null;
+  const speed = stage.value?.speed ?? 1;
+  const isOther = typeof speed === "number" && !SPEEDS.includes(speed);
+  const numbers = isOther ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
+  const choices = [...(isOwn ? [] : [["time-lapse", "Auto"]]), ...numbers.map((n) => [n, `×${n}`])];
+  /** @param {Changed} event */
+  const onChange = ({ target: { value } }) => setStage({ speed: value === "time-lapse" ? value : Number(value) });
+  return html`
+    <select name="speed" aria-label="Speed" title=${isOwn ? "Speed on this page" : "Speed for every page"}
+      disabled=${!isOwn && !isOperator.value} onChange=${onChange}>
+      ${choices.map(([one, words]) => html`
+        <option value=${String(one)} selected=${String(one) === String(speed)}>${words}</option>
+      `)}
+    </select>
+  `;
+}

@@ -1,0 +1,100 @@
+// The first lesson: cards in the shape of a lesson's document, and how far this page is. Each may ask for a prediction,
+// which is revealed at time-out.
+import { computed, signal } from "@preact/signals";
+import { change, page } from "./page-state.js";
+import { storedText } from "./page.js";
+import { isTimedOut, standings } from "./race.js";
+import { isOperator } from "./selectors.js";
+import { raceInView } from "./on-stage.js";
+import { agentOf, laneTitle } from "./settings.js";
+
+/** @import { PageState } from "./page-state.js" */
+
+/**
+ * `state`: what of the page the card opens. `ask`: a question whose answer is one of the lanes. `isForOperators`: whether
+ * it needs somebody who may start runs.
+ * @typedef {{ title: string, text: string, state?: Partial<PageState>, ask?: "lane", isForOperators?: boolean }} Card
+ */
+
+/** @type {Card[]} */
+const CARDS = [
+  {
+    title: "Moves", text: "A step puts one pair of legs in another place. It has to find an order of moves that walks.",
+  },
+  {
+    title: "Colours on the feet", text: "Squares are places that a foot can go to. Dark: worth little. Light: worth much.",
+  },
+  { title: "Who is ahead at time-out?", text: "Choose before the robots get there.", ask: "lane" },
+  {
+    title: "Change α while it learns", text: "What does the curve do?", isForOperators: true,
+    state: { depth: "try", tab: "train" },
+  },
+  {
+    title: "Take the power from a leg", text: "Hold the race, click a leg, race on. Who copes better?",
+    isForOperators: true, state: { depth: "try", tab: "world" },
+  },
+  {
+    title: "Where does the value come from?", text: "Find r, γ and Q′ in the rule.",
+    state: { depth: "study", tab: "why" },
+  },
+  { title: "Is 0.3 the best α?", text: "Try others on thirty robots.", state: { depth: "study", tab: "what-if" } },
+];
+
+/** Whether the lesson was done or hidden: "done". */
+const kept = storedText("lesson", "open");
+
+/** The cards of the lesson for who looks at this page. */
+export const cards = computed(() => CARDS.filter(({ isForOperators }) => isOperator.value || !isForOperators));
+
+/** The number of the open card, from 1; null where the lesson is hidden. At a first visit it is the first. */
+export const cardNumber = computed(() => {
+  if (page.hidden.value.includes("card")) return null;
+  const number = page.card.value ?? (kept.value === "done" ? null : 1);
+  return number !== null && number <= cards.value.length ? number : null;
+});
+
+/** The open card; null without one. */
+export const card = computed(() => (cardNumber.value === null ? null : cards.value[cardNumber.value - 1]));
+
+/** Open a card, and of the page what it is about. @param {number} number from 1 */
+export function openCard(number) {
+  const { state = {} } = cards.peek()[number - 1];
+  change({ view: "race", card: number, hidden: page.hidden.peek().filter((one) => one !== "card"), ...state });
+}
+
+/** Go to another card; after the last one the lesson is done. @param {1 | -1} direction */
+export function turnCard(direction) {
+  const next = (cardNumber.peek() ?? 0) + direction;
+  if (next > cards.peek().length) closeLesson();
+  else if (next >= 1) openCard(next);
+}
+
+export const openLesson = () => openCard(1);
+
+export const closeLesson = () => {
+  kept.value = "done";
+  page.card.value = null;
+};
+
+// ---- the prediction
+
+/** The lane that was predicted to be ahead, and the race; null before. */
+const predicted = signal(/** @type {{ race: string | null, lane: number } | null} */ (null));
+
+/** The lanes that can be predicted: of the race in view. */
+export const predictable = computed(() => (raceInView.value?.config.lanes ?? []).map((lane, number) => ({
+  lane: number, title: laneTitle(lane), color: agentOf(lane.agent).color,
+})));
+
+/** The number of the predicted lane; null before the prediction, or where it was of another race. */
+export const prediction = computed(() =>
+  (predicted.value && predicted.value.race === (raceInView.value?.id ?? null) ? predicted.value.lane : null));
+
+/** @param {number} lane */
+export const predict = (lane) => {
+  if (prediction.peek() === null && !isTimedOut.peek()) predicted.value = { race: raceInView.peek()?.id ?? null, lane };
+};
+
+/** The winners of the race in view, once it is decided; null before. */
+export const outcome = computed(() =>
+  (isTimedOut.value ? (standings.value ?? []).filter(({ rank }) => rank === 1) : null));

@@ -1,0 +1,43 @@
+// The presentation on the stage that all share: which card of the lesson is shown, and how. Told by the presenter's own
+// keys, or by a remote on another device; every presenter's window of this stage follows it.
+import { computed, effect } from "@preact/signals";
+import { setShared } from "./actions.js";
+import { cardNumber, cards, openCard } from "./lesson.js";
+import { change, page } from "./page-state.js";
+import { isOperator } from "./selectors.js";
+import { commonStage } from "./store.js";
+
+/** @import { Presentation } from "./types.js" */
+
+/** @type {Presentation} */
+const NOTHING = { card: null, shows_why: false, is_blank: false, code: "large" };
+/** Sizes of the QR code, in the order of its key. @type {Presentation["code"][]} */
+export const CODES = ["large", "small", "none"];
+
+export const presentation = computed(() => commonStage.value?.presentation ?? NOTHING);
+
+/** Change the presentation for every presenter's window. @param {Partial<Presentation>} changes */
+export const tell = (changes) => {
+  if (isOperator.peek()) setShared({ presentation: { ...presentation.peek(), ...changes } });
+};
+
+/** Go to the next card of the lesson, or to the one before. @param {1 | -1} direction */
+export function turnPage(direction) {
+  const next = (presentation.peek().card ?? 0) + direction;
+  if (next >= 1 && next <= cards.peek().length) tell({ card: next, shows_why: false });
+}
+
+export const turnCode = () =>
+  tell({ code: CODES[(CODES.indexOf(presentation.peek().code) + 1) % CODES.length] });
+export const toggleWhy = () => tell({ shows_why: !presentation.peek().shows_why });
+export const toggleBlank = () => tell({ is_blank: !presentation.peek().is_blank });
+
+/** Let this page, while it is presented, show what the presentation says. */
+export function followPresentation() {
+  effect(() => {
+    const { card, shows_why } = presentation.value;
+    if (!page.isPresenting.value) return;
+    if (card !== null && card !== cardNumber.peek()) openCard(card);
+    change({ tab: shows_why ? "why" : "board", depth: "watch" });
+  });
+}

@@ -1,0 +1,192 @@
+// The moment that is shown on one scale: seconds of a race under its clock, steps of a practice. What happened on it.
+import { computed } from "@preact/signals";
+import { setStage, togglePlaying } from "./actions.js";
+import { rateChanges, rateInWords } from "./changes.js";
+import { disturbancesOf, inWords } from "./disturbances.js";
+import { metres, sentence, whole } from "./format.js";
+import { canPlay, clock, raceScene, shownRun } from "./on-stage.js";
+import { page } from "./page-state.js";
+import { timeline } from "./race.js";
+import { endTime, openReplay, plan, playReplay, replayTime } from "./replay.js";
+import { isActive } from "./selectors.js";
+import { agentOf, laneTitle } from "./settings.js";
+import { ownStage, scene, stage } from "./store.js";
+import { curve } from "./training.js";
+
+/** @import { ReadonlySignal } from "@preact/signals" */
+/** @import { Run, TimelineLane } from "./types.js" */
+
+/**
+ * `unit_s`: how long a unit of the scale is in the run's own time. `end`: of the bar. `last`: to which the run is
+ * computed; the same as `end` or more of one that has ended.
+ * @typedef {{ unit: "s" | "step", unit_s: number, end: number, picture: number, computed: number, isComputing: boolean }} Scale
+ */
+
+/** The shortest bar of a race that has just begun [s]. */
+const FIRST_VIEW_S = 10;
+/** A race that is computed is expected to take longer by this share. */
+const AHEAD = 1.1;
+
+/** The scale of the run on stage; null while nothing of it can be shown. @type {ReadonlySignal<Scale | null>} */
+export const scale = computed(() => {
+  const now = scene.value;
+  const run = shownRun.value;
+  if (!now || now.kind === "idle" || !run || run.id !== now.run_id) return null;
+  const isComputing = isActive(run);
+  return run.kind === "training" ? ofPractice(run, isComputing) : ofRace(isComputing);
+});
+
+/** The position of this page's own replay, else that of the stage [s of the run's time]. */
+const time_s = () => (ownStage.value ? replayTime.value : scene.value?.time_s ?? 0);
+
+/** @param {Run} run @param {boolean} isComputing @returns {Scale | null} */
+function ofPractice(run, isComputing) {
+  const { duration_s = null, computed_s = 0 } = scene.value ?? {};
+  const { done } = run.progress;
+  const unit_s = duration_s ? duration_s / (isComputing ? run.config.steps : done || 1) : computed_s / (done || 1);
+  if (!unit_s) return null;
+  return {
+    unit: "step", unit_s, end: isComputing ? run.config.steps : Math.max(done, 1),
+    picture: Math.min(time_s() / unit_s, done), computed: done, isComputing,
+  };
+}
+
+/** @param {boolean} isComputing @returns {Scale | null} */
+function ofRace(isComputing) {
+  const { duration_s = null, computed_s = 0, time_out_s = null } = scene.value ?? {};
+  const whole_s = duration_s ?? Math.max(AHEAD * computed_s, FIRST_VIEW_S);
+  const isCut = ownStage.value ? plan.value !== null && endTime.value < whole_s : stage.value?.end_at_time_out;
+  const picture = time_s();
+  const end = isCut && time_out_s !== null && picture <= time_out_s + 1e-3 ? time_out_s : whole_s;
+  return { unit: "s", unit_s: 1, end, picture, computed: Math.min(computed_s, end), isComputing };
+}
+
+/** @param {Scale} one @param {number} at */
+export const positionInWords = ({ unit }, at) =>
+  (unit === "s" ? `${at.toFixed(1)}\u00a0s` : `step ${whole(Math.round(at))}`);
+
+// ---- what happened: marks on the bar
+
+/**
+ * `at` on the scale; `isMinor`: drawn, but neither named nor a stop on the way.
+ * @typedef {{ kind: string, at: number, text: string, lane?: number, isMinor?: boolean }} Mark
+ */
+
+/** What has happened in the run on stage as far as it is computed, in order. @type {ReadonlySignal<Mark[]>} */
+export const marks = computed(() => {
+  const run = shownRun.value;
+  const known = scale.value;
+  if (!run || !known) return [];
+  const all = run.kind === "training" ? marksOfPractice(run) : marksOfRace(run);
+  return all.filter(({ at }) => at <= known.computed + 1e-6 && at <= known.end + 1e-6).sort((a, b) => a.at - b.at);
+});
+
+/** @param {Run} run @returns {Mark[]} */
+function marksOfPractice(run) {
+  const known = curve.value?.run.id === run.id ? curve.value : null;
+  const evaluations = (known?.points ?? []).filter(({ step }) => step > (known?.from ?? 0)).map((one) => ({
+    kind: "evaluation", at: one.step - (known?.from ?? 0), isMinor: true, text: `test: ${metres(one.distance_m)}`,
+  }));
+  const changes = rateChanges(run).map((one) => ({
+    kind: "change", at: one.step, text: rateInWords(run.config.agent, one),
+  }));
+  const happened = disturbancesOf(run).filter(({ at_step }) => at_step > 0)
+    .map((one) => ({ kind: "disturbance", at: one.at_step, text: inWords(one) }));
+  const fell = run.result?.fell_at_step ?? null;
+  return [...evaluations, ...changes, ...happened, ...(fell === null ? [] : [{ kind: "fall", at: fell, text: "falls" }])];
+}
+
+/**
+ * The times at the start and at the end of each step of a lane [s]; null where the timeline does not have each step.
+ * @param {Pick<TimelineLane, "points" | "thinking" | "futures">} track
+ */
+export function stepTimes({ points, thinking, futures }) {
+  if (points.length - 1 !== thinking.length + futures.length) return null;
+  const thoughtUntil = new Set(thinking.map(([, to]) => to));
+  return points.filter(([t], n) => n === 0 || !thoughtUntil.has(t)).map(([t]) => t);
+}
+
+/** When a lane has first come so far [s]; null if it has not. @param {TimelineLane} track @param {number} distance_m */
+export function timeAtDistance({ points }, distance_m) {
+  const next = points.findIndex(([, distance]) => distance >= distance_m);
+  if (next < 0) return null;
+  if (next === 0) return points[0][0];
+  const [[t0, d0], [t1, d1]] = [points[next - 1], points[next]];
+  return t0 + ((t1 - t0) * (distance_m - d0)) / (d1 - d0 || 1);
+}
+
+/** @param {Run} race @returns {Mark[]} */
+function marksOfRace(race) {
+  const known = timeline.value;
+  const { time_out_s = null } = raceScene.value ?? {};
+  const timeOut = time_out_s === null ? [] : [{ kind: "time-out", at: time_out_s, text: "time-out" }];
+  const ofLanes = (known?.lanes ?? []).flatMap((track, lane) => marksOfLane(race, track, lane, known?.finish_line_m ?? 0));
+  return [...timeOut, ...ofLanes];
+}
+
+/** @param {Run} race @param {TimelineLane} track @param {number} lane @param {number} finish_m @returns {Mark[]} */
+function marksOfLane(race, track, lane, finish_m) {
+  const name = laneTitle(race.config.lanes[lane] ?? track);
+  const ends = stepTimes(track);
+  const crossed = timeAtDistance(track, finish_m);
+  const fell = race.result?.lanes[lane]?.fell_at_step ?? null;
+  /** @type {Mark[]} */
+  const found = crossed === null ? [] : [{ kind: "crossing", at: crossed, lane, text: `${name} crosses the line` }];
+  if (fell !== null && ends?.[fell] !== undefined) {
+    found.push({ kind: "fall", at: ends[fell], lane, text: `${name} falls` });
+  }
+  for (const one of disturbancesOf(race)) {
+    if (!one.at_step || ends?.[one.at_step] === undefined) continue;
+    found.push({ kind: "disturbance", at: ends[one.at_step], lane, text: `${inWords(one)}, ${name}` });
+  }
+  return found;
+}
+
+// ---- what a user can do with it
+
+/**
+ * Show a position of the scale: on the stage by its operators, by others in a replay of their own.
+ * @param {number} at
+ * @param {{ isHeld?: boolean }} [how]
+ */
+export function seekTo(at, { isHeld = false } = {}) {
+  const known = scale.peek();
+  const run = shownRun.peek();
+  if (!known || !run) return;
+  const to_s = known.unit_s * Math.min(Math.max(at, 0), known.computed);
+  if (canPlay.peek()) setStage(isHeld ? { time_s: to_s, playing: false } : { time_s: to_s });
+  else openReplay(run.id, { time_s: to_s, clock: clock.peek(), isPlaying: !isHeld });
+}
+
+/** Go to the next thing that happened, or to the one before. @param {1 | -1} direction */
+export function seekToMark(direction) {
+  const known = scale.peek();
+  if (!known) return;
+  const stops = marks.peek().filter(({ isMinor }) => !isMinor).map(({ at }) => at);
+  const margin = 0.002 * known.end;
+  const next = direction > 0
+    ? stops.find((at) => at > known.picture + margin)
+    : stops.findLast((at) => at < known.picture - margin);
+  if (next !== undefined) seekTo(next, { isHeld: true });
+}
+
+/** Play or pause: the stage by its operators, by others a replay of their own. */
+export function toggleTime() {
+  const run = shownRun.peek();
+  if (canPlay.peek()) togglePlaying();
+  else if (run && page.run.peek() === null) {
+    openReplay(run.id, { time_s: scene.peek()?.time_s ?? 0, clock: clock.peek(), isPlaying: false });
+  } else playReplay(true);
+}
+
+/** The lanes of the race in view as stretches of thinking and walking, for the bar. */
+export const laneRows = computed(() => {
+  const race = shownRun.value?.kind === "race" ? shownRun.value : null;
+  return (race && timeline.value ? timeline.value.lanes : []).map((track, number) => ({
+    name: laneTitle(race?.config.lanes[number] ?? track), color: agentOf(track.agent).color,
+    thinking: track.thinking, until: track.points.at(-1)?.[0] ?? 0,
+  }));
+});
+
+/** A mark's text as it begins a sentence. @param {Mark} one */
+export const markInWords = ({ text }) => sentence(text);
