@@ -219,6 +219,7 @@ export const branchRace = (race, step, disturbances) =>
     const body = { branch_from: { race_id: race.id, step }, disturbances };
     const run = await adopt(() => api.startRace(body));
     if (run) await requestStage(() => api.putStage({ run_id: run.id, playing: true }));
+    return run;
   });
 
 // ---- the stage: the one that all pages share, or this page's own replay

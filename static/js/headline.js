@@ -95,7 +95,8 @@ function verdictOf(rows) {
   if (winners.length > 1) return `${titlesOf(winners)} tie`;
   const [{ title, failure, step }] = winners;
   if (failure) return `${title} wins, stopped at step ${step}`;
-  return `${title} wins ${rows.length > 1 ? `by ${distanceApart(leadIn(rows))}` : `with ${metres(distanceOf(winners[0]))}`}`;
+  const margin = rows.length > 1 ? `by ${distanceApart(leadIn(rows))}` : `with ${metres(distanceOf(winners[0]))}`;
+  return `${title} wins ${margin}`;
 }
 
 /**
@@ -327,8 +328,8 @@ const practice = computed(() => {
   const newest = curve.value?.run.id === training.id ? curve.value.points.at(-1) : null;
   const { title } = agentOf(training.config.agent);
   if (!newest?.step) {
-    const { evaluate_every } = training.config;
-    return { title: `${title} practises`, reason: evaluate_every ? `Its first test is at step ${evaluate_every}.` : null };
+    const first = training.config.evaluate_every;
+    return { title: `${title} practises`, reason: first ? `Its first test is at step ${whole(first)}.` : null };
   }
   return {
     title: `${title} walks ${metres(newest.distance_m)} so far`,

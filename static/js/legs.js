@@ -7,7 +7,7 @@ import { scene } from "./store.js";
 /** @import { Signal } from "@preact/signals" */
 
 /** A point of the picture [px]. @typedef {{ x: number, y: number }} Point */
-/** What was picked: a leg from 1, the body, or the ground; of a lane from 0. */
+/** What was picked: a leg, from 1, the body, or the ground; of a lane, from 0. */
 /** @typedef {Point & { lane: number, what: "leg" | "body" | "ground", leg: number | null }} Pick */
 
 /** What was picked last, while its menu is open. @type {Signal<Pick | null>} */

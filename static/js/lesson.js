@@ -11,8 +11,8 @@ import { agentOf, laneTitle } from "./settings.js";
 /** @import { PageState } from "./page-state.js" */
 
 /**
- * `state`: what of the page the card opens. `ask`: a question whose answer is one of the lanes. `isForOperators`: whether
- * it needs somebody who may start runs.
+ * `state`: what of the page the card opens. `ask`: a question whose answer is one of the lanes. `isForOperators`:
+ * whether it needs somebody who may start runs.
  * @typedef {{ title: string, text: string, state?: Partial<PageState>, ask?: "lane", isForOperators?: boolean }} Card
  */
 
@@ -22,7 +22,8 @@ const CARDS = [
     title: "Moves", text: "A step puts one pair of legs in another place. It has to find an order of moves that walks.",
   },
   {
-    title: "Colours on the feet", text: "Squares are places that a foot can go to. Dark: worth little. Light: worth much.",
+    title: "Colours on the feet",
+    text: "Squares are places that a foot can go to. Dark: worth little. Light: worth much.",
   },
   { title: "Who is ahead at time-out?", text: "Choose before the robots get there.", ask: "lane" },
   {

@@ -8,7 +8,9 @@ import { batch, effect, signal } from "@preact/signals";
  * How a value stands in an address: `read` is undefined for a text that is none, `write` null for what a link leaves
  * out; `words` are those that are valid, where they are few.
  * @template Value
- * @typedef {{ read: (text: string) => Value | undefined, write: (value: Value) => string | null, words?: unknown[] }} Codec
+ * @typedef {{
+ *   read: (text: string) => Value | undefined, write: (value: Value) => string | null, words?: unknown[],
+ * }} Codec
  */
 
 /**

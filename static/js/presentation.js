@@ -4,6 +4,7 @@ import { computed, effect } from "@preact/signals";
 import { setShared } from "./actions.js";
 import { cardNumber, cards, openCard } from "./lesson.js";
 import { change, page } from "./page-state.js";
+import { isTimedOut } from "./race.js";
 import { isOperator } from "./selectors.js";
 import { commonStage } from "./store.js";
 
@@ -39,5 +40,12 @@ export function followPresentation() {
     if (!page.isPresenting.value) return;
     if (card !== null && card !== cardNumber.peek()) openCard(card);
     change({ tab: shows_why ? "why" : "board", depth: "watch" });
+  });
+  // Who wants to watch has the address by the end of the first race: the robots get its room.
+  let hasShrunk = false;
+  effect(() => {
+    if (hasShrunk || !page.isPresenting.value || !isTimedOut.value) return;
+    hasShrunk = true;
+    if (presentation.peek().code === "large") tell({ code: "small" });
   });
 }

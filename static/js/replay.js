@@ -31,7 +31,7 @@ export const replayTime = signal(0);
 export const isBuffering = signal(false);
 const playing = computed(() => page.moment.value === null);
 const speed = signal(FIRST_SPEED);
-const clock = /** @type {Signal<Clock>} */ (page.clock);
+const { clock } = /** @type {{ clock: Signal<Clock> }} */ (page);
 
 /** Time-out of the race, if the replay is to end there [s]; null where it is to go on, or is later already. */
 const endAtTimeOut = computed(() => {

@@ -17,9 +17,11 @@ import { curve } from "./training.js";
 /** @import { Run, TimelineLane } from "./types.js" */
 
 /**
- * `unit_s`: how long a unit of the scale is in the run's own time. `end`: of the bar. `last`: to which the run is
- * computed; the same as `end` or more of one that has ended.
- * @typedef {{ unit: "s" | "step", unit_s: number, end: number, picture: number, computed: number, isComputing: boolean }} Scale
+ * `unit_s`: how long a unit of the scale is in the run's own time [s]. `end`: of the bar. `picture`: the moment that is
+ * drawn. `computed`: up to which there is something to draw.
+ * @typedef {{
+ *   unit: "s" | "step", unit_s: number, end: number, picture: number, computed: number, isComputing: boolean,
+ * }} Scale
  */
 
 /** The shortest bar of a race that has just begun [s]. */
@@ -93,7 +95,8 @@ function marksOfPractice(run) {
   const happened = disturbancesOf(run).filter(({ at_step }) => at_step > 0)
     .map((one) => ({ kind: "disturbance", at: one.at_step, text: inWords(one) }));
   const fell = run.result?.fell_at_step ?? null;
-  return [...evaluations, ...changes, ...happened, ...(fell === null ? [] : [{ kind: "fall", at: fell, text: "falls" }])];
+  const falls = fell === null ? [] : [{ kind: "fall", at: fell, text: "falls" }];
+  return [...evaluations, ...changes, ...happened, ...falls];
 }
 
 /**
@@ -120,7 +123,8 @@ function marksOfRace(race) {
   const known = timeline.value;
   const { time_out_s = null } = raceScene.value ?? {};
   const timeOut = time_out_s === null ? [] : [{ kind: "time-out", at: time_out_s, text: "time-out" }];
-  const ofLanes = (known?.lanes ?? []).flatMap((track, lane) => marksOfLane(race, track, lane, known?.finish_line_m ?? 0));
+  const finish_m = known?.finish_line_m ?? 0;
+  const ofLanes = (known?.lanes ?? []).flatMap((track, lane) => marksOfLane(race, track, lane, finish_m));
   return [...timeOut, ...ofLanes];
 }
 

@@ -56,8 +56,8 @@ export async function evaluateSettings() {
 }
 
 /**
- * Request an answer now, unless the settings are read only, and each time the form has come to rest with other settings;
- * until the function that is returned is called.
+ * Request an answer now, unless the settings are read only, and each time the form has come to rest with others, until
+ * the function that is returned is called.
  */
 export function followWhatIf() {
   let known = "";

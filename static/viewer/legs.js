@@ -1,5 +1,5 @@
-// The legs of the robots in the picture: projects the poses that are drawn, and tells the page around this one which leg,
-// body or ground was clicked. viser's own click bindings would light bodies up under the pointer.
+// The legs of the robots in the picture: projects the poses that are drawn, and tells the page around this one which
+// leg or body was clicked, or the ground. viser's own click bindings would light bodies up under the pointer.
 // Assumptions about viser's client are listed and tested in hexapods/drawing/viser_internals.
 //
 //   from the parent   {type: "hexapods:show", legsOf?: a lane from 0, or null}: whose legs it wants to be told of
@@ -17,6 +17,8 @@
   const CLICK_PX = 5;
   const LEG_PX = 26;
   const BODY_PX = 44;
+  /** Clicks on the ground beyond are meant for nothing. */
+  const FAR_M = 3;
 
   /** Name of a batch → {kind, legs, tip, positions, wxyzs}. */
   const batches = new Map();
@@ -84,7 +86,8 @@
   };
 
   const parts = (batch, index) => ({
-    origin: [...batch.positions.slice(3 * index, 3 * index + 3)], wxyz: [...batch.wxyzs.slice(4 * index, 4 * index + 4)],
+    origin: [...batch.positions.slice(3 * index, 3 * index + 3)],
+    wxyz: [...batch.wxyzs.slice(4 * index, 4 * index + 4)],
   });
 
   /** The links of all legs on the screen: {lane, leg, from, to}. */
@@ -110,14 +113,30 @@
     return Math.hypot(x - from.x - share * dx, y - from.y - share * dy);
   };
 
-  const nearest = (list, far) => list.reduce((best, one) => (one.distance < (best?.distance ?? far) ? one : best), null);
+  const nearest = (list, far_px) =>
+    list.reduce((best, one) => (one.distance < (best?.distance ?? far_px) ? one : best), null);
 
   const pickAt = (point) => {
-    const body = nearest(bodies().map((one) => ({ ...one, distance: Math.hypot(point.x - one.at.x, point.y - one.at.y) })), BODY_PX);
+    const toBody = ({ at }) => Math.hypot(point.x - at.x, point.y - at.y);
+    const body = nearest(bodies().map((one) => ({ ...one, distance: toBody(one) })), BODY_PX);
     const leg = nearest(links().map((one) => ({ ...one, distance: distanceTo(one, point) })), LEG_PX);
     if (body && (!leg || body.distance < BODY_PX / 2)) return { ...point, lane: body.lane, what: "body", leg: null };
     if (leg) return { ...point, lane: leg.lane, what: "leg", leg: leg.leg };
-    return null;
+    return isGround(point) ? { ...point, lane: 0, what: "ground", leg: null } : null;
+  };
+
+  /** Whether the ray through a point of the picture meets the ground of the track. */
+  const isGround = ({ x, y }) => {
+    const { camera, canvas, nodeRefFromName } = window.__viserMutable ?? {};
+    const [name] = batches.keys();
+    const node = name && nodeRefFromName?.[name.slice(0, name.lastIndexOf("/"))];
+    if (!camera || !node) return false;
+    const toTrack = node.matrixWorld.clone().invert();
+    const from = camera.position.clone().setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toTrack);
+    const [u, v] = [(2 * x) / canvas.clientWidth - 1, 1 - (2 * y) / canvas.clientHeight];
+    const through = camera.position.clone().set(u, v, 0.5).unproject(camera).applyMatrix4(toTrack);
+    const share = from.z / (from.z - through.z || 1e-9);
+    return share > 0 && Math.hypot(from.x + share * (through.x - from.x), from.y + share * (through.y - from.y)) < FAR_M;
   };
 
   // ---- what the page is told
@@ -141,7 +160,8 @@
     for (const one of links()) {
       if (one.lane === lane && one.low < (lowest.get(one.leg)?.low ?? Infinity)) lowest.set(one.leg, one);
     }
-    return [...lowest].sort(([a], [b]) => a - b).map(([leg, { to }]) => ({ leg, x: Math.round(to.x), y: Math.round(to.y) }));
+    const places = [...lowest].map(([leg, { to }]) => ({ leg, x: Math.round(to.x), y: Math.round(to.y) }));
+    return places.sort((a, b) => a.leg - b.leg);
   };
 
   let timer = null;

@@ -5,6 +5,7 @@ import { useEffect } from "preact/hooks";
 import { page } from "../page-state.js";
 import { clickedCell, isPhone, nextTheme, present, share, theme, toastMessage } from "../page.js";
 import { card, closeLesson, openLesson } from "../lesson.js";
+import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
 import { html, Icon, Loaded, loaded } from "./elements.js";
@@ -69,9 +70,10 @@ function Workspace({ isHidden }) {
     <div class=${`workspace ${isPanelHidden.value ? "alone" : ""}`} hidden=${isHidden}>
       <${Stage} />
       <${TimeBar} />
-      ${page.isPresenting.value ? html`<${Loaded} name="presenter's desk" load=${loadDesk} />` : html`<${LessonCard} />`}
+      ${page.isPresenting.value && html`<${Loaded} name="presenter's desk" load=${loadDesk} />`}
+      ${!page.isPresenting.value && !page.isRemote.value && html`<${LessonCard} />`}
       <${Panel} />
-      ${isPhone.value && html`<${ThumbTabs} />`}
+      ${isPhone.value && !page.isRemote.value && html`<${ThumbTabs} />`}
     </div>
   `;
 }
@@ -144,9 +146,14 @@ function Menu() {
     <details class="menu more-menu">
       <summary class="quiet square" aria-label="More" title="More">⋯</summary>
       <div class="menu-body">
-        ${VIEWS.map(([, title, href]) => html`<a class="phone-only" href=${href} onClick=${item(() => {})}>${title}</a>`)}
+        ${VIEWS.map(([, title, href]) => html`
+          <a class="phone-only" href=${href} onClick=${item(() => {})}>${title}</a>
+        `)}
         <button class="quiet" onClick=${item(share)}><${Icon} name="link" />Copy a link to this</button>
         <button class="quiet" onClick=${item(present)}><${Icon} name="present" />Present</button>
+        ${isOperator.value && html`
+          <button class="quiet" onClick=${item(() => (page.isRemote.value = true))}>Remote of the presentation</button>
+        `}
         ${card.value
           ? html`<button class="quiet" onClick=${item(closeLesson)}>Hide the lesson</button>`
           : html`<button class="quiet" onClick=${item(openLesson)}>The first lesson</button>`}

@@ -31,7 +31,7 @@ export function Board() {
       ${isAtLeast("try") && html`<${Choices} />`}
       ${rows && isTimedOut.value && html`<${ByEachClock} rows=${rows} />`}
       ${rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`}
-      ${rows && html`
+      ${rows && !page.isPresenting.value && html`
         <p class="dim fine">${ruleOf(rows, clockTitle(clock.value))}${
           isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>
       `}
@@ -47,7 +47,7 @@ function Standings({ rows }) {
   const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
   const isDeep = isAtLeast("study");
   return html`
-    <${BranchWords} />
+    ${!page.isPresenting.value && html`<${BranchWords} />`}
     <table class="board">
       <caption class="sr-only">Standings (${clockTitle(clock.value)})</caption>
       <thead class=${isDeep ? "" : "sr-only"}>
@@ -65,7 +65,7 @@ function Standings({ rows }) {
       ${rows.map((row) => html`<${Lane} key=${row.lane} row=${row} longest=${longest} />`)}
       ${isDeep && html`<${BestKnown} />`}
     </table>
-    <p class="dim fine">Solid: walking. Hatched: thinking.</p>
+    ${!page.isPresenting.value && html`<p class="dim fine">Solid: walking. Hatched: thinking.</p>`}
   `;
 }
 
@@ -113,7 +113,9 @@ function Lane({ row, longest }) {
         </th>
         <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
         ${isDeep && html`
-          <td class=${row.isDone ? "" : "dim"}>${isTimedOut.value ? metres(row.total_m ?? distanceSoFar(row)) : "–"}</td>
+          <td class=${row.isDone ? "" : "dim"}>
+            ${isTimedOut.value ? metres(row.total_m ?? distanceSoFar(row)) : "–"}
+          </td>
         `}
         ${isAtLeast("try") && html`<td class="dim">${decision(row.decision_s)}</td>`}
         ${isDeep && html`<td>${whole(row.simulated)}</td>`}
@@ -154,13 +156,17 @@ function noteOf({ agent, training_id }) {
   return `${count(simulatedPerDecision(steps_ahead, config), "move")} a step`;
 }
 
-/** What is told below the strip, each with its style: what is unusual always, the rest where there is room for it. */
-/** @param {Standing} row @returns {[string, unknown][]} */
+/** Whether a lane's activity is told: what is unusual always, the rest where there is room for it. */
+/** @param {Standing} row */
+const isActivityTold = (row) =>
+  isAtLeast("study") || row.failure || row.isHalted || (row.isThinking && !isOver.value && isAtLeast("try"));
+
+/** What is told below the strip, each with its style. @param {Standing} row @returns {[string, unknown][]} */
 function linesBelow(row) {
   const isDeep = isAtLeast("study");
   /** @type {[string, unknown][]} */
   const lines = [];
-  if (isDeep || row.failure || row.isHalted || (row.isThinking && !isOver.value && isAtLeast("try"))) {
+  if (isActivityTold(row)) {
     lines.push(["dim", html`${row.hasCrossed && isDeep && html`<${Icon} name="flag" />`}${activityOf(row)}`]);
   }
   if (postureOf(row)) lines.push(["happened", postureOf(row)]);
@@ -354,6 +360,25 @@ function ByEachClock({ rows }) {
         `)}
       </tbody>
     </table>
+  `;
+}
+
+// ---- in place of the actions in a presenter's window
+
+/** By what a race is ranked and timed, and how long it still takes. */
+export function Facts() {
+  const rows = standings.value;
+  if (!rows) return null;
+  const { time_s = 0, time_out_s = null } = scene.value ?? {};
+  const left = time_out_s === null ? null : Math.max(0, time_out_s - time_s);
+  return html`
+    <dl class="facts-of-race">
+      <div><dt>Rule</dt><dd>${ruleOf(rows, clockTitle(clock.value))}</dd></div>
+      <div><dt>Clock</dt><dd>${sentence(clockTitle(clock.value))}. Solid: walking, hatched: thinking.</dd></div>
+      ${left !== null && html`
+        <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>
+      `}
+    </dl>
   `;
 }
 

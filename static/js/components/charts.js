@@ -91,7 +91,7 @@ export function Chart(props) {
   `;
 }
 
-/** In the view of the race who watches sees lines, who tries reads them, and who studies has their numbers and files. */
+/** In the view of the race who watches sees lines, who tries reads them, and who studies has their numbers as well. */
 const canRead = () => page.view.value !== "race" || isAtLeast("try");
 const isFull = () => page.view.value !== "race" || isAtLeast("study");
 

@@ -1,16 +1,13 @@
-// The presenter's desk below the stage: the card, what comes next, and how others can watch; and its remote.
+// The presenter's desk below the stage: the card, what comes next, and how others can watch.
 import { useEffect, useState } from "preact/hooks";
 import { getSpectators } from "../api.js";
 import { canStart, primaryAction, runPrimaryAction } from "../actions.js";
-import { ruleOf } from "../headline.js";
 import { card, cards } from "../lesson.js";
-import { canPlay, clock } from "../on-stage.js";
+import { canPlay } from "../on-stage.js";
 import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
 import { presentation, toggleBlank, turnCode, turnPage } from "../presentation.js";
-import { isTimedOut, standings } from "../race.js";
 import { isOperator } from "../selectors.js";
-import { connection, scene, viewers } from "../store.js";
-import { clockTitle, flatParts } from "../titles.js";
+import { connection, viewers } from "../store.js";
 import { html } from "./elements.js";
 import { Prediction } from "./lesson.js";
 
@@ -23,7 +20,6 @@ export function Desk() {
     <section class=${`panel desk code-${code}`} aria-label="Presenter's desk">
       <h1 class="sr-only">Racing Hexapods</h1>
       <${Act} />
-      <${Facts} />
       <${Keys} />
       ${code !== "none" && html`<${Address} known=${known} />`}
     </section>
@@ -60,23 +56,6 @@ function Act() {
   `;
 }
 
-/** By what a race is ranked and timed, and how long it still takes. */
-function Facts() {
-  const rows = standings.value;
-  if (!rows) return null;
-  const { time_s = 0, time_out_s = null } = scene.value ?? {};
-  const left = time_out_s === null ? null : Math.max(0, time_out_s - time_s);
-  return html`
-    <dl class="facts-of-race">
-      <div><dt>Rule</dt><dd>${ruleOf(rows, clockTitle(clock.value))}</dd></div>
-      <div><dt>Clock</dt><dd>${flatParts(clock.value)}</dd></div>
-      ${left !== null && html`
-        <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>
-      `}
-    </dl>
-  `;
-}
-
 /** @param {{ known: ReturnType<typeof useSpectators> }} props */
 const Address = ({ known }) => html`
   <div class="watch-along">
@@ -95,7 +74,7 @@ const Keys = () => html`
   <div class="presenter-keys">
     ${isOperator.value && html`
       <button class="primary" onClick=${() => turnPage(1)}>Next card</button>
-      <button class="quiet" onClick=${() => turnPage(1)} tabindex="-1" aria-hidden="true"><kbd>→</kbd> next</button>
+      <p><kbd>→</kbd> next</p>
       <button class="quiet" onClick=${runPrimaryAction} aria-disabled=${canStart.value ? undefined : "true"}>
         <kbd>R</kbd> ${primaryAction.value.label}
       </button>

@@ -39,7 +39,9 @@ const PATHS = {
   pin: "M6 2.5h4v4l2 2.5H4L6 6.5zM8 9v5",
   panel: "M2.5 3h11v10h-11zM9.5 3v10",
 };
-const OUTLINED = new Set(["link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present", "pin", "panel"]);
+const OUTLINED = new Set([
+  "link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present", "pin", "panel",
+]);
 const SIZE = 16;
 
 /** An icon, drawn in the colour of the text beside it. @param {{ name: keyof typeof PATHS }} props */

@@ -40,14 +40,13 @@ function Actions() {
       ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
       ${!isBusy && html`<${EstimateNote} words=${raceEstimate} />`}
       ${!isBusy && html`<${MissingLane} />`}
-      ${work.value && html`<${Progress} />`}
-      ${work.value && isAtLeast("try") && html`<${WorkActions} />`}
+      <${WorkActions} />
       ${!myWork.value && html`
         <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
           aria-describedby=${isHeld ? "held-start" : undefined}>
           ${!isBusy && html`<${Icon} name="play" />`}${label}
         </button>
-        ${isAtLeast("try") && hasRoomForOthers() && html`<${SecondaryActions} />`}
+        ${hasRoomForOthers() && html`<${SecondaryActions} />`}
       `}
     </div>
   `;
@@ -87,7 +86,8 @@ function MissingLane() {
 }
 
 /** The tabs in which runs are prepared; on a phone the others need the room. */
-const hasRoomForOthers = () => ["train", "world", ...(isPhone.value ? [] : ["board"])].includes(tab.value);
+const hasRoomForOthers = () =>
+  isAtLeast("try") && ["train", "world", ...(isPhone.value ? [] : ["board"])].includes(tab.value);
 
 const SecondaryActions = () => html`
   <div class="others">
@@ -97,7 +97,13 @@ const SecondaryActions = () => html`
   </div>
 `;
 
+/** What is computed, and for those who try the ways to hold and to end it. */
 function WorkActions() {
+  if (!work.value) return null;
+  return html`<${Progress} />${isAtLeast("try") && html`<${WorkButtons} />`}`;
+}
+
+function WorkButtons() {
   const { kind, state } = work.value?.current ?? {};
   const isPaused = state === "paused";
   // Events tell of a new state before the command is answered; a click in between would be lost.

@@ -1,4 +1,4 @@
-// Keys that act on the whole page, pressed on it or forwarded by the stage's frame; and menus, which close by themselves.
+// Keys that act on the whole page, pressed on it or forwarded by the stage's frame; menus, which close by themselves.
 import { runPrimaryAction, togglePause } from "../actions.js";
 import { page } from "../page-state.js";
 import { helpIsOpen, leavePresenter, present, shortcuts } from "../page.js";
@@ -96,6 +96,12 @@ export function listenForMenus() {
   for (const type of ["pointerdown", "focusin"]) addEventListener(type, ({ target }) => closeOtherMenus(target));
 }
 
+/** Whether a key belongs to the element that has the focus. @param {string} key @param {EventTarget | null} target */
+function isOfElement(key, target) {
+  const isIn = (/** @type {string} */ selector) => target instanceof Element && target.closest(selector);
+  return isIn(TEXT) || (key === " " && isIn(PRESSED_BY_SPACE)) || (key.length > 1 && isIn(MOVED_BY_KEYS));
+}
+
 export function listenForKeys() {
   addEventListener("keydown", (event) => {
     const { key, target, repeat } = event;
@@ -103,11 +109,7 @@ export function listenForKeys() {
     const isInDialog = document.querySelector("dialog[open]") !== null;
     if (key === "Escape" && !event.defaultPrevented && !isInDialog && leaveTop()) event.preventDefault();
     if (event.ctrlKey || event.altKey || event.metaKey || repeat || shortcuts.value === "off") return;
-    const isIn = (/** @type {string} */ selector) => target instanceof Element && target.closest(selector);
-    if (isIn(TEXT)) return;
-    if (key === " " && isIn(PRESSED_BY_SPACE)) return;
-    if (key.length > 1 && isIn(MOVED_BY_KEYS)) return;
-    if (isInDialog && key !== "?") return;
+    if (isOfElement(key, target) || (isInDialog && key !== "?")) return;
     if (press(key)) event.preventDefault();
   });
   addEventListener("message", ({ origin, data }) => {

@@ -54,7 +54,11 @@ const marksOf = ({ greedy_m, best_known_m, blocks, changes, disturbances, run, f
   }),
 ];
 
-/** The step in the picture, and the one that is computed, while they are not at the end. @param {Run} run @param {number} from */
+/**
+ * The step in the picture, and the one that is computed.
+ * @param {Run} run
+ * @param {number} from steps of practice before this training
+ */
 function momentOf(run, from) {
   const known = shownRun.value?.id === run.id ? scale.value : null;
   if (!known) return [];

@@ -1,5 +1,5 @@
 // What can happen to the leg, the body or the ground that was picked in the picture, where it was picked.
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { branchRace, pending } from "../actions.js";
 import { chosenWith, conditionsAt, conditionsNow, disturbancesOf, kindNamed, pressed } from "../disturbances.js";
 import { closeLegs, legPoints, legsOf, picked, pickLeg } from "../legs.js";
@@ -32,7 +32,8 @@ export function LegMarks() {
     if (!step) return;
     event.preventDefault();
     event.stopPropagation();
-    const all = /** @type {HTMLElement[]} */ ([...group.current?.querySelectorAll("button") ?? []]);
+    const buttons = group.current?.querySelectorAll("button") ?? [];
+    const all = /** @type {HTMLElement[]} */ ([...buttons]);
     const at = all.indexOf(/** @type {HTMLElement} */ (document.activeElement));
     all[(at + step + all.length) % all.length]?.focus();
   };
@@ -47,9 +48,8 @@ export function LegMarks() {
   `;
 }
 
-const WIDTH_PX = 320;
-const HEIGHT_PX = 250;
 const EDGE_PX = 12;
+const BESIDE_PX = 40;
 
 export function LegMenu() {
   const at = picked.value;
@@ -59,16 +59,23 @@ export function LegMenu() {
 /** @param {{ at: Pick }} props */
 function MenuAt({ at }) {
   const menu = useRef(/** @type {HTMLElement | null} */ (null));
+  const [place, setPlace] = useState(/** @type {Record<string, string>} */ ({ visibility: "hidden" }));
+  useLayoutEffect(() => {
+    const own = /** @type {HTMLElement} */ (menu.current).getBoundingClientRect();
+    const picture = /** @type {HTMLElement} */ (menu.current?.parentElement).getBoundingClientRect();
+    const within = (/** @type {number} */ start, /** @type {number} */ size, /** @type {number} */ room) =>
+      `${Math.max(EDGE_PX, Math.min(start, room - size - EDGE_PX))}px`;
+    // Beside the point, so that the robot can be seen: on its right where there is room, else on its left.
+    const right = at.x + BESIDE_PX;
+    const left = right + own.width > picture.width ? at.x - own.width - BESIDE_PX : right;
+    setPlace({ left: within(left, own.width, picture.width), top: within(at.y - EDGE_PX, own.height, picture.height) });
+  }, []);
+  const isPlaced = !("visibility" in place);
   useEffect(() => {
     /** @type {HTMLElement | null | undefined} */
-    const first = menu.current?.querySelector("button, select");
-    first?.focus({ preventScroll: true });
-  }, []);
-  const { width = 0, height = 0 } = menu.current?.parentElement?.getBoundingClientRect() ?? {};
-  const place = {
-    left: `${Math.max(EDGE_PX, Math.min(at.x + EDGE_PX, (width || 640) - WIDTH_PX - EDGE_PX))}px`,
-    top: `${Math.max(EDGE_PX, Math.min(at.y + EDGE_PX, (height || 480) - HEIGHT_PX - EDGE_PX))}px`,
-  };
+    const first = menu.current?.querySelector(".kinds button") ?? menu.current?.querySelector("button");
+    if (isPlaced) first?.focus({ preventScroll: true });
+  }, [isPlaced]);
   const name = scene.value?.lanes[at.lane]?.name ?? "Robot";
   const title = { leg: `${name}, leg ${at.leg}`, body: `${name}, body`, ground: "Ground" }[at.what];
   return html`
@@ -92,14 +99,17 @@ function Offer({ at }) {
   return html`<p class="dim">Hold a race that has been computed, or start a training: then this can be disturbed.</p>`;
 }
 
-/** The kinds that can happen to what was picked. @param {Pick} at */
-const kindsFor = ({ what }) =>
-  (what === "leg" ? legKinds().map(({ name }) => name) : { body: ["payload", "push"], ground: ["friction", "slope"] }[what]);
+/** The kinds that can happen to what was picked. @type {Record<Pick["what"], () => string[]>} */
+const KINDS = {
+  leg: () => legKinds().map(({ name }) => name), body: () => ["payload", "push"], ground: () => ["friction", "slope"],
+};
+/** @param {Pick} at */
+const kindsFor = ({ what }) => KINDS[what]().filter(kindNamed);
 
 /** @param {{ at: Pick, value: string, onValue: (kind: string) => void }} props */
 const Kinds = ({ at, value, onValue }) => html`
   <div class="kinds" role="group" aria-label="What happens">
-    ${kindsFor(at).filter(kindNamed).map((name) => html`
+    ${kindsFor(at).map((name) => html`
       <button key=${name} aria-pressed=${name === value ? "true" : "false"} onClick=${() => onValue(name)}>
         ${shortTitle(name)}
       </button>
@@ -110,7 +120,10 @@ const Kinds = ({ at, value, onValue }) => html`
 /** "Limp" of "Limp legs". @param {string} name */
 const shortTitle = (name) => (kindNamed(name)?.title ?? name).replace(/ (legs?|joint)$/, "");
 
-/** What a press does, as a disturbance without its step. @type {(at: Pick, kind: string, conditions: Disturbance[]) => Disturbance} */
+/**
+ * What a press does, as a disturbance without its step.
+ * @type {(at: Pick, kind: string, conditions: Disturbance[]) => Disturbance}
+ */
 const meant = (at, kind, conditions) => /** @type {Disturbance} */ (at.what === "leg"
   ? pressed(conditions, at.leg ?? 1, firstWish(kind)) : { ...firstWish(kind), kind });
 
@@ -137,7 +150,8 @@ function OfRace({ race, at }) {
   const { config } = race;
   const from = stepShown.value ?? Math.floor(config.steps / 2) + 1;
   const before = conditionsAt(disturbancesOf(race), from - 1, config.robot);
-  const moment = scale.value && stepShown.value !== null ? positionInWords(scale.value, scale.value.picture) : `step ${from}`;
+  const known = stepShown.value === null ? null : scale.value;
+  const moment = known ? positionInWords(known, known.picture) : `step ${from}`;
   const act = async () => {
     const chosen = chosenWith([], meant(at, kind, before), before, config.robot);
     if (await branchRace(race, from - 1, chosen)) closeLegs();

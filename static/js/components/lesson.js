@@ -1,5 +1,7 @@
 // The lesson's card below the time bar: a question or a task, one's own prediction, and the way to the next one.
-import { card, cardNumber, cards, closeLesson, outcome, predict, predictable, prediction, turnCard } from "../lesson.js";
+import {
+  card, cardNumber, cards, closeLesson, outcome, predict, predictable, prediction, turnCard,
+} from "../lesson.js";
 import { listed } from "../format.js";
 import { isPhone } from "../page.js";
 import { isAtLeast } from "../workspace.js";
@@ -33,8 +35,8 @@ export function Prediction() {
   if (winners?.length) {
     const isRight = winners.some(({ lane }) => lane === prediction.value);
     const verdict = `It ${winners.length > 1 ? "is level:" : "was"} ${listed(winners.map(({ title }) => title))}.`;
-    return html`<p class="prediction" role="status">${verdict}${own ? (isRight ? " You were right." : " You chose ") : ""}
-      ${own && !isRight ? html`<b>${own.title}.</b>` : ""}</p>`;
+    const remark = isRight ? " You were right." : ` You chose ${own?.title}.`;
+    return html`<p class="prediction" role="status">${verdict}${own && remark}</p>`;
   }
   if (own) {
     return html`

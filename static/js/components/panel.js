@@ -11,7 +11,7 @@ import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
 import {
   canPin, isAtLeast, isPanelHidden, openTab, pinnedTab, tab, tabAbout, tabs, tabTitle, togglePin,
 } from "../workspace.js";
-import { Board } from "./board.js";
+import { Board, Facts } from "./board.js";
 import { html, Icon, Loaded } from "./elements.js";
 import { Foot } from "./foot.js";
 import { LearningChart } from "./learning.js";
@@ -32,7 +32,7 @@ export function Panel() {
       ${isAtLeast("try") && !isPhone.value && html`<${Tabs} />`}
       <${Body} name=${tab.value} key=${tab.value} />
       ${pinnedTab.value && html`<${Pinned} name=${pinnedTab.value} key=${`pinned ${pinnedTab.value}`} />`}
-      <div class="foot"><${Foot} /></div>
+      <div class="foot">${page.isPresenting.value ? html`<${Facts} />` : html`<${Foot} />`}</div>
     </aside>
   `;
 }
@@ -41,19 +41,17 @@ export function Panel() {
 
 function Reason() {
   const isOfMove = tab.value === "why";
-  const told = isOfMove ? moveTold.value : null;
-  const title = isOfMove ? told?.title : headline.value ?? practiceTitle.value;
-  const color = isOfMove ? told?.color : leaderColor.value;
+  const { title, words, color } = isOfMove ? ofMove() : ofRun();
   return html`
     <header class="reason" aria-label=${isOfMove ? "The move" : "How it stands"}>
       ${isOfMove && !isAtLeast("try") && html`
         <button class="link back" onClick=${() => openTab("board")}>‹ Back to the board</button>
       `}
-      <h2 style=${{ "--agent": color ?? "transparent" }}>
-        ${title && html`<span class="swatch" aria-hidden="true"></span>`}${title ?? invitation()}
+      <h2 style=${{ "--agent": color }}>
+        ${color !== "transparent" && html`<span class="swatch" aria-hidden="true"></span>`}${title}
       </h2>
-      <p>${title ? told?.reason ?? (isOfMove ? "" : reason.value) : about()}</p>
-      ${!isOfMove && canExplain() && !isAtLeast("try") && html`
+      <p>${words}</p>
+      ${!isOfMove && canExplain() && html`
         <button class="link" onClick=${() => openTab("why")}>
           Explain ${phase.value === "ended" ? "the last" : "this"} step
         </button>
@@ -62,7 +60,21 @@ function Reason() {
   `;
 }
 
-const canExplain = () => Boolean(shownRun.value?.progress.done) && scale.value !== null;
+/** @returns {{ title: string, words: string | null, color: string }} */
+function ofMove() {
+  const { title = "Explain this step", reason: words = "", color = "transparent" } = moveTold.value ?? {};
+  return { title, words, color };
+}
+
+/** @returns {{ title: string, words: string | null, color: string }} */
+function ofRun() {
+  const title = headline.value ?? practiceTitle.value;
+  if (title) return { title, words: reason.value, color: leaderColor.value };
+  return { title: invitation(), words: about(), color: "transparent" };
+}
+
+/** Who tries has a tab for it. */
+const canExplain = () => !isAtLeast("try") && Boolean(shownRun.value?.progress.done) && scale.value !== null;
 
 const invitation = () => {
   if (page.run.value !== null || shownRun.value) return shownRun.value ? "On the start line" : "Loading…";
@@ -91,7 +103,7 @@ const Tabs = () => html`
     ${tabs.value.map((name) => html`<${Tab} key=${name} name=${name} />`)}
     ${canPin.value && html`
       <button class="quiet square small pin" role="presentation" aria-pressed=${pinnedTab.value ? "true" : "false"}
-        tabindex="-1" onClick=${togglePin} title=${pinnedTab.value ? "One tab" : "Pin this tab, and open another beside it"}
+        tabindex="-1" onClick=${togglePin} title=${pinnedTab.value ? "One tab" : "Two tabs beside each other"}
         aria-label=${pinnedTab.value ? "Show one tab" : "Pin this tab"}><${Icon} name="pin" /></button>
     `}
   </div>

@@ -26,7 +26,8 @@ export function Remote() {
         <${Toggle} isOn=${!isPlaying.value} onClick=${togglePlaying} icon=${isPlaying.value ? "pause" : "play"}
           words=${isPlaying.value ? "Pause" : "Play"} />
         <${Toggle} isOn=${shows_why} onClick=${toggleWhy} icon="edit" words="Show why" />
-        <${Toggle} isOn=${endsAtTimeOut} onClick=${() => endAtTimeOut(!endsAtTimeOut)} icon="flag" words="End at time-out" />
+        <${Toggle} isOn=${endsAtTimeOut} onClick=${() => endAtTimeOut(!endsAtTimeOut)} icon="flag"
+          words="End at time-out" />
         <${Toggle} isOn=${is_blank} onClick=${toggleBlank} icon="stop" words="Blank" />
       </div>
       <${Segments} label="QR code" value=${code} onValue=${(/** @type {any} */ one) => tell({ code: one })}

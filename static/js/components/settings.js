@@ -38,7 +38,8 @@ export function TrainSettings() {
         <${PracticeSteps} />
         <${LearnerSettings} />
         ${!isFull && html`
-          <${SelectField} field="world" label="World" choices=${served().worlds.map(({ name, title }) => [name, title])} />
+          <${SelectField} field="world" label="World"
+            choices=${served().worlds.map(({ name, title }) => [name, title])} />
         `}
       </div>
       <${GaitPicker} />
@@ -69,10 +70,13 @@ export const WorldSettings = () => html`
   </fieldset>
 `;
 
+/** Fields beside the learner's main settings that those who try see. */
+const TRIED_FIELDS = ["agent", "steps", "gait", "world"];
+
 /** The tab in which a field of the form is, and whether only those who study see it. @param {string} field */
 export const placeOf = (field) => ({
   tab: ["world", "disturb", ...ROBOT_FIELDS].includes(field) ? "world" : "train",
-  isFull: !["agent", "steps", "gait", "world", ...mainSettings(form.value.agent).map(({ name }) => name)].includes(field),
+  isFull: !TRIED_FIELDS.includes(field) && !mainSettings(form.value.agent).some(({ name }) => name === field),
 });
 
 /**

@@ -5,7 +5,7 @@ import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { metres, sentence, times, whole } from "../format.js";
 import { page } from "../page-state.js";
-import { legPoints, legsOf, picked } from "../legs.js";
+import { closeLegs, legPoints, legsOf, picked } from "../legs.js";
 import { clickedCell, drawHere, shownTheme } from "../page.js";
 import { standings } from "../race.js";
 import { closeReplay, drawIn, isBuffering, replayProblem } from "../replay.js";
@@ -24,6 +24,7 @@ import { LegMarks, LegMenu } from "./leg-menu.js";
 
 /** A frame that has not reported its status for so long is shown as it is. */
 const STATUS_TIMEOUT_MS = 12_000;
+const PICK_DELAY_MS = 60;
 
 /** Where the chips lie over the picture [px], of which the scene's labels stay clear. */
 const covered = signal(/** @type {object[]} */ ([]));
@@ -36,32 +37,9 @@ export function Stage() {
   // The first address has both; later changes are sent to the frame, which must not load again.
   const [address] = useState(() => `viewer/?view=${followed}&theme=${shownTheme.peek()}`);
 
-  useEffect(() => {
-    const onMessage = (/** @type {MessageEvent} */ { origin, source, data }) => {
-      if (origin !== location.origin || source !== frame.current?.contentWindow) return;
-      if (data?.type === "hexapods:click" && !page.isPresenting.peek()) {
-        clickedCell.value = { node: data.node, instance: data.instance, run_id: scene.peek()?.run_id ?? null };
-      }
-      if (data?.type === "hexapods:pick" && canPick()) picked.value = data.pick;
-      if (data?.type === "hexapods:legs") legPoints.value = data.legs;
-      if (data?.type !== "hexapods:status") return;
-      setStatus(data.status);
-      if (data.status !== "connected") return;
-      drawIn(send);
-      drawHere.value = (messages) => send(messages);
-    };
-    const send = (/** @type {Message[]} */ messages) =>
-      frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, location.origin);
-    addEventListener("message", onMessage);
-    const timer = setTimeout(
-      () => setStatus((now) => (now === "loading" ? "connected" : now)), STATUS_TIMEOUT_MS,
-    );
-    return () => {
-      removeEventListener("message", onMessage);
-      clearTimeout(timer);
-    };
-  }, []);
-
+  useFrame(frame, setStatus);
+  // What was picked is of the run that was shown.
+  useEffect(() => closeLegs, [scene.value?.run_id]);
   const colours = laneColours.value;
   useEffect(() => {
     const message = {
@@ -91,6 +69,49 @@ export function Stage() {
       </div>
     </section>
   `;
+}
+
+/**
+ * Take what the frame tells: clicks, places of legs, and its status.
+ * @param {{ current: HTMLIFrameElement | null }} frame
+ * @param {(change: string | ((now: string) => string)) => void} setStatus
+ */
+function useFrame(frame, setStatus) {
+  useEffect(() => {
+    const send = (/** @type {Message[]} */ messages) =>
+      frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, location.origin);
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    let picking;
+    /** @type {Record<string, (data: any) => void>} */
+    const takers = {
+      "hexapods:click": ({ node, instance }) => {
+        if (page.isPresenting.peek()) return;
+        if (isAtLeast("study")) clearTimeout(picking);
+        clickedCell.value = { node, instance, run_id: scene.peek()?.run_id ?? null };
+      },
+      "hexapods:pick": ({ pick }) => {
+        // A cell of a foot grid that was clicked is told right after it, and comes first for those who study.
+        clearTimeout(picking);
+        picking = setTimeout(() => canPick() && (picked.value = pick), PICK_DELAY_MS);
+      },
+      "hexapods:legs": ({ legs }) => (legPoints.value = legs),
+      "hexapods:status": ({ status }) => {
+        setStatus(status);
+        if (status !== "connected") return;
+        drawIn(send);
+        drawHere.value = (messages) => send(messages);
+      },
+    };
+    const onMessage = (/** @type {MessageEvent} */ { origin, source, data }) => {
+      if (origin === location.origin && source === frame.current?.contentWindow) takers[data?.type]?.(data);
+    };
+    addEventListener("message", onMessage);
+    const timer = setTimeout(() => setStatus((now) => (now === "loading" ? "connected" : now)), STATUS_TIMEOUT_MS);
+    return () => {
+      removeEventListener("message", onMessage);
+      clearTimeout(timer);
+    };
+  }, []);
 }
 
 /** Those who try disturb what they click; who presents does not. */

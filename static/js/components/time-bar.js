@@ -93,6 +93,11 @@ const StepButtons = () => html`
 const SMALL_PX = 12;
 const LABEL_GAP_PX = 6;
 
+/** The width of a text of the bar, whose type is larger in a presenter's window. @param {string} text */
+const textWidth = (text, weight = 600) =>
+  widthOf(text, weight) * (page.isPresenting.value ? rootFontSize() / SMALL_PX : 1);
+const rootFontSize = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
+
 /** @param {{ known: Scale }} props */
 function Track({ known }) {
   const [host, width] = useWidth();
@@ -137,7 +142,7 @@ function labelsAbove(known, width) {
   /** @type {{ kind: string, at: number, text: string, left: number, right: number }[]} */
   const placed = [];
   for (const one of [...first, ...named]) {
-    const size = widthOf(one.text, 600);
+    const size = textWidth(one.text);
     const left = Math.min(Math.max(0, shareOf(one.at, 0, end) * width - size / 2), width - size);
     const right = left + size;
     if (left < 0 || placed.some((other) => left < other.right + LABEL_GAP_PX && right > other.left - LABEL_GAP_PX)) {
@@ -151,7 +156,10 @@ function labelsAbove(known, width) {
 /** @param {Mark} one */
 const weightOf = ({ kind }) => ["time-out", "fall", "disturbance", "change", "crossing"].indexOf(kind);
 
-/** Each mark: a line, and for those who try a button that goes there. @param {{ place: (at: number) => string }} props */
+/**
+ * Each mark: a line, and for those who try a button that goes there.
+ * @param {{ place: (at: number) => string }} props
+ */
 const Marks = ({ place }) => html`
   <span class="marks">
     ${marks.value.map((one) => (one.isMinor || !isAtLeast("try")
@@ -165,7 +173,8 @@ const Marks = ({ place }) => html`
 
 /** How a lane spent its time. @param {{ row: typeof laneRows.value[number], end: number }} props */
 const LaneRow = ({ row: { name, color, thinking, until }, end }) => html`
-  <div class="lane-row" role="img" aria-label=${`${name}: walking solid, thinking hatched`} style=${{ "--agent": color }}>
+  <div class="lane-row" role="img" style=${{ "--agent": color }}
+    aria-label=${`${name}: walking solid, thinking hatched`}>
     <i class="walked" style=${{ width: percent(shareOf(Math.min(until, end), 0, end)) }}></i>
     ${thinking.filter(([from]) => from < end).map(([from, to]) => html`
       <i class="thought" style=${{
@@ -177,15 +186,18 @@ const LaneRow = ({ row: { name, color, thinking, until }, end }) => html`
 
 const MIN_TICK_GAP_PX = 90;
 
-/** The scale, and on it the moment in the picture. @param {{ known: Scale, width: number, place: (at: number) => string }} props */
+/**
+ * The scale, and on it the moment in the picture.
+ * @param {{ known: Scale, width: number, place: (at: number) => string }} props
+ */
 function Below({ known, width, place }) {
   const { unit, end, picture } = known;
   const wanted = Math.max(2, Math.min(6, Math.floor(width / MIN_TICK_GAP_PX)));
   const last = unit === "s" ? `${Number(end.toFixed(1))}\u00a0s` : `${end} steps`;
-  const room = widthOf(last, 400) + 2 * SMALL_PX;
+  const room = textWidth(last, 400) + 2 * SMALL_PX;
   const inner = ticks(end, wanted).filter((at) => (1 - at / end) * width > room);
   const bubble = unit === "s" ? `${picture.toFixed(1)}\u00a0s` : `step ${Math.round(picture)}`;
-  const half = widthOf(bubble, 600) / 2 + SMALL_PX;
+  const half = textWidth(bubble) / 2 + SMALL_PX;
   const at = Math.min(Math.max(shareOf(picture, 0, end) * width, half), Math.max(half, width - half));
   const isFree = (/** @type {number} */ x) => Math.abs(x - at) > half + SMALL_PX;
   return html`
@@ -193,7 +205,7 @@ function Below({ known, width, place }) {
       ${inner.map((one) => isFree(shareOf(one, 0, end) * width) && html`
         <span style=${{ left: place(one) }}>${one}</span>
       `)}
-      ${isFree(width - widthOf(last, 400) / 2) && html`<span class="last">${last}</span>`}
+      ${isFree(width - textWidth(last, 400) / 2) && html`<span class="last">${last}</span>`}
       <b style=${{ left: `${at}px` }}>${bubble}</b>
     </div>
   `;
@@ -213,7 +225,7 @@ function EndAtTimeOut() {
   const isOn = isOwn ? page.end.value === "time-out" : stage.value?.end_at_time_out ?? true;
   const toggle = () => (isOwn ? (page.end.value = isOn ? "all" : "time-out") : endAtTimeOut(!isOn));
   return html`
-    <label class="switch" title=${`${isOwn ? "" : "For every page: "}end with the photo finish, which settles the ranking`}>
+    <label class="switch" title="End with the photo finish, which settles the ranking">
       <input type="checkbox" role="switch" name="end_at_time_out" checked=${isOn} onChange=${toggle} />
       End at time-out
     </label>

@@ -194,7 +194,7 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb 
       `}
       <p class="sentence" id=${`${id}-help`}>${kind.description}</p>
     </div>
-    ${others.map(([name, setting]) => {
+    ${isAtLeast("study") && others.map(([name, setting]) => {
       const more = {
         id: `${id}-${name}`, of: kind.title, setting, value: values[name] ?? setting.default, isDisabled,
       };
@@ -295,7 +295,8 @@ function WorldControls({ id, config, conditions, onDisturb, sentenceOf, children
       </div>
     </div>
     ${!reason && html`<${WishFields} id=${id} wish=${wish} onWish=${setWish} />`}
-    <${Sliders} kinds=${kindsWithSize().filter(isMain)} conditions=${conditions} config=${config} onDisturb=${onDisturb} />
+    <${Sliders} kinds=${kindsWithSize().filter(isMain)} conditions=${conditions} config=${config}
+      onDisturb=${onDisturb} />
     ${isAtLeast("study") && html`
       <details class="more">
         <summary>Ground, load and servos</summary>

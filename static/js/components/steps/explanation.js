@@ -13,7 +13,10 @@ const unbroken = (text) => text.replaceAll(" · ", "\u00a0·\u00a0");
 const MAX_MOVES = 6;
 const SHORTEST_BAR = 0.02;
 
-/** `isFull`: with the update of its values, as the rule with its numbers. @param {{ told: Explanation, isFull: boolean }} props */
+/**
+ * `isFull`: with the update of its values, as the rule with its numbers.
+ * @param {{ told: Explanation, isFull: boolean }} props
+ */
 export const ExplainedStep = ({ told, isFull }) => html`
   <div class="told">
     <${Happened} told=${told} />

@@ -18,7 +18,7 @@ export function Why() {
   const at = moment.value;
   const told = toldAbout(at);
   useEffect(() => {
-    if (at) moveTold.value = told ? wordsOf(told) : { title: `Step ${whole(at.step)}`, reason: "", color: "transparent" };
+    moveTold.value = told ? wordsOf(told) : at && { title: `Step ${whole(at.step)}`, reason: "", color: "transparent" };
   }, [told, at?.step]);
   useEffect(() => () => (moveTold.value = null), []);
   if (!at) return html`<p class="dim">Once a run is on stage, each of its steps is explained here.</p>`;
@@ -35,8 +35,11 @@ export function Why() {
   `;
 }
 
-/** The explanation that can be shown of a moment's lane: of its step, or of one before while the answer is on its way. */
-/** @param {Moment | null} at @returns {Explanation | null} */
+/**
+ * The explanation that can be shown of a moment's lane: of its step, or while that is on its way of the one before.
+ * @param {Moment | null} at
+ * @returns {Explanation | null}
+ */
 function toldAbout(at) {
   const { answer, error, again } = explanation.value;
   if (!at || !answer || (error && !again)) return null;
@@ -55,5 +58,6 @@ function reasonOf({ reward_m, update }) {
   if (!direct) return `${went}.`;
   const [before, after] = [direct.before, direct.after].map(fineMillimetres);
   if (before === after) return `${went}: the value of the move stays ${after}.`;
-  return `${went}: the value of the move ${direct.after > direct.before ? "rises" : "falls"} from ${before} to ${after}.`;
+  const verb = direct.after > direct.before ? "rises" : "falls";
+  return `${went}: the value of the move ${verb} from ${before} to ${after}.`;
 }
