@@ -136,7 +136,8 @@
     const [u, v] = [(2 * x) / canvas.clientWidth - 1, 1 - (2 * y) / canvas.clientHeight];
     const through = camera.position.clone().set(u, v, 0.5).unproject(camera).applyMatrix4(toTrack);
     const share = from.z / (from.z - through.z || 1e-9);
-    return share > 0 && Math.hypot(from.x + share * (through.x - from.x), from.y + share * (through.y - from.y)) < FAR_M;
+    const [east, north] = ["x", "y"].map((axis) => from[axis] + share * (through[axis] - from[axis]));
+    return share > 0 && Math.hypot(east, north) < FAR_M;
   };
 
   // ---- what the page is told

@@ -61,8 +61,9 @@ function MenuAt({ at }) {
   const menu = useRef(/** @type {HTMLElement | null} */ (null));
   const [place, setPlace] = useState(/** @type {Record<string, string>} */ ({ visibility: "hidden" }));
   useLayoutEffect(() => {
-    const own = /** @type {HTMLElement} */ (menu.current).getBoundingClientRect();
-    const picture = /** @type {HTMLElement} */ (menu.current?.parentElement).getBoundingClientRect();
+    const element = /** @type {HTMLElement} */ (menu.current);
+    const own = element.getBoundingClientRect();
+    const picture = /** @type {HTMLElement} */ (element.parentElement).getBoundingClientRect();
     const within = (/** @type {number} */ start, /** @type {number} */ size, /** @type {number} */ room) =>
       `${Math.max(EDGE_PX, Math.min(start, room - size - EDGE_PX))}px`;
     // Beside the point, so that the robot can be seen: on its right where there is room, else on its left.
