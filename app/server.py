@@ -39,6 +39,7 @@ from app.api.auth import TokenGuard
 from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
 from app.api.deps import Services
 from app.api.disconnects import Disconnects
+from app.api.guide import guide_routes
 from app.api.host_check import HostGuard
 from app.api.memory_limit import BodyLimit, HeldBodies
 from app.api.middleware import SecurityHeaders
@@ -163,7 +164,11 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
 
 def _add_routes(app: FastAPI, agents: tuple[str, ...]) -> None:
     app.router.routes += _api_routes(agents)
-    app.router.routes += [*viewer_routes(_serve_viewer), *pages.page_routes(assets.static_dir())]
+    app.router.routes += [
+        *viewer_routes(_serve_viewer),
+        *pages.page_routes(assets.static_dir()),
+        *guide_routes(assets.docs_dir()),
+    ]
 
 
 async def _serve_viewer(websocket: WebSocket) -> None:

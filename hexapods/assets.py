@@ -1,4 +1,4 @@
-"""Folders of the dashboard and of the robots' MJCF.
+"""Folders of the dashboard, of its documentation and of the robots' MJCF.
 
 Inside the package when it was installed from a wheel, beside it in a checkout.
 """
@@ -11,6 +11,11 @@ _PACKAGE = Path(__file__).resolve().parent
 def static_dir() -> Path:
     """The folder of the dashboard's page, styles and scripts."""
     return _find("static")
+
+
+def docs_dir() -> Path:
+    """The folder of the documentation, in Markdown."""
+    return _find("docs")
 
 
 def models_dir() -> Path:

@@ -63,8 +63,8 @@ class RobotMesh:
     def part_name(self, number: int) -> str:
         """Return the name of a part's scene node: whose links its instances are.
 
-        `1/legs-1-2-3` has the links of these legs, in this order, of each lane; `static/viewer/legs.js`
-        finds by it which leg was clicked.
+        `1/legs-1-2-3` has the links of these legs, in this order, of each lane; by it
+        `static/viewer/legs.js` finds which leg was clicked.
         """
         joints = [self._joint_of_link.get(link) for link in self.parts[number].links.tolist()]
         if None in joints:

@@ -36,7 +36,10 @@ from tests.api.calls import WALK, Api
 from tests.experiments.sample_experiments import around, summary_of, walked
 from tests.storage.stores import temporary_store
 
-PAGES = {"/", "/docs", "/favicon.ico", "/openapi.json", "/static", "/viewer", "/viewer/"}
+PAGES = {
+    *("/", "/docs", "/favicon.ico", "/guide/{name}"),
+    *("/openapi.json", "/static", "/viewer", "/viewer/"),
+}
 """Pages for browsers, which are no part of the API."""
 Serve = Callable[..., Api]
 

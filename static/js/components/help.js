@@ -78,9 +78,11 @@ function startLesson() {
 const Reading = () => html`
   <h2>To read on</h2>
   <ul class="reading">
-    <li><a href="docs">The REST API of this server</a>, with every request and answer</li>
-    <li><a href="about/paper">The paper</a> that this page implements, and what differs from it</li>
-    <li><a href="about/source">The source</a>, with its documentation</li>
+    <li><a href="guide/tutorial">The guide</a>: a tutorial, how-tos, and how each part works</li>
+    <li><a href="guide/experiments">The paper</a>, <i>Racing Hexapods: Q-learning vs Uninformed Search</i>, repeated over
+      thirty seeds</li>
+    <li><a href="docs">The REST API</a>, with every request and answer</li>
+    <li><a href="guide/architecture">The source</a>: where each part is, and where to add one</li>
   </ul>
 `;
 

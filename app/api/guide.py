@@ -1,0 +1,99 @@
+"""The guide: the project's documentation as pages of this server, which needs no network."""
+
+import re
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, Response
+from starlette.routing import BaseRoute, Route
+
+from app.api.problems import problem
+from app.api.templates import render
+from hexapods import __version__
+
+if TYPE_CHECKING:
+    from markdown_it.token import Token
+
+CONTENTS = (
+    ("Start", ("tutorial", "worlds", "replays", "comparing", "spectators", "exports")),
+    ("Experiments", ("experiments", "figures", "python", "operations")),
+    ("How it works", ("learners", "linear-model", "search", "explanations", "gait-analysis")),
+    ("Inside", ("architecture",)),
+)
+"""Pages of the guide by heading: names of files in `docs/`, without their ending."""
+_NAMES = frozenset(name for _, names in CONTENTS for name in names)
+_OTHER_PAGE = re.compile(r"(?P<name>[\w-]+)\.md(?P<part>#[\w-]+)?")
+_NOT_IN_SLUG = re.compile(r"[^\w\- ]")
+
+
+def guide_routes(folder: Path) -> list[BaseRoute]:
+    """Return the route `/guide/{name}`.
+
+    Args:
+        folder: folder of the documentation, in Markdown.
+    """
+
+    def show(request: Request) -> Response:
+        name = request.path_params["name"]
+        if name not in _NAMES:
+            known = ", ".join(sorted(_NAMES))
+            return problem(404, f"The guide has no page {name!r}; it has {known}.")
+        return HTMLResponse(_page(folder, name))
+
+    return [Route("/guide/{name}", show, name="guide")]
+
+
+@cache
+def _page(folder: Path, name: str) -> str:
+    # Its import takes 0.1 s, and most servers show no page of the guide.
+    from markdown_it import MarkdownIt  # noqa: PLC0415
+
+    markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
+    tokens = markdown.parse((folder / f"{name}.md").read_text("utf-8"))
+    shown = [token for token in tokens if not _is_directive(token)]
+    _add_anchors(shown)
+    for token in shown:
+        token.children = _linked(token.children or []) if token.children else token.children
+    body = markdown.renderer.render(shown, markdown.options, {})
+    return render(
+        "guide.html",
+        title=_title(folder, name),
+        name=name,
+        contents=[
+            (heading, [(one, _title(folder, one)) for one in names]) for heading, names in CONTENTS
+        ],
+        body=Markup(body),  # noqa: S704 - of files of the project, whose HTML is escaped
+        version=__version__,
+    )
+
+
+@cache
+def _title(folder: Path, name: str) -> str:
+    first = (folder / f"{name}.md").read_text("utf-8").partition("\n")[0]
+    return first.removeprefix("# ")
+
+
+def _is_directive(token: "Token") -> bool:
+    """Whether a token is a directive of Sphinx, which only its site shows."""
+    return token.type == "fence" and token.info.startswith("{")
+
+
+def _add_anchors(tokens: list["Token"]) -> None:
+    """Give headings the ids that links to them have."""
+    for token, inline in pairwise(tokens):
+        if token.type == "heading_open":
+            words = _NOT_IN_SLUG.sub("", inline.content.lower())
+            token.attrSet("id", words.replace(" ", "-"))
+
+
+def _linked(tokens: list["Token"]) -> list["Token"]:
+    """Let links to other files of the documentation lead to their pages; leave out pictures."""
+    for token in tokens:
+        found = _OTHER_PAGE.fullmatch(str(token.attrGet("href") or ""))
+        if found and found["name"] in _NAMES:
+            token.attrSet("href", f"guide/{found['name']}{found['part'] or ''}")
+    return [token for token in tokens if token.type != "image"]

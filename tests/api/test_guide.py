@@ -1,0 +1,37 @@
+"""The guide: the documentation as pages of the server."""
+
+import re
+from collections.abc import Callable
+
+from app.api.guide import CONTENTS
+from hexapods import assets
+from tests.api.calls import Api, refused
+
+
+def test_each_page_is_shown_with_its_title_and_links_to_the_others(
+    shared: Callable[..., Api],
+) -> None:
+    client = shared().client
+    for name in (one for _, names in CONTENTS for one in names):
+        page = client.get(f"/guide/{name}")
+        assert page.status_code == 200
+        title = (assets.docs_dir() / f"{name}.md").read_text("utf-8").partition("\n")[0][2:]
+        assert f"<title>{title}" in page.text.replace("&#39;", "'")
+        # Neither directives of Sphinx nor links to files, which the server has not.
+        assert "{toctree}" not in page.text
+        assert not re.search(r'href="[\w-]+\.md', page.text)
+
+
+def test_links_to_a_part_of_a_page_find_it(shared: Callable[..., Api]) -> None:
+    client = shared().client
+    for name in (one for _, names in CONTENTS for one in names):
+        for other, part in re.findall(
+            r'href="guide/([\w-]+)#([\w-]+)"', client.get(f"/guide/{name}").text
+        ):
+            assert f'id="{part}"' in client.get(f"/guide/{other}").text, (name, other, part)
+
+
+def test_an_unknown_page_is_refused_with_the_pages_that_there_are(
+    shared: Callable[..., Api],
+) -> None:
+    refused(shared().client.get("/guide/nothing"), 404, "nothing", "tutorial", "architecture")
