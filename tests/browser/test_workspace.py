@@ -70,6 +70,8 @@ def keeps_budgets(dashboard: Dashboard, state: str) -> None:
             overflow = dashboard.page.evaluate(_OVERFLOW)
             if overflow != [0, 0]:
                 scrolled[f"{name} {size}"] = overflow
+            if tab:
+                expect(dashboard.page.get_by_role("tab").last).to_be_in_viewport(ratio=1)
         expect(dashboard.headline).to_be_in_viewport(ratio=1)
         expect(dashboard.actions.get_by_role("button").last).to_be_in_viewport(ratio=1)
     assert over == {}
