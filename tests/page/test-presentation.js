@@ -83,6 +83,14 @@ test("a page that is presented follows it, and other pages do not", () => {
   assert.deepEqual([page.card.value, page.tab.value], [3, "why"]);
 });
 
+test("a page that is presented no more is as deep as it was", () => {
+  change({ depth: "study", tab: "gait" });
+  change({ isPresenting: true });
+  assert.deepEqual([page.tab.value, page.depth.value], ["board", "watch"]);
+  change({ isPresenting: false });
+  assert.deepEqual([page.tab.value, page.depth.value], ["gait", "study"]);
+});
+
 test("by the end of the first race the code is small, once", async () => {
   change({ isPresenting: true });
   const config = { steps: 50, lanes: [{ agent: "greedy" }] };
