@@ -162,7 +162,9 @@ def _experiment_body(agents: Sequence[str]) -> type[ExperimentBody]:
         ExperimentConfig, {"experiment", "settings", "blocks"}, optional={"tolerance"}
     )
     name = "ExperimentBody"
-    return create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)
+    model = create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)
+    model.registered = agents
+    return model
 
 
 def _change_body(agents: Sequence[str]) -> type[ChangeBody]:

@@ -14,6 +14,7 @@ from cachetools import TTLCache
 from app.jobs.process_pool import TIMEOUT_S, ProcessPool, TookTooLong
 from app.jobs.stopping import Stopping
 from app.jobs.submissions import (
+    BranchStart,
     ExperimentStart,
     LaneStart,
     RaceStart,
@@ -72,11 +73,12 @@ class Estimates:
         self._lock, self._timing = threading.Lock(), threading.Lock()
         self._free = threading.BoundedSemaphore(MAX_AT_ONCE)
 
-    def of(self, start: TrainingStart | RaceStart | ExperimentStart) -> float:
+    def of(self, start: TrainingStart | RaceStart | BranchStart | ExperimentStart) -> float:
         """Return how long a run would take once it has a core [s].
 
         Raises:
-            InvalidInput: if an agent fails at once, or its steps take too long to be timed.
+            InvalidInput: if an agent fails at once, or its steps take too long to be timed; or of a
+                race that branches off.
             Busy: if others wait for that, or the pool is closed.
         """
         if isinstance(start, ExperimentStart):
@@ -85,6 +87,8 @@ class Estimates:
             check_training(start.config)
             parts = [*_practice(start.config)]
             return _seconds(parts, self._measured(one.steps for one in parts))
+        if isinstance(start, BranchStart):
+            raise InvalidInput("a branch takes what is left of its race; leave out branch_from")
         check_walk(start.walk)
         lanes = [_lane(one, start) for one in start.lanes]
         trainings = (one.training for one in start.lanes if one.training is not None)

@@ -58,7 +58,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     """Paused, stopped, killed and resumed, it gives the results of an uninterrupted run."""
     before = worker_pids()
     config = sweep(seeds=24, steps=(1000,))
-    run = jobs.experiment(ExperimentStart(config, workers=1))
+    run = jobs.start(ExperimentStart(config, workers=1))
     assert (run.name, run.total, run.kind) == ("Sweep, 24 seeds", 25, "experiment")
 
     wait_for_more_trials(store, run, 0)
@@ -135,7 +135,7 @@ def test_full_disk_fails_the_run_which_resumes_once_there_is_space(store: RunSto
     jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
     try:
-        run = jobs.experiment(ExperimentStart(sweep(), workers=1))
+        run = jobs.start(ExperimentStart(sweep(), workers=1))
         failed = wait_until_ended(store, run)
         assert failed.state == "failed"
         assert "the disk of the data folder is full" in (failed.error or "")
@@ -149,7 +149,7 @@ def test_full_disk_fails_the_run_which_resumes_once_there_is_space(store: RunSto
 
 def test_invalid_trials_are_set_aside_and_the_others_are_kept(jobs: Jobs, store: RunStore) -> None:
     config = sweep(agents=("q-learning", "tests.own_agents:Clumsy"))
-    run = wait_until_ended(store, jobs.experiment(ExperimentStart(config, name="Mine", workers=1)))
+    run = wait_until_ended(store, jobs.start(ExperimentStart(config, name="Mine", workers=1)))
     assert (run.name, run.state, run.done) == ("Mine", "finished", run.total)
     assert experiment_result(run).trials == TrialCounts(done=4, total=7, failed=0, set_aside=3)
     for row in store.trials(run.id):
@@ -159,7 +159,7 @@ def test_invalid_trials_are_set_aside_and_the_others_are_kept(jobs: Jobs, store:
 
 def test_queued_or_starting_experiment_stops_at_once(jobs: Jobs, store: RunStore) -> None:
     config = sweep(seeds=100, steps=(2000,))
-    first, second = (jobs.experiment(ExperimentStart(config)) for _ in range(2))
+    first, second = (jobs.start(ExperimentStart(config)) for _ in range(2))
     assert jobs.stop(second.id).state == "stopped"
     wait_until(lambda: store.get(first.id).state == "running")
     stopped = jobs.stop(first.id)
@@ -178,15 +178,15 @@ def test_too_large_or_unreachable_grid_is_rejected(jobs: Jobs) -> None:
     ):
         fields = {"simulator": "kinematic", **lists}
         with pytest.raises(InvalidInput, match=message):
-            jobs.experiment(ExperimentStart(experiment_config("sweep", fields)))
+            jobs.start(ExperimentStart(experiment_config("sweep", fields)))
     with pytest.raises(Unreachable):
-        jobs.experiment(ExperimentStart(sweep(grid_side_m=(0.3,))))
+        jobs.start(ExperimentStart(sweep(grid_side_m=(0.3,))))
     with pytest.raises(InvalidInput, match="cores of this machine"):
-        jobs.experiment(ExperimentStart(sweep(), workers=512))
+        jobs.start(ExperimentStart(sweep(), workers=512))
 
 
 def test_experiments_of_the_paper_are_within_the_limits(jobs: Jobs) -> None:
     for name, total in (("table1", 1008), ("figure4", 248)):
-        run = jobs.experiment(ExperimentStart(experiment_config(name, {})))
+        run = jobs.start(ExperimentStart(experiment_config(name, {})))
         assert run.total == total == Plan(experiment_config(name, {})).total
         jobs.stop(run.id)

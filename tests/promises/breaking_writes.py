@@ -131,7 +131,7 @@ def start(store: RunStore, folder: Path) -> None:
         LaneStart("q-learning", training=TrainingStart(CONFIG, "Its practice")),
         LaneStart("greedy"),
     ]
-    _jobs(store).race(RaceStart(walk, lanes, 5, 0, "Started"), KEY)
+    _jobs(store).start(RaceStart(walk, lanes, 5, 0, "Started"), KEY)
 
 
 def finish(store: RunStore, folder: Path) -> None:
