@@ -1,6 +1,6 @@
 """Routes whose bodies depend on the registered agents: starts, live changes, what-ifs."""
 
-from typing import Annotated, Any
+from typing import Any
 
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
@@ -9,10 +9,8 @@ from app.api.agent_bodies import AgentBodies
 from app.api.answers import EstimateView, TrainingView, WhatIfView
 from app.api.contract import LOCATION, answers
 from app.api.deps import RoleDep, Services, ServicesDep, StartRequestDep
-from app.api.experiment_body import ExperimentBody
 from app.api.rate_limit import what_ifs_used_up, whole_seconds
 from app.api.runs import VIEWS, RunPath, find, start_run
-from app.api.schemas import BranchBody, ChangeBody, RaceBody, TrainingBody
 from app.limits.addresses import client_of
 from app.storage.errors import Busy
 from app.storage.run import Kind
@@ -27,17 +25,19 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         agents: names of the registered agents.
     """
     router, bodies = APIRouter(), AgentBodies(agents)
+    training_body: Any = bodies.training
+    change_body: Any = bodies.change
     _add_starts(
         router,
         "training",
-        Annotated[TrainingBody, bodies.training],
+        training_body,
         start=("a training", "Queue a training, and return its run."),
         estimate=("a training", "Time a few steps of the agent on this machine, and extrapolate."),
     )
     _add_starts(
         router,
         "race",
-        Annotated[RaceBody | BranchBody, bodies.race],
+        bodies.race,
         start=(
             "a race and the practice that it needs",
             "Queue the trainings of its lanes, then the race, and return the race's run.\n\n"
@@ -52,7 +52,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
     _add_starts(
         router,
         "experiment",
-        Annotated[ExperimentBody, bodies.experiment],
+        bodies.experiment,
         start=("an experiment over many seeds", "Queue an experiment, and return its run."),
         estimate=(
             "an experiment",
@@ -66,9 +66,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         summary="Change pace or live settings of a training",
         response_model=TrainingView,
     )
-    def change_training(
-        services: ServicesDep, run_id: RunPath, body: Annotated[ChangeBody, bodies.change]
-    ) -> Response:
+    def change_training(services: ServicesDep, run_id: RunPath, body: change_body) -> Response:
         """Apply the change between two steps, and record it with the step's number in `changes`."""
         find(services, "training", run_id)
         return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
@@ -85,10 +83,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         ),
     )
     def ask(
-        services: ServicesDep,
-        request: Request,
-        role: RoleDep,
-        body: Annotated[TrainingBody, bodies.training],
+        services: ServicesDep, request: Request, role: RoleDep, body: training_body
     ) -> Response:
         """Return what a practice with these settings would give, on the kinematic simulator."""
         if body.continue_from is not None:
