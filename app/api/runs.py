@@ -92,9 +92,14 @@ def start_run(
     services: Services, request: Request, start_request: StartRequest, start: Start
 ) -> Response:
     """Queue a run, unless this request did before; return the response with its Location."""
-    run = start_request.start(services, lambda key: services.jobs.start(start, key))
+    (run,) = start_request.runs(services, lambda key: [services.jobs.start(start, key)])
+    return located(services, request, run, 202)
+
+
+def located(services: Services, request: Request, run: Run, status: int) -> Response:
+    """Return the response with a new run, and its Location."""
     location = request.url_for(f"get_{run.kind}", run_id=run.id).path
-    return JSONResponse(services.jobs.view(run), 202, {"Location": location})
+    return JSONResponse(services.jobs.view(run), status, {"Location": location})
 
 
 router = APIRouter(prefix="/runs", tags=["runs"])

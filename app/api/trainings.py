@@ -14,7 +14,7 @@ from app.api.explanation_answers import TableView
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
 from app.api.recorded_answers import CurveView, QTableView
-from app.api.runs import RunPath, find, run_routes
+from app.api.runs import RunPath, find, located, run_routes
 from app.archive import table_import
 from app.explanations.service import MAX_VALUES_SHOWN
 from app.storage.artifact_file import closing_after
@@ -48,12 +48,11 @@ def import_training(
     """Import the body, an `.npz` from a training's `q-table` or from `hexapods train`."""
     if not start_request.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
-    jobs, agents = services.jobs, services.agents
-    run = start_request.start(
-        services, lambda key: table_import.import_table(jobs, start_request.body, agents, name, key)
+    jobs, agents, table = services.jobs, services.agents, start_request.body
+    (run,) = start_request.runs(
+        services, lambda key: [table_import.import_table(jobs, table, agents, name, key)]
     )
-    location = request.url_for("get_training", run_id=run.id).path
-    return JSONResponse(jobs.view(run), 201, {"Location": location})
+    return located(services, request, run, 201)
 
 
 def _without_step(given: Any) -> Any:

@@ -144,9 +144,10 @@ class Jobs:
             table: its table, as a file.
             key: idempotency key of the request, stored with the run.
         """
-        run = self._store.add(run, Content(artifacts={TABLE: table}), self.new_id, key)
-        self._publish(run)
-        return run
+        content = Content(artifacts={TABLE: table})
+        (stored,) = self._store.add([(run, content)], self.new_id, key)
+        self._publish(stored)
+        return stored
 
     def pause(self, run_id: str) -> Run:
         """Pause a running job.

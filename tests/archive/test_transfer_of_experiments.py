@@ -10,7 +10,6 @@ import pytest
 
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
-from app.archive.transfer import export_run
 from app.storage.database.store import RunStore
 from app.storage.run import State
 from hexapods.agents.registry import OURS
@@ -18,6 +17,7 @@ from hexapods.experiments.config import SUMMARY, experiment_config
 from hexapods.experiments.engine import Outcome
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.trial import run_trial
+from tests.archive.exported import export_run
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
 from tests.storage.ended_runs import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened

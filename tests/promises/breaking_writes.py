@@ -22,7 +22,6 @@ import numpy as np
 from sqlalchemy import Connection, Engine, event, select
 
 from app.archive import table_import
-from app.archive.transfer import export_run, import_run
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
@@ -41,6 +40,7 @@ from hexapods.runs.records import Evaluated, StepTaken
 from hexapods.runs.results import training_result
 from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
+from tests.archive.exported import export_run, import_run
 from tests.jobs.played import played_job
 from tests.storage.ended_runs import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training
@@ -111,12 +111,12 @@ class Breaker:
 
 def import_archive(store: RunStore, folder: Path) -> None:
     data = (folder.parent / "run.zip").read_bytes()
-    import_run(store, data, RunIds.of(store), tuple(OURS), "run.zip", key=KEY)
+    import_run(store, data, RunIds.of(store), "run.zip", key=KEY)
 
 
 def import_experiment(store: RunStore, folder: Path) -> None:
     data = (folder.parent / "experiment.zip").read_bytes()
-    import_run(store, data, RunIds.of(store), tuple(OURS), "experiment.zip", key=KEY)
+    import_run(store, data, RunIds.of(store), "experiment.zip", key=KEY)
 
 
 def import_table(store: RunStore, folder: Path) -> None:

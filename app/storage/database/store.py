@@ -115,16 +115,6 @@ class RunStore:
 
     def add(
         self,
-        run: Run,
-        content: Content,
-        new_id: Callable[[], str],
-        key: IdempotencyKey | None = None,
-    ) -> Run:
-        """Insert an ended run with its content, as `add_all`."""
-        return self.add_all([(run, content)], new_id, key)[0]
-
-    def add_all(
-        self,
         imported: Sequence[tuple[Run, Content]],
         new_id: Callable[[], str],
         key: IdempotencyKey | None = None,
