@@ -3,7 +3,6 @@
 import threading
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain, zip_longest
 from statistics import fmean
@@ -23,7 +22,7 @@ from app.jobs.submissions import (
     check_walk,
     plan_of,
 )
-from app.storage.errors import Busy
+from app.jobs.turns import Turns
 from app.what_if.step_time import TimedSteps, step_s_of
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
@@ -36,8 +35,8 @@ MAX_MEASURED = 24
 MAX_CACHED = 256
 CACHED_S = 600.0
 """After this time the machine may be busier, or less."""
-MAX_AT_ONCE = 4
-"""Requests whose steps are timed, or wait for that; each holds a thread of the server."""
+MAX_WAITING = 3
+"""Requests that wait until their steps are timed; each holds a thread of the server."""
 
 
 class _CostClass(NamedTuple):
@@ -57,7 +56,11 @@ class _Part(NamedTuple):
 
 
 class Estimates:
-    """Estimates durations from timed steps, which are cached for a while. Thread-safe."""
+    """Estimates durations from timed steps, which are cached for a while. Thread-safe.
+
+    Attributes:
+        turns: of the requests whose steps are timed.
+    """
 
     def __init__(self, pool: ProcessPool, cores: int, stopping: Stopping | None = None) -> None:
         """Create the service with an empty cache.
@@ -70,8 +73,8 @@ class Estimates:
         self._stopping = stopping or Stopping()
         self._pool, self._cores = pool, cores
         self._cache: TTLCache[TimedSteps, float] = TTLCache(MAX_CACHED, CACHED_S)
-        self._lock, self._timing = threading.Lock(), threading.Lock()
-        self._free = threading.BoundedSemaphore(MAX_AT_ONCE)
+        self._lock = threading.Lock()
+        self.turns = Turns("estimates", MAX_WAITING)
 
     def of(self, start: TrainingStart | RaceStart | BranchStart | ExperimentStart) -> float:
         """Return how long a run would take once it has a core [s].
@@ -123,7 +126,7 @@ class Estimates:
         kinds = list(dict.fromkeys(wanted))[:MAX_MEASURED]
         known = self._known(kinds)
         if len(known) < len(kinds):
-            with self._turn():
+            with self.turns.turn(self._stopping.check):
                 # A request that was answered meanwhile may have timed the same.
                 known = self._known(kinds)
                 missing = [kind for kind in kinds if kind not in known]
@@ -141,17 +144,6 @@ class Estimates:
                 f"a few steps ({agents}) were not done in {TIMEOUT_S:g} s, so the run would take "
                 "very long; choose settings with less work in each step"
             ) from error
-
-    @contextmanager
-    def _turn(self) -> Iterator[None]:
-        """Wait until no other request times steps, unless another one waits for that."""
-        if not self._free.acquire(blocking=False):
-            raise Busy("other estimates are waiting; ask again in a moment", 1)
-        try:
-            with self._stopping.holding(self._timing):
-                yield
-        finally:
-            self._free.release()
 
     def _known(self, kinds: Iterable[TimedSteps]) -> dict[TimedSteps, float]:
         # At one time for all: what expires between two looks would raise.
