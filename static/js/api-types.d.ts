@@ -276,11 +276,9 @@ export interface Evaluation {
   epsilon: number;
 }
 /**
- * The sequence of steps that the walk repeats at its end, at least three times.
- *
- * `first_step` is counted from 0; `actions` are [pair, cell]; `advance_m` is of one period.
+ * The sequence of steps that a walk repeats at its end, at least three times.
  */
-export interface CycleView {
+export interface Cycle {
   steps: number;
   period_s: number;
   first_step: number;
@@ -1297,48 +1295,51 @@ export interface ExportOption {
   install: string | null;
 }
 /**
- * Figures of a walk in the window.
- *
- * `distance_m` is along the direction that the robot faced at first; a body length is the
- * diameter of the torso.
+ * Gait analysis of a race, lane by lane, or of a training; times are robot time [s].
  */
-export interface GaitFiguresView {
+export interface GaitAnalysis {
+  part: "race" | "practice" | "evaluation";
+  step_s: number;
+  lanes: GaitLane[];
+}
+/**
+ * A robot's walk; `figures` are null if nothing of it lies in the window.
+ */
+export interface GaitLane {
+  agent: string;
+  recorded_from_s: number;
+  recorded_to_s: number;
+  figures: GaitFigures | null;
+  no_effort: string | null;
+}
+/**
+ * Figures of a walk between two times of robot time.
+ */
+export interface GaitFigures {
   from_s: number;
   to_s: number;
   distance_m: number;
   speed_m_s: number;
   speed_body_lengths_s: number;
-  /**
-   * mean of all legs
-   */
   duty_factor: number;
   mass_kg: number;
-  legs: LegGaitView[];
-  /**
-   * null if the walk has no limit cycle
-   */
-  cycle: CycleView | null;
-  posture: PostureView;
-  /**
-   * null if it was not recorded
-   */
-  effort: ServoEffortView | null;
+  legs: LegGait[];
+  cycle: Cycle | null;
+  posture: Posture;
+  effort: ServoEffort | null;
 }
 /**
- * Footfalls of a leg: when its foot is on the ground, [from s, to s], and the share of that.
+ * Footfalls of a leg in a window: when it stands [s], and the share of that.
  */
-export interface LegGaitView {
+export interface LegGait {
   leg: number;
   stance: [number, number][];
   duty_factor: number;
 }
 /**
- * The torso over time: its centre's height over flat ground, pitch and roll.
- *
- * Pitch is positive with the front up, roll with the left side up. Ranges are of all recorded
- * poses, which in a long window are more than the samples.
+ * The torso over time: the height of its centre over flat ground, its pitch and roll.
  */
-export interface PostureView {
+export interface Posture {
   time_s: number[];
   height_m: number[];
   pitch_deg: number[];
@@ -1348,13 +1349,9 @@ export interface PostureView {
   roll_range_deg: [number, number];
 }
 /**
- * Torque, positive mechanical work and cost of transport of the servos.
- *
- * Samples of `torque_nm` are the largest torque of any servo since the sample before, those of
- * `power_w` the mean power of all. `cost_of_transport` is energy by weight and distance, null
- * without distance. Losses in motors and electronics are not simulated.
+ * Torque and mechanical work of the servos.
  */
-export interface ServoEffortView {
+export interface ServoEffort {
   time_s: number[];
   torque_nm: number[];
   power_w: number[];
@@ -1363,19 +1360,6 @@ export interface ServoEffortView {
   energy_j: number;
   mean_power_w: number;
   cost_of_transport: number | null;
-}
-/**
- * A robot's walk; `figures` are null if nothing of it lies in the window.
- */
-export interface GaitLaneView {
-  agent: string;
-  recorded_from_s: number;
-  recorded_to_s: number;
-  figures: GaitFiguresView | null;
-  /**
-   * why there are neither torque nor energy, in a sentence
-   */
-  no_effort: string | null;
 }
 /**
  * A gait, with the directions of its legs [°] and the pairs of legs that move together.
@@ -1387,17 +1371,6 @@ export interface GaitOption {
   forward_deg: number;
   azimuths_deg: number[];
   pairs: [number, number][];
-}
-/**
- * Gait analysis of a race, lane by lane, or of a training.
- */
-export interface GaitView {
-  part: "race" | "practice" | "evaluation";
-  /**
-   * duration of a step
-   */
-  step_s: number;
-  lanes: GaitLaneView[];
 }
 /**
  * Status and version of the server.
