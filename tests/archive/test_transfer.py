@@ -21,7 +21,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
 from app.storage.stored_races import RACE, race_file
-from app.storage.stored_recordings import PRACTICE, evaluations_file, transitions_file
+from app.storage.stored_trainings import PRACTICE, evaluations_file, transitions_file
 from hexapods.agents.registry import OURS
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput
