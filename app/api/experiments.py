@@ -107,7 +107,7 @@ def get_trials(
 ) -> Response:
     """Return the trials so far, by key: the setting and the seed's number."""
     config = _config(find(services, "experiment", run_id))
-    rows = services.store.trials(run_id)
+    rows = services.store.trials.get(run_id)
     if negotiated(request, format, ("json", "csv")) == "csv":
         table = trials_as_csv(config, rows)
         return attachment(table, "text/csv; charset=utf-8", f"trials-{run_id}.csv")

@@ -97,7 +97,7 @@ def get_curve(
 ) -> Response:
     """Return the evaluations so far, with greedy's and the best known distance to compare."""
     run = find(services, "training", run_id)
-    rows = services.store.evaluations(run_id)
+    rows = services.store.curves.get(run_id)
     if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(curves.as_csv(rows), "text/csv; charset=utf-8", f"curve-{run_id}.csv")
     shown = {

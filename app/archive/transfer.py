@@ -89,7 +89,7 @@ def _contents(
 ) -> tuple[Run, dict[str, bytes], dict[str, archive.Member]]:
     """Return an ended run, and of its archive the members in memory and those in files."""
     run = store.get(run_id)
-    curve, trials = store.evaluations(run_id), store.trials(run_id)
+    curve, trials = store.curves.get(run_id), store.trials.get(run_id)
     if not is_finite([curve, trials]):
         # They would be null in JSON, which every import rejects.
         raise Damaged(run_id, "its curve or its trials have NaN or an infinity")

@@ -59,7 +59,7 @@ class Idempotency:
             return create(None)
         digest = hashlib.sha256(request).hexdigest()
         with self._locked(key):
-            record = self._store.find_key(key)
+            record = self._store.keys.find(key)
             if record is None:
                 return create(IdempotencyKey(key, digest))
             if record.digest != digest:

@@ -163,8 +163,8 @@ class Content:
     """Everything stored for a run besides its row.
 
     Attributes:
-        evaluations: rows as for `RunStore.append_evaluations`.
-        trials: rows as for `RunStore.append_trials`.
+        evaluations: rows as for `Curves.append`.
+        trials: rows as for `Trials.append`.
         artifacts: contents of files by name.
     """
 

@@ -113,7 +113,7 @@ def test_export_and_import_preserve_everything(
     data = export_run(source, run_id)
     with opened(tmp_path, None) as target:
         assert imported(data, target) == source.get(run_id)
-        assert target.evaluations(run_id) == source.evaluations(run_id)
+        assert target.curves.get(run_id) == source.curves.get(run_id)
         for name in (TABLE, RACE, PRACTICE, transitions_file(0)):
             assert target.artifact(run_id, name) == source.artifact(run_id, name)
         assert export_run(target, run_id) == data

@@ -64,7 +64,7 @@ def test_training_resumes_from_its_checkpoint(
     before = store.get(run.id)
     assert (before.state, before.done > 45) == ("interrupted", True)
     assert before.ended_at is not None
-    store.append_evaluations(run.id, [{"step": 10_000, "distance_m": 9.0, "epsilon": 0.0}])
+    store.curves.append(run.id, [{"step": 10_000, "distance_m": 9.0, "epsilon": 0.0}])
 
     second = open_jobs()
     resumed = second.resume(run.id)
@@ -75,8 +75,8 @@ def test_training_resumes_from_its_checkpoint(
         None,
     )
     wait_until(lambda: store.get(run.id).done > before.done)
-    assert [row["step"] for row in store.evaluations(run.id)][:2] == [20, 40]
-    assert max(row["step"] for row in store.evaluations(run.id)) < 10_000
+    assert [row["step"] for row in store.curves.get(run.id)][:2] == [20, 40]
+    assert max(row["step"] for row in store.curves.get(run.id)) < 10_000
     assert store.get(run.id).started_at == before.started_at
     stopped = second.stop(run.id)
     assert stopped.state == "stopped"

@@ -228,7 +228,7 @@ def inspect_store(store: RunStore, folder: Path) -> dict[str, Any]:
     runs = [_whole(store, run) for run in store.list().runs]
     referenced = store.database.read(lambda c: c.execute(select(ARTIFACTS.c.file)).scalars().all())
     on_disk = [path.name for path in folder.glob("artifacts/*/*") if path.is_file()]
-    key = store.find_key(KEY.key)
+    key = store.keys.find(KEY.key)
     return {
         "runs": sorted(runs, key=lambda run: str(run["name"])),
         "key_is_of": None if key is None else store.get(key.run_ids[-1]).name,
@@ -248,9 +248,9 @@ def _whole(store: RunStore, run: Run) -> dict[str, Any]:
         "state": run.state,
         "has_result": run.result is not None,
         "has_table": has_table,
-        "evaluations": len(store.evaluations(run.id)),
+        "evaluations": len(store.curves.get(run.id)),
         "recorded": 0 if recorded is None else len(recorded.evaluations),
-        "trials": len(store.trials(run.id)),
+        "trials": len(store.trials.get(run.id)),
     }
 
 

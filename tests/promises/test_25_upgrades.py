@@ -70,9 +70,9 @@ def check(store: RunStore, revision: str) -> None:
     for run in runs:
         assert store.get(run.id) == run
     if revision >= "0002":
-        assert store.trials(sample.EXPERIMENT.id) == TRIALS
+        assert store.trials.get(sample.EXPERIMENT.id) == TRIALS
     first = sample.RUNS[0].id
-    assert store.evaluations(first) == sample.CURVE
+    assert store.curves.get(first) == sample.CURVE
     assert store.artifact(first, TABLE) == sample.FILE
 
 

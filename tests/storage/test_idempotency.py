@@ -129,5 +129,5 @@ def test_keys_expire_after_a_day_or_beyond_the_maximum(
     for number in range(10):
         monkeypatch.setattr(Clock, "ahead", Clock.ahead + timedelta(seconds=1))
         run_of(idempotency, f"key {number}", b"x", start)
-    kept = [n for n in range(10) if store.find_key(f"key {n}") is not None]
+    kept = [n for n in range(10) if store.keys.find(f"key {n}") is not None]
     assert kept == [5, 6, 7, 8, 9]
