@@ -9,6 +9,7 @@ import io
 import json
 import os
 import time
+import zipfile
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,7 +47,7 @@ from hexapods.runs.racing import record_race
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import RaceResult, race_result
 from hexapods.runs.tables import digest_of, read_arrays
-from hexapods.trainings import Table, Training, learned_by
+from hexapods.trainings import Table, Training, learned_by, training_from_bytes
 
 CONFIG = "config"
 """Array of a saved race with its config as JSON."""
@@ -265,6 +266,28 @@ def race(
         if on_step is not None:
             on_step()
     return Race(config, recording, race_result(recording, config))
+
+
+def load(path: str | os.PathLike[str]) -> Training | Race:
+    """Return what `Training.save` or `Race.save`, the dashboard or the command line has saved.
+
+    Args:
+        path: of an `.npz` file.
+
+    Raises:
+        InvalidInput: if the file cannot be read.
+        DamagedFile: if it is neither, or was changed since it was written.
+    """
+    file = path_of(path, "a file")
+    try:
+        data = file.read_bytes()
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            is_race = f"{CONFIG}.npy" in archive.namelist()
+    except OSError as error:
+        raise InvalidInput(f"{file} cannot be read: {error.strerror}") from error
+    except zipfile.BadZipFile as error:
+        raise DamagedFile(f"{file} is neither a training nor a race: {error}") from error
+    return race_from_bytes(data, str(file)) if is_race else training_from_bytes(data, str(file))
 
 
 def race_from_bytes(data: bytes, name: str) -> Race:
