@@ -63,9 +63,9 @@ from hexapods.domain.settings import Setting as Setting
 from hexapods.domain.simulator import Motion as Motion
 from hexapods.domain.types import Action as Action
 from hexapods.domain.world import World as World
-from hexapods.experiments.engine import Outcome as Outcome
 from hexapods.experiments.folder import NotKept as NotKept
 from hexapods.experiments.worker import ClusterLost as ClusterLost
+from hexapods.experiments.worker import Outcome as Outcome
 from hexapods.practice import Practice as Practice
 from hexapods.practice import evaluate as evaluate
 from hexapods.practice import iter_train as iter_train

@@ -7,10 +7,10 @@ from typing import Any
 
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig
-from hexapods.experiments.engine import Outcome, run_on, run_trials
+from hexapods.experiments.engine import run_on, run_trials
 from hexapods.experiments.plan import Plan, Trial
 from hexapods.experiments.trial import TrialResult
-from hexapods.experiments.worker import Workers
+from hexapods.experiments.worker import Outcome, Workers
 
 
 class Progress:

@@ -12,12 +12,12 @@ from typing import NamedTuple
 from hexapods.agents.registry import check_problem
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.settings import SettingValues, Value
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.plan import Plan, Trial, TrialSetting, trial_seed
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.trial import TrialConfig, TrialResult
 from hexapods.experiments.tuning.config import Objective, TuningConfig
 from hexapods.experiments.tuning.study import Study
+from hexapods.experiments.worker import Outcome
 from hexapods.experiments.worlds import mean_distance_m
 from hexapods.runs.config import problem_of
 
