@@ -28,7 +28,7 @@ from hexapods.arguments import (
     check_callable,
     check_names,
     given_of,
-    plain_values,
+    plain,
     read_walk,
 )
 from hexapods.assembly import build_walkers
@@ -199,7 +199,7 @@ def lane(
         keep_learning=keep_learning,
         plans_with=plans_with,
         has_training=trained is not None,
-        **plain_values(settings),
+        **plain(settings),
     )
     if needs_practice(name) and trained is None and not config.keep_learning:
         raise InvalidInput(
@@ -250,11 +250,11 @@ def race(
     check_callable("on_step", on_step)
     if isinstance(lanes, str | Lane | Training) or not isinstance(lanes, Iterable):
         raise InvalidInput(f'lanes is a list, such as [training, "greedy"], not {lanes!r}')
-    numbers = plain_values({"steps": steps, "seed": seed})
+    numbers = plain({"steps": steps, "seed": seed})
     built = [one if isinstance(one, Lane) else lane(one) for one in lanes]
     like = next((one.training.config for one in built if one.training is not None), None)
     config = RaceConfig(
-        **read_walk(plain_values(given), like),
+        **read_walk(plain(given), like),
         lanes=tuple(one.config for one in built),
         **numbers,
     )

@@ -120,15 +120,7 @@ def _reference(greedy: SettingResults) -> ReferenceDistance:
 
 
 def setting_fields(one: SettingResults) -> dict[str, Any]:
-    """Return the fields that identify a setting; search agents have no training parameters."""
-    at = one.setting.training
-    return {
-        "gait": one.setting.gait,
-        "observation": at.observation,
-        "robot": one.setting.robot,
-        "world": one.setting.world,
-        "agent": at.agent,
-        **one.setting.parameters,
-        "blocks": one.setting.trial.blocks,
-        "half_side_m": at.grid_side_m / 2,
-    }
+    """Return the fields that identify a setting in a summary."""
+    half_side_m = one.setting.training.grid_side_m / 2
+    blocks = one.setting.trial.blocks
+    return {**one.setting.fields, "blocks": blocks, "half_side_m": half_side_m}

@@ -22,7 +22,7 @@ from hexapods.experiments.report.drawing import (
     figure_style,
     style_axes,
 )
-from hexapods.experiments.report.page import POLICY, environment, inlined_figures
+from hexapods.experiments.report.page import POLICY, environment, inlined_figures, option_values
 from hexapods.experiments.report.tables import Cell, Table, agent_name, cell, share_cell
 from hexapods.experiments.tuning.config import OBJECTIVES, TuningConfig, config_json
 from hexapods.experiments.tuning.ranges import declared_range
@@ -104,7 +104,7 @@ def command(config: Mapping[str, Any]) -> str:
         value = config[field]
         if field in _ALWAYS or value != defaults[field]:
             option = TuningConfig.option_of(field)
-            arguments += [option, _as_word(value[0] if isinstance(value, list) else value)]
+            arguments += [option, *option_values(value)]
     usual = [str(one) for one in map(declared_range, agent_settings(agent).values()) if one]
     for text in config["ranges"]:
         if text not in usual:
@@ -119,12 +119,6 @@ def held_out_name(one: Mapping[str, Any]) -> str:
     """Return the name of an entry of the held-out seeds: `Q-learning, tuned`."""
     roles = {"tuned": ", tuned", "defaults": ", defaults"}
     return agent_name(one) + roles.get(one["name"], "")
-
-
-def _as_word(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return str(value["preset"]) if set(value) == {"preset"} else json.dumps(value)
-    return str(value)
 
 
 def _lead(config: Mapping[str, Any]) -> str:
