@@ -6,9 +6,9 @@ from typing import Any
 
 from hexapods.domain.errors import DamagedFile
 from hexapods.experiments.config import SUMMARY, ExperimentConfig
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.report.trials_csv import trials_csv
+from hexapods.experiments.worker import Outcome
 
 
 def outcomes_of(rows: Iterable[Mapping[str, Any]]) -> Iterator[Outcome]:

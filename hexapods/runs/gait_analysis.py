@@ -245,18 +245,14 @@ def gait_summary(figures: GaitFigures | None) -> dict[str, Any] | None:
     if figures is None:
         return None
     effort = figures.effort
+    numbers = ("from_s", "to_s", "speed_m_s", "speed_body_lengths_s", "duty_factor")
+    efforts = ("largest_torque_nm", "energy_j", "cost_of_transport")
     return {
-        "from_s": figures.from_s,
-        "to_s": figures.to_s,
-        "speed_m_s": figures.speed_m_s,
-        "speed_body_lengths_s": figures.speed_body_lengths_s,
-        "duty_factor": figures.duty_factor,
+        **{name: getattr(figures, name) for name in numbers},
         "leg_duty_factors": [leg.duty_factor for leg in figures.legs],
         "cycle": None if figures.cycle is None else asdict(figures.cycle),
         "mass_kg": figures.mass_kg,
-        "largest_torque_nm": None if effort is None else effort.largest_torque_nm,
-        "energy_j": None if effort is None else effort.energy_j,
-        "cost_of_transport": None if effort is None else effort.cost_of_transport,
+        **{name: None if effort is None else getattr(effort, name) for name in efforts},
     }
 
 

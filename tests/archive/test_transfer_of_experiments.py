@@ -14,9 +14,9 @@ from app.storage.database.store import RunStore
 from app.storage.run import State
 from hexapods.agents.registry import OURS
 from hexapods.experiments.config import SUMMARY, experiment_config
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.trial import run_trial
+from hexapods.experiments.worker import Outcome
 from tests.archive.exported import export_run
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
 from tests.storage.ended_runs import ended_experiment
