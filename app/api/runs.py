@@ -163,8 +163,7 @@ def run_again(
 
     It is the same to the last bit, wall times aside.
     """
-    original = services.store.get(run_id)
-    return start_run(services, request, start_request, CopyStart(original))
+    return start_run(services, request, start_request, CopyStart(run_id))
 
 
 @router.get(

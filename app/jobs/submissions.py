@@ -221,14 +221,16 @@ class CopyStart:
     """Request to start a run again with its settings, as it was started.
 
     Attributes:
-        original: the run, in any state.
+        original_id: id of the run, in any state. It is read when the copy is made: a request that
+            is repeated with its key returns the copy, also if the original has been deleted since.
     """
 
-    original: Run
+    original_id: str
 
     def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
         """See `Start`."""
-        original, config = self.original, self.original.config
+        original = store.get(self.original_id)
+        config = original.config
         if isinstance(config, TrainingConfig):
             check_training(config)
         elif isinstance(config, ExperimentConfig):
