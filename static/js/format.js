@@ -127,10 +127,10 @@ export function ago(iso, now = Date.now()) {
 }
 
 /**
- * Text with a capital first letter.
+ * Text with a capital first letter; a Greek one is a symbol, and stays as it is.
  * @param {string} text
  */
-export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+export const sentence = (text) => text.replace(/^\p{Script=Latin}/u, (first) => first.toUpperCase());
 
 /**
  * Items as a list in words: "a", "a and b", "a, b and c".

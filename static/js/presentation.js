@@ -33,8 +33,17 @@ export const turnCode = () =>
 export const toggleWhy = () => tell({ shows_why: !presentation.peek().shows_why });
 export const toggleBlank = () => tell({ is_blank: !presentation.peek().is_blank });
 
-/** Let this page, while it is presented, show what the presentation says. */
+/** Let this page, while it is presented, show what the presentation says; then it is as it was before. */
 export function followPresentation() {
+  /** @type {Partial<import("./page-state.js").PageState> | null} */
+  let before = null;
+  effect(() => {
+    if (page.isPresenting.value) before = { depth: page.depth.peek(), tab: page.tab.peek() };
+    else if (before !== null) {
+      change(before);
+      before = null;
+    }
+  });
   effect(() => {
     const { card, shows_why } = presentation.value;
     if (!page.isPresenting.value) return;

@@ -63,7 +63,7 @@ function ofRace(isComputing) {
   return { unit: "s", unit_s: 1, end, picture, computed: Math.min(computed_s, end), isComputing };
 }
 
-/** @param {Scale} one @param {number} at */
+/** @param {Pick<Scale, "unit">} one @param {number} at */
 export const positionInWords = ({ unit }, at) =>
   (unit === "s" ? `${at.toFixed(1)}\u00a0s` : `step ${whole(Math.round(at))}`);
 
@@ -109,7 +109,11 @@ export function stepTimes({ points, thinking, futures }) {
   return points.filter(([t], n) => n === 0 || !thoughtUntil.has(t)).map(([t]) => t);
 }
 
-/** When a lane has first come so far [s]; null if it has not. @param {TimelineLane} track @param {number} distance_m */
+/**
+ * When a lane has first come so far [s]; null if it has not.
+ * @param {Pick<TimelineLane, "points">} track
+ * @param {number} distance_m
+ */
 export function timeAtDistance({ points }, distance_m) {
   const next = points.findIndex(([, distance]) => distance >= distance_m);
   if (next < 0) return null;

@@ -52,6 +52,11 @@ class Dashboard:
         if self._has_3d:
             self.wait_for_stage()
 
+    def stand_in_for_stage(self) -> None:
+        """Say what the 3D view says once it has a picture, in a page that loads none."""
+        [_, view] = self.page.frames
+        view.evaluate("parent.postMessage({type: 'hexapods:status', status: 'connected'}, '*')")
+
     def wait_for_stage(self) -> None:
         """Wait until the 3D client has its stream."""
         # Other views than that of the race hide it.
@@ -101,24 +106,54 @@ class Dashboard:
         """The 3D view in its frame."""
         return self.page.get_by_title("The robots on the track, in 3D").content_frame
 
-    def unfold_settings(self) -> None:
-        """Open every group of settings, and what is folded in them."""
-        for words in ("Robot and world", "Race", "More settings"):
-            self.unfold(words)
+    def choose_depth(self, title: str) -> None:
+        """Show as much as Watch, Try or Study do."""
+        self.group("Depth").get_by_role("button", name=title, exact=True).click()
 
-    def unfold(self, words: str) -> None:
-        """Open a group of settings by its title."""
-        self.group("Settings").get_by_text(words, exact=True).click()
+    def open_tab(self, title: str) -> Locator:
+        """Open a tab of the panel, and return what it shows."""
+        self.page.get_by_role("tab", name=title, exact=True).click()
+        return self.page.get_by_role("tabpanel", name=title, exact=True)
+
+    def unfold(self, *titles: str) -> None:
+        """Open groups of settings of the open tab by their titles."""
+        for title in titles:
+            self.panel.locator("summary").get_by_text(title, exact=True).click()
 
     @property
-    def scoreboard(self) -> Locator:
-        """The panel with the headline, and with the standings or the lanes of the race to come."""
-        return self.page.get_by_role("region", name="Scoreboard", exact=True)
+    def panel(self) -> Locator:
+        """How it stands, the tabs, what the open one shows, and what can be done."""
+        return self.page.get_by_role("complementary", name="Panel", exact=True)
 
     @property
     def headline(self) -> Locator:
-        """How the race or the practice stands, in a line."""
-        return self.scoreboard.get_by_role("heading", level=3)
+        """How the race or the practice stands, in a line; or the move that is explained."""
+        return self.panel.locator("header").get_by_role("heading")
+
+    @property
+    def reason(self) -> Locator:
+        """Why what the headline says is so."""
+        return self.panel.locator("header").get_by_role("paragraph")
+
+    @property
+    def time(self) -> Locator:
+        """The bar below the stage: the moment that is shown, what happened, and how to go there."""
+        return self.group("Time")
+
+    @property
+    def moment(self) -> Locator:
+        """The thumb of the time bar, of the stage that all share."""
+        return self.page.get_by_role("slider", name="Moment that is shown", exact=True)
+
+    @property
+    def lesson(self) -> Locator:
+        """The card of the lesson."""
+        return self.page.get_by_role("region", name="Lesson", exact=True)
+
+    @property
+    def scoreboard(self) -> Locator:
+        """The tab of the board: the standings or the lanes of the race to come, and a chart."""
+        return self.page.get_by_role("region", name="Scoreboard", exact=True)
 
     @property
     def standings(self) -> Locator:

@@ -5,14 +5,20 @@ import re
 import signal
 import subprocess
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
+from urllib.parse import urlencode
+
+import httpx2
 
 from tests.forked import start_hexapods
 
 _ADDRESS = re.compile(r"is at (http://\S+)")
 _STARTS_WITHIN_S = 60
+_RUNS_WITHIN_S = 60
 _ENDS_WITHIN_S = 20
 
 
@@ -55,6 +61,19 @@ class Serving:
         if not self._found.wait(_STARTS_WITHIN_S) or not self.address:
             self.stop()
             raise RuntimeError(f"the server did not start; it said: {''.join(self._said)}")
+
+    def link(self, view: str = "", **state: object) -> str:
+        """Return the address that opens the page in a state: its depth, its tab, the form."""
+        return f"{self.address}?{urlencode(state)}#{view}"
+
+    @contextmanager
+    def api(self, token: str = "") -> Iterator[httpx2.Client]:
+        """A client of its API, of the operator with this token."""
+        headers = {"Authorization": f"Bearer {token}"} if token else {}
+        with httpx2.Client(
+            base_url=f"{self.address}api/v1/", headers=headers, timeout=60, trust_env=False
+        ) as client:
+            yield client
 
     @property
     def port(self) -> int:
@@ -103,3 +122,20 @@ def serving(
         yield server
     finally:
         server.stop()
+
+
+def finished(api: httpx2.Client, path: str, body: dict[str, Any]) -> dict[str, Any]:
+    """Start a run, and return it once it has finished."""
+    run: dict[str, Any] = api.post(path, json=body).raise_for_status().json()
+    deadline = time.monotonic() + _RUNS_WITHIN_S
+    while run["state"] != "finished":
+        assert time.monotonic() < deadline, run
+        time.sleep(0.1)
+        run = api.get(f"{path}/{run['id']}").json()
+    return run
+
+
+def hold(api: httpx2.Client, run: dict[str, Any], time_s: float) -> None:
+    """Show a moment of a run on the stage, and hold it."""
+    moment = {"run_id": run["id"], "time_s": time_s, "playing": False}
+    api.put("stage", json=moment).raise_for_status()

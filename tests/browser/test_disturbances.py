@@ -35,10 +35,13 @@ def test_a_leg_is_broken_while_a_robot_practises(
     dashboard: Dashboard, flat_browser: Browser, shared_server: Serving
 ) -> None:
     page = dashboard.page
-    dashboard.open(f"{shared_server.address}?{LONG}")
+    # Where there is room, the curve stays beside the controls.
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    dashboard.open(f"{shared_server.address}?{LONG}&depth=study&tab=world&pinned=train")
     expect(page.get_by_role("group", name="Legs, seen from above")).to_have_count(0)
     dashboard.button("Train, don’t race").click()
-    curve = page.get_by_role("img", name=re.compile("^Learning curve"))
+    beside = page.get_by_role("region", name="Pinned: Train")
+    curve = beside.get_by_role("img", name=re.compile("^Learning curve"))
     walks = re.compile(r"^Learning curve: 0\.[45]\d\sm after.*; best known 0\.5\d\sm\.$")
     expect(curve).to_have_accessible_name(walks)
     leg = page.get_by_role("button", name=re.compile("^Leg 3"))
@@ -49,8 +52,10 @@ def test_a_leg_is_broken_while_a_robot_practises(
     expect(leg).to_have_attribute("aria-pressed", "true")
     now = disturbances_now(dashboard)
     expect(now).to_contain_text(re.compile(r"Now: legs\s3, 6 limp"))
-    happened = page.get_by_text(re.compile("^Happened: "))
+    happened = beside.get_by_text(re.compile("^Happened: "))
     expect(happened).to_contain_text(re.compile(r"^Happened: legs?\s3.* limp from step \d+"))
+    told = page.get_by_role("listitem").filter(has=dashboard.button("Go there"))
+    expect(told.first).to_contain_text(re.compile(r"^step \d+ Legs?\s3.* limp"))
     expect(curve).to_have_accessible_name(re.compile(r": −?0\.[012]\d\sm after"))
 
     tells_others(flat_browser, shared_server)
@@ -81,7 +86,6 @@ def test_a_leg_is_broken_while_a_robot_practises(
 def changes_its_ground(dashboard: Dashboard) -> None:
     """A slope and another friction begin, and end."""
     page, now = dashboard.page, disturbances_now(dashboard)
-    page.get_by_text("Ground, load and servos").click()
     page.get_by_role("slider", name="Slope", exact=True).fill("8")
     expect(now).to_contain_text("slope 8°")
     page.get_by_role("slider", name="Slope: Direction").fill("90")
@@ -108,12 +112,12 @@ def tells_others(browser: Browser, server: Serving) -> None:
 def only_sensors_of_an_ideal_robot(dashboard: Dashboard, server: Serving) -> None:
     """It has no ground and no servos."""
     page = dashboard.page
-    dashboard.open(f"{server.address}?{IDEAL}")
+    dashboard.open(f"{server.address}?{IDEAL}&depth=study&tab=world")
     dashboard.button("Train, don’t race").click()
     expect(disturbances_now(dashboard)).to_contain_text("only sensor noise can happen there")
     expect(dashboard.button("Leg 1")).to_have_attribute("aria-disabled", "true")
-    page.get_by_text("Ground, load and servos").click()
     expect(page.get_by_role("slider", name="Slope", exact=True)).to_be_disabled()
+    dashboard.unfold("Ground, load and servos")
     page.get_by_role("slider", name="Sensor noise").fill("0.004")
     expect(disturbances_now(dashboard)).to_contain_text(re.compile(r"sensor noise 4\smm"))
     dashboard.button("Stop").click()
@@ -124,46 +128,43 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     with_3d = dashboard
     dashboard = Dashboard(with_3d.page.context.new_page(), has_3d=False)
     page = dashboard.page
-    dashboard.open(f"{shared_server.address}?{urlencode({'lanes': 'greedy,informed'})}")
+    dashboard.open(shared_server.link(lanes="greedy,informed", depth="study", tab="board"))
     dashboard.primary.click()
     show_its_end(dashboard)
     board = dashboard.scoreboard
     expect(board.get_by_role("row", name=re.compile(r"Best known 0\.51\sm$"))).to_be_visible()
     chart = page.get_by_role("img", name=re.compile(r"^The race after"))
     expect(chart).to_have_accessible_name(re.compile(r"; best known 0\.51\sm\.$"))
-    page.get_by_text("Disturb this race").click()
-    expect(dashboard.group("Disturb this race")).to_contain_text("From step 26: as it was")
-    page.get_by_role("slider", name="Moment that is shown").fill("1")
+    dashboard.open_tab("World")
+    branch = page.get_by_role("region", name="Disturb this race")
+    expect(branch).to_contain_text(re.compile(r"From step \d\d: as it was"))
+    dashboard.moment.fill("1")
     dashboard.button("Pause replay for everyone").click()
-    expect(dashboard.group("Disturb this race")).to_contain_text(
-        re.compile(r"From step [2-6]: as it was")
-    )
+    expect(branch).to_contain_text(re.compile(r"From step [2-6]: as it was"))
     start = dashboard.button("Race on from here")
     expect(start).to_be_disabled()
-    page.get_by_text("Ground, load and servos").click()
+    dashboard.unfold("Ground, load and servos")
     page.get_by_role("spinbutton", name="Patch: To").fill("0.3")
     dashboard.button("Lay it").click()
     patch = re.compile(r"From step \d: patch .* to 0\.3\sm, friction 0\.05")
-    expect(dashboard.group("Disturb this race")).to_contain_text(patch)
+    expect(branch).to_contain_text(patch)
     dashboard.button("Undo all").click()
     expect(start).to_be_disabled()
     for leg in (1, 4):
         dashboard.button(f"Leg {leg}").click()
-    expect(dashboard.group("Disturb this race")).to_contain_text(
-        re.compile(r"From step \d: legs\s1, 4 limp")
-    )
+    expect(branch).to_contain_text(re.compile(r"From step \d: legs\s1, 4 limp"))
     assert dashboard.violations() == []
     start.click()
 
+    dashboard.open_tab("Board")
     expect(board).to_contain_text(re.compile(r"The same as Race: .* before step [2-6]\."))
     show_its_end(dashboard)
     expect(board.get_by_text("Best known")).to_have_count(0)
     expect(chart).to_have_accessible_name(re.compile(r"Informed.*\d\sm\.$"))
     with_3d.open(shared_server.address)
     labels = with_3d.view.locator(".labels > div:not([hidden])")
-    ghosts = labels.filter(has_text=re.compile(r"\d\sm, done\s*original 0\.\d\d\sm"))
+    ghosts = labels.filter(has_text=re.compile(r"original 0\.\d\d\sm"))
     expect(ghosts).to_have_count(2)
-    with_3d.page.close()
     original, branch = (dashboard.get("/api/v1/races")["items"][n] for n in (1, 0))
     assert branch["config"]["branch_from"]["race_id"] == original["id"]
     expect(board.get_by_text(re.compile(r"Original: 0\.\d\d\sm at time-out"))).to_have_count(2)
@@ -173,6 +174,47 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     expect(dashboard.runs).to_have_count(1)
     expect(dashboard.runs).to_contain_text(original["name"])
     assert dashboard.complaints == []
+    page.close()
+
+    picks_a_leg(with_3d)
+    with_3d.button("Stuck").click()
+    with_3d.page.get_by_role("button", name=re.compile(r"^Race on from \d")).click()
+
+    def newest() -> dict[str, Any]:
+        config: dict[str, Any] = with_3d.get("/api/v1/races")["items"][0]["config"]
+        return config
+
+    with_3d.eventually(lambda: newest()["branch_from"]["race_id"] == branch["id"], "a branch")
+    last = newest()["disturbances"][-1]
+    assert (last["kind"], last["leg"]) == ("stuck", 3)
+    expect(with_3d.scoreboard).to_contain_text(f"The same as {branch['name']} before")
+
+
+def picks_a_leg(dashboard: Dashboard) -> None:
+    """Pick a leg in the picture by keys, and then by a click; its menu stays open."""
+    page = dashboard.page
+    dashboard.choose_depth("Try")
+    # The followed robot's legs are numbered: arrows choose, Enter opens, Escape closes.
+    page.keyboard.press("2")
+    page.keyboard.press("l")
+    legs = page.get_by_role("group", name=re.compile("^Legs of Informed"))
+    expect(legs.get_by_role("button")).to_have_count(6)
+    expect(legs.get_by_role("button", name="Leg 1")).to_be_focused()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Enter")
+    menu = page.get_by_role("region", name=re.compile("^Informed.*, leg 3$"))
+    expect(menu.get_by_role("group", name="What happens").get_by_role("button").first).to_be_focused()
+    assert dashboard.violations() == []
+    place = legs.get_by_role("button", name="Leg 3").bounding_box()
+    assert place is not None
+    page.keyboard.press("Escape")
+    expect(menu).to_have_count(0)
+    expect(legs).to_have_count(0)
+
+    # The same foot, by the pointer.
+    page.mouse.click(place["x"] + place["width"] / 2, place["y"] + place["height"] / 2)
+    expect(menu).to_contain_text(re.compile(r"Acts from \d+\.\d\ss, as a new race"))
 
 
 def show_its_end(dashboard: Dashboard) -> None:
@@ -182,9 +224,9 @@ def show_its_end(dashboard: Dashboard) -> None:
         return [race["state"] for race in dashboard.get("/api/v1/races?limit=1")["items"]]
 
     dashboard.eventually(lambda: state() == ["finished"], "its end")
-    shown = dashboard.page.get_by_role("slider", name="Moment that is shown")
+    shown = dashboard.moment
     # Until the page knows where it ends, the key goes to what the page takes for computed: before
     # the photo finish, where the show ends too.
-    expect(shown).to_have_attribute("aria-valuetext", re.compile(r"^[\d:]+ of [\d:]+$"))
+    expect(shown).to_have_attribute("aria-valuetext", re.compile(r"^\S+\ss of \S+\ss$"))
     shown.press("End")
     dashboard.button("Play again for everyone").wait_for()

@@ -4,10 +4,10 @@ import re
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.browser.dashboard import Dashboard
-from tests.browser.serving import serving
+from tests.browser.serving import finished, hold, serving
 from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
@@ -18,37 +18,28 @@ RACE = {
     "steps": 12,
     "lanes": [{"agent": "greedy"}, {"agent": "informed"}],
 }
-START = """body => fetch("api/v1/races", {method: "POST", body: JSON.stringify(body),
-    headers: {"Content-Type": "application/json", "X-Requested-With": "hexapods"}})"""
-PAUSE = """time_s => fetch("api/v1/stage", {method: "PUT",
-    body: JSON.stringify({time_s, playing: false}),
-    headers: {"Content-Type": "application/json", "X-Requested-With": "hexapods"}})"""
 
 
 def test_footfalls_of_a_race(dashboard: Dashboard, flat_browser: Browser, tmp_path: Path) -> None:
-    with serving(tmp_path, token=TOKEN) as server:
-        follows_and_seeks(dashboard, f"{server.address}?token={TOKEN}")
+    with serving(tmp_path, token=TOKEN) as server, server.api(TOKEN) as api:
+        hold(api, finished(api, "races", RACE), 2.0)
+        follows_and_seeks(dashboard, server.link(token=TOKEN, depth="study", tab="gait"))
         with new_page(flat_browser) as page:
-            Dashboard(page, has_3d=False).open(server.address)
-            panel = page.get_by_role("region", name="Gait analysis", exact=True)
-            panel.scroll_into_view_if_needed()
+            Dashboard(page, has_3d=False).open(server.link(depth="study", tab="gait"))
+            panel = gait(page)
             footfalls = panel.get_by_role("img", name=re.compile("^Footfalls of Greedy"))
             expect(footfalls).to_be_visible()
             expect(panel.get_by_role("slider")).to_have_count(0)
 
 
+def gait(page: Page) -> Locator:
+    return page.get_by_role("region", name="Gait analysis", exact=True)
+
+
 def follows_and_seeks(dashboard: Dashboard, address: str) -> None:
     page = dashboard.page
     dashboard.open(address)
-    page.evaluate(START, RACE)
-    # The stage shows no moment that is not simulated yet.
-    dashboard.eventually(
-        lambda: dashboard.get("/api/v1/races")["items"][0]["state"] == "finished", "the race ends"
-    )
-    expect(dashboard.headline).to_be_visible()
-    page.evaluate(PAUSE, 2.0)
-    panel = page.get_by_role("region", name="Gait analysis", exact=True)
-    panel.scroll_into_view_if_needed()
+    panel = gait(page)
     footfalls = panel.get_by_role("slider", name="Footfalls of Greedy")
     # In 2 s under the paper clock Greedy walks 1.5 s, as each step takes 1.36 motions.
     expect(footfalls).to_have_attribute(

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.dashboard import Dashboard
-from tests.browser.serving import Serving
+from tests.browser.serving import Serving, finished, hold
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -50,10 +50,10 @@ def test_train_race_scrub_and_experiment(dashboard: Dashboard, server: Serving) 
     dashboard.open(f"{server.address}?{SHORT}#")
     tab_to(page, dashboard.primary)
     page.keyboard.press("Enter")
-    expect(dashboard.headline).to_contain_text("had used")
+    expect(dashboard.headline).to_have_text(re.compile("wins|tie"))
     expect(dashboard.button("Play again for everyone")).to_be_visible()
 
-    seek = page.get_by_role("slider", name="Moment that is shown")
+    seek = dashboard.moment
     tab_to(page, seek)
     assert float(seek.input_value()) > 0
     page.keyboard.press("Home")
@@ -77,3 +77,74 @@ def test_train_race_scrub_and_experiment(dashboard: Dashboard, server: Serving) 
     expect(dashboard.experiment_state("finished")).to_be_visible()
     [run] = dashboard.get("/api/v1/experiments")["items"]
     assert run["config"]["seeds"] == 1
+
+
+RACE = {
+    "gait": "left-right-origin",
+    "simulator": "kinematic",
+    "steps": 20,
+    "lanes": [{"agent": "greedy"}, {"agent": "random-walk"}],
+    "disturbances": [{"kind": "sensor-noise", "sd_m": 0.001, "at_step": 5}],
+}
+
+
+def test_depths_tabs_and_time(dashboard: Dashboard, shared_server: Serving) -> None:
+    page = dashboard.page
+    with shared_server.api() as api:
+        hold(api, finished(api, "races", RACE), 2.0)
+    dashboard.open(shared_server.address)
+    expect(dashboard.standings).to_be_visible()
+    goes_through_depths_and_tabs(dashboard)
+    goes_through_time(dashboard)
+
+    page.keyboard.press("p")
+    expect(page.get_by_role("region", name="Presenter’s desk")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("banner")).to_be_visible()
+
+
+def goes_through_depths_and_tabs(dashboard: Dashboard) -> None:
+    """D shows more, E explains; arrows go through the tabs; a backslash hides the panel."""
+    page = dashboard.page
+    page.keyboard.press("e")
+    tab_to(page, dashboard.panel.get_by_role("button", name="Back to the board"))
+    page.keyboard.press("Enter")
+    expect(dashboard.scoreboard).to_be_visible()
+
+    depth = dashboard.group("Depth").get_by_role("button", pressed=True)
+    for title in ("Try", "Study"):
+        page.keyboard.press("d")
+        expect(depth).to_have_text(title)
+    shown = page.get_by_role("tab", selected=True)
+    tab_to(page, shown)
+    for key, title in (("ArrowRight", "Train"), ("End", "What if"), ("ArrowRight", "Board")):
+        page.keyboard.press(key)
+        expect(shown).to_have_text(title)
+        expect(shown).to_be_focused()
+    for key, title in (("ArrowLeft", "What if"), ("Home", "Board")):
+        page.keyboard.press(key)
+        expect(shown).to_have_text(title)
+    page.keyboard.press("\\")
+    expect(dashboard.panel).to_have_count(0)
+    page.keyboard.press("\\")
+    expect(dashboard.panel).to_be_visible()
+    page.keyboard.press("d")
+    expect(depth).to_have_text("Watch")
+
+
+def goes_through_time(dashboard: Dashboard) -> None:
+    """Home and End go to the ends, brackets to what happened."""
+    page, moment = dashboard.page, dashboard.moment
+    tab_to(page, dashboard.time.get_by_role("button", name=re.compile("^Play")))
+    page.keyboard.press("Home")
+    expect(moment).to_have_value("0")
+    page.keyboard.press("]")
+    expect(moment).not_to_have_value("0")
+    disturbed_s = float(moment.input_value())
+    page.keyboard.press("]")
+    expect(moment).not_to_have_value(str(disturbed_s))
+    page.keyboard.press("[")
+    expect(moment).to_have_value(str(disturbed_s))
+    page.keyboard.press("End")
+    expect(dashboard.headline).to_have_text(re.compile("^Greedy wins"))
+    assert moment.input_value() == moment.get_attribute("max")

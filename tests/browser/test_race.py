@@ -20,7 +20,8 @@ LONG = urlencode({"steps": 100_000, "pace": 8})
 @pytest.mark.looks_at_3d
 def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
-    dashboard.open(f"{server.address}?{SHORT}")
+    page.set_viewport_size({"width": 1440, "height": 900})
+    dashboard.open(f"{server.address}?{SHORT}&depth=study&tab=train")
     expect(dashboard.shown_run).to_have_text("On the start line")
     before = dashboard.picture()
 
@@ -28,29 +29,27 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     dashboard.primary.click()
 
     expect(dashboard.shown_run).to_contain_text("of 20")
+    dashboard.open_tab("Board")
     expect(dashboard.standings).to_be_visible()
     dashboard.eventually(lambda: dashboard.picture() != before, "the robots move in the canvas")
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
-    headline = dashboard.headline
-    verdict = re.compile(r"(wins|tie).*: −?0\.\d\d\sm when .* had used its 3 steps$")
-    expect(headline).to_have_text(verdict)
+    verdict = re.compile(r"^\S.* (wins by \d+\s[cm]m|tie)$")
+    expect(dashboard.headline).to_have_text(verdict)
     expect(page.get_by_role("status").filter(has_text=verdict)).to_be_attached()
-    expect(dashboard.scoreboard).to_contain_text("The farthest at time-out wins")
-    expect(
-        page.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
-    ).to_be_visible()
-    expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
+    expect(dashboard.scoreboard).to_contain_text(
+        re.compile(r"Ranked at time-out, .* 3 steps.* \(paper clock\)")
+    )
     # The ranking is settled, and the others walk on for those who want to see it.
     dashboard.button("Keep watching").click()
-    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text("468 simulated")
-    check_crosshairs(page)
-    assert dashboard.violations() == []
+    slowest = dashboard.rows.filter(has_text="Two-step")
+    expect(slowest.get_by_role("cell", name="468", exact=True)).to_be_visible()
     expect(dashboard.button("Play again for everyone")).to_be_visible()
-    expect(page.get_by_text("Q-learning would move legs")).to_be_visible()
-    shown = page.get_by_role("slider", name="Moment that is shown")
-    timeline_end = (shown.get_attribute("aria-valuetext") or "").split(" of ")[1]
-    expect(dashboard.rows.filter(has_text="Two-step")).to_contain_text(f"3 steps in {timeline_end}")
-    page.evaluate("scrollTo(0, 0)")
+    end_s = float(dashboard.moment.get_attribute("max") or 0)
+    expect(slowest).to_contain_text(f"3 steps in 0:{int(end_s + 1e-3):02}")
+    check_crosshairs(dashboard)
+    assert dashboard.violations() == []
+    expect(dashboard.open_tab("Why")).to_contain_text("Q-learning would move legs")
+    dashboard.open_tab("Board")
     for width, height in ((390, 844), (844, 390)):
         page.set_viewport_size({"width": width, "height": height})
         dashboard.eventually(lambda: overlaps(dashboard) == [], "labels apart from each other")
@@ -59,12 +58,12 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     # Someone else goes on, without the 3D view: it takes most of the time of this test.
     page.close()
     dashboard = Dashboard(page.context.new_page(), has_3d=False)
-    page = dashboard.page
-    dashboard.open(f"{server.address}?{SHORT}")
+    dashboard.open(f"{server.address}?{SHORT}&depth=study&tab=board")
     expect(dashboard.headline).to_have_text(verdict)
     check_widths_of_the_scoreboard(dashboard)
     expect(dashboard.primary).to_have_text("Practise 20 more, race again")
     dashboard.primary.click()
+    dashboard.choose_depth("Watch")
     expect(dashboard.scoreboard).to_contain_text("40 steps of practice")
     expect(dashboard.primary).to_have_text("Practise 20 more, race again")
 
@@ -74,9 +73,23 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     assert dashboard.complaints == []
 
 
-def check_crosshairs(page: Page) -> None:
+def check_crosshairs(dashboard: Dashboard) -> None:
     """Read the values of both charts by pointer, keys and finger."""
-    curve = page.get_by_role("slider", name="Values of the learning curve")
+    page = dashboard.page
+    race = page.get_by_role("slider", name="Values of the race")
+    race.scroll_into_view_if_needed()
+    box = race.bounding_box()
+    assert box is not None
+    finger = {"clientX": box["x"] + 1, "pointerType": "touch"}
+    race.dispatch_event("pointerdown", finger)
+    race.dispatch_event("pointerleave", finger)
+    expect(race).to_contain_text(re.compile(r"^0\.0\ss.*Two-step 0\.00\sm"))
+    expect(page.get_by_role("img", name=re.compile("^The race after .*Two-step"))).to_be_visible()
+
+    train = dashboard.open_tab("Train")
+    drawing = train.get_by_role("img", name=re.compile("^Learning curve: .*greedy gets"))
+    expect(drawing).to_be_visible()
+    curve = train.get_by_role("slider", name="Values of the learning curve")
     curve.hover()
     expect(curve).to_contain_text(re.compile(r"steps.*Q-learning −?\d\.\d\d\sm"))
     curve.press("Home")
@@ -86,31 +99,28 @@ def check_crosshairs(page: Page) -> None:
     )
     curve.press("ArrowRight")
     expect(curve).to_have_attribute("aria-valuetext", re.compile("^10 steps: "))
-    race = page.get_by_role("slider", name="Values of the race")
-    box = race.bounding_box()
-    assert box is not None
-    finger = {"clientX": box["x"] + 1, "pointerType": "touch"}
-    race.dispatch_event("pointerdown", finger)
-    race.dispatch_event("pointerleave", finger)
-    expect(race).to_contain_text(re.compile(r"^0\.0\ss.*Two-step 0\.00\sm"))
 
 
 def check_widths_of_the_scoreboard(dashboard: Dashboard) -> None:
-    """Check that its columns stay in its panel; the viewport has another size then."""
-    for width in (390, 1100, 1280, 1440):
+    """Check that its columns stay in the panel; the viewport has another size then."""
+    for width in (390, 800, 1280, 1440, 1920):
         dashboard.page.set_viewport_size({"width": width, "height": 900})
         # As wide as they get: backwards, after slow decisions with many simulated transitions, of
         # an agent whose settings are told.
-        dashboard.page.locator(".board tbody tr:not(.under)").evaluate_all(
-            """rows => rows.forEach(({cells}) => {
-                cells[1].lastChild.data = "Informed search, budget 300";
+        dashboard.rows.evaluate_all(
+            """lanes => lanes.forEach(({rows: [{cells}]}) => {
+                const texts = (cell) => {
+                    const walker = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+                    return walker.nextNode();
+                };
+                texts(cells[1]).data = "Informed search, budget 300";
                 const widest = ["−0.36 m", "−0.36 m", "120 ms", "46 800"];
-                [...cells].slice(2).forEach((cell, n) => {
-                    if (cell.localName === "td") cell.firstChild.data = widest[n];
-                });
+                [...cells].slice(2).forEach((cell, n) => (texts(cell).data = widest[n]));
             })"""
         )
-        board, panel = dashboard.box(".board"), dashboard.box(".scoreboard")
+        board, panel = dashboard.standings.bounding_box(), dashboard.panel.bounding_box()
+        assert board is not None
+        assert panel is not None
         assert board["x"] + board["width"] <= panel["x"] + panel["width"] - 16
 
 
@@ -147,10 +157,10 @@ def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
 
 
 def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Serving) -> None:
-    dashboard.open(f"{server.address}?{LONG}")
+    dashboard.open(f"{server.address}?{LONG}&depth=try&tab=train")
     dashboard.button("Train, don’t race").click()
-    panel = dashboard.page.get_by_role("region", name="Action values in this state")
-    values = panel.get_by_role("table")
+    panel = dashboard.open_tab("Why")
+    values = panel.get_by_role("region", name="Values in this state").get_by_role("table")
     expect(values.get_by_role("rowheader")).to_have_count(3)
     expect(values.get_by_role("cell", name="here", exact=True)).to_have_count(3)
     expect(values.get_by_role("cell", name=re.compile(", its next move$"))).to_have_count(1)
@@ -160,13 +170,12 @@ def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Servi
     expect(values.get_by_role("cell", name=re.compile("^never")).first).to_be_visible()
     tried = values.get_by_role("cell", name=re.compile(r"tried \d"))
     expect(tried.first).to_have_text(re.compile(r"^−?\d+\s*[1-9]\d*×, tried \d+ times?"))
-    expect(panel).to_contain_text("never tried")
     assert dashboard.violations() == []
 
 
 def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
-    dashboard.open(f"{server.address}?{LONG}")
+    dashboard.open(f"{server.address}?{LONG}&depth=study&tab=train")
     dashboard.primary.click()
     expect(
         page.get_by_text(re.compile(r"^Practising, \S+ of 100.000 steps, then the race$"))
@@ -188,12 +197,12 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     said = re.compile(r"^Changed: α\s0\.5 from step \d+, ε\s0\.25 from step \d+$")
     expect(page.get_by_text(said)).to_be_visible()
     other = Dashboard(page.context.new_page(), has_3d=False)
-    other.open(server.address)
+    other.open(f"{server.address}?depth=study&tab=train")
     alpha = other.page.get_by_role("slider", name="Learning rate α")
     expect(alpha).to_have_value("0.5")
     expect(other.page.get_by_role("slider", name="Exploration now ε")).to_have_value("0.25")
     expect(other.group("Settings")).to_contain_text(re.compile(r"with α\s0\.3, pace\smax\."))
-    other.unfold_settings()
+    other.unfold("More settings")
     expect(other.page.get_by_label("Pace")).to_have_value("8")
     alpha.fill("0.75")
     expect(page.get_by_role("slider", name="Learning rate α")).to_have_value("0.75")
@@ -239,7 +248,7 @@ def test_no_click_is_lost_while_a_command_is_answered(
         page.wait_for_timeout(1500)
         route.continue_()
 
-    dashboard.open(f"{server.address}?{LONG}")
+    dashboard.open(f"{server.address}?{LONG}&depth=try")
     dashboard.primary.click()
     expect(page.get_by_text(re.compile(r"^Practising, \S+ of"))).to_be_visible()
     page.route("**/api/v1/stage", late)
@@ -268,14 +277,14 @@ def test_a_chart_tells_why_it_stays_empty(dashboard: Dashboard, server: Serving)
     problem = {"title": "Gone", "detail": "The recording was deleted to make room."}
     answer = {"status": 410, "content_type": "application/problem+json", "json": problem}
     page.route("**/timeline?*", lambda route: route.fulfill(**answer))
-    dashboard.open(f"{server.address}?{urlencode({'lanes': 'greedy', 'race_steps': 2})}")
-    chart = page.get_by_role("region", name="The race", exact=True)
+    dashboard.open(server.link(lanes="greedy", race_steps=2, depth="try", tab="board"))
+    chart = page.get_by_role("region", name="Distance against time", exact=True)
     expect(chart).to_contain_text("Each robot draws a line here")
     dashboard.primary.click()
     expect(chart.get_by_role("alert")).to_have_text(problem["detail"])
     expect(chart).not_to_contain_text(re.compile("draws a line|lines start"))
     page.unroute_all(behavior="wait")
-    page.get_by_label("Clock").select_option("free")
+    page.get_by_role("combobox", name="Clock").select_option("free")
     expect(chart.get_by_role("img", name=re.compile("^The race after .*Greedy"))).to_be_visible()
     expect(chart.get_by_role("alert")).to_have_count(0)
     assert {c.split()[0] for c in dashboard.complaints} == {"410"}
@@ -285,14 +294,15 @@ def test_a_chart_tells_why_it_stays_empty(dashboard: Dashboard, server: Serving)
 def test_two_operators_and_one_stage(
     dashboard: Dashboard, flat_browser: Browser, server: Serving
 ) -> None:
-    dashboard.open(f"{server.address}?{LONG}")
+    link = f"{server.address}?{LONG}&depth=try"
+    dashboard.open(link)
     dashboard.button("Train, don’t race").click()
     expect(dashboard.page.get_by_text(re.compile(r"^Practising, \d"))).to_be_visible()
     held = dashboard.get("/api/v1/stage")["run_id"]
 
     with new_page(flat_browser) as page:
         other = Dashboard(page, has_3d=False)
-        other.open(f"{server.address}?{LONG}")
+        other.open(link)
         other.button("Train, don’t race").click()
         expect(other.page.get_by_text("The stage shows another run")).to_be_visible()
         assert other.get("/api/v1/stage")["run_id"] == held

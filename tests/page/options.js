@@ -1,6 +1,6 @@
-// A small answer of GET /options, and runs to put into the store.
+// A small answer of GET /options, and runs and stages to put into the store.
 
-/** @import { Options, Run, SettingOption } from "../../static/js/types.js" */
+/** @import { Options, Run, SettingOption, Stage } from "../../static/js/types.js" */
 
 /** @type {(name: string, title?: string) => { name: string, title: string, description: string }} */
 const described = (name, title = name) => ({ name, title, description: `About ${name}.` });
@@ -217,3 +217,23 @@ export function makeRun(changes) {
     ...changes,
   }));
 }
+
+/**
+ * The stage that all pages share, as the API shows it; nothing is on it.
+ * @param {Partial<Stage>} [changes]
+ * @returns {Stage}
+ */
+export const makeStage = (changes = {}) => /** @type {Stage} */ ({
+  run_id: null, next_run_id: null, holder: null, phase: "empty", origin: "none", playing: true, ended: false,
+  speed: "time-lapse", clock: "paper", end_at_time_out: true, announced: null,
+  presentation: { card: null, shows_why: false, is_blank: false, code: "large" }, ...changes,
+});
+
+/**
+ * A lane of the scene, at its start.
+ * @param {object} [changes]
+ */
+export const makeSceneLane = (changes = {}) => ({
+  lane: 0, name: "Learner", color: "#111", rank: 1, distance_m: 0, step: 0, steps: 50, done: false, halted: false,
+  thinking: false, futures: 0, futures_total: 0, crossed: false, marching: false, ...changes,
+});

@@ -58,4 +58,5 @@ test("moments are relative for an hour", () => {
 test("lists are joined as in a sentence", () => {
   assert.deepEqual([[], ["a"], ["a", "b"], ["a", "b", "c"]].map(format.listed), ["", "a", "a and b", "a, b and c"]);
   assert.equal(format.sentence("feet measured"), "Feet measured");
+  assert.equal(format.sentence("α 0.5"), "α 0.5", "a capital alpha is another symbol");
 });

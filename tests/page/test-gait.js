@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import {
-  analysis, canSeek, cycleSentence, extentOf, FIGURES, followGait, isWatched, legsInOrder, legsInTheAir, lineOf,
+  analysis, canSeek, cycleSentence, extentOf, FIGURES, followGait, legsInOrder, legsInTheAir, lineOf,
   momentOf, part, problem, raceTimeAt, rangeInWords, SERIES, subject, swingsOf,
 } from "../../static/js/gait.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
@@ -115,7 +115,7 @@ test("a cycle is told by the legs that move", () => {
 
 test("an error is shown, and the request repeated if that can be of use", async () => {
   mock.timers.enable({ apis: ["setTimeout"] });
-  [connection.value, isWatched.value] = ["live", true];
+  connection.value = "live";
   applyEvent("snapshot", { role: "operator", runs: [TRAINING], stage: { ...STAGE, run_id: "training" }, scene: null });
   /** @type {(string | null)[]} */
   const asked = [];

@@ -1,9 +1,9 @@
 // Why the leader is ahead, from recorded figures only.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { practiceReason, reasonOf, stepEnds, workOf } from "../../static/js/headline.js";
-import { options } from "../../static/js/store.js";
-import { OPTIONS } from "./options.js";
+import { practiceReason, practiceTitle, reason, reasonOf, stepEnds, workOf } from "../../static/js/headline.js";
+import { applyEvent, options } from "../../static/js/store.js";
+import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
 /**
  * A lane of steps of 1 s, of the lengths given [m], each thought of for `thinking` seconds before.
@@ -116,4 +116,19 @@ test("practice says how many of its steps are random, while there are any", () =
   assert.equal(practiceReason(0.334), "33 of 100 steps are still random (ε\u00a00.33): it finds out which moves pay.");
   assert.equal(practiceReason(0), null);
   assert.equal(practiceReason(undefined), null);
+});
+
+test("practice is told by its newest test that is shown, and before the first by when that comes", () => {
+  const run = makeRun({ state: "running", progress: { done: 120, total: 500 } });
+  const showStep = (/** @type {number} */ step) => applyEvent("snapshot", {
+    runs: [run], stage: makeStage({ run_id: run.id, phase: "live" }),
+    scene: { run_id: run.id, kind: "training", phase: "practice", lanes: [makeSceneLane({ step })] },
+  });
+  showStep(10);
+  applyEvent("evaluation", { run_id: run.id, step: 50, distance_m: 0.12, epsilon: 0.9 });
+  applyEvent("evaluation", { run_id: run.id, step: 100, distance_m: 0.31, epsilon: 0.8 });
+  assert.deepEqual([practiceTitle.value, reason.value], ["Learner practises", "Its first test is at step 50."]);
+  showStep(60);
+  assert.equal(practiceTitle.value, "Learner walks 0.12\u00a0m so far");
+  assert.match(reason.value ?? "", /^90 of 100 steps are still random/);
 });

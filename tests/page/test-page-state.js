@@ -37,23 +37,40 @@ test("the address that was opened is read first, and stays one entry of the hist
 });
 
 test("a link is read as the state that wrote it, each field of it", () => {
+  /** @type {Partial<import("../../static/js/page-state.js").PageState>} */
   const changes = {
     form: new URLSearchParams("alpha=0,7&disturb=limp:legs%3D1,4&disturb=slope:degrees%3D8&steps="),
-    run: "a", ghost: "b", moment: 2.25, isExplaining: true, whatIf: "closed", isPresenting: true,
+    run: "a", ghost: "b", moment: 2.25, clock: "free", end: "all", depth: "study", tab: "why", pinned: "gait",
+    camera: "2", hidden: ["panel", "card"], card: 3, isPresenting: true, isRemote: true,
   };
   const ofViews = {
     experiments: { experiment: new URLSearchParams("alpha=0.1;0.3&name=A %26 B"), report: "c" },
     runs: { list: new URLSearchParams("kind=race&tag=µ %26 co") },
     compare: { compared: ["a", "b"] },
   };
+  const named = ["view", ...Object.keys(changes), ...Object.values(ofViews).flatMap(Object.keys)];
+  assert.deepEqual(named.sort(), Object.keys(page).sort());
   for (const [view, own] of Object.entries({ race: {}, ...ofViews })) {
     change({ view, ...changes, ...own });
     const [before, link] = [document(), write()];
-    change({ view: "race", form: new URLSearchParams(), run: null, ghost: null, moment: null, compared: [] });
+    open("/?run=other#race");
+    change({ compared: [] });
     open(link);
     assert.deepEqual(document(), before, link);
     assert.equal(write(), link);
   }
+});
+
+test("a panel that a link of version 0.1 opened is a tab now, unless it was closed", () => {
+  const tabOf = (/** @type {string} */ link) => {
+    open(link);
+    return [page.tab.value, write()];
+  };
+  assert.deepEqual(tabOf("/?steps=750&explain"), ["why", "?steps=750&tab=why"]);
+  assert.deepEqual(tabOf("/?what-if=open"), ["what-if", "?tab=what-if"]);
+  assert.deepEqual(tabOf("/?what-if=closed"), [null, ""]);
+  assert.deepEqual(tabOf("/?explain&tab=gait"), ["gait", "?tab=gait"]);
+  assert.deepEqual(ignored.query.value, []);
 });
 
 test("links of earlier versions open", () => {
@@ -77,16 +94,32 @@ test("what is as it is by default is in no link", () => {
   assert.equal(linkTo({ run: "a", moment: 1 }), "http://page.test/?run=a&t=1.00");
 });
 
-test("a value that is none is told, and so is a view that is not", () => {
-  open("/?run=a&t=soon&what-if=maybe#nothing");
-  assert.deepEqual(ignored.query.value.sort(), ["t=soon", "view=nothing", "what-if=maybe"]);
-  assert.deepEqual([page.run.value, page.moment.value, page.view.value], ["a", null, "race"]);
-  open("/?t=-1");
-  assert.ok(ignored.query.value.includes("t=-1"));
+/** What a link says in vain, as it is told. @param {string} link */
+const inVain = (link) => {
+  ignored.query.value = [];
+  open(link);
+  return ignored.query.value;
+};
+
+test("a value that is none is told, with those that are valid where they are few", () => {
+  assert.deepEqual(inVain("/?run=a&t=soon"), ["t=soon"]);
+  assert.deepEqual([page.run.value, page.moment.value], ["a", null]);
+  assert.deepEqual(inVain("/?t=-1"), ["t=-1"]);
+  assert.deepEqual(inVain("/?card=0"), ["card=0"]);
+  assert.deepEqual(inVain("/?depth=deep"), ["depth=deep (valid: watch, try, study)"]);
+  assert.deepEqual(inVain("/?tab=chart"), ["tab=chart (valid: board, train, world, why, gait, table, what-if)"]);
+  assert.deepEqual(inVain("/?camera=9"), ["camera=9 (valid: leader, free, 1 to 8)"]);
+  assert.deepEqual(inVain("/?hidden=panel,stage"), ["hidden=panel,stage (valid: panel, card)"]);
+  assert.deepEqual(inVain("/#nothing"), ["view=nothing (valid: race, experiments, runs, compare)"]);
+  assert.equal(write(), "", "all is as it is without a link");
 });
 
-test("another view and another run are entries of the history; all else changes the present one", () => {
-  change({ form: new URLSearchParams("alpha=0.7") });
+test("another view, tab or run is an entry of the history; all else changes the present one", () => {
+  change({ form: new URLSearchParams("alpha=0.7"), depth: "study", camera: "2" });
+  change({ tab: "gait" });
+  goBack();
+  assert.deepEqual([page.tab.value, entries], [null, ["/?alpha=0.7&depth=study&camera=2"]]);
+  change({ depth: null, camera: "leader" });
   change({ run: "a", ghost: "b" });
   change({ moment: 2 });
   change({ moment: 3 });

@@ -50,6 +50,9 @@ const show = (/** @type {import("../../static/js/types.js").Run} */ race, /** @t
 /** @param {object} scene */
 const showScene = (scene) => show(RACE, scene);
 
+/** The rule by which the race on stage is ranked. */
+const ruleShown = () => ruleOf(standings.value ?? [], "paper clock");
+
 const AT_END = { phase: "finished", time_s: 22, duration_s: 22, computed_s: 22, time_out_s: 16, ended: true };
 
 /** Put a race of these lanes on stage, at its end. */
@@ -120,29 +123,33 @@ test("after its show a race has its result, ranked", () => {
   const [first, second] = standings.value ?? [];
   assert.deepEqual([first.title, first.rank, first.finished_m], ["Greedy", 1, 0.3]);
   assert.deepEqual([second.title, second.total_m, second.decision_s, second.simulated], ["Learner", 0.5, 0.1, 600]);
-  assert.equal(headline.value, "Greedy wins by 10\u00a0cm: 0.30\u00a0m when Learner had used its 50 steps");
+  assert.equal(headline.value, "Greedy wins by 10\u00a0cm");
+  assert.equal(ruleShown(), "Ranked at time-out, when Learner had used its 50 steps (paper clock).");
 });
 
-test("the headline says who won and what decided it", () => {
-  showResult([laneResult("learner", 1, 0.37), laneResult("greedy", 2, 0.2, 22)]);
-  assert.equal(headline.value, "Learner wins by 17\u00a0cm: 0.37\u00a0m when it had used its 50 steps");
+test("the headline says who won, and the rule what decided it", () => {
   showResult([laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.37)]);
-  assert.equal(headline.value, "Greedy wins by 17\u00a0cm: 0.37\u00a0m after 50 steps each");
+  assert.deepEqual([headline.value, ruleShown()],
+    ["Greedy wins by 17\u00a0cm", "Ranked at time-out, after 50 steps each (paper clock)."]);
   showResult([laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.37), laneResult("planner", 3, 0.1, 90)]);
-  assert.match(headline.value ?? "", /^Greedy wins by 17\u00a0cm: .* when Greedy and Learner had used their 50 steps$/);
+  assert.equal(headline.value, "Greedy wins by 17\u00a0cm");
+  assert.match(ruleShown(), /, when Greedy and Learner had used their 50 steps \(paper clock\)\.$/);
+  showResult([laneResult("learner", 1, 0.37)]);
+  assert.equal(headline.value, "Learner wins with 0.37\u00a0m", "there is no other to be ahead of");
 });
 
 test("ties and narrow margins are told", () => {
   showResult([laneResult("learner", 1, 0.3), laneResult("greedy", 1, 0.3, 22), laneResult("planner", 3, 0.1, 90)]);
-  assert.equal(headline.value, "Learner and Greedy tie: 0.30\u00a0m when Learner had used its 50 steps");
+  assert.equal(headline.value, "Learner and Greedy tie");
   showResult([laneResult("learner", 2, 0.302), laneResult("greedy", 1, 0.304, 22)]);
-  assert.equal(headline.value, "Greedy wins by 2\u00a0mm: 0.30\u00a0m when Learner had used its 50 steps");
+  assert.equal(headline.value, "Greedy wins by 2\u00a0mm");
 });
 
 test("a lane that failed does not time the race out, and no time-out is claimed without one", () => {
   const failed = { ...laneResult("learner", 1, 0.4, 3), steps: 9, failure: "it broke" };
   showResult([failed, laneResult("greedy", 2, 0.3, 22)]);
-  assert.equal(headline.value, "Learner wins, stopped at step 9: 0.40\u00a0m when Greedy had used its 50 steps");
+  assert.equal(headline.value, "Learner wins, stopped at step 9");
+  assert.match(ruleShown(), /when Greedy had used its 50 steps/);
   showResult([failed, failed], { state: "failed" }, { time_out_s: null });
   assert.equal(headline.value, "Failed at step 9 of 50: Learner and Greedy had come farthest, 0.50\u00a0m");
   assert.ok(!isTimedOut.value);
@@ -158,7 +165,7 @@ test("a race that was stopped says so at its last step, without ranks and withou
   show(race, { ...AT_END, lanes, time_out_s: null });
 
   assert.equal(headline.value, "Stopped at steps 25 to 26 of 50: Greedy had come farthest, 0.31\u00a0m");
-  assert.match(ruleOf(50, "paper clock"), /^No ranking: the race was stopped before its time-out/);
+  assert.equal(ruleShown(), "No ranking: the race was stopped before its time-out (paper clock).");
   assert.deepEqual((standings.value ?? []).map(({ agent, rank, isDone, isHalted, step, finished_m, total_m }) =>
     [agent, rank, isDone, isHalted, step, finished_m, total_m]), [
     ["greedy", null, false, true, 25, null, null], ["learner", null, false, true, 26, null, null],
@@ -182,7 +189,12 @@ test("at the photo finish lanes that walk on have their totals once the race has
 test("what flat parts are is said without contradiction under each clock", () => {
   assert.deepEqual(["paper", "wall", "free"].map((clock) => /^Flat parts are thinking/.test(flatParts(clock))),
     [true, true, false]);
-  assert.match(ruleOf(50, "paper clock"), /^The farthest at time-out wins: .* 50 steps \(paper clock\)\.$/);
+});
+
+test("before time-out the rule says how the race will be ranked", () => {
+  showScene({ phase: "race", time_s: 1 });
+  assert.equal(ruleShown(),
+    "The farthest at time-out wins: when the first robot has used its 50 steps (paper clock).");
 });
 
 test("during its show nothing later than the scene is told", () => {

@@ -3,7 +3,6 @@ import assert from "node:assert/strict";
 import { afterEach, test } from "node:test";
 import { problems, setStage, showOnStage } from "../../static/js/actions.js";
 import { page } from "../../static/js/page-state.js";
-import { camera } from "../../static/js/page.js";
 import {
   closeReplay, drawIn, endTime, followReplay, openReplay, playReplay, replayProblem, replayTime, seekReplay,
   setReplaySpeed, tick,
@@ -116,10 +115,10 @@ test("a run that was deleted meanwhile is told, and asked for no more", async ()
 test("a held replay follows another robot at once", async () => {
   await openReplay("a", { time_s: 3, isPlaying: false });
   await wait(5);
-  camera.value = "2";
+  page.camera.value = "2";
   await wait(2);
   assert.deepEqual(drawn.at(-1), { type: "SetPositionMessage", name: "/world", position: [-1, -3, 0], owner: "" });
-  camera.value = "leader";
+  page.camera.value = "leader";
 });
 
 test("played again at its end it begins anew", async () => {

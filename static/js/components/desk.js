@@ -17,7 +17,7 @@ export function Desk() {
   const { code, is_blank } = presentation.value;
   const known = useSpectators();
   return html`
-    <section class=${`panel desk code-${code}`} aria-label="Presenter's desk">
+    <section class=${`panel desk code-${code}`} aria-label="Presenter’s desk">
       <h1 class="sr-only">Racing Hexapods</h1>
       <${Act} />
       <${Keys} />

@@ -82,7 +82,7 @@ function MenuAt({ at }) {
   return html`
     <section class="leg-menu" style=${place} aria-label=${title} ref=${menu}>
       <div class="leg-menu-head">
-        <h3>${title}</h3>
+        <h2>${title}</h2>
         <button class="quiet square small" aria-label="Close" onClick=${closeLegs}>✕</button>
       </div>
       <${Offer} at=${at} />

@@ -6,6 +6,7 @@ import { headline, leaderColor, moveTold, practiceTitle, reason } from "../headl
 import { heldRace, liveTraining, phase, shownRun, steering } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
+import { replayProblem } from "../replay.js";
 import { isOperator } from "../selectors.js";
 import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
 import {
@@ -76,12 +77,14 @@ function ofRun() {
 /** Who tries has a tab for it. */
 const canExplain = () => !isAtLeast("try") && Boolean(shownRun.value?.progress.done) && scale.value !== null;
 
+const isFirstVisit = () => page.run.value === null && !shownRun.value;
 const invitation = () => {
-  if (page.run.value !== null || shownRun.value) return shownRun.value ? "On the start line" : "Loading…";
-  return "A hexapod learns to walk";
+  if (isFirstVisit()) return "A hexapod learns to walk";
+  if (shownRun.value) return "On the start line";
+  return replayProblem.value ? "No run is shown" : "Loading…";
 };
 const about = () =>
-  (shownRun.value ? "" : "It tries moves, keeps what each was worth, and races against two that think ahead.");
+  (isFirstVisit() ? "It tries moves, keeps what each was worth, and races against two that think ahead." : "");
 
 // ---- the tabs
 
@@ -99,12 +102,15 @@ function moveByKey(event) {
 }
 
 const Tabs = () => html`
-  <div class="tabs" role="tablist" aria-label="Panel" onKeyDown=${moveByKey}>
-    ${tabs.value.map((name) => html`<${Tab} key=${name} name=${name} />`)}
+  <div class="tabs">
+    <div role="tablist" aria-label="Panel" onKeyDown=${moveByKey}>
+      ${tabs.value.map((name) => html`<${Tab} key=${name} name=${name} />`)}
+    </div>
     ${canPin.value && html`
-      <button class="quiet square small pin" role="presentation" aria-pressed=${pinnedTab.value ? "true" : "false"}
-        tabindex="-1" onClick=${togglePin} title=${pinnedTab.value ? "One tab" : "Two tabs beside each other"}
-        aria-label=${pinnedTab.value ? "Show one tab" : "Pin this tab"}><${Icon} name="pin" /></button>
+      <button class="quiet square small pin" aria-pressed=${pinnedTab.value ? "true" : "false"} onClick=${togglePin}
+        title=${pinnedTab.value ? "One tab" : "Two tabs beside each other"} aria-label="Pin this tab">
+        <${Icon} name="pin" />
+      </button>
     `}
   </div>
 `;

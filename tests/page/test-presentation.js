@@ -1,0 +1,116 @@
+// The presentation that all presenters' windows of a stage follow, and who may tell it.
+import assert from "node:assert/strict";
+import { beforeEach, test } from "node:test";
+import { cards } from "../../static/js/lesson.js";
+import { change, page, read } from "../../static/js/page-state.js";
+import {
+  followPresentation, presentation, tell, toggleBlank, toggleWhy, turnCode, turnPage,
+} from "../../static/js/presentation.js";
+import { applyEvent, options } from "../../static/js/store.js";
+import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
+
+/** @import { Presentation } from "../../static/js/types.js" */
+
+const START = makeStage().presentation;
+/** What the server was told. @type {Presentation[]} */
+let told = [];
+globalThis.fetch = (_, { body = "" } = {}) => {
+  const asked = JSON.parse(String(body)).presentation;
+  told.push(asked);
+  return Promise.resolve(new Response(JSON.stringify(makeStage({ presentation: asked }))));
+};
+followPresentation();
+
+const settle = () => new Promise((resolve) => {
+  setTimeout(resolve, 5);
+});
+
+/** @param {Partial<Presentation>} shown */
+const showCard = (shown, role = "operator") =>
+  applyEvent("snapshot", { role, runs: [], stage: makeStage({ presentation: { ...START, ...shown } }), scene: null });
+
+beforeEach(() => {
+  options.value = OPTIONS;
+  read({ search: "", hash: "" });
+  showCard({});
+  told = [];
+});
+
+test("before it is told, no card is shown, and the code is large", () => {
+  assert.deepEqual(presentation.value, { card: null, shows_why: false, is_blank: false, code: "large" });
+});
+
+test("cards are turned within the lesson, and each begins without an explanation", async () => {
+  turnPage(-1);
+  turnPage(1);
+  await settle();
+  assert.deepEqual(told, [{ ...START, card: 1 }]);
+  showCard({ card: 1, shows_why: true });
+  turnPage(-1);
+  turnPage(1);
+  await settle();
+  assert.deepEqual(told.at(-1), { ...START, card: 2 });
+  showCard({ card: cards.value.length });
+  turnPage(1);
+  assert.equal(told.length, 2);
+});
+
+test("the code is large, small or none; the rest is on or off", async () => {
+  for (const [turn, changes] of /** @type {const} */ ([
+    [turnCode, { code: "small" }], [turnCode, { code: "none" }], [turnCode, { code: "large" }],
+    [toggleWhy, { shows_why: true }], [toggleBlank, { shows_why: true, is_blank: true }],
+  ])) {
+    turn();
+    await settle();
+    assert.deepEqual(presentation.value, { ...START, ...changes });
+  }
+});
+
+test("only operators tell it", async () => {
+  showCard({ card: 1 }, "spectator");
+  turnPage(1);
+  tell({ is_blank: true });
+  await settle();
+  assert.deepEqual(told, []);
+});
+
+test("a page that is presented follows it, and other pages do not", () => {
+  showCard({ card: 2 });
+  assert.equal(page.card.value, null);
+  change({ isPresenting: true });
+  assert.deepEqual([page.card.value, page.tab.value, page.depth.value], [2, "board", "watch"]);
+  showCard({ card: 3, shows_why: true });
+  assert.deepEqual([page.card.value, page.tab.value], [3, "why"]);
+});
+
+test("a page that is presented no more is as deep as it was", () => {
+  change({ depth: "study", tab: "gait" });
+  change({ isPresenting: true });
+  assert.deepEqual([page.tab.value, page.depth.value], ["board", "watch"]);
+  change({ isPresenting: false });
+  assert.deepEqual([page.tab.value, page.depth.value], ["gait", "study"]);
+});
+
+test("by the end of the first race the code is small, once", async () => {
+  change({ isPresenting: true });
+  const config = { steps: 50, lanes: [{ agent: "greedy" }] };
+  const race = makeRun({ kind: "race", progress: { done: 50, total: 50 }, config });
+  const showAt = (/** @type {number} */ time_s) => applyEvent("snapshot", {
+    role: "operator", runs: [race], stage: makeStage({ run_id: race.id, phase: "showing" }),
+    scene: {
+      run_id: race.id, kind: "race", phase: "race", time_s, duration_s: 20, computed_s: 20, time_out_s: 16,
+      ended: false, lanes: [makeSceneLane()],
+    },
+  });
+  showAt(15);
+  assert.deepEqual(told, []);
+  showAt(16);
+  await settle();
+  assert.deepEqual(told.map(({ code }) => code), ["small"]);
+  showAt(1);
+  tell({ code: "large" });
+  await settle();
+  showAt(16);
+  await settle();
+  assert.deepEqual(told.map(({ code }) => code), ["small", "large"], "who wants it large again has it");
+});
