@@ -38,10 +38,9 @@ from app.api import (
 from app.api.auth import TokenGuard
 from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
 from app.api.deps import Services
-from app.api.disconnects import Disconnects
 from app.api.guide import guide_routes
 from app.api.host_check import HostGuard
-from app.api.memory_limit import BodyLimit, HeldBodies
+from app.api.memory_limit import HeldBodies
 from app.api.middleware import SecurityHeaders
 from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit, what_if_limiter
@@ -146,8 +145,6 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     problems.install(app)
     contract.install(app, app.state.services.agents, settings)
     # The middleware that is added last runs first.
-    app.add_middleware(Disconnects)
-    app.add_middleware(BodyLimit)
     app.add_middleware(ConcurrencyLimit, slots=app.state.work_slots)
     app.add_middleware(HeldBodies)
     what_ifs = app.state.services.what_if_limiter

@@ -13,6 +13,7 @@ loaded when the first of them is used. The import also makes `gymnasium.make` kn
 
 import importlib
 import sys
+from collections.abc import Mapping
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
@@ -34,18 +35,23 @@ if not TYPE_CHECKING:  # else every name would pass for one of its names
         """
         if name.startswith("_") and name != "__all__":  # which `import *` and `help` ask for
             raise AttributeError(f"module 'hexapods' has no attribute {name!r}")
-        public = importlib.import_module("hexapods.public")
+        public = _public_names()
         if name == "__all__":
-            return public.__all__
-        if name not in public.__all__:
-            functions = ", ".join(one for one in public.__all__ if one.islower())
+            return list(public)
+        if name not in public:
+            functions = ", ".join(one for one in public if one.islower())
             raise AttributeError(f"hexapods has no {name!r}; its functions: {functions}")
-        value = globals()[name] = getattr(public, name)
+        value = globals()[name] = public[name]
         return value
 
     def __dir__() -> list[str]:
         """Return the public names, and no modules that are loaded."""
-        return ["__version__", *importlib.import_module("hexapods.public").__all__]
+        return ["__version__", *_public_names()]
+
+
+def _public_names() -> Mapping[str, Any]:
+    names = vars(importlib.import_module("hexapods.public"))
+    return {name: names[name] for name in sorted(names) if not name.startswith("_")}
 
 
 class _GymnasiumFinder(MetaPathFinder):

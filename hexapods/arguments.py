@@ -132,11 +132,6 @@ def plain(value: Any) -> Any:
     return value
 
 
-def plain_values(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return arguments with what is NumPy's in them as Python's own."""
-    return {name: plain(value) for name, value in given.items()}
-
-
 def values_of(given: object) -> tuple[Any, ...]:
     """Return the values of an argument of which several may be given, or one as it is."""
     values = plain(given)

@@ -16,7 +16,7 @@ from hexapods.arguments import (
     check_callable,
     check_names,
     given_of,
-    plain_values,
+    plain,
     read_disturbance,
     read_walk,
 )
@@ -276,7 +276,7 @@ def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dic
     for change in changes:
         if not isinstance(change, Mapping) or "step" not in change:
             raise InvalidInput(f"a change is a mapping such as {_CHANGE}, not {change!r}")
-        values = plain_values(change)
+        values = plain(change)
         check_names("a change", values, ("step", "settings", "disturbance"))
         settings = values.setdefault("settings", {})
         if not isinstance(settings, Mapping):
@@ -289,7 +289,7 @@ def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dic
         )
         if "disturbance" in values:
             values["disturbance"] = read_disturbance(values["disturbance"])
-        values["settings"] = {k: live[k].normalized(v) for k, v in plain_values(settings).items()}
+        values["settings"] = {k: live[k].normalized(v) for k, v in plain(settings).items()}
         read.append(values)
     return read
 
@@ -297,7 +297,7 @@ def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dic
 def _config(name: str, trained: Training | None, given: Mapping[str, Any]) -> TrainingConfig:
     """Return the config of a training; what is not given is the table's, or the default."""
     check_names("a training", given, (*FIELDS, *agent_settings(name)))
-    given = plain_values(given)
+    given = plain(given)
     walk = {key: value for key, value in given.items() if key in WALK}
     rest: dict[str, Any] = {key: value for key, value in given.items() if key not in WALK}
     like = None

@@ -1,204 +1,94 @@
 """The names of `import hexapods as hx`, which loads this module when the first of them is used."""
 
-import io
-import os
-import zipfile
+from hexapods.agents.beam import Beam as Beam
+from hexapods.agents.double_q import DoubleQ as DoubleQ
+from hexapods.agents.dyna_q import DynaQ as DynaQ
+from hexapods.agents.dyna_q_plus import DynaQPlus as DynaQPlus
+from hexapods.agents.expected_sarsa import ExpectedSarsa as ExpectedSarsa
+from hexapods.agents.fixed_policies import RandomWalk as RandomWalk
+from hexapods.agents.fixed_policies import Wave as Wave
+from hexapods.agents.informed import Informed as Informed
+from hexapods.agents.linear_model import LinearModel as LinearModel
+from hexapods.agents.lookahead import Greedy as Greedy
+from hexapods.agents.lookahead import LookAhead as LookAhead
+from hexapods.agents.lookahead import TwoStep as TwoStep
+from hexapods.agents.mcts import Mcts as Mcts
+from hexapods.agents.n_step_sarsa import NStepSarsa as NStepSarsa
+from hexapods.agents.posterior_sampling import PosteriorSampling as PosteriorSampling
+from hexapods.agents.prioritized_sweeping import PrioritizedSweeping as PrioritizedSweeping
+from hexapods.agents.protocol import Agent as Agent
+from hexapods.agents.protocol import AgentState as AgentState
+from hexapods.agents.protocol import Expand as Expand
+from hexapods.agents.protocol import Node as Node
+from hexapods.agents.protocol import Observe as Observe
+from hexapods.agents.protocol import Problem as Problem
+from hexapods.agents.protocol import Tabular as Tabular
+from hexapods.agents.protocol import Transition as Transition
+from hexapods.agents.protocol import Tunable as Tunable
+from hexapods.agents.protocol import Valuing as Valuing
+from hexapods.agents.q_lambda import QLambda as QLambda
+from hexapods.agents.q_learning import QLearning as QLearning
+from hexapods.agents.r_max import RMax as RMax
+from hexapods.agents.sarsa import Sarsa as Sarsa
+from hexapods.agents.sarsa_lambda import SarsaLambda as SarsaLambda
+from hexapods.agents.tabular import TabularLearner as TabularLearner
+from hexapods.domain import gait as _gait
+from hexapods.domain.disturbances import DeadBand as DeadBand
+from hexapods.domain.disturbances import Delay as Delay
+from hexapods.domain.disturbances import Disturbance as Disturbance
+from hexapods.domain.disturbances import Friction as Friction
+from hexapods.domain.disturbances import Limp as Limp
+from hexapods.domain.disturbances import Lost as Lost
+from hexapods.domain.disturbances import Patch as Patch
+from hexapods.domain.disturbances import Payload as Payload
+from hexapods.domain.disturbances import Push as Push
+from hexapods.domain.disturbances import Repair as Repair
+from hexapods.domain.disturbances import Rough as Rough
+from hexapods.domain.disturbances import SensorNoise as SensorNoise
+from hexapods.domain.disturbances import Slope as Slope
+from hexapods.domain.disturbances import Stuck as Stuck
+from hexapods.domain.disturbances import Weak as Weak
+from hexapods.domain.errors import DamagedFile as DamagedFile
+from hexapods.domain.errors import Diverged as Diverged
+from hexapods.domain.errors import HexapodError as HexapodError
+from hexapods.domain.errors import IllegalAction as IllegalAction
+from hexapods.domain.errors import InvalidInput as InvalidInput
+from hexapods.domain.errors import TableMismatch as TableMismatch
+from hexapods.domain.errors import TooLong as TooLong
+from hexapods.domain.errors import UnknownName as UnknownName
+from hexapods.domain.errors import Unreachable as Unreachable
+from hexapods.domain.robot import LegMount as LegMount
+from hexapods.domain.robot import Robot as Robot
+from hexapods.domain.settings import Setting as Setting
+from hexapods.domain.simulator import Motion as Motion
+from hexapods.domain.types import Action as Action
+from hexapods.domain.world import World as World
+from hexapods.experiments.folder import NotKept as NotKept
+from hexapods.experiments.worker import ClusterLost as ClusterLost
+from hexapods.experiments.worker import Outcome as Outcome
+from hexapods.practice import Practice as Practice
+from hexapods.practice import evaluate as evaluate
+from hexapods.practice import iter_train as iter_train
+from hexapods.practice import train as train
+from hexapods.races import Lane as Lane
+from hexapods.races import Race as Race
+from hexapods.races import Standing as Standing
+from hexapods.races import lane as lane
+from hexapods.races import load as load
+from hexapods.races import race as race
+from hexapods.repetition import Experiment as Experiment
+from hexapods.repetition import SettingResult as SettingResult
+from hexapods.repetition import experiment as experiment
+from hexapods.runs.recording import LaneRecording as LaneRecording
+from hexapods.runs.records import ActionValues as ActionValues
+from hexapods.runs.records import EpisodeEnded as EpisodeEnded
+from hexapods.runs.records import Evaluated as Evaluated
+from hexapods.runs.records import LaneStep as LaneStep
+from hexapods.runs.records import Reference as Reference
+from hexapods.runs.records import StepTaken as StepTaken
+from hexapods.trainings import CurvePoint as CurvePoint
+from hexapods.trainings import Training as Training
+from hexapods.viewing import View as View
+from hexapods.viewing import view as view
 
-from hexapods.agents.beam import Beam
-from hexapods.agents.double_q import DoubleQ
-from hexapods.agents.dyna_q import DynaQ
-from hexapods.agents.dyna_q_plus import DynaQPlus
-from hexapods.agents.expected_sarsa import ExpectedSarsa
-from hexapods.agents.fixed_policies import RandomWalk, Wave
-from hexapods.agents.informed import Informed
-from hexapods.agents.linear_model import LinearModel
-from hexapods.agents.lookahead import Greedy, LookAhead, TwoStep
-from hexapods.agents.mcts import Mcts
-from hexapods.agents.n_step_sarsa import NStepSarsa
-from hexapods.agents.posterior_sampling import PosteriorSampling
-from hexapods.agents.prioritized_sweeping import PrioritizedSweeping
-from hexapods.agents.protocol import (
-    Agent,
-    AgentState,
-    Expand,
-    Node,
-    Observe,
-    Problem,
-    Tabular,
-    Transition,
-    Tunable,
-    Valuing,
-)
-from hexapods.agents.q_lambda import QLambda
-from hexapods.agents.q_learning import QLearning
-from hexapods.agents.r_max import RMax
-from hexapods.agents.sarsa import Sarsa
-from hexapods.agents.sarsa_lambda import SarsaLambda
-from hexapods.agents.tabular import TabularLearner
-from hexapods.domain.disturbances import (
-    DeadBand,
-    Delay,
-    Disturbance,
-    Friction,
-    Limp,
-    Lost,
-    Patch,
-    Payload,
-    Push,
-    Repair,
-    Rough,
-    SensorNoise,
-    Slope,
-    Stuck,
-    Weak,
-)
-from hexapods.domain.errors import (
-    DamagedFile,
-    Diverged,
-    HexapodError,
-    IllegalAction,
-    InvalidInput,
-    TableMismatch,
-    TooLong,
-    UnknownName,
-    Unreachable,
-)
-from hexapods.domain.gait import GaitSpec as Gait
-from hexapods.domain.robot import LegMount, Robot
-from hexapods.domain.settings import Setting
-from hexapods.domain.simulator import Motion
-from hexapods.domain.types import Action
-from hexapods.domain.world import World
-from hexapods.experiments.engine import Outcome
-from hexapods.experiments.folder import NotKept
-from hexapods.experiments.worker import ClusterLost
-from hexapods.files import path_of
-from hexapods.practice import Practice, evaluate, iter_train, train
-from hexapods.races import CONFIG, Lane, Race, Standing, lane, race, race_from_bytes
-from hexapods.repetition import Experiment, SettingResult, experiment
-from hexapods.runs.recording import LaneRecording
-from hexapods.runs.records import (
-    ActionValues,
-    EpisodeEnded,
-    Evaluated,
-    LaneStep,
-    Reference,
-    StepTaken,
-)
-from hexapods.trainings import CurvePoint, Training, training_from_bytes
-from hexapods.viewing import View, view
-
-__all__ = [
-    "Action",
-    "ActionValues",
-    "Agent",
-    "AgentState",
-    "Beam",
-    "ClusterLost",
-    "CurvePoint",
-    "DamagedFile",
-    "DeadBand",
-    "Delay",
-    "Disturbance",
-    "Diverged",
-    "DoubleQ",
-    "DynaQ",
-    "DynaQPlus",
-    "EpisodeEnded",
-    "Evaluated",
-    "Expand",
-    "ExpectedSarsa",
-    "Experiment",
-    "Friction",
-    "Gait",
-    "Greedy",
-    "HexapodError",
-    "IllegalAction",
-    "Informed",
-    "InvalidInput",
-    "Lane",
-    "LaneRecording",
-    "LaneStep",
-    "LegMount",
-    "Limp",
-    "LinearModel",
-    "LookAhead",
-    "Lost",
-    "Mcts",
-    "Motion",
-    "NStepSarsa",
-    "Node",
-    "NotKept",
-    "Observe",
-    "Outcome",
-    "Patch",
-    "Payload",
-    "PosteriorSampling",
-    "Practice",
-    "PrioritizedSweeping",
-    "Problem",
-    "Push",
-    "QLambda",
-    "QLearning",
-    "RMax",
-    "Race",
-    "RandomWalk",
-    "Reference",
-    "Repair",
-    "Robot",
-    "Rough",
-    "Sarsa",
-    "SarsaLambda",
-    "SensorNoise",
-    "Setting",
-    "SettingResult",
-    "Slope",
-    "Standing",
-    "StepTaken",
-    "Stuck",
-    "TableMismatch",
-    "Tabular",
-    "TabularLearner",
-    "TooLong",
-    "Training",
-    "Transition",
-    "Tunable",
-    "TwoStep",
-    "UnknownName",
-    "Unreachable",
-    "Valuing",
-    "View",
-    "Wave",
-    "Weak",
-    "World",
-    "evaluate",
-    "experiment",
-    "iter_train",
-    "lane",
-    "load",
-    "race",
-    "train",
-    "view",
-]
-
-
-def load(path: str | os.PathLike[str]) -> Training | Race:
-    """Return what `Training.save` or `Race.save`, the dashboard or the command line has saved.
-
-    Args:
-        path: of an `.npz` file.
-
-    Raises:
-        InvalidInput: if the file cannot be read.
-        DamagedFile: if it is neither, or was changed since it was written.
-    """
-    file = path_of(path, "a file")
-    try:
-        data = file.read_bytes()
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            is_race = f"{CONFIG}.npy" in archive.namelist()
-    except OSError as error:
-        raise InvalidInput(f"{file} cannot be read: {error.strerror}") from error
-    except zipfile.BadZipFile as error:
-        raise DamagedFile(f"{file} is neither a training nor a race: {error}") from error
-    return race_from_bytes(data, str(file)) if is_race else training_from_bytes(data, str(file))
+Gait = _gait.GaitSpec

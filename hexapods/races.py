@@ -9,6 +9,7 @@ import io
 import json
 import os
 import time
+import zipfile
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,7 +28,7 @@ from hexapods.arguments import (
     check_callable,
     check_names,
     given_of,
-    plain_values,
+    plain,
     read_walk,
 )
 from hexapods.assembly import build_walkers
@@ -46,7 +47,7 @@ from hexapods.runs.racing import record_race
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import RaceResult, race_result
 from hexapods.runs.tables import digest_of, read_arrays
-from hexapods.trainings import Table, Training, learned_by
+from hexapods.trainings import Table, Training, learned_by, training_from_bytes
 
 CONFIG = "config"
 """Array of a saved race with its config as JSON."""
@@ -198,7 +199,7 @@ def lane(
         keep_learning=keep_learning,
         plans_with=plans_with,
         has_training=trained is not None,
-        **plain_values(settings),
+        **plain(settings),
     )
     if needs_practice(name) and trained is None and not config.keep_learning:
         raise InvalidInput(
@@ -249,11 +250,11 @@ def race(
     check_callable("on_step", on_step)
     if isinstance(lanes, str | Lane | Training) or not isinstance(lanes, Iterable):
         raise InvalidInput(f'lanes is a list, such as [training, "greedy"], not {lanes!r}')
-    numbers = plain_values({"steps": steps, "seed": seed})
+    numbers = plain({"steps": steps, "seed": seed})
     built = [one if isinstance(one, Lane) else lane(one) for one in lanes]
     like = next((one.training.config for one in built if one.training is not None), None)
     config = RaceConfig(
-        **read_walk(plain_values(given), like),
+        **read_walk(plain(given), like),
         lanes=tuple(one.config for one in built),
         **numbers,
     )
@@ -265,6 +266,28 @@ def race(
         if on_step is not None:
             on_step()
     return Race(config, recording, race_result(recording, config))
+
+
+def load(path: str | os.PathLike[str]) -> Training | Race:
+    """Return what `Training.save` or `Race.save`, the dashboard or the command line has saved.
+
+    Args:
+        path: of an `.npz` file.
+
+    Raises:
+        InvalidInput: if the file cannot be read.
+        DamagedFile: if it is neither, or was changed since it was written.
+    """
+    file = path_of(path, "a file")
+    try:
+        data = file.read_bytes()
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            is_race = f"{CONFIG}.npy" in archive.namelist()
+    except OSError as error:
+        raise InvalidInput(f"{file} cannot be read: {error.strerror}") from error
+    except zipfile.BadZipFile as error:
+        raise DamagedFile(f"{file} is neither a training nor a race: {error}") from error
+    return race_from_bytes(data, str(file)) if is_race else training_from_bytes(data, str(file))
 
 
 def race_from_bytes(data: bytes, name: str) -> Race:

@@ -30,10 +30,10 @@ from hexapods.domain.gait import read_gait
 from hexapods.domain.observation import Observation
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.folder import open_results
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.trial import TrialResult
+from hexapods.experiments.worker import Outcome
 from hexapods.files import path_of
 from hexapods.machine import cores
 from hexapods.runs.config import SimulatorName
@@ -113,9 +113,10 @@ class Experiment:
             InvalidInput: if the folder is no path.
             OSError: if a file cannot be written.
         """
-        from hexapods.experiments.report.files import write_report  # noqa: PLC0415  # Matplotlib
+        from hexapods.experiments.report import files  # noqa: PLC0415  # Matplotlib
 
-        return write_report(path_of(folder, "a folder"), self.summary, self.trials)
+        target = path_of(folder, "a folder")
+        return files.write_files(target, files.report_files(self.summary, self.trials))
 
     def _repr_html_(self) -> str:
         rows = "".join(

@@ -130,8 +130,9 @@ class WorkerPool(Executor):
     def _child(self, number: int) -> Child:
         """Return the process of a thread; a new one if it has none that lives."""
         child = self._children.get(number)
-        # One is not started if the call that it was meant for was cancelled.
-        if child is not None and (child.is_killed or (child.pid is not None and child.wait(0))):
+        # One whose first call was cancelled was not started yet.
+        has_ended = child is not None and child.pid is not None and child.wait(0)
+        if child is not None and (child.is_killed or has_ended):
             self._end(number)
         if number not in self._children:
             self._children[number] = Child(_serve_calls, self._set_up)

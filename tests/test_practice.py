@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import hexapods as hx
-from hexapods.arguments import plain_values, read_walk
+from hexapods.arguments import plain, read_walk
 from hexapods.assembly import build_learner
 from hexapods.domain.disturbances import Limp
 from hexapods.domain.errors import TableMismatch
@@ -149,7 +149,7 @@ def test_numbers_may_be_those_of_numpy() -> None:
     assert nested.config.gait == hx.Gait(1, 2, pairs=((1, 4), (2, 5), (3, 6)))
     assert nested.to_bytes()
     world = [{"kind": "limp", "legs": np.array([1, 4])}]
-    assert read_walk(plain_values({"world": world}))["world"] == hx.World((Limp(legs=(1, 4)),))
+    assert read_walk(plain({"world": world}))["world"] == hx.World((Limp(legs=(1, 4)),))
 
 
 def test_an_evaluation_is_that_of_the_training() -> None:

@@ -4,9 +4,9 @@ Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments`
 common), `gait`, `replays`, `exports`, `stage`, `spectators`, `events`, `options`, `archives`
 (export and import), `monitoring`, `pages`, `docs`. Requests: `agent_bodies`, `schemas`,
 `experiment_body`, `fields`, `descriptions`, `formats`. Answers: `answers`, `recorded_answers`,
-`experiment_answers`, `gait_answers`, `explanation_answers`, `option_answers`, `curves`, `problems`
+`experiment_answers`, `explanation_answers`, `option_answers`, `curves`, `problems`
 (RFC 9457), `templates` (web pages), `compression`. `contract` completes the OpenAPI document.
 Middleware: `middleware` (its base, security headers), `stage_paths` (which stage), `auth` (roles),
 `cookies`, `host_check`, `wellformed`, `problem_pages`, `unfinished`, `memory_limit`,
-`concurrency_limit`, `rate_limit`, `disconnects`. `deps` injects services and stage into the routes.
+`concurrency_limit`, `rate_limit`. `deps` injects services and stage into the routes.
 """

@@ -4,12 +4,11 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal, Union
 
-from pydantic import Field, GetCoreSchemaHandler, create_model
-from pydantic_core import core_schema
+from pydantic import Field, create_model
 
 from app.api.descriptions import VALID
 from app.api.experiment_body import ExperimentBody
-from app.api.fields import Declared, OneOrMore, SettingsBody, TaggedUnion, record_fields
+from app.api.fields import Declared, OneOrMore, SettingsBody, named_in, one_of, record_fields
 from app.api.schemas import (
     WALK,
     BranchBody,
@@ -29,11 +28,13 @@ from hexapods.shows.scene_spec import PAPERS_LANES
 
 
 class AgentBodies:
-    """Request body models of a server, as annotations for the signatures of routes.
+    """Request bodies of a server, as types for the signatures of routes.
 
     Attributes:
-        training, race, experiment, change: used as `Annotated[TrainingBody, bodies.training]`,
-            and likewise for the others.
+        training: of a `TrainingBody`.
+        race: of a `RaceBody`, or, with `branch_from`, of a `BranchBody`.
+        experiment: of an `ExperimentBody`.
+        change: of a `ChangeBody`.
     """
 
     def __init__(self, agents: Sequence[str]) -> None:
@@ -45,44 +46,16 @@ class AgentBodies:
         practices = {agent: _practice_body(agent) for agent in agents}
         trainings = {agent: _training_body(agent, body) for agent, body in practices.items()}
         lanes = {agent: _lane_body(agent, body) for agent, body in practices.items()}
-        self.training = TaggedUnion(trainings, "agent", "agent", TrainingConfig.agent)
-        self.race = RaceOrBranch(_race_body(lanes))
-        self.experiment = ValidatedAs(_experiment_body(agents))
-        self.change = ValidatedAs(_change_body(agents))
+        self.training: Any = named_in(trainings, "agent", "agent", TrainingConfig.agent)
+        self.race: Any = one_of({"race": _race_body(lanes), "branch": BranchBody}, _race_or_branch)
+        self.experiment: Any = _experiment_body(agents)
+        self.change: Any = _change_body(agents)
 
 
-class ValidatedAs:
-    """Annotation: validate with a subclass of the annotated model."""
-
-    def __init__(self, model: type[Any]) -> None:
-        self._model = model
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        return handler.generate_schema(self._model)
-
-
-class RaceOrBranch:
-    """Annotation: a race of its own, or, with `branch_from`, one that goes on from another."""
-
-    def __init__(self, race: type[RaceBody]) -> None:
-        self._race = race
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        choices = {name: handler.generate_schema(model) for name, model in self._models().items()}
-        return core_schema.tagged_union_schema(choices, discriminator=self._tag_of)
-
-    def _models(self) -> Mapping[str, type[Any]]:
-        return {"race": self._race, "branch": BranchBody}
-
-    @staticmethod
-    def _tag_of(value: Any) -> str:
-        is_object = isinstance(value, dict)
-        is_branch = "branch_from" in value if is_object else isinstance(value, BranchBody)
-        return "branch" if is_branch else "race"
+def _race_or_branch(value: Any) -> str:
+    is_object = isinstance(value, dict)
+    is_branch = "branch_from" in value if is_object else isinstance(value, BranchBody)
+    return "branch" if is_branch else "race"
 
 
 def _practice_body(agent: str) -> type[PracticeBody]:
@@ -145,7 +118,7 @@ def _race_body(lanes: Mapping[str, type[LaneBody]]) -> type[RaceBody]:
         ]
 
     limits = Field(min_length=1, max_length=MAX_LANES, description=VALID["lanes"])
-    lane = Annotated[LaneBody, TaggedUnion(lanes, "agent", "agent")]
+    lane: Any = named_in(lanes, "agent", "agent")
     kind = Annotated[list[lane], limits]
     fields = record_fields(RaceConfig, {"world", "lanes", "branch_from"})
     fields["lanes"] = (kind, Field(default_factory=papers_lanes))
@@ -162,7 +135,9 @@ def _experiment_body(agents: Sequence[str]) -> type[ExperimentBody]:
         ExperimentConfig, {"experiment", "settings", "blocks"}, optional={"tolerance"}
     )
     name = "ExperimentBody"
-    return create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)
+    model = create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)
+    model.registered = agents
+    return model
 
 
 def _change_body(agents: Sequence[str]) -> type[ChangeBody]:

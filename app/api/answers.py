@@ -11,12 +11,15 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from app.stage.presentation import Presentation
 from app.stage.state_machine import Origin, Phase
 from app.storage.run import State
 from hexapods.domain.disturbances import AnyDisturbance
+from hexapods.domain.records import described_attributes, summary_of
 from hexapods.domain.settings import Value
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
@@ -30,9 +33,24 @@ Count = Annotated[int, Field(ge=0)]
 
 
 class Answer(BaseModel):
-    """Base class of response objects; forbids additional members."""
+    """Base class of response objects; forbids additional members.
+
+    Their docstrings describe them and their members, as those of a `Record`.
+    """
 
     model_config = ConfigDict(extra="forbid")
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        shape = handler.resolve_ref_schema(described := handler(schema))
+        shape["description"] = summary_of(cls)
+        for name, about in described_attributes(cls).items():
+            member = shape["properties"].get(name, {"$ref": ""})
+            if "$ref" not in member:
+                member.setdefault("description", about)
+        return described
 
 
 Settings = Annotated[dict[str, Value], Field(description="settings of the agent, by name")]
@@ -50,13 +68,14 @@ class LaneView(LaneConfig):
     """A lane of a race, with the id of the training whose Q-table it uses.
 
     The settings of an agent with training are those of the training.
+
+    Attributes:
+        plans_with: model that it plans with; null if it does not search.
+        plans_with_by_default: whether `plans_with` was left out.
     """
 
-    plans_with: Annotated[
-        PlanningModel | None,
-        Field(description="model that it plans with; null if it does not search"),
-    ]
-    plans_with_by_default: Annotated[bool, Field(description="whether `plans_with` was left out")]
+    plans_with: PlanningModel | None
+    plans_with_by_default: bool
     training_id: str | None
 
 
@@ -135,10 +154,13 @@ AnyRunView = Annotated[TrainingView | RaceView | ExperimentView, Field(discrimin
 
 
 class Page(Answer):
-    """Page of a list, with cursor pagination."""
+    """Page of a list, with cursor pagination.
+
+    Attributes:
+        next_cursor: Cursor of the next page; null on the last page.
+    """
 
     next_cursor: str | None
-    """Cursor of the next page; null on the last page."""
 
 
 class TrainingPage(Page):
@@ -200,19 +222,19 @@ class Announcement(Answer):
 
 
 class StageView(Answer):
-    """State of the stage, which shows one run to all viewers."""
+    """State of the stage, which shows one run to all viewers.
+
+    Attributes:
+        phase: `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is
+            at time-out; `showing`: it has ended, its picture has not; `ended`: both have.
+        origin: why the run is on stage: it was `started`, a person has `chosen` it, the server
+            replays it (`automatic`), or it was shown last before the server's start (`restored`).
+    """
 
     run_id: str | None
     kind: Literal["idle", "training", "race"]
-    phase: Phase = Field(
-        description="`empty`; `live`: the run is computed; `decided`: it is computed, and its "
-        "picture is at time-out; `showing`: it has ended, its picture has not; `ended`: both have"
-    )
-    origin: Origin = Field(
-        description="why the run is on stage: it was `started`, a person has `chosen` it, the "
-        "server replays it (`automatic`), or it was shown last before the server's start "
-        "(`restored`)"
-    )
+    phase: Phase
+    origin: Origin
     time_s: float
     playing: bool
     speed: float | Literal["time-lapse"]
@@ -254,10 +276,14 @@ class WhatIfView(Answer):
 
 
 class SpectatorsView(Answer):
-    """Spectators' address with its QR code, or the reason why there is none."""
+    """Spectators' address with its QR code, or the reason why there is none.
+
+    Attributes:
+        qr_code: SVG image as a data URI.
+    """
 
     address: str | None
-    qr_code: str | None = Field(description="SVG image as a data URI")
+    qr_code: str | None
     reason: str
     watching: Count
 

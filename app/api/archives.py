@@ -1,19 +1,18 @@
 """Routes that export runs as an archive, and import them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import AnyRunView, ImportedView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
-from app.api.deps import ServicesDep, StartRequestDep
+from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.formats import attachment
-from app.api.runs import RunIdsQuery, RunPath, find, phrase
+from app.api.runs import RunIdsQuery, RunPath, find, located, phrase
 from app.archive import archive
-from app.archive.transfer import export_chunks, export_many, import_run, import_runs
-from app.events.run_view import run_view
-from app.storage.run import KINDS, Kind
+from app.archive.transfer import export_chunks, export_many, import_runs
+from app.storage.run import KINDS, IdempotencyKey, Kind, Run
 from hexapods.domain.errors import InvalidInput
 
 router = APIRouter()
@@ -69,14 +68,8 @@ def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
 )
 def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep) -> Response:
     """Import the body, an archive, whole or not at all; otherwise as `POST /import`."""
-    body = _not_empty(start_request.body)
-    store, agents, ids = services.store, services.agents, services.jobs.new_id
-    runs = start_request.import_runs(
-        services, lambda key: import_runs(store, body, ids, agents, "the archive", key=key)
-    )
-    for run in runs:
-        services.bus.publish_run(run)
-    return JSONResponse({"items": [run_view(run) for run in runs]}, 201)
+    runs = _imported(services, start_request, is_one=False)
+    return JSONResponse({"items": [services.jobs.view(run) for run in runs]}, 201)
 
 
 @router.post(
@@ -96,17 +89,20 @@ def import_archive(
     A repeated request with the same `Idempotency-Key` returns the run that it imported first. The
     run keeps its id if that is free here and not in the future; the response has the actual id.
     """
-    body = _not_empty(start_request.body)
-    store, agents, ids = services.store, services.agents, services.jobs.new_id
-    run = start_request.start(
-        services, lambda key: import_run(store, body, ids, agents, "the archive", key=key)
-    )
-    services.bus.publish_run(run)
-    location = request.url_for(f"get_{run.kind}", run_id=run.id).path
-    return JSONResponse(run_view(run), 201, {"Location": location})
+    (run,) = _imported(services, start_request, is_one=True)
+    return located(services, request, run, 201)
 
 
-def _not_empty(body: bytes) -> bytes:
+def _imported(services: Services, start_request: StartRequest, *, is_one: bool) -> Sequence[Run]:
+    body, store, ids = start_request.body, services.store, services.jobs.new_id
     if not body:
         raise InvalidInput("send the .zip file of an exported run as the request's body")
-    return body
+
+    def create(key: IdempotencyKey | None) -> Sequence[Run]:
+        agents = services.agents
+        return import_runs(store, body, ids, agents, "the archive", is_one=is_one, key=key)
+
+    runs = start_request.runs(services, create)
+    for run in runs:
+        services.bus.publish_run(run)
+    return runs

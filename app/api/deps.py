@@ -22,7 +22,7 @@ from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.stage.roles import Role
 from app.storage.database.store import RunStore
-from app.storage.idempotency import Idempotency, Import, Start
+from app.storage.idempotency import Create, Idempotency
 from app.storage.recordings import Recordings
 from app.storage.run import MAX_KEY_LENGTH, Run
 from app.viewer.replay_frames import ReplayFrames
@@ -90,17 +90,10 @@ class StartRequest(NamedTuple):
     key: str | None
     """Idempotency key of the client, which makes a repeated request safe; None if none was sent."""
 
-    def start(self, services: Services, start: Start) -> Run:
-        """Return the run that `start` creates, or that an earlier request with this key created."""
-        return services.idempotency.run(self.key, self._bytes, start)
-
-    def import_runs(self, services: Services, create: Import) -> Sequence[Run]:
+    def runs(self, services: Services, create: Create) -> Sequence[Run]:
         """Return the runs that `create` creates, or that an earlier request with this key did."""
-        return services.idempotency.runs(self.key, self._bytes, create)
-
-    @property
-    def _bytes(self) -> bytes:
-        return self.address.encode() + b"\n" + self.body
+        request = self.address.encode() + b"\n" + self.body
+        return services.idempotency.runs(self.key, request, create)
 
 
 def _services(request: Request) -> Services:

@@ -32,7 +32,11 @@ ListedRunView = AnyRunView | DamagedRunView
 
 
 class SceneLane(Answer):
-    """A lane at the moment that the stage shows; `halted` if its run ended before it was done."""
+    """A lane at the moment that the stage shows; `halted` if its run ended before it was done.
+
+    Attributes:
+        done: whether it has used all its steps, or failed.
+    """
 
     lane: Count
     agent: str
@@ -44,7 +48,7 @@ class SceneLane(Answer):
     thinking: bool
     futures: Count
     futures_total: Count
-    done: bool = Field(description="whether it has used all its steps, or failed")
+    done: bool
     halted: bool
     crossed: bool
     rank: int
@@ -74,32 +78,39 @@ class NextAction(Answer):
 
 
 class SceneActionValues(Answer):
-    """Action values of a learner in its present state."""
+    """Action values of a learner in its present state.
+
+    Attributes:
+        values_m: by leg pair and cell; null where the foot already stands.
+        current: the cell of each leg pair.
+    """
 
     agent: str
     lane: Count
     pairs: list[tuple[int, int]]
     cell_names: list[str]
     cells_m: list[tuple[float, float]]
-    values_m: list[list[float | None]] = Field(
-        description="by leg pair and cell; null where the foot already stands"
-    )
+    values_m: list[list[float | None]]
     visits: list[list[float | None]]
-    current: list[int] = Field(description="the cell of each leg pair")
+    current: list[int]
     next: NextAction | None
     low: float
     high: float
 
 
 class SceneView(Answer):
-    """The moment of a run that the stage shows, without poses."""
+    """The moment of a run that the stage shows, without poses.
+
+    Attributes:
+        computed_s: time of the run up to which it is computed.
+    """
 
     run_id: str | None
     kind: Literal["idle", "training", "race"]
     phase: str
     time_s: float
     duration_s: float | None
-    computed_s: float = Field(description="time of the run up to which it is computed")
+    computed_s: float
     time_out_s: float | None
     ended: bool
     shown_speed: float

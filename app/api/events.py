@@ -114,7 +114,7 @@ def _snapshot(
         "scene": shared.stage.scene(),
     }
     if run_id is not None:
-        snapshot["evaluations"] = store.evaluations(run_id)
+        snapshot["evaluations"] = store.curves.get(run_id)
     return json_text(snapshot), {run.id for run in runs}
 
 

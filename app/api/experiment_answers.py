@@ -300,7 +300,11 @@ class NarrativeSection(Answer):
 
 
 class SummaryView(Answer):
-    """Summary of an experiment's trials so far."""
+    """Summary of an experiment's trials so far.
+
+    Attributes:
+        parameters: names of what is varied beside place and agent.
+    """
 
     format: int
     experiment: ExperimentName
@@ -309,7 +313,7 @@ class SummaryView(Answer):
     machine: Machine
     trials: SummaryCounts
     cost: Cost | None
-    parameters: list[str] = Field(description="names of what is varied beside place and agent")
+    parameters: list[str]
     settings: list[SettingView]
     pooled: list[PooledView]
     curves: list[CurveOfSetting]

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import fields
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -24,6 +24,9 @@ class ExperimentBody(Body):
     A single value is accepted in place of a list. The fields of `ExperimentConfig` are added to it.
     """
 
+    registered: ClassVar[Collection[str]] = ()
+    """Names of the agents that may be compared, once the server has started."""
+
     experiment: Annotated[ExperimentName, Field(description=VALID["experiment"])]
     name: Name | None = None
     settings: SettingsBody = Field(default_factory=SettingsBody)
@@ -33,7 +36,7 @@ class ExperimentBody(Body):
         INTEGRAL,
     ] = None
 
-    def start(self, agents: Collection[str]) -> ExperimentStart:
+    def start(self) -> ExperimentStart:
         """Convert to the request of the service.
 
         Raises:
@@ -45,8 +48,8 @@ class ExperimentBody(Body):
             if one.name in type(self).model_fields and one.name not in ("experiment", "settings")
         } | given_settings(self.settings)
         for agent in given["agents"] or ():
-            if agent not in agents:
-                raise UnknownName("agent", agent, agents)
+            if agent not in self.registered:
+                raise UnknownName("agent", agent, self.registered)
         values = {name: tuple(v) if isinstance(v, list) else v for name, v in given.items()}
         config = experiment_config(self.experiment, values)
         return ExperimentStart(config, self.name or None, self.workers)

@@ -11,8 +11,9 @@ from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.formats import attachment, file_response, negotiated
-from app.api.runs import RunPath, accepted, find, run_routes
+from app.api.runs import RunPath, find, run_routes, start_run
 from app.api.schemas import TrialBody
+from app.jobs.trial_runs import trial_start
 from app.storage.artifact_file import ArtifactFile, chunks
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
@@ -106,7 +107,7 @@ def get_trials(
 ) -> Response:
     """Return the trials so far, by key: the setting and the seed's number."""
     config = _config(find(services, "experiment", run_id))
-    rows = services.store.trials(run_id)
+    rows = services.store.trials.get(run_id)
     if negotiated(request, format, ("json", "csv")) == "csv":
         table = trials_as_csv(config, rows)
         return attachment(table, "text/csv; charset=utf-8", f"trials-{run_id}.csv")
@@ -131,10 +132,9 @@ def run_trial(
 
     It is a race of one lane after its practice; of a league or recovery, the practice.
     """
-    find(services, "experiment", run_id)
-    jobs = services.jobs
-    run = start_request.start(services, lambda once: jobs.run_trial(run_id, body.key, once))
-    return accepted(request, jobs.view(run))
+    config = _config(find(services, "experiment", run_id))
+    start = trial_start(config, run_id, body.key)
+    return start_run(services, request, start_request, start)
 
 
 def _config(run: Run) -> ExperimentConfig:

@@ -25,22 +25,26 @@ class WalkedGrid(Answer):
 
 
 class ChoiceView(Answer):
-    """Why an action was chosen, why no other, and when another would have been."""
+    """Why an action was chosen, why no other, and when another would have been.
 
-    kind: Annotated[
-        Literal["exploited", "explored", "unknown"],
-        Field(description="the best by its scores, a random one, or one that is not known yet"),
-    ]
-    criterion: Annotated[str, Field(description="what its scores are")]
+    Attributes:
+        kind: the best by its scores, a random one, or one that is not known yet.
+        criterion: what its scores are.
+        margin_m: score of the action, less that of the runner-up.
+        epsilon: probability of a random action.
+        draw: random number that was compared with it.
+        probability: of this action in this state.
+    """
+
+    kind: Literal["exploited", "explored", "unknown"]
+    criterion: str
     scores: Values
     best: list[Move]
     runner_up: Move | None
-    margin_m: Annotated[
-        float | None, Field(description="score of the action, less that of the runner-up")
-    ]
-    epsilon: Annotated[float | None, Field(description="probability of a random action")]
-    draw: Annotated[float | None, Field(description="random number that was compared with it")]
-    probability: Annotated[float, Field(ge=0, le=1, description="of this action in this state")]
+    margin_m: float | None
+    epsilon: float | None
+    draw: float | None
+    probability: Annotated[float, Field(ge=0, le=1)]
     sentences: list[str]
 
 
@@ -53,17 +57,22 @@ class TermView(Answer):
 
 
 class ValueUpdateView(Answer):
-    """Update of one value: the rule gives the value after it, to the last bit."""
+    """Update of one value: the rule gives the value after it, to the last bit.
+
+    Attributes:
+        numbers: the rule with rounded numbers put in.
+        is_exact: whether the rule was checked and gives `after`.
+    """
 
     observation: list[Cell]
     action: Move
     move: str
     rule: str
-    numbers: Annotated[str, Field(description="the rule with rounded numbers put in")]
+    numbers: str
     terms: list[TermView]
     before: float
     after: float
-    is_exact: Annotated[bool, Field(description="whether the rule was checked and gives `after`")]
+    is_exact: bool
 
 
 class OtherUpdates(Answer):
@@ -86,25 +95,34 @@ class BeliefView(Answer):
 
 
 class UpdateView(Answer):
-    """Update of the learner's values by a step."""
+    """Update of the learner's values by a step.
+
+    Attributes:
+        stored: the value in the end, as planning may change it again.
+    """
 
     summary: str
     direct: ValueUpdateView | None
-    stored: Annotated[
-        float | None, Field(description="the value in the end, as planning may change it again")
-    ]
+    stored: float | None
     others: OtherUpdates
     beliefs: list[BeliefView]
 
 
 class FutureView(Answer):
-    """Finding of a search about an action."""
+    """Finding of a search about an action.
+
+    Attributes:
+        reward_m: of the step, as simulated.
+        return_m: what the search compared.
+        sequences: simulated ones that begin with it.
+        steps: how far these look ahead.
+    """
 
     action: Move
-    reward_m: Annotated[float, Field(description="of the step, as simulated")]
-    return_m: Annotated[float, Field(description="what the search compared")]
-    sequences: Annotated[Count, Field(description="simulated ones that begin with it")]
-    steps: Annotated[Count, Field(description="how far these look ahead")]
+    reward_m: float
+    return_m: float
+    sequences: Count
+    steps: Count
 
 
 class SearchView(Answer):
@@ -117,7 +135,14 @@ class SearchView(Answer):
 
 
 class ExplanationView(WalkedGrid):
-    """An explained step."""
+    """An explained step.
+
+    Attributes:
+        visits: how often each move had been tried here before, by leg pair and cell.
+        update: null if it learned nothing from it.
+        search: null if it does not search.
+        unexplained: why the choice is not explained.
+    """
 
     run_id: str
     lane: int | None
@@ -127,28 +152,25 @@ class ExplanationView(WalkedGrid):
     action: Move
     reward_m: float
     next_observation: list[Cell] | None
-    visits: Annotated[
-        list[list[float | None]] | None,
-        Field(description="how often each move had been tried here before, by leg pair and cell"),
-    ]
+    visits: list[list[float | None]] | None
     choice: ChoiceView | None
-    update: Annotated[UpdateView | None, Field(description="null if it learned nothing from it")]
-    search: Annotated[SearchView | None, Field(description="null if it does not search")]
-    unexplained: Annotated[str | None, Field(description="why the choice is not explained")]
+    update: UpdateView | None
+    search: SearchView | None
+    unexplained: str | None
 
 
 class TableView(WalkedGrid):
-    """Values, visits and best actions of states: a row a state, in the order of their cells."""
+    """Values, visits and best actions of states: a row a state, in the order of their cells.
+
+    Attributes:
+        states: number of all states.
+        values: action values [m], pair by pair; null where illegal.
+        visits: how often each was tried; a value without a try is no estimate.
+    """
 
     step: Count
-    states: Annotated[int, Field(ge=1, description="number of all states")]
+    states: Annotated[int, Field(ge=1)]
     first: Count
-    values: Annotated[
-        list[list[float | None]],
-        Field(description="action values [m], pair by pair; null where illegal"),
-    ]
-    visits: Annotated[
-        list[list[float | None]],
-        Field(description="how often each was tried; a value without a try is no estimate"),
-    ]
+    values: list[list[float | None]]
+    visits: list[list[float | None]]
     best: list[Move]

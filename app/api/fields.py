@@ -3,16 +3,18 @@
 import json
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import MISSING, fields
-from typing import Annotated, Any, Optional, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Optional, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from pydantic import (
     AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Discriminator,
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    Tag,
     TypeAdapter,
     model_validator,
 )
@@ -239,38 +241,32 @@ def _nested_form(body: type[Body], unknown: Mapping[str, Any]) -> str | None:
     return f"settings are a member of their own since 0.2: {nested}" if flat else None
 
 
-class TaggedUnion:
-    """Annotation: a union of body models, discriminated by a field of text.
+def one_of(models: Mapping[str, type[Any]], tag_of: Callable[[Any], str]) -> Any:
+    """Return the type of a body of one of several models, which `tag_of` names."""
+    tagged = tuple(Annotated[model, Tag(name)] for name, model in models.items())
+    return Annotated[Union[tagged], Discriminator(tag_of)]  # noqa: UP007 - of types made here
 
-    A body whose field names no model raises `UnknownName`.
+
+def named_in(
+    models: Mapping[str, type[Any]], field: str, noun: str, default: str | None = None
+) -> Any:
+    """Return the type of a body of one of several models, which a field of text names.
+
+    Args:
+        models: body model by value of the field; another value raises `UnknownName`.
+        field: name of the field.
+        noun: what it names, for the error.
+        default: value of a body without the field; by default the first.
     """
 
-    def __init__(
-        self, models: Mapping[str, type[Any]], field: str, noun: str, default: str | None = None
-    ) -> None:
-        """Create the union.
-
-        Args:
-            models: body model by value of the field.
-            field: name of the field.
-            noun: what it names, for the error.
-            default: value of a body without the field; by default the first.
-        """
-        self._models, self._field, self._noun = models, field, noun
-        self._default = default or next(iter(models))
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        choices = {name: handler.generate_schema(model) for name, model in self._models.items()}
-        # The default model rejects a body that is no object or lacks a required field.
-        return core_schema.tagged_union_schema(choices, discriminator=self._tag_of)
-
-    def _tag_of(self, value: Any) -> str:
+    def tag_of(value: Any) -> str:
         is_object = isinstance(value, dict)
-        tag = value.get(self._field) if is_object else getattr(value, self._field, None)
+        tag = value.get(field) if is_object else getattr(value, field, None)
         if not isinstance(tag, str):
-            return self._default
-        if tag not in self._models:
-            raise UnknownName(self._noun, tag[:MAX_NAME], self._models)
+            # This model rejects a body that is no object or lacks a required field.
+            return default or next(iter(models))
+        if tag not in models:
+            raise UnknownName(noun, tag[:MAX_NAME], models)
         return tag
+
+    return one_of(models, tag_of)

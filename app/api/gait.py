@@ -1,20 +1,20 @@
 """Route of the gait analysis of a race or training."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
-from typing import Annotated, Any, Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, Literal, NamedTuple
 
 from fastapi import APIRouter, Query
 from starlette.responses import JSONResponse, Response
 
 from app.api.deps import Services, ServicesDep
 from app.api.descriptions import VALID
-from app.api.gait_answers import GaitView
 from app.api.runs import RunPath
 from app.storage.errors import Conflict, Damaged
 from app.storage.run import DamagedRun, Run, world_of
+from hexapods.domain.records import Record, to_json
 from hexapods.runs.config import TrainingConfig
-from hexapods.runs.gait_analysis import gait_figures, window_of
+from hexapods.runs.gait_analysis import GaitFigures, gait_figures, window_of
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recorded_walk import (
     RecordedWalk,
@@ -24,14 +24,48 @@ from hexapods.runs.recorded_walk import (
 )
 
 TrainingPart = Literal["practice", "evaluation"]
+Part = Literal["race", "practice", "evaluation"]
 
 router = APIRouter(prefix="/runs", tags=["runs"])
+
+
+@dataclass(frozen=True)
+class GaitLane(Record):
+    """A robot's walk; `figures` are null if nothing of it lies in the window.
+
+    Attributes:
+        agent: its agent.
+        recorded_from_s, recorded_to_s: robot time of what is recorded.
+        figures: of the window.
+        no_effort: why there are neither torque nor energy, in a sentence.
+    """
+
+    agent: str
+    recorded_from_s: float
+    recorded_to_s: float
+    figures: GaitFigures | None
+    no_effort: str | None
+
+
+@dataclass(frozen=True)
+class GaitAnalysis(Record):
+    """Gait analysis of a race, lane by lane, or of a training; times are robot time [s].
+
+    Attributes:
+        part: of the run.
+        step_s: duration of a step.
+        lanes: of a race all, of a training one.
+    """
+
+    part: Part
+    step_s: float
+    lanes: list[GaitLane]
 
 
 @router.get(
     "/{run_id}/gait",
     summary="Analyse the gait: footfalls, speed, posture, torque, energy",
-    response_model=GaitView,
+    response_model=GaitAnalysis,
 )
 def get_gait(
     services: ServicesDep,
@@ -68,7 +102,7 @@ def get_gait(
 class _Walks(NamedTuple):
     """Walks of a run that are analysed: one of each agent."""
 
-    part: Literal["race", "practice", "evaluation"]
+    part: Part
     agents: Sequence[str]
     walks: Sequence[RecordedWalk]
     step: int = 0
@@ -111,18 +145,13 @@ def _answer(shown: _Walks, from_s: float, to_s: float) -> bytes:
         for agent, walk in zip(shown.agents, shown.walks, strict=True)
     ]
     step_s = shown.walks[0].problem.robot.step_s
-    return bytes(JSONResponse({"part": shown.part, "step_s": step_s, "lanes": lanes}).body)
+    return bytes(JSONResponse(to_json(GaitAnalysis(shown.part, step_s, lanes))).body)
 
 
-def _lane(agent: str, walk: RecordedWalk, from_s: float, to_s: float) -> dict[str, Any]:
+def _lane(agent: str, walk: RecordedWalk, from_s: float, to_s: float) -> GaitLane:
     figures = gait_figures(walk, from_s, to_s)
-    return {
-        "agent": agent,
-        "recorded_from_s": walk.from_s,
-        "recorded_to_s": walk.to_s,
-        "figures": None if figures is None else asdict(figures),
-        "no_effort": None if figures and figures.effort else _no_effort(walk),
-    }
+    no_effort = None if figures and figures.effort else _no_effort(walk)
+    return GaitLane(agent, walk.from_s, walk.to_s, figures, no_effort)
 
 
 def _no_effort(walk: RecordedWalk) -> str:

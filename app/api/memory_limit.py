@@ -6,6 +6,8 @@ in memory too. A body over its own limit is refused with 413. Streams that gener
 by one hold little memory and are not limited.
 """
 
+from typing import Literal
+
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -25,46 +27,11 @@ BODIES_BYTES, BODIES_SHARE_BYTES = 128 << 20, 96 << 20
 _SMALL_BYTES = 64 << 10
 """Smaller bodies are not counted: the limit on connections bounds their number."""
 _RETRY_AFTER_S = 5
-
-
-class BodyLimit(HttpMiddleware):
-    """Middleware that refuses a large body by its Content-Length, or once it exceeds the limit."""
-
-    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Call the app with a counting `receive`; refuse with 413."""
-        limit = MAX_FILE_BYTES if path_of(scope) in _FILE_ROUTES else MAX_BODY_BYTES
-        refusal = problem(413, f"The request's body may have at most {limit:,} bytes here.")
-        length = Headers(scope=scope).get("content-length", "")
-        if length.isdigit() and int(length[:18]) > limit:
-            await refusal(scope, receive, send)
-            return
-        received, refused = 0, False
-
-        async def receive_counted() -> Message:
-            nonlocal received, refused
-            message = await receive()
-            received += len(message.get("body", b""))
-            if received > limit:
-                refused = True
-                # Simulate a disconnect for the app; the refusal is sent below.
-                return {"type": "http.disconnect"}
-            return message
-
-        async def send_unless_refused(message: Message) -> None:
-            if not refused:
-                await send(message)
-
-        try:
-            await self._app(scope, receive_counted, send_unless_refused)
-        except Exception:
-            if not refused:
-                raise
-        if refused:
-            await refusal(scope, receive, send)
+_Refusal = Refusal | Literal["too large"]
 
 
 class HeldBodies(HttpMiddleware):
-    """Middleware that budgets large bodies by role; to be installed inside `TokenGuard`."""
+    """Middleware that limits and budgets bodies by role; to be installed inside `TokenGuard`."""
 
     def __init__(self, app: ASGIApp) -> None:
         """Wrap an app."""
@@ -74,9 +41,14 @@ class HeldBodies(HttpMiddleware):
         self._bodies = {r: MemoryBudget(BODIES_BYTES, BODIES_SHARE_BYTES) for r in roles}
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Call the app, or refuse with 429 or 503."""
+        """Call the app, or refuse with 413, 429 or 503."""
         role: Role = scope["state"]["role"]
-        body = _RequestBody(receive, self._bodies[role], client_of(scope))
+        limit = MAX_FILE_BYTES if path_of(scope) in _FILE_ROUTES else MAX_BODY_BYTES
+        length = Headers(scope=scope).get("content-length", "")
+        if length.isdigit() and int(length[:18]) > limit:
+            await _refusal_response("too large", limit)(scope, receive, send)
+            return
+        body = _RequestBody(receive, limit, self._bodies[role], client_of(scope))
         answer = _Response(send, self._answers[role], client_of(scope), body)
         try:
             await self._app(scope, body.receive, answer.send)
@@ -87,28 +59,29 @@ class HeldBodies(HttpMiddleware):
             body.release()
         refusal = body.refusal or answer.refusal
         if refusal is not None and not answer.is_started:
-            await _refusal_response(refusal)(scope, receive, send)
+            await _refusal_response(refusal, limit)(scope, receive, send)
 
 
 class _RequestBody:
-    """The request body, with its memory reservation."""
+    """The request body, with its limit and its memory reservation."""
 
-    def __init__(self, receive: Receive, budget: MemoryBudget, client: str) -> None:
-        self._receive, self._budget, self._client = receive, budget, client
+    def __init__(self, receive: Receive, limit: int, budget: MemoryBudget, client: str) -> None:
+        self._receive, self._limit = receive, limit
+        self._budget, self._client = budget, client
         self._received = self._held = 0
-        self.refusal: Refusal | None = None
+        self.refusal: _Refusal | None = None
 
     async def receive(self) -> Message:
         message = await self._receive()
         self._received += len(message.get("body", b""))
-        if self._received > _SMALL_BYTES:
+        if self._received > self._limit:
+            self.refusal = "too large"
+        elif self._received > _SMALL_BYTES:
             more = self._received - self._held
             self.refusal = self._budget.reserve(self._client, more)
-            if self.refusal is not None:
-                # Simulate a disconnect for the app; `HeldBodies` sends the refusal.
-                return {"type": "http.disconnect"}
-            self._held += more
-        return message
+            self._held += 0 if self.refusal else more
+        # Simulate a disconnect for the app; `HeldBodies` sends the refusal.
+        return message if self.refusal is None else {"type": "http.disconnect"}
 
     def release(self) -> None:
         if self._held:
@@ -124,7 +97,7 @@ class _Response:
         self._send, self._request_body = send, request_body
         self._budget, self._client = budget, client
         self._start: Message | None = None
-        self.refusal: Refusal | None = None
+        self.refusal: _Refusal | None = None
         self.is_started = False
 
     async def send(self, message: Message) -> None:
@@ -167,7 +140,9 @@ class _Response:
                 self._budget.release(self._client, len(body))
 
 
-def _refusal_response(refusal: Refusal) -> ASGIApp:
+def _refusal_response(refusal: _Refusal, limit: int) -> ASGIApp:
+    if refusal == "too large":
+        return problem(413, f"The request's body may have at most {limit:,} bytes here.")
     headers = {"Retry-After": str(_RETRY_AFTER_S)}
     if refusal == "share":
         detail = "This address has too much to send or to read here at once; take it in turns."

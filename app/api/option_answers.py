@@ -2,7 +2,7 @@
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
 
 from app.api.answers import Answer, Settings
 from hexapods.domain.disturbances import AnyDisturbance
@@ -28,24 +28,29 @@ class GaitOption(Described):
 
 
 class RobotOption(Described):
-    """A robot preset."""
+    """A robot preset.
+
+    Attributes:
+        built: parts in whose place a disturbance puts another value, as they were built.
+    """
 
     robot: AnyRobot
-    built: dict[str, float] = Field(
-        description="parts in whose place a disturbance puts another value, as they were built"
-    )
+    built: dict[str, float]
 
 
 class ExperimentOption(Described):
-    """An experiment, with the fields of its request body and their defaults."""
+    """An experiment, with the fields of its request body and their defaults.
+
+    Attributes:
+        simulator_defaults: by simulator: the defaults that are others there.
+        agents: the agents that it can compare.
+    """
 
     fields: list[str]
     grid: list[str]
     defaults: dict[str, Any]
-    simulator_defaults: dict[str, dict[str, Any]] = Field(
-        description="by simulator: the defaults that are others there"
-    )
-    agents: list[str] = Field(description="the agents that it can compare")
+    simulator_defaults: dict[str, dict[str, Any]]
+    agents: list[str]
 
 
 class TrainingDefaults(BaseModel):
@@ -90,25 +95,34 @@ class DefaultsView(Answer):
 
 
 class SettingOption(Answer):
-    """Declaration of a setting: the labels, limits and default of its form control."""
+    """Declaration of a setting: the labels, limits and default of its form control.
+
+    Attributes:
+        valid: the valid values, in words.
+        excludes_minimum: whether the minimum itself is not valid.
+        excludes_maximum: whether the maximum itself is not valid.
+        choices: the valid words, if only certain words are valid.
+        choice_titles: the titles of these words, in their order.
+        is_live: whether it may change while a training runs.
+    """
 
     title: str
     symbol: str | None
     quantity: str | None
     unit: str | None
     help: str
-    valid: str = Field(description="the valid values, in words")
+    valid: str
     minimum: float | None
     maximum: float | None
-    excludes_minimum: bool = Field(description="whether the minimum itself is not valid")
-    excludes_maximum: bool = Field(description="whether the maximum itself is not valid")
+    excludes_minimum: bool
+    excludes_maximum: bool
     is_number: bool
     is_boolean: bool
     is_whole: bool
-    choices: list[str] = Field(description="the valid words, if only certain words are valid")
-    choice_titles: list[str] = Field(description="the titles of these words, in their order")
+    choices: list[str]
+    choice_titles: list[str]
     default: Value
-    is_live: bool = Field(description="whether it may change while a training runs")
+    is_live: bool
 
 
 class WorldOption(Described):
@@ -125,61 +139,85 @@ class RangesView(Answer):
 
 
 class FieldOption(SettingOption):
-    """Declaration of a field of a disturbance; of a list, that of each of its values."""
+    """Declaration of a field of a disturbance; of a list, that of each of its values.
 
-    short: str = Field(description="its name in a text, such as `limp:legs=1,4:at=25`")
+    Attributes:
+        short: its name in a text, such as `limp:legs=1,4:at=25`.
+        ranges: narrower limits by the choice of another field.
+    """
+
+    short: str
     is_list: bool
     is_required: bool
-    ranges: RangesView | None = Field(description="narrower limits by the choice of another field")
+    ranges: RangesView | None
 
 
 class DisturbanceOption(Described):
-    """A kind of disturbance, with its fields and the simulators that know it."""
+    """A kind of disturbance, with its fields and the simulators that know it.
+
+    Attributes:
+        size: the field that says how much happens.
+        nothing: the size at which nothing happens: a number, or the robot's part that has it.
+        lasts: whether it holds until another of the same thing.
+        identified_by: fields that tell, beside the kind, what it changes; each leg is one thing.
+        part: part of a leg to which it happens; empty for all of it.
+        repairs: whether it only ends what happened before.
+        adjective: of a leg to which it has happened: limp, repaired.
+    """
 
     fields: dict[str, FieldOption]
-    size: str | None = Field(description="the field that says how much happens")
-    nothing: float | str | None = Field(
-        description="the size at which nothing happens: a number, or the robot's part that has it"
-    )
-    lasts: bool = Field(description="whether it holds until another of the same thing")
-    identified_by: list[str] = Field(
-        description="fields that tell, beside the kind, what it changes; each leg is one thing"
-    )
-    part: list[str] = Field(description="part of a leg to which it happens; empty for all of it")
-    repairs: bool = Field(description="whether it only ends what happened before")
-    adjective: str = Field(description="of a leg to which it has happened: limp, repaired")
+    size: str | None
+    nothing: float | str | None
+    lasts: bool
+    identified_by: list[str]
+    part: list[str]
+    repairs: bool
+    adjective: str
     simulators: list[str]
 
 
 class AgentOption(Described):
-    """An agent, with its constructor's settings and those that can change during a training."""
+    """An agent, with its constructor's settings and those that can change during a training.
+
+    Attributes:
+        searches: whether it plans with a simulator: takes `plans_with`.
+        steps_ahead: of a look-ahead agent without settings: how many steps it simulates.
+    """
 
     learns: bool
-    searches: bool = Field(description="whether it plans with a simulator: takes `plans_with`")
+    searches: bool
     needs_practice: bool
     keeps_learning: bool
-    steps_ahead: int | None = Field(
-        description="of a look-ahead agent without settings: how many steps it simulates"
-    )
+    steps_ahead: int | None
     color: str
     settings: dict[str, SettingOption]
     live_settings: dict[str, SettingOption]
 
 
 class ExportOption(Answer):
-    """A type of file that a race or training which has ended can be exported as."""
+    """A type of file that a race or training which has ended can be exported as.
+
+    Attributes:
+        address: below `/api/v1/runs/{run_id}/`.
+        method: of the request; POST is for operators only.
+        install: the command that installs what the server lacks; null if it lacks nothing.
+    """
 
     title: str
-    address: str = Field(description="below `/api/v1/runs/{run_id}/`")
-    method: Literal["GET", "POST"] = Field(description="of the request; POST is for operators only")
+    address: str
+    method: Literal["GET", "POST"]
     ending: str
-    install: str | None = Field(
-        description="the command that installs what the server lacks; null if it lacks nothing"
-    )
+    install: str | None
 
 
 class OptionsView(Answer):
-    """Options, defaults, limits and help texts of all forms."""
+    """Options, defaults, limits and help texts of all forms.
+
+    Attributes:
+        limits: [lowest, highest]; `settings` says which of them are not valid themselves.
+        titles: names of fields that are no declared settings.
+        exports: files of a recorded walk.
+    """
 
     version: str
     gaits: list[GaitOption]
@@ -193,9 +231,7 @@ class OptionsView(Answer):
     experiments: list[ExperimentOption]
     defaults: DefaultsView
     settings: dict[str, SettingOption]
-    limits: dict[str, tuple[float | None, float | None]] = Field(
-        description="[lowest, highest]; `settings` says which of them are not valid themselves"
-    )
+    limits: dict[str, tuple[float | None, float | None]]
     help: dict[str, str]
-    titles: dict[str, str] = Field(description="names of fields that are no declared settings")
-    exports: list[ExportOption] = Field(description="files of a recorded walk")
+    titles: dict[str, str]
+    exports: list[ExportOption]

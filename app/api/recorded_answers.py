@@ -2,8 +2,6 @@
 
 from typing import Literal
 
-from pydantic import Field
-
 from app.api.answers import Answer, Count
 from hexapods.domain.gait import AnyGait
 from hexapods.runs.clocks import Clock
@@ -84,13 +82,17 @@ class TimelineLane(Answer):
 
     Of a lane of more than 2,000 steps, `stride` steps together are told as one: it decides on all
     of them, then walks.
+
+    Attributes:
+        steps: that it has taken so far.
+        stride: number of steps told as one; 1 in all but long races.
     """
 
     agent: str
     training_id: str | None
     color: str
-    steps: Count = Field(description="that it has taken so far")
-    stride: int = Field(description="number of steps told as one; 1 in all but long races")
+    steps: Count
+    stride: int
     points: list[tuple[float, float]]
     thinking: list[tuple[float, float]]
     futures: list[int]
@@ -110,30 +112,46 @@ class TimelineView(Answer):
 
 
 class ReplayMark(Answer):
-    """Something that happened in a run, as a point on its timeline."""
+    """Something that happened in a run, as a point on its timeline.
+
+    Attributes:
+        lane: from 0; null if it concerns all lanes.
+        step: that begins then, or in which a robot fell, from 0.
+        distance_m: that an evaluation reached.
+    """
 
     kind: MarkKind
     time_s: float
-    lane: int | None = Field(description="from 0; null if it concerns all lanes")
-    step: int | None = Field(description="that begins then, or in which a robot fell, from 0")
-    distance_m: float | None = Field(description="that an evaluation reached")
+    lane: int | None
+    step: int | None
+    distance_m: float | None
 
 
 class ReplayView(Answer):
-    """Plan by which a page plays a run by itself; times are the run's own [s]."""
+    """Plan by which a page plays a run by itself; times are the run's own [s].
+
+    Attributes:
+        ghost_id: of the run whose lanes are shown as ghosts.
+        clock: that times a race; null for a training.
+        complete: whether the run will record no more.
+        duration_s: null while it is not known.
+        recorded_s: intervals that can be shown; of a long practice the first and newest steps.
+        step_ends_s: for each lane, of its recorded steps.
+        frame_s: time between two frames of level 0.
+        segment_frames: number of frames in a segment.
+        lowest_level: each level has half as many frames as the one below.
+    """
 
     run_id: str
-    ghost_id: str | None = Field(description="of the run whose lanes are shown as ghosts")
+    ghost_id: str | None
     kind: Literal["training", "race"]
-    clock: Clock | None = Field(description="that times a race; null for a training")
-    complete: bool = Field(description="whether the run will record no more")
-    duration_s: float | None = Field(description="null while it is not known")
-    recorded_s: list[tuple[float, float]] = Field(
-        description="intervals that can be shown; of a long practice the first and newest steps"
-    )
-    step_ends_s: list[list[float]] = Field(description="for each lane, of its recorded steps")
+    clock: Clock | None
+    complete: bool
+    duration_s: float | None
+    recorded_s: list[tuple[float, float]]
+    step_ends_s: list[list[float]]
     marks: list[ReplayMark]
-    frame_s: float = Field(description="time between two frames of level 0")
-    segment_frames: int = Field(description="number of frames in a segment")
-    lowest_level: int = Field(description="each level has half as many frames as the one below")
+    frame_s: float
+    segment_frames: int
+    lowest_level: int
     highest_level: int

@@ -24,7 +24,7 @@ from app.api.answers import (
     TrainingView,
 )
 from app.api.contract import LOCATION, answers
-from app.api.deps import Services, ServicesDep, StartRequestDep
+from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
 from app.api.explanation_answers import ExplanationView
 from app.api.fields import RunId
@@ -32,6 +32,7 @@ from app.api.run_code import run_code
 from app.api.schemas import AnnotationBody
 from app.archive.transfer import MAX_RUNS
 from app.jobs.jobs import Jobs
+from app.jobs.submissions import CopyStart, Start
 from app.storage.database.listing import Listing
 from app.storage.errors import Conflict, Damaged, NotFound
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
@@ -87,10 +88,18 @@ def find_any(services: Services, kind: Kind, run_id: str) -> AnyRun:
     return run
 
 
-def accepted(request: Request, view: dict[str, Any]) -> Response:
-    """Return the 202 response to a start, with the run's Location."""
-    location = request.url_for(f"get_{view['kind']}", run_id=view["id"]).path
-    return JSONResponse(view, 202, {"Location": location})
+def start_run(
+    services: Services, request: Request, start_request: StartRequest, start: Start
+) -> Response:
+    """Queue a run, unless this request did before; return the response with its Location."""
+    (run,) = start_request.runs(services, lambda key: [services.jobs.start(start, key)])
+    return located(services, request, run, 202)
+
+
+def located(services: Services, request: Request, run: Run, status: int) -> Response:
+    """Return the response with a new run, and its Location."""
+    location = request.url_for(f"get_{run.kind}", run_id=run.id).path
+    return JSONResponse(services.jobs.view(run), status, {"Location": location})
 
 
 router = APIRouter(prefix="/runs", tags=["runs"])
@@ -154,9 +163,7 @@ def run_again(
 
     It is the same to the last bit, wall times aside.
     """
-    jobs = services.jobs
-    run = start_request.start(services, lambda key: jobs.again(run_id, key))
-    return accepted(request, jobs.view(run))
+    return start_run(services, request, start_request, CopyStart(run_id))
 
 
 @router.get(
@@ -200,7 +207,7 @@ def _page(services: Services, listing: Listing) -> Response:
 def run_routes(kind: Kind) -> APIRouter:
     """Create the routes common to all kinds of runs, for one kind."""
     router = APIRouter(prefix=f"/{kind}s", tags=[f"{kind}s"])
-    view, page = _VIEWS[kind]
+    view, page = VIEWS[kind]
 
     @router.get("", summary=f"List {kind}s", name=f"list_{kind}s", response_model=page)
     def list_runs(services: ServicesDep, listing: ListingDep) -> Response:
@@ -240,7 +247,7 @@ _VERBS = {
     "pause": "Pause {}",
     "resume": "Resume {} that is paused, interrupted or failed",
 }
-_VIEWS: Mapping[Kind, tuple[type[RunView], type[Page]]] = {
+VIEWS: Mapping[Kind, tuple[type[RunView], type[Page]]] = {
     "training": (TrainingView, TrainingPage),
     "race": (RaceView, RacePage),
     "experiment": (ExperimentView, ExperimentPage),

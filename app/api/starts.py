@@ -1,21 +1,19 @@
 """Routes whose bodies depend on the registered agents: starts, live changes, what-ifs."""
 
-from typing import Annotated
+from typing import Any
 
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.agent_bodies import AgentBodies
-from app.api.answers import ExperimentView, RaceView, TrainingView, WhatIfView
+from app.api.answers import EstimateView, TrainingView, WhatIfView
 from app.api.contract import LOCATION, answers
 from app.api.deps import RoleDep, Services, ServicesDep, StartRequestDep
-from app.api.estimates import estimate_routes
-from app.api.experiment_body import ExperimentBody
 from app.api.rate_limit import what_ifs_used_up, whole_seconds
-from app.api.runs import RunPath, accepted, find
-from app.api.schemas import BranchBody, ChangeBody, RaceBody, TrainingBody
+from app.api.runs import VIEWS, RunPath, find, start_run
 from app.limits.addresses import client_of
 from app.storage.errors import Busy
+from app.storage.run import Kind
 from app.what_if.what_if import MAX_STEPS, OPERATORS_LIMIT_S, SEEDS, SPECTATORS_LIMIT_S, Asker
 from hexapods.domain.errors import InvalidInput
 
@@ -27,26 +25,40 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         agents: names of the registered agents.
     """
     router, bodies = APIRouter(), AgentBodies(agents)
-    router.include_router(estimate_routes(bodies))
-
-    @router.post(
-        "/trainings",
-        tags=["trainings"],
-        status_code=202,
-        summary="Start a training",
-        response_model=TrainingView,
-        responses=answers(202, headers=LOCATION),
+    training_body: Any = bodies.training
+    change_body: Any = bodies.change
+    _add_starts(
+        router,
+        "training",
+        training_body,
+        start=("a training", "Queue a training, and return its run."),
+        estimate=("a training", "Time a few steps of the agent on this machine, and extrapolate."),
     )
-    def start_training(
-        services: ServicesDep,
-        request: Request,
-        start_request: StartRequestDep,
-        body: Annotated[TrainingBody, bodies.training],
-    ) -> Response:
-        """Queue a training, and return its run."""
-        jobs = services.jobs
-        run = start_request.start(services, lambda key: jobs.train(body.start(), key))
-        return accepted(request, jobs.view(run))
+    _add_starts(
+        router,
+        "race",
+        bodies.race,
+        start=(
+            "a race and the practice that it needs",
+            "Queue the trainings of its lanes, then the race, and return the race's run.\n\n"
+            "With `branch_from` the race repeats the first steps of another to the last bit, and "
+            "goes on\nfrom there in another world; it takes all else from that race.",
+        ),
+        estimate=(
+            "a race and its practice",
+            "Time a few steps of each lane, and extrapolate; not for a race that branches off.",
+        ),
+    )
+    _add_starts(
+        router,
+        "experiment",
+        bodies.experiment,
+        start=("an experiment over many seeds", "Queue an experiment, and return its run."),
+        estimate=(
+            "an experiment",
+            "Time a few steps of its agents, and extrapolate to all of its trials.",
+        ),
+    )
 
     @router.patch(
         "/trainings/{run_id}",
@@ -54,54 +66,10 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         summary="Change pace or live settings of a training",
         response_model=TrainingView,
     )
-    def change_training(
-        services: ServicesDep, run_id: RunPath, body: Annotated[ChangeBody, bodies.change]
-    ) -> Response:
+    def change_training(services: ServicesDep, run_id: RunPath, body: change_body) -> Response:
         """Apply the change between two steps, and record it with the step's number in `changes`."""
         find(services, "training", run_id)
         return JSONResponse(services.jobs.view(services.jobs.change(run_id, body.changes())))
-
-    @router.post(
-        "/races",
-        tags=["races"],
-        status_code=202,
-        summary="Start a race and the practice that it needs",
-        response_model=RaceView,
-        responses=answers(202, headers=LOCATION),
-    )
-    def start_race(
-        services: ServicesDep,
-        request: Request,
-        start_request: StartRequestDep,
-        body: Annotated[RaceBody | BranchBody, bodies.race],
-    ) -> Response:
-        """Queue the trainings of its lanes, then the race, and return the race's run.
-
-        With `branch_from` the race repeats the first steps of another to the last bit, and goes on
-        from there in another world; it takes all else from that race.
-        """
-        jobs = services.jobs
-        run = start_request.start(services, lambda key: jobs.race(body.start(), key))
-        return accepted(request, jobs.view(run))
-
-    @router.post(
-        "/experiments",
-        tags=["experiments"],
-        status_code=202,
-        summary="Start an experiment over many seeds",
-        response_model=ExperimentView,
-        responses=answers(202, headers=LOCATION),
-    )
-    def start_experiment(
-        services: ServicesDep,
-        request: Request,
-        start_request: StartRequestDep,
-        body: Annotated[ExperimentBody, bodies.experiment],
-    ) -> Response:
-        """Queue an experiment, and return its run."""
-        jobs, agents = services.jobs, services.agents
-        run = start_request.start(services, lambda key: jobs.experiment(body.start(agents), key))
-        return accepted(request, jobs.view(run))
 
     @router.post(
         "/what-if",
@@ -115,10 +83,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         ),
     )
     def ask(
-        services: ServicesDep,
-        request: Request,
-        role: RoleDep,
-        body: Annotated[TrainingBody, bodies.training],
+        services: ServicesDep, request: Request, role: RoleDep, body: training_body
     ) -> Response:
         """Return what a practice with these settings would give, on the kinematic simulator."""
         if body.continue_from is not None:
@@ -129,6 +94,57 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         return JSONResponse(services.what_if.ask(body.start().config, asker))
 
     return router
+
+
+def _add_starts(
+    router: APIRouter, kind: Kind, body_type: Any, start: tuple[str, str], estimate: tuple[str, str]
+) -> None:
+    """Add the routes that start a run, and that estimate how long it would take.
+
+    Args:
+        router: receives the routes.
+        kind: of the run.
+        body_type: type of the body of both.
+        start: what is started, for the summary, and a description.
+        estimate: likewise, of what is estimated.
+    """
+
+    def start_of_kind(
+        services: ServicesDep,
+        request: Request,
+        start_request: StartRequestDep,
+        body: body_type,
+    ) -> Response:
+        return start_run(services, request, start_request, body.start())
+
+    def estimate_of_kind(
+        services: ServicesDep,
+        body: body_type,
+    ) -> Response:
+        return JSONResponse({"seconds": round(services.estimates.of(body.start()), 1)})
+
+    router.add_api_route(
+        f"/{kind}s",
+        start_of_kind,
+        methods=["POST"],
+        tags=[f"{kind}s"],
+        status_code=202,
+        summary=f"Start {start[0]}",
+        description=start[1],
+        response_model=VIEWS[kind][0],
+        responses=answers(202, headers=LOCATION),
+        name=f"start_{kind}",
+    )
+    router.add_api_route(
+        f"/{kind}s/estimate",
+        estimate_of_kind,
+        methods=["POST"],
+        tags=[f"{kind}s"],
+        summary=f"Estimate how long {estimate[0]} would take on this server",
+        description=estimate[1],
+        response_model=EstimateView,
+        name=f"estimate_{kind}",
+    )
 
 
 def _spectator(services: Services, client: str) -> Asker:

@@ -14,7 +14,7 @@ from app.api.explanation_answers import TableView
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
 from app.api.recorded_answers import CurveView, QTableView
-from app.api.runs import RunPath, find, run_routes
+from app.api.runs import RunPath, find, located, run_routes
 from app.archive import table_import
 from app.explanations.service import MAX_VALUES_SHOWN
 from app.storage.artifact_file import closing_after
@@ -48,12 +48,11 @@ def import_training(
     """Import the body, an `.npz` from a training's `q-table` or from `hexapods train`."""
     if not start_request.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
-    jobs, agents = services.jobs, services.agents
-    run = start_request.start(
-        services, lambda key: table_import.import_table(jobs, start_request.body, agents, name, key)
+    jobs, agents, table = services.jobs, services.agents, start_request.body
+    (run,) = start_request.runs(
+        services, lambda key: [table_import.import_table(jobs, table, agents, name, key)]
     )
-    location = request.url_for("get_training", run_id=run.id).path
-    return JSONResponse(jobs.view(run), 201, {"Location": location})
+    return located(services, request, run, 201)
 
 
 def _without_step(given: Any) -> Any:
@@ -98,7 +97,7 @@ def get_curve(
 ) -> Response:
     """Return the evaluations so far, with greedy's and the best known distance to compare."""
     run = find(services, "training", run_id)
-    rows = services.store.evaluations(run_id)
+    rows = services.store.curves.get(run_id)
     if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(curves.as_csv(rows), "text/csv; charset=utf-8", f"curve-{run_id}.csv")
     shown = {

@@ -28,7 +28,7 @@ _FIELDS = _Evaluation.__struct_fields__
 
 
 class CurveRows(Sequence[Mapping[str, Any]]):
-    """Rows of a curve, as of `RunStore.append_evaluations`; each is made when it is read."""
+    """Rows of a curve, as of `Curves.append`; each is made when it is read."""
 
     def __init__(self) -> None:
         """Begin with none."""

@@ -25,7 +25,7 @@ from app.storage.artifact_file import chunks
 from app.storage.database.store import RunStore
 from app.storage.run import CHECKPOINT, RESUMABLE, TABLE, Run
 from app.storage.stored_races import MAX_RACE_FILES, race_file
-from app.storage.stored_recordings import (
+from app.storage.stored_trainings import (
     PRACTICE,
     TRANSITIONS_PER_FILE,
     evaluations_file,

@@ -75,7 +75,7 @@ class _Summary(msgspec.Struct):
 
 
 def trials_json(rows: Sequence[Mapping[str, Any]]) -> bytes:
-    """Encode the trials of an experiment, as returned by `RunStore.trials`, as `trials.json`."""
+    """Encode the trials of an experiment, as returned by `Trials.get`, as `trials.json`."""
     return json.dumps(list(rows), indent=0, allow_nan=False).encode()
 
 
@@ -88,7 +88,7 @@ def read_trials_json(data: bytes, config: ExperimentConfig, label: str) -> list[
         label: name of the file for error messages.
 
     Returns:
-        rows for `RunStore.append_trials`.
+        rows for `Trials.append`.
 
     Raises:
         DamagedFile: if it is malformed, or has trials that are not in the experiment's plan.

@@ -29,11 +29,6 @@ _ONE_OF_SEVERAL = re.compile(rf"({'|'.join(KINDS)})-[0-9a-z]{{1,32}}\.zip", re.A
 _ANYONE = "anyone"
 
 
-def export_run(store: RunStore, run_id: str) -> bytes:
-    """Export an ended run to an archive in memory; raises as `export_chunks`."""
-    return b"".join(export_chunks(store, run_id))
-
-
 def export_chunks(
     store: RunStore, run_id: str, budget: MemoryBudget | None = None
 ) -> Iterator[bytes]:
@@ -94,7 +89,7 @@ def _contents(
 ) -> tuple[Run, dict[str, bytes], dict[str, archive.Member]]:
     """Return an ended run, and of its archive the members in memory and those in files."""
     run = store.get(run_id)
-    curve, trials = store.evaluations(run_id), store.trials(run_id)
+    curve, trials = store.curves.get(run_id), store.trials.get(run_id)
     if not is_finite([curve, trials]):
         # They would be null in JSON, which every import rejects.
         raise Damaged(run_id, "its curve or its trials have NaN or an infinity")
@@ -125,41 +120,6 @@ class _BudgetedChunks:
             self._budget.release(_ANYONE, self._size)
 
 
-def import_run(
-    store: RunStore,
-    data: bytes,
-    ids: RunIds,
-    agents: Collection[str],
-    label: str,
-    *,
-    key: IdempotencyKey | None = None,
-) -> Run:
-    """Validate an archive, and add its run to a store atomically. No run is replaced.
-
-    The run keeps its id if that is free in this store and not in the future; new runs would sort
-    before a run with a future id.
-
-    Args:
-        store: store that receives the run.
-        data: the whole archive.
-        ids: generator of ids for this store.
-        agents: names of the registered agents.
-        label: name of the archive for error messages.
-        key: idempotency key of the request, stored with the run.
-
-    Returns:
-        the run as stored.
-
-    Raises:
-        DamagedFile: if it is no archive of a run, or was changed since its export.
-        InvalidInput: if its agent, robot or gait is not supported here.
-        StorageFull: if there is too little disk space.
-    """
-    members = archive.unpack(data, label, _is_member_name)
-    run, content = _checked(members, ids, agents, label)
-    return store.add(run, content, ids, key)
-
-
 def import_runs(
     store: RunStore,
     data: bytes,
@@ -167,9 +127,13 @@ def import_runs(
     agents: Collection[str],
     label: str,
     *,
+    is_one: bool = False,
     key: IdempotencyKey | None = None,
 ) -> list[Run]:
     """Validate an archive of one run or several, and add all of them to a store, or none.
+
+    No run is replaced. Each keeps its id if that is free in this store and not in the future; new
+    runs would sort before a run with a future id.
 
     Args:
         store: store that receives the runs.
@@ -177,16 +141,19 @@ def import_runs(
         ids: generator of ids for this store.
         agents: names of the registered agents.
         label: name of the archive for error messages.
+        is_one: whether an archive of several is refused.
         key: idempotency key of the request, stored with the runs.
 
     Returns:
         the runs as stored.
 
     Raises:
-        DamagedFile, InvalidInput, StorageFull: as `import_run`, for any of them.
+        DamagedFile: if it is no archive of runs, or was changed since its export.
+        InvalidInput: if an agent, robot or gait is not supported here.
+        StorageFull: if there is too little disk space.
     """
-    members = archive.unpack(data, label, _is_any_member_name)
-    if RUN in members:
+    members = archive.unpack(data, label, _is_member_name if is_one else _is_any_member_name)
+    if is_one or RUN in members:
         checked = [_checked(members, ids, agents, label)]
     elif not members or not all(map(_ONE_OF_SEVERAL.fullmatch, members)):
         raise DamagedFile(f"{label} is no archive of runs: it has no {RUN}")
@@ -195,7 +162,7 @@ def import_runs(
             _checked(archive.unpack(one, label, _is_member_name), ids, agents, label)
             for label, one in ((f"{name} of {label}", one) for name, one in members.items())
         ]
-    return list(store.add_all(checked, ids, key))
+    return list(store.add(checked, ids, key))
 
 
 def _checked(

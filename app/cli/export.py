@@ -28,20 +28,18 @@ def run(options: argparse.Namespace) -> int:
         HexapodError: if a run does not exist or has not ended, or the file cannot be written.
     """
     # Imported here, as the database modules would slow the start of other commands.
-    from app.archive.transfer import export_many, export_run  # noqa: PLC0415
+    from app.archive.transfer import export_chunks, export_many  # noqa: PLC0415
 
     check_writable(options.out)
     with open_for_reading(read_settings(data=options.data)) as store:
         exported = [store.get(find_run(store, run_id).id) for run_id in options.run_ids]
         first, *others = exported
-        if others:
-            data = b"".join(export_many(store, [run.id for run in exported]))
-        else:
-            data = export_run(store, first.id)
+        ids = [run.id for run in exported]
+        data = b"".join(export_many(store, ids) if others else export_chunks(store, first.id))
     write_whole(options.out, data)
     if options.json:
-        ids = {"ids": [run.id for run in exported]} if others else {"id": first.id}
-        print(json.dumps({**ids, "file": options.out, "bytes": len(data)}))
+        named = {"ids": ids} if others else {"id": first.id}
+        print(json.dumps({**named, "file": options.out, "bytes": len(data)}))
     else:
         these = f"{len(exported)} runs are" if others else f"{first.kind} {first.id} is"
         print(

@@ -126,7 +126,7 @@ def _outcome(run: Run) -> str:
 def _show(options: argparse.Namespace) -> int:
     with open_for_reading(read_settings(data=options.data)) as store:
         run = find_run(store, options.run_id)
-        curve = store.evaluations(run.id)
+        curve = store.curves.get(run.id)
     view = run_view(run)
     if options.json:
         print(json_text({**view, "curve": list(curve)}))

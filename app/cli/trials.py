@@ -83,14 +83,14 @@ def _run(
 
 def _report(cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
     # Imported here, as SciPy and Matplotlib take a second to import.
-    from hexapods.experiments.report.files import write_report  # noqa: PLC0415
+    from hexapods.experiments.report.files import report_files, write_files  # noqa: PLC0415
     from hexapods.experiments.summary import summarise  # noqa: PLC0415
 
     results, set_aside = folder.planned()
     workers = None if cluster.scheduler is not None else cluster.workers or cores()
     summary = summarise(folder.plan.config, results, set_aside, folder.cost(workers))
     with report_errors(folder.path):
-        write_report(folder.path, summary, results)
+        write_files(folder.path, report_files(summary, results))
     return summary
 
 

@@ -38,12 +38,11 @@ from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import WORLDS
 from hexapods.experiments.cluster import ClusterSpec, connect
 from hexapods.experiments.config import MAX_SEEDS, REPORT
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.formatting import counted
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.tuning.config import Objective, TuningConfig, tuning_config
-from hexapods.experiments.worker import Workers
+from hexapods.experiments.worker import Outcome, Workers
 from hexapods.machine import cores
 from hexapods.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
 
@@ -223,13 +222,14 @@ def _run(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder, retry: b
 
 def _report(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder) -> dict[str, Any]:
     # Imported here, as SciPy and Matplotlib take a second to import.
-    from hexapods.experiments.tuning.report import write_tuning  # noqa: PLC0415
+    from hexapods.experiments.report.files import write_files  # noqa: PLC0415
+    from hexapods.experiments.tuning.report import tuning_files  # noqa: PLC0415
     from hexapods.experiments.tuning.summary import summarise_tuning  # noqa: PLC0415
 
     workers = None if cluster.scheduler is not None else cluster.workers or cores()
     summary = summarise_tuning(tuning, folder, workers)
     with report_errors(folder.path):
-        write_tuning(folder.path, tuning, folder, summary)
+        write_files(folder.path, tuning_files(tuning, folder, summary))
     return summary
 
 

@@ -1,9 +1,7 @@
 """Explanation service: explains steps of trainings and races, and shows tables of any moment."""
 
 import json
-import threading
-from collections.abc import Callable, Hashable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Hashable
 from typing import Any, TypeVar
 
 from cachetools import LRUCache
@@ -12,8 +10,9 @@ from app.cache import BytesCache
 from app.explanations.explanation_json import SearchFindings, explanation_as_json, table_as_json
 from app.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPractice
 from app.jobs.stopping import Stopping
+from app.jobs.turns import Turns
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Conflict
+from app.storage.errors import Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import Run
 from app.storage.stored_tables import load_table
@@ -52,7 +51,7 @@ class Explanations:
         self._stopping = stopping or Stopping()
         self._practices: LRUCache[Hashable, RebuiltPractice] = LRUCache(MAX_PRACTICES)
         self._answers = BytesCache(MAX_ANSWER_BYTES)
-        self._lock, self._count_lock, self._waiting = threading.Lock(), threading.Lock(), 0
+        self._turns = Turns("explanations", MAX_WAITING)
 
     def explain(self, run_id: str, step: int | None, lane: int) -> bytes:
         """Explain a step of a training, or of a lane of a race.
@@ -140,7 +139,7 @@ class Explanations:
         known = self._answers.get(key)
         if known is not None:
             return known
-        with self._one_at_a_time():
+        with self._turns.turn(self._stopping.check):
             # Another request may have asked for the same meanwhile.
             known = self._answers.get(key)
             if known is None:
@@ -232,19 +231,6 @@ class Explanations:
         if practice is None or not practice.fits(steps, changes):
             self._practices[key] = practice = make()
         return practice
-
-    @contextmanager
-    def _one_at_a_time(self) -> Iterator[None]:
-        with self._count_lock:
-            if self._waiting >= MAX_WAITING:
-                raise Busy(f"{MAX_WAITING} explanations are waiting; ask again later", 2)
-            self._waiting += 1
-        try:
-            with self._stopping.holding(self._lock):
-                yield
-        finally:
-            with self._count_lock:
-                self._waiting -= 1
 
 
 class _TrainingSteps:

@@ -6,8 +6,8 @@ In the server:
   run what its process needs to start, or to resume.
 - `queue` orders them; `supervisor` starts them as cores free up, and shuts them down.
 - `worker_process` is the handle on a process; `job` writes its messages to store and bus.
-- `process_pool` runs functions for requests that wait, in processes of its own; `stopping` ends
-  those that take long in threads.
+- `process_pool` runs functions for requests that wait, in processes of its own; `turns`
+  lets them wait for each other, operators first; `stopping` ends those that take long in threads.
 Between both: `messages` defines the commands and messages on the pipe.
 In the worker process:
 - `worker` is the entry point and runs the loop; `experiment_worker` runs an experiment's trials.

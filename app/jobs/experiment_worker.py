@@ -13,10 +13,10 @@ from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Re
 from app.storage.stored_trials import outcomes_of
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import SUMMARY
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.result import ClaimVerdict, ExperimentResult, TrialCounts
 from hexapods.experiments.trial import TrialResult
+from hexapods.experiments.worker import Outcome
 
 BATCHES_PER_S = 5
 SUMMARY_EVERY_S = 2.0

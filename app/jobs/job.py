@@ -334,7 +334,7 @@ class Job:
             {"step": r.step, "distance_m": r.distance_m, "epsilon": r.epsilon} for r in evaluated
         ]
         if rows:
-            self._store.append_evaluations(self.run_id, rows)
+            self._store.curves.append(self.run_id, rows)
         if batch.transitions is not None:
             self._recordings.log(self.run_id, batch.transitions)
         for record in batch.records:
@@ -460,7 +460,7 @@ class ExperimentJob(Job):
 
     def _handle(self, message: Message) -> None:
         if isinstance(message, TrialsDone):
-            self._store.append_trials(self.run_id, message.rows)
+            self._store.trials.append(self.run_id, message.rows)
             self._handle_progress(message.done)
         elif isinstance(message, Reported):
             self._store.put_artifact(self.run_id, message.name, message.data)

@@ -11,22 +11,11 @@ from app.events.run_view import run_view
 from app.jobs.job import Job
 from app.jobs.messages import Changed
 from app.jobs.queue import RunQueue
-from app.jobs.submissions import (
-    BranchStart,
-    ExperimentStart,
-    RaceStart,
-    TrainingStart,
-    new_branch,
-    new_copy,
-    new_experiment,
-    new_race,
-    new_training,
-)
+from app.jobs.submissions import Start
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.jobs.tasks import resumed_runs
-from app.jobs.trial_runs import trial_start
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Conflict, NotAnswering, NotFound, StorageFailed
+from app.storage.errors import Busy, Conflict, NotAnswering, StorageFailed
 from app.storage.recordings import Recordings
 from app.storage.run import (
     ANNOTATIONS,
@@ -47,7 +36,6 @@ from app.storage.run_ids import RunIds
 from hexapods.domain.disturbances import Disturbance, as_mapping, disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.domain.world import check_ends
-from hexapods.experiments.config import ExperimentConfig
 from hexapods.runs.config import TrainingConfig, changeable_settings
 
 MAX_PAUSED = 16
@@ -135,85 +123,18 @@ class Jobs:
         """Return the REST resource of a run, with its position in the queue."""
         return run_view(run, self._queue.position(run.id))
 
-    def train(self, start: TrainingStart, key: IdempotencyKey | None = None) -> Run:
-        """Queue a training.
+    def start(self, start: Start, key: IdempotencyKey | None = None) -> Run:
+        """Queue a run, preceded by the trainings that are part of the request.
 
         Args:
-            start: the training requested.
+            start: the run requested.
             key: idempotency key of the request, stored with the run.
 
         Raises:
-            InvalidInput, Conflict: if the request is invalid.
+            InvalidInput, TableMismatch, NotFound, Conflict: if the request is invalid.
             Busy: if the queue is full.
         """
-        return self._enqueue([new_training(start, self._store, self.new_id)], key)
-
-    def race(self, start: RaceStart | BranchStart, key: IdempotencyKey | None = None) -> Run:
-        """Queue a race, preceded by the trainings that are part of the request.
-
-        A branch repeats another race up to a step, and goes on from there in another world.
-
-        Args:
-            start: the race requested.
-            key: idempotency key of the request, stored with the race.
-
-        Raises:
-            NotFound, InvalidInput, Conflict: if the request is invalid.
-            Busy: if the queue is full.
-        """
-        if isinstance(start, BranchStart):
-            return self._enqueue([new_branch(start, self._store, self.new_id)], key)
-        return self._enqueue(new_race(start, self._store, self.new_id), key)
-
-    def experiment(self, start: ExperimentStart, key: IdempotencyKey | None = None) -> Run:
-        """Queue an experiment.
-
-        Args:
-            start: the experiment requested.
-            key: idempotency key of the request, stored with the run.
-
-        Raises:
-            InvalidInput: if the request is invalid.
-            Busy: if the queue is full.
-        """
-        return self._enqueue([new_experiment(start, self.new_id)], key)
-
-    def again(self, run_id: str, key: IdempotencyKey | None = None) -> Run:
-        """Queue a run with the settings of another.
-
-        Args:
-            run_id: id of the other run, in any state.
-            key: idempotency key of the request, stored with the run.
-
-        Raises:
-            NotFound: if there is no such run.
-            InvalidInput, Conflict: if an agent or a table that it needs is not there any more.
-            Busy: if the queue is full.
-        """
-        return self._enqueue([new_copy(self._store.get(run_id), self._store, self.new_id)], key)
-
-    def run_trial(self, experiment_id: str, key: str, once: IdempotencyKey | None = None) -> Run:
-        """Queue a trial of an experiment as a run of its own, whose notes name the trial.
-
-        Args:
-            experiment_id: id of the experiment.
-            key: of the trial.
-            once: idempotency key of the request, stored with the run.
-
-        Raises:
-            NotFound: if there is no such experiment.
-            InvalidInput: if it has no such trial, or no single run is the same.
-            Busy: if the queue is full.
-        """
-        config = self._store.get(experiment_id).config
-        if not isinstance(config, ExperimentConfig):
-            raise NotFound(f"there is no experiment {experiment_id!r}")
-        start, notes = trial_start(config, experiment_id, key)
-        if isinstance(start, RaceStart):
-            runs = new_race(start, self._store, self.new_id)
-        else:
-            runs = [new_training(start, self._store, self.new_id)]
-        return self._enqueue([*runs[:-1], replace(runs[-1], notes=notes)], once)
+        return self._enqueue(start.runs(self._store, self.new_id), key)
 
     def keep(self, run: Run, table: bytes, key: IdempotencyKey | None = None) -> Run:
         """Store an imported training, which ended elsewhere, and publish it.
@@ -223,9 +144,10 @@ class Jobs:
             table: its table, as a file.
             key: idempotency key of the request, stored with the run.
         """
-        run = self._store.add(run, Content(artifacts={TABLE: table}), self.new_id, key)
-        self._publish(run)
-        return run
+        content = Content(artifacts={TABLE: table})
+        (stored,) = self._store.add([(run, content)], self.new_id, key)
+        self._publish(stored)
+        return stored
 
     def pause(self, run_id: str) -> Run:
         """Pause a running job.

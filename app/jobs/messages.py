@@ -52,7 +52,7 @@ class ExperimentTask:
     Attributes:
         config: the experiment.
         workers: trials at once; None is one per core.
-        rows: the trials that are done, as returned by `RunStore.trials`.
+        rows: the trials that are done, as returned by `Trials.get`.
         wall_s: for how long it ran before [s].
     """
 
@@ -127,7 +127,7 @@ class Saved(NamedTuple):
 
 
 class TrialsDone(NamedTuple):
-    """New trials, as for `RunStore.append_trials`, and how many are done now."""
+    """New trials, as for `Trials.append`, and how many are done now."""
 
     rows: tuple[Mapping[str, Any], ...]
     done: int

@@ -78,7 +78,7 @@ class RunQueue:
         fields = ("done", "waiting_for", "error", "result", "ended_at")
         changed = {field: getattr(run, field) for field in fields}
         queued = self._store.change(run.id, RESUMABLE[run.kind], "queued", **changed)
-        self._store.delete_evaluations(run.id, after_step=run.done)
+        self._store.curves.delete_after(run.id, after_step=run.done)
         return queued
 
     def reconcile(self) -> None:

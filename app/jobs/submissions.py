@@ -4,7 +4,7 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Protocol
 
 from app.storage.database.store import RunStore
 from app.storage.run import Run
@@ -26,6 +26,17 @@ from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.tables import Checkpoint, check_fits
 
 
+class Start(Protocol):
+    """Request to start a run."""
+
+    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
+        """Return the run to be queued, not stored yet, preceded by those that are part of it.
+
+        Raises:
+            InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
+        """
+
+
 @dataclass(frozen=True)
 class TrainingStart:
     """Request to start a training.
@@ -34,11 +45,37 @@ class TrainingStart:
         config: the training; its seed is ignored if it continues another.
         name: None for a generated name.
         continue_from: id of the training whose table it continues from.
+        notes: of the run.
     """
 
     config: TrainingConfig
     name: str | None = None
     continue_from: str | None = None
+    notes: str = ""
+
+    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
+        """See `Start`."""
+        config = self.config
+        if not learns(config.agent):
+            raise InvalidInput(f"{config.agent} does not learn, so it cannot be trained")
+        check_training(config)
+        check_ends(config.world.disturbances, config.steps)
+        if self.continue_from is not None:
+            table = load_table(store, self.continue_from)
+            check_fits(table, config, config.observation)
+            _check_agent(table, config.agent, self.continue_from)
+            # Its learning generator goes on; evaluations take theirs from the seed that began it.
+            config = replace(config, seed=table.meta["config"]["seed"])
+        training = Run(
+            id=new_id(),
+            kind="training",
+            name=self.name or _training_name(config),
+            config=config,
+            continued_from=self.continue_from,
+            total=config.steps,
+            notes=self.notes,
+        )
+        return [training]
 
 
 @dataclass(frozen=True)
@@ -71,64 +108,36 @@ class RaceStart:
     steps: int
     seed: int
     name: str | None = None
+    notes: str = ""
 
-
-def new_training(start: TrainingStart, store: RunStore, new_id: Callable[[], str]) -> Run:
-    """Return a training to be queued, as a run that is not stored yet.
-
-    Raises:
-        InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
-    """
-    config = start.config
-    if not learns(config.agent):
-        raise InvalidInput(f"{config.agent} does not learn, so it cannot be trained")
-    check_training(config)
-    check_ends(config.world.disturbances, config.steps)
-    if start.continue_from is not None:
-        table = load_table(store, start.continue_from)
-        check_fits(table, config, config.observation)
-        _check_agent(table, config.agent, start.continue_from)
-        # Its learning generator goes on; evaluations take theirs from the seed that began it.
-        config = replace(config, seed=table.meta["config"]["seed"])
-    return Run(
-        id=new_id(),
-        kind="training",
-        name=start.name or _training_name(config),
-        config=config,
-        continued_from=start.continue_from,
-        total=config.steps,
-    )
-
-
-def new_race(start: RaceStart, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
-    """Return a race to be queued, preceded by the trainings that are part of the request.
-
-    Raises:
-        InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
-    """
-    check_walk(start.walk)
-    check_ends(start.walk.world.disturbances, start.steps)
-    trainings: dict[int, Run] = {}
-    lanes: list[LaneConfig] = []
-    for number, lane in enumerate(start.lanes):
-        try:
-            lanes.append(_lane(lane, start.walk, store))
-        except InvalidInput as error:
-            raise InvalidInput(f"lane {number + 1}: {error}") from error
-        if lane.training is not None:
-            trainings[number] = new_training(lane.training, store, new_id)
-    config = RaceConfig(**vars(start.walk), lanes=tuple(lanes), steps=start.steps, seed=start.seed)
-    ids = {number: training.id for number, training in trainings.items()}
-    race = Run(
-        id=new_id(),
-        kind="race",
-        name=start.name or _race_name(config),
-        config=config,
-        lane_training_ids=tuple(ids.get(n, lane.training_id) for n, lane in enumerate(start.lanes)),
-        waiting_for=tuple(ids.values()),
-        total=config.steps * len(lanes),
-    )
-    return [*trainings.values(), race]
+    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
+        """See `Start`."""
+        check_walk(self.walk)
+        check_ends(self.walk.world.disturbances, self.steps)
+        trainings: dict[int, Run] = {}
+        lanes: list[LaneConfig] = []
+        for number, lane in enumerate(self.lanes):
+            try:
+                lanes.append(_lane(lane, self.walk, store))
+            except InvalidInput as error:
+                raise InvalidInput(f"lane {number + 1}: {error}") from error
+            if lane.training is not None:
+                (trainings[number],) = lane.training.runs(store, new_id)
+        config = RaceConfig(**vars(self.walk), lanes=tuple(lanes), steps=self.steps, seed=self.seed)
+        ids = {number: training.id for number, training in trainings.items()}
+        race = Run(
+            id=new_id(),
+            kind="race",
+            name=self.name or _race_name(config),
+            config=config,
+            lane_training_ids=tuple(
+                ids.get(number, lane.training_id) for number, lane in enumerate(self.lanes)
+            ),
+            waiting_for=tuple(ids.values()),
+            total=config.steps * len(lanes),
+            notes=self.notes,
+        )
+        return [*trainings.values(), race]
 
 
 def _training_name(config: TrainingConfig) -> str:
@@ -169,76 +178,82 @@ class BranchStart:
     disturbances: Sequence[Disturbance]
     name: str | None = None
 
-
-def new_branch(start: BranchStart, store: RunStore, new_id: Callable[[], str]) -> Run:
-    """Return a race to be queued that repeats another up to a step.
-
-    Raises:
-        InvalidInput, NotFound, Conflict: if it cannot be.
-    """
-    race_id, step = start.branch.race_id, start.branch.step
-    original = store.get(race_id)
-    config = original.config
-    if not isinstance(config, RaceConfig):
-        raise InvalidInput(f"{race_id} is not a race; branch_from takes the id of a race")
-    taken = config.steps if original.state == "finished" else original.done // len(config.lanes)
-    if not 0 <= step < config.steps or step > taken:
-        last = min(taken, config.steps - 1)
-        raise InvalidInput(
-            f"branch_from.step must be from 0 to {last:,}, not {step:,}: race {race_id} has taken "
-            f"{taken:,} of {config.steps:,} steps, and at least one must be left"
-        )
-    for one in start.disturbances:
-        if one.at_step < step:
+    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
+        """Return a race that repeats another up to a step; see `Start`."""
+        race_id, step = self.branch.race_id, self.branch.step
+        original = store.get(race_id)
+        config = original.config
+        if not isinstance(config, RaceConfig):
+            raise InvalidInput(f"{race_id} is not a race; branch_from takes the id of a race")
+        is_whole = original.state == "finished"
+        taken = config.steps if is_whole else original.done // len(config.lanes)
+        if not 0 <= step < config.steps or step > taken:
+            last = min(taken, config.steps - 1)
             raise InvalidInput(
-                f"{one.kind}: at_step must be at least {step:,}, where the race branches, not "
-                f"{one.at_step:,}"
+                f"branch_from.step must be from 0 to {last:,}, not {step:,}: race {race_id} has "
+                f"taken {taken:,} of {config.steps:,} steps, and at least one must be left"
             )
-    check_ends(start.disturbances, config.steps)
-    world = config.world
-    for one in sorted(start.disturbances, key=lambda one: one.at_step):
-        world = world.then(one)
-    for training_id in filter(None, original.lane_training_ids):
-        load_table(store, training_id)
-    return Run(
-        id=new_id(),
-        kind="race",
-        name=start.name or _branch_name(original.name, step),
-        config=replace(config, world=world, branch_from=start.branch),
-        lane_training_ids=original.lane_training_ids,
-        total=original.total,
-    )
+        for one in self.disturbances:
+            if one.at_step < step:
+                raise InvalidInput(
+                    f"{one.kind}: at_step must be at least {step:,}, where the race branches, not "
+                    f"{one.at_step:,}"
+                )
+        check_ends(self.disturbances, config.steps)
+        world = config.world
+        for one in sorted(self.disturbances, key=lambda one: one.at_step):
+            world = world.then(one)
+        for training_id in filter(None, original.lane_training_ids):
+            load_table(store, training_id)
+        branch = Run(
+            id=new_id(),
+            kind="race",
+            name=self.name or _branch_name(original.name, step),
+            config=replace(config, world=world, branch_from=self.branch),
+            lane_training_ids=original.lane_training_ids,
+            total=original.total,
+        )
+        return [branch]
 
 
-def new_copy(original: Run, store: RunStore, new_id: Callable[[], str]) -> Run:
-    """Return a run to be queued with the settings of another, as that was started.
+@dataclass(frozen=True)
+class CopyStart:
+    """Request to start a run again with its settings, as it was started.
 
-    Raises:
-        InvalidInput, NotFound, Conflict: if an agent or a table that it needs is gone.
+    Attributes:
+        original_id: id of the run, in any state. It is read when the copy is made: a request that
+            is repeated with its key returns the copy, also if the original has been deleted since.
     """
-    config = original.config
-    if isinstance(config, TrainingConfig):
-        check_training(config)
-    elif isinstance(config, ExperimentConfig):
-        plan_of(config)
-    else:
-        for lane, training_id in zip(config.lanes, original.lane_training_ids, strict=True):
-            check_lane(lane, has_training=training_id is not None)
-        if config.branch_from is not None:
-            store.get(config.branch_from.race_id)
-    for training_id in filter(None, (*original.lane_training_ids, original.continued_from)):
-        load_table(store, training_id)
-    return Run(
-        id=new_id(),
-        kind=original.kind,
-        name=original.name,
-        config=config,
-        lane_training_ids=original.lane_training_ids,
-        continued_from=original.continued_from,
-        workers=original.workers,
-        tags=original.tags,
-        total=original.total,
-    )
+
+    original_id: str
+
+    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
+        """See `Start`."""
+        original = store.get(self.original_id)
+        config = original.config
+        if isinstance(config, TrainingConfig):
+            check_training(config)
+        elif isinstance(config, ExperimentConfig):
+            plan_of(config)
+        else:
+            for lane, training_id in zip(config.lanes, original.lane_training_ids, strict=True):
+                check_lane(lane, has_training=training_id is not None)
+            if config.branch_from is not None:
+                store.get(config.branch_from.race_id)
+        for training_id in filter(None, (*original.lane_training_ids, original.continued_from)):
+            load_table(store, training_id)
+        copy = Run(
+            id=new_id(),
+            kind=original.kind,
+            name=original.name,
+            config=config,
+            lane_training_ids=original.lane_training_ids,
+            continued_from=original.continued_from,
+            workers=original.workers,
+            tags=original.tags,
+            total=original.total,
+        )
+        return [copy]
 
 
 def check_training(config: TrainingConfig) -> None:
@@ -338,27 +353,23 @@ class ExperimentStart:
     name: str | None = None
     workers: int | None = None
 
-
-def new_experiment(start: ExperimentStart, new_id: Callable[[], str]) -> Run:
-    """Return an experiment to be queued, as a run that is not stored yet.
-
-    Raises:
-        InvalidInput, UnknownName, Unreachable: if it cannot be.
-    """
-    config, workers = start.config, start.workers
-    plan = plan_of(config)
-    cores = os.cpu_count() or 1
-    if workers is not None and workers > cores:
-        raise InvalidInput(f"workers must be from 1 to {cores}, the cores of this machine")
-    seeds = "1 seed" if config.seeds == 1 else f"{whole(config.seeds)} seeds"
-    return Run(
-        id=new_id(),
-        kind="experiment",
-        name=start.name or f"{TITLES[config.experiment]}, {seeds}",
-        config=config,
-        workers=workers,
-        total=plan.total,
-    )
+    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:  # noqa: ARG002
+        """See `Start`."""
+        config, workers = self.config, self.workers
+        plan = plan_of(config)
+        cores = os.cpu_count() or 1
+        if workers is not None and workers > cores:
+            raise InvalidInput(f"workers must be from 1 to {cores}, the cores of this machine")
+        seeds = "1 seed" if config.seeds == 1 else f"{whole(config.seeds)} seeds"
+        experiment = Run(
+            id=new_id(),
+            kind="experiment",
+            name=self.name or f"{TITLES[config.experiment]}, {seeds}",
+            config=config,
+            workers=workers,
+            total=plan.total,
+        )
+        return [experiment]
 
 
 def plan_of(config: ExperimentConfig) -> Plan:

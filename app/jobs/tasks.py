@@ -27,7 +27,7 @@ def task_for(run: Run, store: RunStore) -> Task:
     """
     config = run.config
     if isinstance(config, ExperimentConfig):
-        rows = tuple(store.trials(run.id))
+        rows = tuple(store.trials.get(run.id))
         wall_s = wall_s_of(store.artifact(run.id, SUMMARY), run.id)
         return ExperimentTask(config, run.workers, rows, wall_s)
     if isinstance(config, RaceConfig):

@@ -1,7 +1,6 @@
 """A trial of an experiment as a run of its own, with the same outcome."""
 
 from dataclasses import replace
-from typing import NamedTuple
 
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, plan_of
 from hexapods.domain.errors import InvalidInput
@@ -12,14 +11,9 @@ from hexapods.experiments.plan import Trial
 from hexapods.runs.config import RACE_STEPS, TrainingConfig
 
 
-class TrialStart(NamedTuple):
-    """Request to run a trial: a training, or a race after it, and what its notes say."""
-
-    start: TrainingStart | RaceStart
-    notes: str
-
-
-def trial_start(config: ExperimentConfig, experiment_id: str, key: str) -> TrialStart:
+def trial_start(
+    config: ExperimentConfig, experiment_id: str, key: str
+) -> TrainingStart | RaceStart:
     """Return the request that runs a trial as the experiment did.
 
     The distance of a trial is that of its race; in a league or recovery that of its training.
@@ -46,14 +40,14 @@ def trial_start(config: ExperimentConfig, experiment_id: str, key: str) -> Trial
         raise InvalidInput(f"the trial {key} measures wall times, which no other run repeats")
     name = _name(trial_names(plan, [key])[key])
     notes = f"Trial {key} of experiment {experiment_id}."
-    return TrialStart(_start(trial, name), notes)
+    return _start(trial, name, notes)
 
 
-def _start(trial: Trial, name: str) -> TrainingStart | RaceStart:
+def _start(trial: Trial, name: str, notes: str) -> TrainingStart | RaceStart:
     # Evaluations change nothing in what is learned, and give the run a learning curve.
     config = replace(trial.config.training, evaluate_every=TrainingConfig.evaluate_every)
     if trial.config.evaluations:
-        return TrainingStart(config, name)
+        return TrainingStart(config, name, notes=notes)
     walk = config.walk()
     is_practised = trial.config.blocks > 0
     lane = LaneStart(
@@ -66,7 +60,7 @@ def _start(trial: Trial, name: str) -> TrainingStart | RaceStart:
         },
         settings={} if is_practised else config.settings,
     )
-    return RaceStart(walk, [lane], RACE_STEPS, config.seed, name)
+    return RaceStart(walk, [lane], RACE_STEPS, config.seed, name, notes)
 
 
 def _name(trial: str) -> str:

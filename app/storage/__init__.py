@@ -4,7 +4,7 @@
 exceptions.
 `artifacts` writes files atomically and verifies their SHA-256; `artifact_file` reads them in
 chunks; `disk_space` enforces the quota of the data folder.
-`recordings` and `stored_recordings` hold the recorded motion that the stage replays.
+`recordings`, `stored_trainings` and `stored_races` hold the recorded motion that the stage replays.
 `idempotency`, `sessions` and `run_ids`: idempotency keys, operators' sessions, sortable ids.
 `stored_tables` and `stored_trials` load tables, checkpoints and trials; `json_text` encodes JSON.
 `server_lock` admits one server to a data folder, and records where it listens.

@@ -16,10 +16,8 @@ from app.storage.errors import Gone, NotFound
 from app.storage.run import IdempotencyKey, Run
 from hexapods.domain.errors import InvalidInput
 
-Start = Callable[[IdempotencyKey | None], Run]
-"""Creates a run, and passes the key to the store in the same call."""
-Import = Callable[[IdempotencyKey | None], Sequence[Run]]
-"""Creates several runs in the same way."""
+Create = Callable[[IdempotencyKey | None], Sequence[Run]]
+"""Creates runs, and passes the key to the store in the same call."""
 
 
 @dataclass
@@ -31,7 +29,7 @@ class _KeyLock:
 
 
 class Idempotency:
-    """Starts a run unless the same key started one before. Thread-safe."""
+    """Creates runs unless the same key created some before. Thread-safe."""
 
     def __init__(self, store: RunStore) -> None:
         """Use the idempotency keys of a store."""
@@ -39,33 +37,29 @@ class Idempotency:
         self._key_locks: defaultdict[str, _KeyLock] = defaultdict(_KeyLock)
         self._lock = threading.Lock()
 
-    def run(self, key: str | None, request: bytes, start: Start) -> Run:
-        """Return the run that this key started before, or start it now.
+    def runs(self, key: str | None, request: bytes, create: Create) -> Sequence[Run]:
+        """Return the runs that this key created before, or create them now.
 
-        Requests with the same key are serialised. A start that fails stores no key, so that a
+        Requests with the same key are serialised. A creation that fails stores no key, so that a
         retry with the same key starts again.
 
         Args:
-            key: chosen by the client; None always starts a run.
+            key: chosen by the client; None always creates runs.
             request: canonical bytes of the request; their SHA-256 is compared.
-            start: creates the run and stores the key.
+            create: creates the runs and stores the key.
 
         Returns:
-            the run in its present state.
+            the runs in their present state.
 
         Raises:
             InvalidInput: if this key came with another request before.
-            Gone: if the run that this key started was deleted.
+            Gone: if a run that this key created was deleted.
         """
-        return self.runs(key, request, lambda key: [start(key)])[0]
-
-    def runs(self, key: str | None, request: bytes, create: Import) -> Sequence[Run]:
-        """Return the runs that this key created before, or create them now; otherwise as `run`."""
         if key is None:
             return create(None)
         digest = hashlib.sha256(request).hexdigest()
         with self._locked(key):
-            record = self._store.find_key(key)
+            record = self._store.keys.find(key)
             if record is None:
                 return create(IdempotencyKey(key, digest))
             if record.digest != digest:

@@ -1,51 +1,71 @@
 """Recordings of this server's runs: growing in memory while a job runs, stored when it ends."""
 
+import logging
+import math
 import threading
-from collections.abc import Iterator
-from dataclasses import replace
-from typing import Any
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from operator import attrgetter
+from typing import Any, Generic, TypeVar
 
 import numpy as np
+from cachetools import TLRUCache
 from numpy.typing import NDArray
 
 from app.storage.database.store import RunStore
-from app.storage.stored_races import GrowingRace
-from app.storage.stored_recordings import StoredRecordings
+from app.storage.errors import NotFound
+from app.storage.stored_races import GrowingRace, StoredRaces
+from app.storage.stored_trainings import GrowingTraining, read_log, read_training
+from hexapods.domain.errors import HexapodError
 from hexapods.runs.recording import LaneRecording, PracticeRecording
 from hexapods.runs.records import Evaluated, LaneFailed, LaneStep, StepTaken
 from hexapods.runs.stored_practice import rewound
-from hexapods.runs.transition_log import TransitionLog, Transitions
+from hexapods.runs.transition_log import BYTES_PER_STEP, TransitionLog, Transitions
 
-MAX_EVALUATION_MOTIONS = 1000
-"""Evaluations of one training whose motion is kept, about 80 MB; later ones keep the distance."""
-_NOT_GROWING = TransitionLog()
+CACHE_RECORDINGS, CACHE_BYTES = 16, 50_000_000
+"""Capacity of each cache in recordings and in bytes; the newest entry is kept whatever its size."""
+_MISS_TTL_S = 1.0
+"""Time for which a cached miss is valid before the store is read again."""
+T = TypeVar("T")
+_logger = logging.getLogger(__name__)
 
 
 class Recordings:
     """Append-only store of recordings by run: one writer thread per run, any number of readers.
 
-    Readers need no lock, since recorded steps and evaluations never change.
+    Readers need no lock, since recorded steps and evaluations never change. Those of ended runs are
+    kept in a cache for each kind.
     """
 
     def __init__(self, store: RunStore) -> None:
         """Use the recordings of a store."""
-        self._trainings: dict[str, PracticeRecording] = {}
-        self._races: dict[str, GrowingRace] = {}
-        self._evaluation_counts: dict[str, int] = {}
-        self._logs: dict[str, TransitionLog | None] = {}
-        """Of a training that resumed without a whole log there is none."""
-        self._stored = StoredRecordings(store)
-        self._lock = threading.Lock()
+        self._store = store
+        self._growing: dict[str, GrowingTraining | GrowingRace] = {}
+        self._stored_races = StoredRaces(store)
+        self._trainings = _LruCache[PracticeRecording](
+            lambda run_id: read_training(store, run_id, is_whole=False), attrgetter("size")
+        )
+        self._races = _LruCache[list[LaneRecording]](
+            self._stored_races.read, lambda lanes: sum(one.size for one in lanes)
+        )
+        self._logs = _LruCache[TransitionLog](
+            lambda run_id: read_log(store, run_id), lambda log: BYTES_PER_STEP * len(log)
+        )
 
     def training(self, run_id: str) -> PracticeRecording | None:
-        """Return the recording of a training; None if it has not started or was not recorded."""
-        growing = self._trainings.get(run_id)
-        return self._stored.training(run_id) if growing is None else growing
+        """Return the recording of a training; None if it has not started or was not recorded.
+
+        Of the evaluations of one that ended only the newest motion is there.
+        """
+        growing = self._growing.get(run_id)
+        if isinstance(growing, GrowingTraining):
+            return growing.recording
+        return self._trainings.get(run_id)
 
     def race(self, run_id: str) -> list[LaneRecording] | None:
         """Return the recordings of a race's lanes; None if it has not started or has none."""
-        growing = self._races.get(run_id)
-        return self._stored.race(run_id) if growing is None else growing.lanes
+        growing = self._growing.get(run_id)
+        return growing.lanes if isinstance(growing, GrowingRace) else self._races.get(run_id)
 
     def race_file(self, run_id: str) -> Iterator[bytes] | None:
         """Return the stored recording of a race as one `.npz` file, in chunks; None without one.
@@ -54,12 +74,12 @@ class Recordings:
             NotFound: if there is no such run.
             DamagedFile: if a file is damaged.
         """
-        return self._stored.races.chunks(run_id)
+        return self._stored_races.chunks(run_id)
 
     def transitions(self, run_id: str) -> TransitionLog | None:
         """Return the log of a training's transitions; None if there is none, or it is damaged."""
-        growing = self._logs.get(run_id, _NOT_GROWING)
-        return self._stored.transitions(run_id) if growing is _NOT_GROWING else growing
+        growing = self._growing.get(run_id)
+        return growing.log if isinstance(growing, GrowingTraining) else self._logs.get(run_id)
 
     def begin_training(
         self, run_id: str, rest_qpos: NDArray[np.float32], after_step: int = 0
@@ -71,22 +91,22 @@ class Recordings:
             rest_qpos: initial pose, (7 + joints,).
             after_step: step of the checkpoint from which the training resumes; 0 for a new one.
         """
-        former = self._stored.whole_training(run_id) if after_step else None
-        log = self.transitions(run_id) if after_step else TransitionLog()
-        recording = PracticeRecording(rest_qpos) if former is None else rewound(former, after_step)
-        with self._lock:
-            self._trainings[run_id] = recording
-            self._evaluation_counts[run_id] = len(recording.evaluations)
-            self._logs[run_id] = None if log is None else log.truncated(after_step)
+        recording = PracticeRecording(rest_qpos)
+        log: TransitionLog | None = TransitionLog()
+        if after_step:
+            former = _or_none(run_id, lambda key: read_training(self._store, key))
+            recording = recording if former is None else rewound(former, after_step)
+            log = self.transitions(run_id)
+            log = None if log is None else log.truncated(after_step)
+        self._growing[run_id] = GrowingTraining(self._store, run_id, recording, log)
 
     def begin_race(self, run_id: str, lanes: list[LaneRecording]) -> None:
         """Start the recordings of a race's lanes.
 
         The files of an earlier attempt stay until the first one of this attempt is stored.
         """
-        with self._lock:
-            self._races[run_id] = GrowingRace(self._stored.races, run_id, lanes)
-        self._stored.invalidate(run_id)
+        self._growing[run_id] = GrowingRace(self._stored_races, run_id, lanes)
+        self._races.drop(run_id)
 
     def add(self, run_id: str, record: Any) -> None:
         """Append a record to a run's recording; records without motion are ignored.
@@ -94,21 +114,14 @@ class Recordings:
         Raises:
             StorageFull, StorageFailed: if a part of a race that is complete cannot be stored.
         """
-        if isinstance(record, LaneStep | LaneFailed):
-            self._races[run_id].add(record)
-        elif isinstance(record, StepTaken):
-            self._trainings[run_id].add(record)
-        elif isinstance(record, Evaluated):
-            self._evaluation_counts[run_id] += 1
-            if self._evaluation_counts[run_id] > MAX_EVALUATION_MOTIONS:
-                record = replace(record, motion=None)
-            self._trainings[run_id].add(record)
+        if isinstance(record, LaneStep | LaneFailed | StepTaken | Evaluated):
+            self._growing[run_id].add(record)  # type: ignore[arg-type]  # a run's own kind
 
     def log(self, run_id: str, steps: Transitions) -> None:
         """Append to the log of a training, if it has one from its first step."""
-        log = self._logs.get(run_id)
-        if log is not None:
-            log.extend(steps)
+        growing = self._growing.get(run_id)
+        if isinstance(growing, GrowingTraining):
+            growing.extend_log(steps)
 
     def save(self, run_id: str) -> None:
         """Store what a run has recorded so far; call from the run's writer thread.
@@ -116,12 +129,8 @@ class Recordings:
         Raises:
             StorageFull, StorageFailed: if it cannot be stored.
         """
-        training, race = self._trainings.get(run_id), self._races.get(run_id)
-        if training is not None:
-            self._stored.write_transitions(run_id, self._logs[run_id])
-            self._stored.write_training(run_id, training)
-        if race is not None:
-            race.checkpoint()
+        if (growing := self._growing.get(run_id)) is not None:
+            growing.checkpoint()
 
     def finish(self, run_id: str) -> None:
         """Store a complete recording, and move it from memory to the evicting cache.
@@ -129,23 +138,66 @@ class Recordings:
         Raises:
             StorageFull, StorageFailed: if it cannot be stored; it stays in memory then.
         """
-        training, race = self._trainings.get(run_id), self._races.get(run_id)
-        if training is not None:
-            self.save(run_id)
-            self._stored.cache_training(run_id, training)
-        if race is not None:
-            race.finish()
-            self._stored.cache_race(run_id, race.lanes)
-        self._drop(run_id)
+        growing = self._growing.get(run_id)
+        if growing is None:
+            return
+        growing.finish()
+        if isinstance(growing, GrowingRace):
+            self._races.put(run_id, growing.lanes)
+        else:
+            self._logs.drop(run_id)
+            self._trainings.put(run_id, growing.recording)
+        self._growing.pop(run_id, None)
 
     def discard(self, run_id: str) -> None:
         """Drop a run's recording from memory, and from the cache of stored recordings."""
-        self._drop(run_id)
-        self._stored.invalidate(run_id)
+        self._growing.pop(run_id, None)
+        for cache in (self._trainings, self._races, self._logs):
+            cache.drop(run_id)
 
-    def _drop(self, run_id: str) -> None:
+
+class _LruCache(Generic[T]):
+    """Least-recently-used cache with negative caching: a miss is valid for `_MISS_TTL_S`."""
+
+    def __init__(self, read: Callable[[str], T | None], size_of: Callable[[T], int]) -> None:
+        self._read, self._lock = read, threading.Lock()
+
+        def size(value: T | None) -> int:
+            # At least a share, which limits their number; at most all, so that the newest is kept.
+            bytes_ = 0 if value is None else size_of(value)
+            return min(max(bytes_, CACHE_BYTES // CACHE_RECORDINGS), CACHE_BYTES)
+
+        self._entries: TLRUCache[str, T | None] = TLRUCache(
+            CACHE_BYTES,
+            lambda _, value, now_s: now_s + _MISS_TTL_S if value is None else math.inf,
+            getsizeof=size,
+        )
+
+    def get(self, key: str) -> T | None:
+        # Locked while it reads: what `drop` invalidates meanwhile must not be kept.
         with self._lock:
-            self._trainings.pop(run_id, None)
-            self._races.pop(run_id, None)
-            self._evaluation_counts.pop(run_id, None)
-            self._logs.pop(run_id, None)
+            try:
+                return self._entries[key]
+            except KeyError:
+                value = self._entries[key] = _or_none(key, self._read)
+                return value
+
+    def put(self, key: str, value: T) -> None:
+        with self._lock:
+            self._entries[key] = value
+
+    def drop(self, key: str) -> None:
+        with self._lock, suppress(KeyError):
+            del self._entries[key]
+
+
+def _or_none(key: str, read: Callable[[str], T | None]) -> T | None:
+    """Read a recording; None if it cannot be read."""
+    try:
+        return read(key)
+    except NotFound:
+        return None
+    except HexapodError as error:
+        # The stage loop asks thirty times a second: log once, and cache the miss.
+        _logger.warning("No recording can be shown: %s", error, extra={"run_id": key})
+        return None

@@ -12,7 +12,7 @@ from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.results import RaceResult, TrainingResult
+from hexapods.runs.results import Count, RaceResult, TrainingResult
 
 Kind = Literal["training", "race", "experiment"]
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
@@ -95,9 +95,9 @@ class Run:
     lane_training_ids: tuple[str | None, ...] = ()
     waiting_for: tuple[str, ...] = ()
     continued_from: str | None = None
-    workers: int | None = None
-    done: int = 0
-    total: int
+    workers: Count | None = None
+    done: Count = 0
+    total: Count
     eta_s: float | None = None
     changes: tuple[Mapping[str, Any], ...] = ()
     greedy_distance_m: float | None = None
@@ -163,8 +163,8 @@ class Content:
     """Everything stored for a run besides its row.
 
     Attributes:
-        evaluations: rows as for `RunStore.append_evaluations`.
-        trials: rows as for `RunStore.append_trials`.
+        evaluations: rows as for `Curves.append`.
+        trials: rows as for `Trials.append`.
         artifacts: contents of files by name.
     """
 

@@ -48,8 +48,7 @@ def read_rows(file: ArtifactFile, training_id: str) -> TableFile:
         TableMismatch: if its agent has no Q-table.
         DamagedFile: if it is damaged.
     """
-    readable = io.BufferedReader(ReadableArtifact(file))
-    return TableFile(file, readable, _table_name(training_id))
+    return TableFile(io.BufferedReader(ReadableArtifact(file)), _table_name(training_id))
 
 
 def load_checkpoint(store: RunStore, run: Run, config: TrainingConfig) -> Checkpoint | None:

@@ -6,16 +6,16 @@ from typing import Any
 
 from hexapods.domain.errors import DamagedFile
 from hexapods.experiments.config import SUMMARY, ExperimentConfig
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.report.trials_csv import trials_csv
+from hexapods.experiments.worker import Outcome
 
 
 def outcomes_of(rows: Iterable[Mapping[str, Any]]) -> Iterator[Outcome]:
     """Decode stored trials; one whose result is damaged is returned as set aside.
 
     Args:
-        rows: as returned by `RunStore.trials`.
+        rows: as returned by `Trials.get`.
     """
     for row in rows:
         try:
@@ -29,7 +29,7 @@ def trials_as_csv(config: ExperimentConfig, rows: Iterable[Mapping[str, Any]]) -
 
     Args:
         config: of the experiment.
-        rows: as returned by `RunStore.trials`.
+        rows: as returned by `Trials.get`.
     """
     progress = Progress(config)
     for outcome in outcomes_of(rows):

@@ -3,7 +3,6 @@
 import threading
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from itertools import chain, zip_longest
 from statistics import fmean
@@ -14,6 +13,7 @@ from cachetools import TTLCache
 from app.jobs.process_pool import TIMEOUT_S, ProcessPool, TookTooLong
 from app.jobs.stopping import Stopping
 from app.jobs.submissions import (
+    BranchStart,
     ExperimentStart,
     LaneStart,
     RaceStart,
@@ -22,7 +22,7 @@ from app.jobs.submissions import (
     check_walk,
     plan_of,
 )
-from app.storage.errors import Busy
+from app.jobs.turns import Turns
 from app.what_if.step_time import TimedSteps, step_s_of
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
@@ -35,8 +35,8 @@ MAX_MEASURED = 24
 MAX_CACHED = 256
 CACHED_S = 600.0
 """After this time the machine may be busier, or less."""
-MAX_AT_ONCE = 4
-"""Requests whose steps are timed, or wait for that; each holds a thread of the server."""
+MAX_WAITING = 3
+"""Requests that wait until their steps are timed; each holds a thread of the server."""
 
 
 class _CostClass(NamedTuple):
@@ -56,7 +56,11 @@ class _Part(NamedTuple):
 
 
 class Estimates:
-    """Estimates durations from timed steps, which are cached for a while. Thread-safe."""
+    """Estimates durations from timed steps, which are cached for a while. Thread-safe.
+
+    Attributes:
+        turns: of the requests whose steps are timed.
+    """
 
     def __init__(self, pool: ProcessPool, cores: int, stopping: Stopping | None = None) -> None:
         """Create the service with an empty cache.
@@ -69,14 +73,15 @@ class Estimates:
         self._stopping = stopping or Stopping()
         self._pool, self._cores = pool, cores
         self._cache: TTLCache[TimedSteps, float] = TTLCache(MAX_CACHED, CACHED_S)
-        self._lock, self._timing = threading.Lock(), threading.Lock()
-        self._free = threading.BoundedSemaphore(MAX_AT_ONCE)
+        self._lock = threading.Lock()
+        self.turns = Turns("estimates", MAX_WAITING)
 
-    def of(self, start: TrainingStart | RaceStart | ExperimentStart) -> float:
+    def of(self, start: TrainingStart | RaceStart | BranchStart | ExperimentStart) -> float:
         """Return how long a run would take once it has a core [s].
 
         Raises:
-            InvalidInput: if an agent fails at once, or its steps take too long to be timed.
+            InvalidInput: if an agent fails at once, or its steps take too long to be timed; or of a
+                race that branches off.
             Busy: if others wait for that, or the pool is closed.
         """
         if isinstance(start, ExperimentStart):
@@ -85,6 +90,8 @@ class Estimates:
             check_training(start.config)
             parts = [*_practice(start.config)]
             return _seconds(parts, self._measured(one.steps for one in parts))
+        if isinstance(start, BranchStart):
+            raise InvalidInput("a branch takes what is left of its race; leave out branch_from")
         check_walk(start.walk)
         lanes = [_lane(one, start) for one in start.lanes]
         trainings = (one.training for one in start.lanes if one.training is not None)
@@ -119,7 +126,7 @@ class Estimates:
         kinds = list(dict.fromkeys(wanted))[:MAX_MEASURED]
         known = self._known(kinds)
         if len(known) < len(kinds):
-            with self._turn():
+            with self.turns.turn(self._stopping.check):
                 # A request that was answered meanwhile may have timed the same.
                 known = self._known(kinds)
                 missing = [kind for kind in kinds if kind not in known]
@@ -137,17 +144,6 @@ class Estimates:
                 f"a few steps ({agents}) were not done in {TIMEOUT_S:g} s, so the run would take "
                 "very long; choose settings with less work in each step"
             ) from error
-
-    @contextmanager
-    def _turn(self) -> Iterator[None]:
-        """Wait until no other request times steps, unless another one waits for that."""
-        if not self._free.acquire(blocking=False):
-            raise Busy("other estimates are waiting; ask again in a moment", 1)
-        try:
-            with self._stopping.holding(self._timing):
-                yield
-        finally:
-            self._free.release()
 
     def _known(self, kinds: Iterable[TimedSteps]) -> dict[TimedSteps, float]:
         # At one time for all: what expires between two looks would raise.

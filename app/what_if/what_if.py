@@ -11,8 +11,8 @@ from cachetools import LRUCache
 
 from app.jobs.process_pool import ProcessPool, TookTooLong
 from app.jobs.submissions import check_training
+from app.jobs.turns import Turns
 from app.what_if.step_time import TimedSteps, step_s_of
-from app.what_if.turns import Turns
 from hexapods.agents.q_table import table_size
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
@@ -27,6 +27,8 @@ MAX_STEPS = 2_000
 MAX_VALUES = 1_200_000
 """Maximum number of values of a Q-table: each trial holds one, and writes it to a file."""
 MAX_CACHED = 512
+MAX_WAITING = 4
+"""Questions of operators, and of spectators, that may wait."""
 OPERATORS_LIMIT_S, SPECTATORS_LIMIT_S = 60.0, 10.0
 """Time for which one what-if may compute on all cores [s]."""
 
@@ -66,7 +68,7 @@ class WhatIf:
         self._pool = pool
         self._cache: LRUCache[TrialConfig, tuple[float, ...]] = LRUCache(MAX_CACHED)
         """Cached distances of all seeds [m], by the trial with seed 0."""
-        self._turns = Turns()
+        self._turns = Turns("questions", MAX_WAITING)
         self._cache_lock = threading.Lock()
 
     def ask(self, training: TrainingConfig, asker: Asker = _OPERATOR) -> dict[str, Any]:
@@ -124,7 +126,7 @@ class WhatIf:
         distances = self._cached(trials)
         if len(distances) == len(set(trials)):
             return distances, 0.0
-        with self._turns.turn(asker.is_operator, asker.check) as check:
+        with self._turns.turn(asker.check, is_operator=asker.is_operator) as check:
             # A request that was served meanwhile may have cached the same trials.
             distances = self._cached(trials)
             missing = [one for one in dict.fromkeys(trials) if one not in distances]

@@ -1,6 +1,5 @@
 """Tabular Double Q-learning (van Hasselt 2010; Sutton and Barto, 2nd edition, §6.7)."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -39,26 +38,20 @@ class DoubleQ(TabularLearner):
         (value,) = valuing.values_of(observation, [best])
         target = transition.reward_m + self._gamma * value
         values, means = learning.row(state)[0], self.table.row(state)[0]
-        own, other, before = values[column], valuing.row(state)[0][column], means[column]
+        own, other = values[column], valuing.row(state)[0][column]
         values[column] = (1 - self._alpha) * own + self._alpha * target
-        means[column] = (values[column] + other) / 2
-        if self._update_log is not None:
+        mean = (values[column] + other) / 2
+        if self._explained is not None:
             terms = (
                 Term("α", self._alpha, "learning rate"),
                 Term("Q₁", float(own), f"value in table {chosen + 1}, which was drawn to learn"),
-                *self._explain_rates(transition),
+                *self._reward_terms(transition),
                 Term("Q₂′", value, "value in the other table of the best next action by the first"),
                 Term("Q₂", float(other), "value in the other table"),
             )
             rule = "((1 − α) · Q₁ + α · (r + γ · Q₂′) + Q₂) / 2"
-            self._update_log.record((state, column), rule, terms, (before, means[column]))
-
-    def _explain_target(
-        self,
-        transition: Transition,  # noqa: ARG002
-    ) -> tuple[str, Sequence[Term]]:
-        """Return nothing: only the drawn table tells, which the update notes."""
-        return "", ()
+            self._explain((state, column), (rule, terms), mean)
+        means[column] = mean
 
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the values of both tables at `where`."""

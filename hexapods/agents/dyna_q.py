@@ -1,6 +1,8 @@
 """Dyna-Q (Sutton 1990; Sutton and Barto, 2nd edition, §8.2)."""
 
-from hexapods.agents.explanation import Term
+from functools import partial
+
+from hexapods.agents.explanation import Rule, Term
 from hexapods.agents.planning import PlanningLearner
 from hexapods.agents.protocol import Transition
 from hexapods.agents.tabular_model import TriedPair
@@ -35,14 +37,16 @@ class DynaQ(PlanningLearner):
         for number in self._rng.integers(len(pairs), size=self._planning_steps).tolist():
             pair = pairs[number]
             reward, best = self._imagined_reward_m(pair), self.table.best(pair.last_next)
-            self._move_towards(pair.state, pair.column, reward + self._gamma * best)
-            if self._update_log is not None:
-                terms = (
-                    Term("r̂", reward, "imagined reward [m]"),
-                    Term("γ", self._gamma, "discount"),
-                    Term("Q′", best, "highest value in the state that followed last time"),
-                )
-                self._update_log.explain_target("r̂ + γ · Q′", terms)
+            target = reward + self._gamma * best
+            explain = partial(self._explain_planned, reward, best)
+            self._move_towards(pair.state, pair.column, target, explain)
+
+    def _explain_planned(self, reward_m: float, best: float) -> Rule:
+        return "r̂ + γ · Q′", (
+            Term("r̂", reward_m, "imagined reward [m]"),
+            Term("γ", self._gamma, "discount"),
+            Term("Q′", best, "highest value in the state that followed last time"),
+        )
 
     def _imagined_reward_m(self, pair: TriedPair) -> float:
         """Return the reward [m] of an imagined step."""

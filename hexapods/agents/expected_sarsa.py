@@ -1,8 +1,6 @@
 """Tabular Expected Sarsa (Sutton and Barto, 2nd edition, §6.6)."""
 
-from collections.abc import Sequence
-
-from hexapods.agents.explanation import Term
+from hexapods.agents.explanation import Rule, Term
 from hexapods.agents.protocol import Transition
 from hexapods.agents.tabular import TabularLearner
 
@@ -26,7 +24,7 @@ class ExpectedSarsa(TabularLearner):
     def _next_values(self, transition: Transition) -> list[float]:
         return self.table.values_of(transition.next_observation, transition.next_legal)
 
-    def _explain_next(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+    def _explain_next(self, transition: Transition) -> Rule:
         values = self._next_values(transition)
         return "((1 − ε) · Q⁺ + ε · Σ / n)", (
             Term("ε", self.epsilon, "probability that the next action is a random one"),

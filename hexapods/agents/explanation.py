@@ -26,6 +26,10 @@ class Term(NamedTuple):
     meaning: str
 
 
+Rule = tuple[str, Sequence[Term]]
+"""Formula of a number, in the symbols of its terms."""
+
+
 class ValueUpdate(NamedTuple):
     """Update of one value by a rule."""
 
@@ -174,58 +178,6 @@ class Explaining(Protocol):
 
     def explain_update(self, transition: Transition) -> UpdateExplanation:
         """Learn as `learn` does, and explain how what is known changes."""
-
-
-class ValueChange(NamedTuple):
-    """Change of a table's value, as a learner notes it."""
-
-    state: int
-    column: int
-    rule: str
-    terms: tuple[Term, ...]
-    before: float
-    after: float
-
-    def with_target(self, rule: str, terms: Sequence[Term]) -> "ValueChange":
-        """Return it with what its target, the term `T`, was computed from."""
-        if "T" not in {term.symbol for term in self.terms}:
-            return self
-        kept = [term for term in self.terms if term.symbol != "T"]
-        known = {term.symbol for term in kept}
-        added = [term for term in terms if term.symbol not in known]
-        return self._replace(rule=self.rule.replace("T", f"({rule})"), terms=(*kept, *added))
-
-
-class UpdateLog:
-    """Records the changes of values while a learner learns from one transition.
-
-    Attributes:
-        transition: the transition.
-        rule, terms: what the target of the direct update is computed from.
-        changes: the changes so far.
-    """
-
-    def __init__(self, transition: Transition, rule: str, terms: Sequence[Term]) -> None:
-        self.transition, self.rule, self.terms = transition, rule, terms
-        self.changes: list[ValueChange] = []
-
-    def record(
-        self, entry: tuple[int, int], rule: str, terms: Sequence[Term], values: Sequence[float]
-    ) -> None:
-        """Record a change.
-
-        Args:
-            entry: row and column of the table.
-            rule: as in `ValueUpdate`.
-            terms: of the rule.
-            values: the value before and after.
-        """
-        before, after = map(float, values)
-        self.changes.append(ValueChange(*entry, rule, tuple(terms), before, after))
-
-    def explain_target(self, rule: str, terms: Sequence[Term]) -> None:
-        """Tell what the target of the newest change was computed from."""
-        self.changes[-1] = self.changes[-1].with_target(rule, terms)
 
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Le
 
-from hexapods.agents.explanation import Term, UpdateExplanation, UpdateLog
+from hexapods.agents.explanation import Rule, Term, UpdateExplanation, ValueUpdate
 from hexapods.agents.protocol import AgentState, Transition
 from hexapods.agents.q_table import check_entries
 from hexapods.agents.tabular import TabularLearner
@@ -53,22 +54,20 @@ class NStepSarsa(TabularLearner):
         self._waiting.append((state, column, transition.reward_m))
         if len(self._waiting) < self._return_steps:
             return
-        target = self._chosen_next(transition)
-        for *_, reward in reversed(self._waiting):
+        rewards = [reward for *_, reward in self._waiting]
+        target = value = self._chosen_next(transition)
+        for reward in reversed(rewards):
             target = reward + self._gamma * target
         first_state, first_column, _ = self._waiting.pop(0)
-        self._move_towards(first_state, first_column, target)
+        explain = partial(self._explain_return, rewards, value)
+        self._move_towards(first_state, first_column, target, explain)
 
-    def _explain_target(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+    def _explain_return(self, rewards: Sequence[float], value: float) -> Rule:
         """Return the n rewards and the value after them, nested as they are added up."""
-        rewards = [*(reward for *_, reward in self._waiting), transition.reward_m]
-        if len(rewards) < self._return_steps:
-            return "", ()
         symbols = [f"r{number}" for number in range(1, len(rewards) + 1)]
         rule = "Q′"
         for symbol in reversed(symbols):
             rule = f"{symbol} + γ · {rule if rule == 'Q′' else f'({rule})'}"
-        value = self._chosen_next(transition)
         return rule, (
             *(
                 Term(symbol, reward, f"reward {number} of these {len(rewards)} steps [m]")
@@ -78,15 +77,17 @@ class NStepSarsa(TabularLearner):
             Term("Q′", value, "value of the next action, which is chosen already"),
         )
 
-    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
+    def _explanation(
+        self, transition: Transition, updates: Sequence[ValueUpdate]
+    ) -> UpdateExplanation:
         """Return the explanation of the change of the value n − 1 steps ago, if there is one."""
         late = self._return_steps - 1
-        if not update_log.changes:
+        if not updates:
             return UpdateExplanation(
                 f"No value changes yet: a step is judged when {self._return_steps} rewards are "
                 f"known, and {len(self._waiting)} of them are."
             )
-        explained = super()._explanation(update_log)
+        explained = super()._explanation(transition, updates)
         if late == 0:
             return explained
         ago = "one step" if late == 1 else f"{late} steps"

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 import numpy as np
 from annotated_types import Ge, Le
 
-from hexapods.agents.explanation import UpdateExplanation, UpdateLog, ValueUpdate
-from hexapods.agents.protocol import AgentState, Problem
+from hexapods.agents.explanation import UpdateExplanation, ValueUpdate
+from hexapods.agents.protocol import AgentState, Problem, Transition
 from hexapods.agents.tabular import TabularLearner
 from hexapods.agents.tabular_model import TabularModel, check_problem
 from hexapods.domain.settings import Setting
@@ -51,9 +51,11 @@ class PlanningLearner(TabularLearner):
         self._planning_steps = planning_steps
         self._model = TabularModel(problem)
 
-    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
+    def _explanation(
+        self, transition: Transition, updates: Sequence[ValueUpdate]
+    ) -> UpdateExplanation:
         """Return the explanation of the direct update, and what was planned after it."""
-        explained = super()._explanation(update_log)
+        explained = super()._explanation(transition, updates)
         planned = planning_summary(explained.others)
         return replace(explained, summary=f"{explained.summary} {planned}")
 

@@ -1,13 +1,14 @@
 """Prioritized sweeping (Moore and Atkeson 1993; Sutton and Barto, 2nd edition, §8.4)."""
 
 from collections.abc import Sequence
+from functools import partial
 from heapq import heapify, heappop, heappush
 from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Le
 
-from hexapods.agents.explanation import Term, UpdateExplanation, UpdateLog
+from hexapods.agents.explanation import Rule, Term, UpdateExplanation, ValueUpdate
 from hexapods.agents.planning import PlanningLearner, planning_summary
 from hexapods.agents.protocol import AgentState, Transition
 from hexapods.agents.tabular import Alpha, summary_of
@@ -69,15 +70,11 @@ class PrioritizedSweeping(PlanningLearner):
         """Q ← (1 − α) Q + α (r̄ + γ Σ p max Q(s′, ·)); then queue the pairs that led to its s."""
         before = self.table.best(pair.state)
         later = self._later(pair)
-        self._move_towards(pair.state, pair.column, self._planned_target(pair, later))
-        if self._update_log is not None:
-            terms = (
-                Term("r̄", pair.mean_reward_m, "mean reward of all tries [m]"),
-                Term("γ", self._gamma, "discount"),
-                Term("Σ", later, "sum of the highest values in the states that followed"),
-                Term("N", pair.tries, "number of tries"),
-            )
-            self._update_log.explain_target("r̄ + γ · Σ / N", terms)
+        target, explain = (
+            self._planned_target(pair, later),
+            partial(self._explain_sweep, pair, later),
+        )
+        self._move_towards(pair.state, pair.column, target, explain)
         if self.table.best(pair.state) != before:
             for number in self._model.leading_to(pair.state):
                 self._enqueue(number)
@@ -90,24 +87,26 @@ class PrioritizedSweeping(PlanningLearner):
         best = self.table.best
         return sum(count * best(state) for state, count in pair.outcomes.items())
 
-    def _explain_target(
-        self,
-        transition: Transition,  # noqa: ARG002
-    ) -> tuple[str, Sequence[Term]]:
-        """Return nothing: a step is added to the model, and its value follows by planning."""
-        return "", ()
+    def _explain_sweep(self, pair: TriedPair, later: float) -> Rule:
+        return "r̄ + γ · Σ / N", (
+            Term("r̄", pair.mean_reward_m, "mean reward of all tries [m]"),
+            Term("γ", self._gamma, "discount"),
+            Term("Σ", later, "sum of the highest values in the states that followed"),
+            Term("N", pair.tries, "number of tries"),
+        )
 
-    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
-        """Return the explanation of the first change of this step's value, if it was due."""
-        sweeps = [self._value_update(one) for one in update_log.changes]
-        entry = update_log.transition.observation, update_log.transition.action
-        own = [one for one in sweeps if (one.observation, one.action) == entry]
-        others = [one for one in sweeps if not own or one is not own[0]]
+    def _explanation(
+        self, transition: Transition, updates: Sequence[ValueUpdate]
+    ) -> UpdateExplanation:
+        """Return the explanation of the first update of this step's value, if it was due."""
+        entry = transition.observation, transition.action
+        own = [one for one in updates if (one.observation, one.action) == entry]
+        others = [one for one in updates if not own or one is not own[0]]
         if own:
             summary = summary_of(own[0])
         else:
             summary = "Its own value was not worked on: others would change more, or it hardly."
-        planned = planning_summary(sweeps)
+        planned = planning_summary(updates)
         return UpdateExplanation(f"{summary} {planned}", own[0] if own else None, others)
 
     def _enqueue(self, number: int) -> None:

@@ -1,15 +1,13 @@
 """Q-table, sparse by rows: one row per state, one column per action (group, cell)."""
 
-import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
-from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.agents.table_rows import NOT_RISING
+from hexapods.agents.table_rows import NOT_RISING, Part, TableRows
 from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.types import Action, Cells, FloatArray
 
@@ -107,8 +105,7 @@ class QTable:
 
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
         """Yield all states in order, with values and visits, (groups, cells), NaN illegal."""
-        for state in product(range(self.cells), repeat=self.groups):
-            yield state, self.values(state), self.visits(state)
+        return TableRows(self.groups, self.cells, self._parts).rows()
 
     @property
     def size(self) -> int:
@@ -117,38 +114,28 @@ class QTable:
 
     def sha256(self) -> str:
         """Return the SHA-256 of the values as little-endian float64, row-major, NaN if illegal."""
-        digest = hashlib.sha256()
-        for first in range(0, self.states, _ROWS_AT_ONCE):
-            slots = self._slots[first : first + _ROWS_AT_ONCE]
-            rows = np.zeros((len(slots), self.actions), "<f8")
-            written = np.flatnonzero(slots != _NO_SLOT)
-            rows[written] = self._q[slots[written]]
-            by_group = rows.reshape(-1, self.groups, self.cells)
-            places = np.arange(len(rows))
-            at = np.unravel_index(first + places, (self.cells,) * self.groups)
-            for group in range(self.groups):
-                by_group[places, group, at[group]] = np.nan
-            digest.update(rows.data)
-        return digest.hexdigest()
+        return TableRows(self.groups, self.cells, self._parts).sha256()
 
     def dump(self) -> dict[str, NDArray[np.generic]]:
         """Return the entries that were visited or have a value, sparse (see `table_rows`)."""
-        states, size = np.flatnonzero(self._slots != _NO_SLOT), 0
-        parts = range(0, len(states), _ROWS_AT_ONCE)
-        for first in parts:
-            size += int(np.count_nonzero(self._is_used(states[first : first + _ROWS_AT_ONCE])))
-        where, begin = np.empty(size, np.int64), 0
-        q, n = np.empty(size), np.empty(size, np.uint32)
-        for first in parts:
-            some = states[first : first + _ROWS_AT_ONCE]
-            slots = self._slots[some]
-            row, column = np.nonzero(self._is_used(some))
-            end = begin + len(row)
-            where[begin:end] = some[row] * self.actions + column
-            q[begin:end] = self._q[slots[row], column]
-            n[begin:end] = self._n[slots[row], column]
+        size, begin = sum(len(where) for where, _, _ in self._parts()), 0
+        where, q, n = np.empty(size, np.int64), np.empty(size), np.empty(size, np.uint32)
+        for part in self._parts():
+            end = begin + len(part[0])
+            where[begin:end], q[begin:end], n[begin:end] = part
             begin = end
         return {"shape": np.array([self.groups, self.cells]), "where": where, "q": q, "n": n}
+
+    def _parts(self) -> Iterator[Part]:
+        """Yield the entries that were visited or have a value, some rows at once."""
+        states = np.flatnonzero(self._slots != _NO_SLOT)
+        for first in range(0, len(states), _ROWS_AT_ONCE):
+            some = states[first : first + _ROWS_AT_ONCE]
+            slots = self._slots[some]
+            row, column = np.nonzero((self._n[slots] > 0) | (self._q[slots] != 0))
+            if len(row):
+                where = some[row] * self.actions + column
+                yield where, self._q[slots[row], column], self._n[slots[row], column]
 
     def values_at(self, where: NDArray[np.int64]) -> FloatArray:
         """Return the values of entries given by their flat indices, as in `dump`."""
@@ -178,12 +165,6 @@ class QTable:
         self._slots[new] = np.arange(self._used, self._used + len(new), dtype=np.int32)
         self._used += len(new)
         return self._slots[states]
-
-    def _is_used(self, states: NDArray[np.intp]) -> NDArray[np.bool_]:
-        """Whether the entries of some states were visited or have a value, (states, actions)."""
-        slots = self._slots[states]
-        used: NDArray[np.bool_] = (self._n[slots] > 0) | (self._q[slots] != 0)
-        return used
 
     def _row(self, table: NDArray[Any], observation: Cells) -> FloatArray:
         slot = self._slots[self.index(observation)]

@@ -49,7 +49,7 @@ class TableRows:
                 yield state, values, visits
 
     def sha256(self) -> str:
-        """Return the same hash as `QTable.sha256`.
+        """Return the SHA-256 of the values as little-endian float64, row-major, NaN if illegal.
 
         Raises:
             TableMismatch: if the indices are not ascending.

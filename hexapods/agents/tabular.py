@@ -1,8 +1,9 @@
 """Base classes: agents that act greedily in a Q-table, and learners with an ε-greedy policy."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -10,10 +11,9 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from hexapods.agents.explanation import (
     ChoiceExplanation,
+    Rule,
     Term,
     UpdateExplanation,
-    UpdateLog,
-    ValueChange,
     ValueUpdate,
     copy_of,
     in_millimetres,
@@ -201,8 +201,8 @@ class TabularLearner(TabularAgent):
         self._steps_per_episode = steps_per_episode
         self._learned = 0
         self._fixed_epsilon: float | None = None
-        self._update_log: UpdateLog | None = None
-        """Notes each change of a value while an update is explained."""
+        self._explained: list[ValueUpdate] | None = None
+        """Updates of values so far, while those of a transition are explained."""
 
     next_meaning = "value of the next state"
     """Meaning of `_next_value`, for explanations."""
@@ -246,47 +246,57 @@ class TabularLearner(TabularAgent):
 
     def explain_update(self, transition: Transition) -> UpdateExplanation:
         """Learn as `learn` does, and explain how the values change."""
-        self._update_log = update_log = UpdateLog(transition, *self._explain_target(transition))
+        updates: list[ValueUpdate] = []
+        self._explained = updates
         try:
             self.learn(transition)
         finally:
-            self._update_log = None
-        return self._explanation(update_log)
+            self._explained = None
+        return self._explanation(transition, updates)
 
-    def _explain_target(self, transition: Transition) -> tuple[str, Sequence[Term]]:
-        """Return what the target of the update is computed from, before it is made."""
+    def _explain_target(self, transition: Transition) -> Rule:
+        """Return what `_target` is computed from."""
         rule, terms = self._explain_next(transition)
-        return f"r + γ · {rule}", (*self._explain_rates(transition), *terms)
+        return f"r + γ · {rule}", (*self._reward_terms(transition), *terms)
 
-    def _explain_rates(self, transition: Transition) -> Sequence[Term]:
+    def _rate_terms(self, before: float) -> Sequence[Term]:
+        return Term("Q", float(before), "value before"), Term("α", self._alpha, "learning rate")
+
+    def _reward_terms(self, transition: Transition) -> Sequence[Term]:
         return (
             Term("r", transition.reward_m, "reward of this step [m]"),
             Term("γ", self._gamma, "discount"),
         )
 
-    def _explain_next(self, transition: Transition) -> tuple[str, Sequence[Term]]:
+    def _explain_next(self, transition: Transition) -> Rule:
         """Return what `_next_value` is computed from."""
         return "Q′", (Term("Q′", self._next_value(transition), self.next_meaning),)
 
-    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
-        """Return the explanation of an update whose first noted change is the direct one."""
-        first, *others = update_log.changes
-        update = self._value_update(first.with_target(update_log.rule, update_log.terms))
-        return UpdateExplanation(
-            summary_of(update), update, [self._value_update(one) for one in others]
-        )
+    def _explanation(
+        self,
+        transition: Transition,  # noqa: ARG002
+        updates: Sequence[ValueUpdate],
+    ) -> UpdateExplanation:
+        """Return the explanation of the updates by a transition, of which the first is direct."""
+        direct, *others = updates
+        return UpdateExplanation(summary_of(direct), direct, others)
 
-    def _value_update(self, change: ValueChange) -> ValueUpdate:
-        table = self.table
-        observation, action = table.cells_at(change.state), table.action_at(change.column)
-        return ValueUpdate(observation, action, *change[2:])
+    def _explain(self, entry: tuple[int, int], explained: Rule, after: float) -> None:
+        """Add the update of a value, by row and column, to those explained, before it is made."""
+        assert self._explained is not None  # noqa: S101 - asked for by the caller
+        state, column = entry
+        table, (rule, terms) = self.table, explained
+        before = float(table.row(state)[0][column])
+        place = table.cells_at(state), table.action_at(column)
+        self._explained.append(ValueUpdate(*place, rule, tuple(terms), before, float(after)))
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Apply the update rule for a transition from row `state` by the action in `column`.
 
         Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Q′), Q′ being the value of the next state.
         """
-        self._move_towards(state, column, self._target(transition))
+        explain = partial(self._explain_target, transition)
+        self._move_towards(state, column, self._target(transition), explain)
 
     def _target(self, transition: Transition) -> float:
         return transition.reward_m + self._gamma * self._next_value(transition)
@@ -295,19 +305,19 @@ class TabularLearner(TabularAgent):
         """Return the value of the next state, by the rule of this learner. No state is terminal."""
         raise NotImplementedError
 
-    def _move_towards(self, state: int, column: int, target: float) -> None:
-        """Q(s, a) ← (1 − α) Q(s, a) + α target."""
+    def _move_towards(
+        self, state: int, column: int, target: float, explain: Callable[[], Rule]
+    ) -> None:
+        """Q(s, a) ← (1 − α) Q(s, a) + α target; `explain` returns what that is computed from."""
         values, _ = self.table.row(state)
-        before = values[column]
-        values[column] = (1 - self._alpha) * before + self._alpha * target
-        if self._update_log is not None:
-            terms = (
-                Term("Q", float(before), "value before"),
-                Term("α", self._alpha, "learning rate"),
-                Term("T", float(target), "target"),
+        after = (1 - self._alpha) * values[column] + self._alpha * target
+        if self._explained is not None:
+            rule, terms = explain()
+            rule = f"(1 − α) · Q + α · ({rule})"
+            self._explain(
+                (state, column), (rule, (*self._rate_terms(values[column]), *terms)), after
             )
-            change = before, values[column]
-            self._update_log.record((state, column), "(1 − α) · Q + α · T", terms, change)
+        values[column] = after
 
     def _best_next(self, transition: Transition) -> float:
         """Return max Q(s′, ·)."""

@@ -1,10 +1,11 @@
 """Eligibility traces, which credit a reward to earlier steps (Sutton and Barto 1998, chapter 7)."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy as np
 
-from hexapods.agents.explanation import Term, UpdateExplanation, UpdateLog
+from hexapods.agents.explanation import Rule, Term, UpdateExplanation, ValueUpdate
 from hexapods.agents.protocol import AgentState, Transition
 from hexapods.agents.q_table import check_entries
 from hexapods.agents.tabular import Share, TabularLearner, summary_of
@@ -20,6 +21,7 @@ TraceDecay = Annotated[
         examples=(0, 0.5, 0.9),
     ),
 ]
+_ERROR = "what came, less what this step was worth before"
 _MIN_TRACE = 1e-3
 """Cut-off: eligibility traces below it are dropped."""
 
@@ -40,44 +42,44 @@ class TraceLearner(TabularLearner):
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Credit the error δ = r + γ Q′ − Q(s, a) to every step with a trace."""
-        value = self.table.row(state)[0][column]
-        self._credit(state, column, self._target(transition) - value)
+        error = self._target(transition) - self.table.row(state)[0][column]
+        # Before any value changes, on which the target depends.
+        target = None if self._explained is None else self._explain_target(transition)
+        self._credit((state, column), error, target)
 
-    def _credit(self, state: int, column: int, error: float) -> None:
+    def _credit(self, newest: tuple[int, int], error: float, target: Rule | None) -> None:
         """Q ← Q + α δ e for every trace e, that of this step being 1; then e ← γ λ e."""
-        self._traces.pop((state, column), None)
-        self._traces[state, column] = 1.0
+        self._traces.pop(newest, None)
+        self._traces[newest] = 1.0
         decay, kept = self._gamma * self._trace_decay, {}
         for place, trace in self._traces.items():
             values, at = self.table.row(place[0])[0], place[1]
-            before = values[at]
-            values[at] += self._alpha * error * trace
-            if self._update_log is not None:
-                terms = (
-                    Term("Q", float(before), "value before"),
-                    Term("α", self._alpha, "learning rate"),
-                    Term("δ", float(error), "what came, less what this step was worth before"),
-                    Term("e", trace, "trace: how much the step counts for it"),
-                )
-                self._update_log.record(place, "Q + α · δ · e", terms, (before, values[at]))
+            after = values[at] + self._alpha * error * trace
+            if target is not None:
+                difference: Rule = ("δ", (Term("δ", float(error), _ERROR),))
+                if place == newest:
+                    difference = f"({target[0]} − Q)", target[1]
+                rule, terms = difference
+                share = Term("e", trace, "trace: how much the step counts for it")
+                explained = f"Q + α · {rule} · e", (*self._rate_terms(values[at]), *terms, share)
+                self._explain(place, explained, after)
+            values[at] = after
             if trace * decay >= _MIN_TRACE:
                 kept[place] = trace * decay
         self._traces = kept
 
-    def _explanation(self, update_log: UpdateLog) -> UpdateExplanation:
-        """Return the explanation of the newest trace's change, and those of the other traces."""
-        *others, own = update_log.changes
-        by_symbol = {term.symbol: term for term in own.terms}
-        shown = own._replace(
-            rule=f"Q + α · ({update_log.rule} − Q) · e",
-            terms=(by_symbol["Q"], by_symbol["α"], *update_log.terms, by_symbol["e"]),
-        )
-        update = self._value_update(shown)
+    def _explanation(
+        self,
+        transition: Transition,  # noqa: ARG002
+        updates: Sequence[ValueUpdate],
+    ) -> UpdateExplanation:
+        """Return the explanation of the newest trace's update, and those of the other traces."""
+        *others, direct = updates
         earlier = "the step before" if len(others) == 1 else f"{len(others)} steps before"
-        summary = summary_of(update)
+        summary = summary_of(direct)
         if others:
             summary += f" {earlier[0].upper()}{earlier[1:]} share in it, by their traces."
-        return UpdateExplanation(summary, update, [self._value_update(one) for one in others])
+        return UpdateExplanation(summary, direct, others)
 
     def tune(self, *, trace_decay: TraceDecay | None = None, **changes: Any) -> None:
         """Change rates from the next step on, as in `TabularLearner`."""

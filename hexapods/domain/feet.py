@@ -25,6 +25,11 @@ class Feet(NamedTuple):
     forward_m: tuple[float, ...]
     """Of each group, forward of home [m]."""
 
+    @property
+    def offsets_m(self) -> tuple[tuple[float, float], ...]:
+        """Offset (x, y) of each group [m]."""
+        return tuple(zip(self.lateral_m, self.forward_m, strict=True))
+
     @classmethod
     def at_home(cls, groups: int) -> "Feet":
         """Return the offsets with every foot at home."""

@@ -101,7 +101,7 @@ class KinematicSimulator:
         return replace(state, feet=state.feet.moved(error_m))
 
     def group_offsets(self, state: KinematicState) -> Sequence[tuple[float, float]]:
-        return list(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))
+        return state.feet.offsets_m
 
     def pose(self, state: KinematicState) -> FloatArray:
         kinematics = self._motion.kinematics

@@ -11,7 +11,7 @@ from itertools import chain
 from typing import Literal, get_args
 
 from hexapods.domain.errors import UnknownName
-from hexapods.domain.simulator import S, Simulator, WalkState
+from hexapods.domain.simulator import S, Simulator
 from hexapods.domain.types import Action, Cells, FloatArray
 
 Observation = Literal["measured", "commanded", "planned"]
@@ -50,7 +50,7 @@ def observe(
         return state.commanded
     nearest = simulator.grid.nearest
     if how == "planned":
-        return tuple(nearest(x, y) for x, y in planned_offsets(state))
+        return tuple(nearest(x, y) for x, y in state.feet.offsets_m)
     return tuple(nearest(x, y) for x, y in measured_offsets(simulator, state, error_m))
 
 
@@ -68,11 +68,6 @@ def measured_offsets(
     if error_m is None:
         return offsets
     return [(x + dx, y + dy) for (x, y), (dx, dy) in zip(offsets, error_m.tolist(), strict=True)]
-
-
-def planned_offsets(state: WalkState) -> tuple[tuple[float, float], ...]:
-    """Return where each group's feet would be without slip, (x, y) from home [m]."""
-    return tuple(zip(state.feet.lateral_m, state.feet.forward_m, strict=True))
 
 
 @lru_cache(maxsize=1 << 10)

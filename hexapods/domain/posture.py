@@ -48,12 +48,13 @@ def heading_deg(pose: Sequence[float], start: Sequence[float]) -> float:
         pose: torso position and rotation (wxyz), which may be followed by joint angles.
         start: likewise, at the start.
     """
-    turned = math.degrees(_yaw(pose) - _yaw(start))
+    turned = math.degrees(yaw_rad(pose[3:7]) - yaw_rad(start[3:7]))
     return (turned + 180) % 360 - 180
 
 
-def _yaw(pose: Sequence[float]) -> float:
-    w, x, y, z = pose[3:7]
+def yaw_rad(wxyz: Sequence[float]) -> float:
+    """Return the yaw of a rotation, a quaternion: anticlockwise from above [rad]."""
+    w, x, y, z = wxyz
     return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
 

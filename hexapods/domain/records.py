@@ -4,9 +4,11 @@ Requests, answers, the OpenAPI document, the database, archives and files all us
 Pydantic. A type with a form of its own in JSON, such as a robot, says it by a `JsonForm`.
 """
 
+import inspect
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from typing import Any, ClassVar, TypeVar
 
 T = TypeVar("T")
@@ -15,6 +17,8 @@ Schema = dict[str, Any]
 
 class Record:
     """Base class of dataclasses that are sent and stored as JSON objects of exactly their fields.
+
+    Their docstrings describe them and their fields in the OpenAPI document.
 
     Attributes:
         json_names: names in JSON of the fields that have another name there.
@@ -29,14 +33,45 @@ class Record:
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
-        schema = handler(source)
-        about = (source.__doc__ or "").partition("\n\n")[0].replace("\n", " ")
-        schema.setdefault("metadata", {})["pydantic_js_updates"] = {"description": about}
+        schema, attributes = handler(source), described_attributes(source)
+        about = {"description": summary_of(source)}
+        schema.setdefault("metadata", {})["pydantic_js_updates"] = about
         for one in schema["schema"]["fields"]:
+            if one["name"] in attributes:
+                describe = partial(_described, attributes[one["name"]])
+                one.setdefault("metadata", {}).setdefault("pydantic_js_functions", []).append(
+                    describe
+                )
             if one["name"] in cls.json_names:
                 name = cls.json_names[one["name"]]
                 one |= {"validation_alias": name, "serialization_alias": name}
         return schema
+
+
+def _described(about: str, schema: Any, schema_of: Any) -> Schema:
+    """Return the JSON schema of a field, described unless its type is."""
+    shape = schema_of(schema)
+    return dict(shape) if "$ref" in shape else {"description": about, **shape}
+
+
+def summary_of(record: type) -> str:
+    """Return the beginning of a class's docstring, without its sections."""
+    about = inspect.cleandoc(record.__doc__ or "")
+    return re.split(r"\n\n(?:Attributes|Raises):\n", f"\n\n{about}", maxsplit=1)[0].strip()
+
+
+def described_attributes(record: type) -> dict[str, str]:
+    """Return what the docstrings of a class and of its bases tell of their attributes, by name."""
+    told: dict[str, str] = {}
+    for base in reversed(record.__mro__):
+        about = inspect.cleandoc(vars(base).get("__doc__") or "")
+        section = about.partition("Attributes:\n")[2].partition("\n\n")[0]
+        for item in re.split(r"^    (?=\S)", section, flags=re.MULTILINE)[1:]:
+            names, _, text = item.partition(":")
+            # Of a field that may be left out in Python JSON has null.
+            text = re.sub(r"\bNone\b", "null", " ".join(text.split()))
+            told |= dict.fromkeys(names.split(", "), text)
+    return told
 
 
 @dataclass(frozen=True, eq=False)

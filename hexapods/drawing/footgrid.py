@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from hexapods.domain.disturbances import Lost
 from hexapods.domain.kinematics import legs_of
+from hexapods.domain.posture import yaw_rad
 from hexapods.domain.types import FloatArray, IntArray
 from hexapods.drawing.colormap import Rgb, rgb, value_colors
-from hexapods.drawing.shapes import Shape
+from hexapods.drawing.shapes import Shape, outlined
 from hexapods.drawing.viser_internals.client import batch_colors
-from hexapods.shows.stage_frame import ActionValuesView, LaneFrame, SceneSpec, yaw_rad
+from hexapods.shows.stage_frame import ActionValuesView, LaneFrame, SceneSpec
 
 _HOME_RIM: Rgb = rgb("#e5484d")
 _OTHER_RIM: Rgb = rgb("#4c8dff")
@@ -66,7 +67,7 @@ class FootGridDrawing:
     def draw(self, lane: LaneFrame) -> None:
         """Move the grid with the body, and colour its cells if the action values changed."""
         x, y = float(lane.qpos[0]) + self._x_m, float(lane.qpos[1])
-        turn, z = yaw_rad(lane.qpos[3:7]) - self._forward_rad, lane.conditions.ground_m(0)
+        turn, z = yaw_rad(lane.qpos[3:7].tolist()) - self._forward_rad, lane.conditions.ground_m(0)
         pose = (x, y, z + ABOVE_GROUND_M, turn)
         if pose != self._pose:
             self._frame.position = pose[:3]
@@ -118,9 +119,9 @@ class _Tiles:
         self._cells, self._rim = cells, rim
         positions = positions[:, cells].reshape(-1, 3)
         colors = np.tile(np.array(rim, np.uint8), (len(positions), 1))
-        self._rims = _add(server, f"{root}/rims", _tile(0.96 * outline), positions, colors)
+        self._rims = _add(server, f"{root}/rims", outlined(0.96 * outline), positions, colors)
         self._fills = _add(
-            server, f"{root}/fills", _tile(0.84 * outline), positions + _LAYER_OFFSET, colors
+            server, f"{root}/fills", outlined(0.84 * outline), positions + _LAYER_OFFSET, colors
         )
 
     def draw(self, fills: NDArray[np.uint8], is_current: NDArray[np.bool_]) -> None:
@@ -151,12 +152,6 @@ def _square(side: float) -> FloatArray:
 def _diamond(reach: float) -> FloatArray:
     """Return the corners of a square rotated by 45°, anticlockwise, (4, 2) [m]."""
     return reach * np.array([[0.0, -1], [1, 0], [0, 1], [-1, 0]])
-
-
-def _tile(outline: FloatArray) -> Shape:
-    """Return a flat quadrilateral, facing up."""
-    corners = np.column_stack([outline, np.zeros(4)]).astype(np.float32)
-    return Shape(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
 
 
 def _cell_positions(spec: SceneSpec) -> FloatArray:

@@ -2,18 +2,16 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 import viser
 
 from hexapods.domain.text import metres, whole
 from hexapods.drawing.colormap import rgb
 from hexapods.drawing.robot_mesh import RobotMesh
-from hexapods.drawing.robots import GHOST_OPACITY
+from hexapods.drawing.robots import Robots
 from hexapods.drawing.shapes import strip
 from hexapods.drawing.temporary import Temporary
-from hexapods.drawing.viser_internals.client import batch_colors
 from hexapods.shows.scene_spec import rest_pose
-from hexapods.shows.stage_frame import Ghost, SceneSpec, StageFrame
+from hexapods.shows.stage_frame import Ghost, LaneFrame, SceneSpec, StageFrame
 
 _BAR_M = 0.05
 _TEXT_SCALE = 1.7
@@ -82,7 +80,7 @@ class Ghosts(Temporary):
         self, server: viser.ViserServer, root: str, spec: SceneSpec, mesh: RobotMesh, x_m: float
     ) -> None:
         super().__init__(server, root, x_m)
-        self._mesh = mesh
+        self._spec, self._mesh = spec, mesh
         self._width = 2 * spec.robot.home_radius_m
         self._color, self._rest = rgb(spec.lane_specs[0].color), rest_pose(spec)
 
@@ -108,25 +106,12 @@ class Ghosts(Temporary):
         )
 
     def _draw_robot(self, ghost: Ghost) -> None:
-        height_m = ghost.conditions.ground_m(0)
-        body_poses = self._mesh.body_poses(self._rest).moved(0.0, ghost.distance_m, height_m)
-        for number, part in enumerate(self._mesh.parts):
-            colors = self._mesh.link_colors(part, self._color, ghost.conditions)
-            links = [link for link, color in zip(part.links, colors, strict=True) if color]
-            if not links:
-                continue
-            self._server.scene.add_batched_meshes_simple(
-                f"{self._root}/robot/{number}",
-                part.shape.vertices,
-                part.shape.faces,
-                batched_positions=body_poses.positions[links],
-                batched_wxyzs=body_poses.rotations[links],
-                batched_colors=batch_colors(np.array([*filter(None, colors)], np.uint8)),
-                opacity=GHOST_OPACITY,
-                lod="off",
-                cast_shadow=False,
-                receive_shadow=False,
-            )
+        pose = self._rest.copy()
+        pose[1] += ghost.distance_m
+        pose[2] += ghost.conditions.ground_m(0)
+        root = f"{self._root}/robot"
+        robot = Robots(self._server, root, self._spec, self._mesh, [0.0], is_ghost=True)
+        robot.draw([LaneFrame(pose, 0, 0, 0.0, conditions=ghost.conditions)])
         self._server.scene.add_label(
             f"{self._root}/robot/label",
             f"{metres(ghost.distance_m)}\nafter {whole(ghost.step)} steps",

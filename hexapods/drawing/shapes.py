@@ -99,8 +99,7 @@ def disc(radius: float, corners: int = _ROUND) -> Shape:
 def strip(width: float, depth: float) -> Shape:
     """Return a rectangle in the plane z = 0, facing up, x by y [m], centred on the origin."""
     x, y = width / 2, depth / 2
-    corners = np.array([[-x, -y, 0], [x, -y, 0], [x, y, 0], [-x, y, 0]])
-    return _smooth(corners, np.array([[0, 1, 2], [0, 2, 3]]))
+    return outlined(np.array([[-x, -y], [x, -y], [x, y], [-x, y]]))
 
 
 def outlined(corners: FloatArray) -> Shape:

@@ -15,10 +15,10 @@ from hexapods.domain.checks import check_whole
 from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.config import MAX_WORKERS
 from hexapods.experiments.local_workers import local_workers
-from hexapods.experiments.trial import TrialConfig
+from hexapods.experiments.plan import Trial
 from hexapods.experiments.worker import (
-    Attempt,
     ClusterLost,
+    Outcome,
     WorkerDied,
     Workers,
     difference,
@@ -121,15 +121,15 @@ class _ClusterWorkers:
         except (OSError, TimeoutError, ValueError) as error:
             raise ClusterLost(_LOST) from error
 
-    def submit(self, configs: Sequence[TrialConfig]) -> "Future[list[Attempt]]":
+    def submit(self, trials: Sequence[Trial]) -> "Future[list[Outcome]]":
         # Not through `get_executor`: its future never ends if a result is lost on its way.
-        return self._client.submit(run_batch, configs, self._expected, pure=False)
+        return self._client.submit(run_batch, trials, self._expected, pure=False)
 
-    def result(self, task: Any) -> list[Attempt]:
+    def result(self, task: Any) -> list[Outcome]:
         from distributed import CancelledError, KilledWorker  # noqa: PLC0415
 
         try:
-            done: list[Attempt] = task.result()
+            done: list[Outcome] = task.result()
         except KilledWorker as error:
             raise WorkerDied(error.allowed_failures + 1) from error
         except CancelledError as error:

@@ -2,16 +2,14 @@
 
 import queue
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from itertools import chain, islice
-from typing import Any, NamedTuple
 
 from hexapods.experiments.cluster import ClusterSpec, connect
 from hexapods.experiments.plan import Trial
-from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worker import (
-    Attempt,
     ClusterLost,
+    Outcome,
     Task,
     VersionMismatch,
     WorkerDied,
@@ -28,33 +26,6 @@ _TASKS_PER_WORKER = 2
 _POLL_S = 0.2
 _WORKER_COUNT_S = 1.0
 _WORKER_WAIT_S = 60.0
-
-
-class Outcome(NamedTuple):
-    """A completed trial: its result, or the reason that it was set aside."""
-
-    key: str
-    result: TrialResult | None
-    """None if it was set aside."""
-    set_aside: str | None
-    """The reason that there is no result, in a sentence."""
-    compute_s: float
-    """Time that a worker computed."""
-
-    def as_json(self) -> dict[str, Any]:
-        """Encode to plain JSON types, as stored in databases and results folders."""
-        result = None if self.result is None else self.result.as_json()
-        return {**self._asdict(), "result": result}
-
-    @classmethod
-    def from_json(cls, row: Mapping[str, Any]) -> "Outcome":
-        """Decode the output of `as_json`.
-
-        Raises:
-            KeyError, TypeError, ValueError: if it is malformed.
-        """
-        result = None if row["result"] is None else TrialResult.from_json(row["result"])
-        return cls(str(row["key"]), result, row["set_aside"], float(row["compute_s"]))
 
 
 def run_trials(
@@ -103,7 +74,7 @@ class _BatchSizer:
         self.size = 1
         self._trial_s: float | None = None
 
-    def update(self, done: Sequence[Attempt]) -> None:
+    def update(self, done: Sequence[Outcome]) -> None:
         mean_s = sum(one.compute_s for one in done) / len(done)
         previous_s = mean_s if self._trial_s is None else self._trial_s
         self._trial_s = max(0.7 * previous_s + 0.3 * mean_s, 1e-6)
@@ -173,7 +144,7 @@ class _Engine:
         yield Outcome(trial.key, None, reason, 0.0)
 
     def _submit(self, batch: list[Trial]) -> None:
-        task = self._workers.submit([trial.config for trial in batch])
+        task = self._workers.submit(batch)
         self._in_flight[task] = batch
         task.add_done_callback(self._ended_tasks.put)
 
@@ -196,7 +167,7 @@ class _Engine:
             reason = f"a worker cannot run it ({type(error).__name__}: {error})"
             return [Outcome(trial.key, None, reason, 0.0) for trial in batch]
         self._batches.update(done)
-        return [Outcome(trial.key, *one) for trial, one in zip(batch, done, strict=True)]
+        return done
 
     def _check_workers(self) -> None:
         now_s = time.monotonic()

@@ -15,9 +15,8 @@ from typing import IO, Any
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
 from hexapods.experiments.config import SUMMARY, ExperimentConfig, by_option
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.progress import Progress
-from hexapods.experiments.worker import difference, versions
+from hexapods.experiments.worker import Outcome, difference, versions
 from hexapods.files import is_disk_full, lock_file
 from hexapods.runs.version_1 import nested_config
 

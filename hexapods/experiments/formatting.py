@@ -28,7 +28,7 @@ def span(values: Iterable[float]) -> str:
 
 def shares(estimate: Interval | Mapping[str, Any]) -> str:
     """Format a share with its interval: `74 % (72 to 76)`."""
-    value, low, high = _value_and_limits(estimate)
+    value, low, high = Interval.of(estimate)
     if low is None or high is None:
         return percent(value)
     return f"{percent(value)} ({100 * low:.0f} to {100 * high:.0f})"
@@ -36,7 +36,7 @@ def shares(estimate: Interval | Mapping[str, Any]) -> str:
 
 def distance(estimate: Interval | Mapping[str, Any]) -> str:
     """Format a distance with its interval: `0.36 m (0.34 to 0.37)`."""
-    value, low, high = _value_and_limits(estimate)
+    value, low, high = Interval.of(estimate)
     if low is None or high is None:
         return metres(value)
     return f"{metres(value)} ({number(low)} to {number(high)})"
@@ -51,14 +51,3 @@ def listed(items: Iterable[str], last: str = "and") -> str:
 def counted(number: int, one: str, many: str | None = None) -> str:
     """Format a count with its noun: `1 seed`, `30 seeds`."""
     return f"{number:,} {one if number == 1 else many or one + 's'}"
-
-
-def _value_and_limits(
-    estimate: Interval | Mapping[str, Any],
-) -> tuple[float, float | None, float | None]:
-    if isinstance(estimate, Interval):
-        return estimate
-    value = next(estimate[name] for name in ("share", "iqm", "iqm_m") if name in estimate)
-    low = estimate["low"] if "low" in estimate else estimate["low_m"]
-    high = estimate["high"] if "high" in estimate else estimate["high_m"]
-    return value, low, high

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Future
 from contextlib import contextmanager
 
-from hexapods.experiments.trial import TrialConfig
-from hexapods.experiments.worker import Attempt, ClusterLost, WorkerDied, run_batch, versions
+from hexapods.experiments.plan import Trial
+from hexapods.experiments.worker import ClusterLost, Outcome, WorkerDied, run_batch, versions
 from hexapods.machine import memory_bytes
 from hexapods.processes import SetUp, start_fork_server
 from hexapods.worker_pool import WorkerPool
@@ -75,11 +75,11 @@ class LocalWorkers:
         """Return how many tasks they compute at once."""
         return self._pool.count
 
-    def submit(self, configs: Sequence[TrialConfig]) -> "Future[list[Attempt]]":
+    def submit(self, trials: Sequence[Trial]) -> "Future[list[Outcome]]":
         """Let the next free worker run a batch of trials."""
-        return self._pool.submit(run_batch, configs, self._expected)
+        return self._pool.submit(run_batch, trials, self._expected)
 
-    def result(self, task: "Future[list[Attempt]]") -> list[Attempt]:
+    def result(self, task: "Future[list[Outcome]]") -> list[Outcome]:
         """Return the result of a task that has ended.
 
         Raises:

@@ -1,11 +1,11 @@
 """Measures over the seeds of one or more settings, as plain types fit for JSON."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from statistics import fmean, median
 from typing import Any
 
 from hexapods.experiments.published import Published
+from hexapods.experiments.setting_results import SettingResults
 from hexapods.experiments.statistics import (
     MIN_SEEDS,
     Interval,
@@ -22,42 +22,11 @@ REACHED_SHARE = 0.95
 """Share of a reference's distance from which a seed counts as having reached that reference."""
 
 
-@dataclass(frozen=True)
-class ReferenceDistance:
-    """Greedy's distances under the same conditions, and the best known one [m].
-
-    Attributes:
-        total_m: greedy's after its 50 steps; None if there is no result, or greedy hardly moved.
-        finished_m: greedy's at time-out, when the first lane has used its 50 steps; None likewise.
-        best_known_m: the best known distance of 50 steps; None where none was computed.
-    """
-
-    total_m: float | None = None
-    finished_m: float | None = None
-    best_known_m: float | None = None
-
-
-@dataclass(frozen=True)
-class Stratum:
-    """One stratum of the bootstrap: the seeds of one setting, without failed trials.
-
-    Attributes:
-        total_m: each seed's distance over 50 steps, after the last block of practice [m].
-        finished_m: each seed's distance at time-out, when the first lane has used its 50 steps
-            [m]; empty if no race was simulated.
-        reference: the reference distances under the same conditions.
-    """
-
-    total_m: Points
-    finished_m: Points
-    reference: ReferenceDistance
-
-
-def measure_against_references(strata: Sequence[Stratum], seed: int) -> dict[str, Any]:
+def measure_against_references(strata: Sequence[SettingResults], seed: int) -> dict[str, Any]:
     """Compute all measures relative to greedy and to the best known, over the seeds of all strata.
 
     Args:
-        strata: one setting, or one for each gait; strata without seeds are ignored.
+        strata: one setting, or one for each gait; those without seeds are ignored.
         seed: seed of the bootstrap's resampling.
 
     Returns:
@@ -74,17 +43,17 @@ def measure_against_references(strata: Sequence[Stratum], seed: int) -> dict[str
     is_known = all(one.reference.best_known_m is not None for one in seen)
     known = [_as_share(one.total_m, one.reference.best_known_m) for one in seen if is_known]
     return {
-        "relative": _iqm_interval_of(total, seed),
-        "relative_finished": _iqm_interval_of(finished, seed),
-        "of_best_known": _iqm_interval_of(known, seed),
+        "relative": iqm_entry(total, seed),
+        "relative_finished": iqm_entry(finished, seed),
+        "of_best_known": iqm_entry(known, seed),
         "walkers": _share(total, lambda points: share_at_least(points, WALKER_SHARE)),
-        "beats_greedy": _share_ahead_of_greedy(finished),
-        "beats_greedy_total": _share_ahead_of_greedy(total),
+        "beats_greedy": _share(finished, _ahead_of_greedy, exceeds=0.5),
+        "beats_greedy_total": _share(total, _ahead_of_greedy, exceeds=0.5),
         "reaches_greedy": _share(total, lambda points: share_at_least(points, REACHED_SHARE)),
     }
 
 
-def best_known_relative(strata: Sequence[Stratum]) -> float | None:
+def best_known_relative(strata: Sequence[SettingResults]) -> float | None:
     """Return the best known distance as a share of greedy's, the mean over the strata with seeds.
 
     None if one of them lacks either.
@@ -104,14 +73,12 @@ def summarise_distances(points: Points, seed: int) -> dict[str, Any] | None:
     """
     if not points:
         return None
-    middle = iqm_interval((points,), seed)
+    middle = iqm_interval((points,), seed).as_json("iqm", "_m")
     return {
         "points_m": list(points),
         "mean_m": fmean(points),
         "median_m": median(points),
-        "iqm_m": middle.value,
-        "low_m": middle.low,
-        "high_m": middle.high,
+        **middle,
     }
 
 
@@ -129,63 +96,44 @@ def compare_with_published(
     }
 
 
-def learning_curve(
-    blocks: Sequence[Points], steps: int, reference: ReferenceDistance, seed: int
-) -> Mapping[str, Any]:
-    """Return the learning curve: distance against steps of practice, with its references.
-
-    Args:
-        blocks: the seeds' distances after each block of practice [m].
-        steps: steps of practice in one block.
-        reference: reference distances under the same conditions.
-        seed: seed of the bootstrap's resampling.
-    """
-    intervals = [iqm_interval((points,), seed) for points in blocks]
-    limit = None if reference.total_m is None else WALKER_SHARE * reference.total_m
+def curve_entry(columns: Sequence[Points], seed: int) -> dict[str, list[Any]]:
+    """Return a curve: interquartile means with their intervals, and means, of each column [m]."""
+    intervals = [iqm_interval((points,), seed) for points in columns]
     return {
-        "steps": [steps * (1 + number) for number in range(len(blocks))],
         "iqm_m": [one.value for one in intervals],
         "low_m": [one.low for one in intervals],
         "high_m": [one.high for one in intervals],
-        "mean_m": [fmean(points) for points in blocks],
-        "walkers": [None if limit is None else share_at_least(p, limit).value for p in blocks],
-        "points_m": [list(points) for points in blocks],
-        "greedy_m": reference.total_m,
-        "best_known_m": reference.best_known_m,
+        "mean_m": [fmean(points) for points in columns],
     }
+
+
+def iqm_entry(strata: Sequence[Points], seed: int) -> dict[str, Any] | None:
+    """Return the interquartile mean of all seeds with its interval; None without strata."""
+    return iqm_interval(tuple(strata), seed).as_json("iqm") if strata else None
 
 
 def _as_share(points: Points, of_m: float | None) -> Points:
     return tuple(point / of_m for point in points) if of_m else ()
 
 
-def _iqm_interval_of(strata: list[Points], seed: int) -> dict[str, Any] | None:
-    if not strata:
-        return None
-    middle = iqm_interval(tuple(strata), seed)
-    return {"iqm": middle.value, "low": middle.low, "high": middle.high}
+def _ahead_of_greedy(shares_of_greedy: Points) -> Interval:
+    return share_ahead(shares_of_greedy, 1.0)
 
 
-def _share(strata: list[Points], count: Callable[[Points], Interval]) -> dict[str, Any] | None:
-    """Return a share of all seeds, with its interval if each stratum has at least `MIN_SEEDS`."""
+def _share(
+    strata: list[Points], count: Callable[[Points], Interval], exceeds: float | None = None
+) -> dict[str, Any] | None:
+    """Return a share of all seeds, with its interval if each stratum has at least `MIN_SEEDS`.
+
+    With a threshold to exceed it has a verdict, too.
+    """
     if not strata:
         return None
     share = count(tuple(point for points in strata for point in points))
     if min(map(len, strata)) < MIN_SEEDS:
         share = Interval(share.value)
-    return {"share": share.value, "low": share.low, "high": share.high}
-
-
-def _share_ahead_of_greedy(strata: list[Points]) -> dict[str, Any] | None:
-    """Return the share of seeds ahead of greedy, with its verdict.
-
-    The strata hold shares of greedy's distance, so that greedy itself is 1.
-    """
-    measured = _share(strata, lambda points: share_ahead(points, 1.0))
-    if measured is None:
-        return None
-    share = Interval(measured["share"], measured["low"], measured["high"])
-    return {**measured, "verdict": share.exceeds(0.5)}
+    verdict = {} if exceeds is None else {"verdict": share.exceeds(exceeds)}
+    return {**share.as_json("share"), **verdict}
 
 
 def _quantile(value: float | None, points: Points) -> float | None:

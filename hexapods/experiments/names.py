@@ -12,7 +12,7 @@ from hexapods.experiments.labels import (
     robot_name,
     world_name,
 )
-from hexapods.experiments.plan import Plan, TrialSetting
+from hexapods.experiments.plan import Plan
 from hexapods.runs.lane import PLANNING_MODEL_TITLES, PlanningModel
 
 _PLACE = ("gait", "world", "observation", "robot")
@@ -41,7 +41,7 @@ def trial_names(plan: Plan, keys: Iterable[str]) -> dict[str, str]:
     Unlike a setting's, it says where the trial walks even if all walk there:
     `Q-learning, α 0.3, Left-right, opposite, feet measured, stiff robot, seed 12`.
     """
-    settings = [_fields(one) for one in plan.settings]
+    settings = [one.fields for one in plan.settings]
     varied = _varied(settings, tuple(plan.settings[0].parameters))
     names = {
         one.key: _name(fields, (*varied, *_PLACE), one.trial.plans_with)
@@ -52,18 +52,6 @@ def trial_names(plan: Plan, keys: Iterable[str]) -> dict[str, str]:
         key: f"{names[setting]}, seed {number}" if setting in names else key
         for key in keys
         for setting, _, number in (key.rpartition("#"),)
-    }
-
-
-def _fields(setting: TrialSetting) -> dict[str, Any]:
-    training = setting.training
-    return {
-        "agent": training.agent,
-        "gait": setting.gait,
-        "world": setting.world,
-        "observation": training.observation,
-        "robot": setting.robot,
-        **setting.parameters,
     }
 
 

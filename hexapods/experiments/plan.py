@@ -81,6 +81,18 @@ class TrialSetting:
         """Name of the gait."""
         return self.training.resolved_gait.name
 
+    @property
+    def fields(self) -> dict[str, Any]:
+        """All that identifies it, by name; search agents have no training parameters."""
+        return {
+            "gait": self.gait,
+            "observation": self.training.observation,
+            "robot": self.robot,
+            "world": self.world,
+            "agent": self.training.agent,
+            **self.parameters,
+        }
+
 
 @dataclass(frozen=True)
 class Trial:

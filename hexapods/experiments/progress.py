@@ -7,10 +7,10 @@ from typing import Any
 
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig
-from hexapods.experiments.engine import Outcome, run_on, run_trials
+from hexapods.experiments.engine import run_on, run_trials
 from hexapods.experiments.plan import Plan, Trial
 from hexapods.experiments.trial import TrialResult
-from hexapods.experiments.worker import Workers
+from hexapods.experiments.worker import Outcome, Workers
 
 
 class Progress:
@@ -44,10 +44,16 @@ class Progress:
             self.results[outcome.key] = outcome.result
             self.set_aside.pop(outcome.key, None)
 
-    def remaining(self, retry: bool = False) -> list[Trial]:
-        """Return the trials without an outcome; with `retry` also those that were set aside."""
+    def remaining(self, retry: bool = False, *, of: Iterable[Trial] | None = None) -> list[Trial]:
+        """Return the trials without an outcome, each once.
+
+        Args:
+            retry: whether also those that were set aside.
+            of: of which trials; by default of all of the plan.
+        """
+        by_key = {trial.key: trial for trial in (self.plan.trials() if of is None else of)}
         done_keys = self.results.keys() if retry else self.results.keys() | self.set_aside.keys()
-        return [trial for trial in self.plan.trials() if trial.key not in done_keys]
+        return [trial for key, trial in by_key.items() if key not in done_keys]
 
     def run(
         self, trials: Iterable[Trial], spec: ClusterSpec, may_continue: Callable[[], bool]

@@ -1,11 +1,10 @@
 """Group an experiment's trial results by setting, with greedy's results as references."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from hexapods.experiments.measures import ReferenceDistance, Stratum
 from hexapods.experiments.plan import Plan, TrialSetting
 from hexapods.experiments.statistics import Points, iqm
 from hexapods.experiments.trial import TrialResult
@@ -15,11 +14,26 @@ _MIN_WALK = 0.5
 """In half grid sides: a greedy agent that covers less in 50 steps is not used as a reference."""
 
 
+class ReferenceDistance(NamedTuple):
+    """Greedy's distances under the same conditions, and the best known one [m].
+
+    Attributes:
+        total_m: greedy's after its 50 steps; None if there is no result, or greedy hardly moved.
+        finished_m: greedy's at time-out, when the first lane has used its 50 steps; None likewise.
+        best_known_m: the best known distance of 50 steps; None where none was computed.
+    """
+
+    total_m: float | None = None
+    finished_m: float | None = None
+    best_known_m: float | None = None
+
+
 class SettingResults(NamedTuple):
-    """A setting and its results so far, by seed number."""
+    """A setting, its results so far, by seed number, and what they are compared with."""
 
     setting: TrialSetting
     results: Mapping[int, TrialResult]
+    reference: ReferenceDistance = ReferenceDistance()
 
     @property
     def succeeded(self) -> list[TrialResult]:
@@ -67,7 +81,7 @@ class SettingResults(NamedTuple):
 
 
 def group_by_setting(plan: Plan, results: Mapping[str, TrialResult]) -> list[SettingResults]:
-    """Return every setting of the plan with its results, in the plan's order.
+    """Return every setting of the plan with its results and reference, in the plan's order.
 
     Results whose key is not in the plan are ignored.
 
@@ -80,26 +94,16 @@ def group_by_setting(plan: Plan, results: Mapping[str, TrialResult]) -> list[Set
         setting, _, number = key.rpartition("#")
         if setting in by_setting and int(number) < plan.config.seeds:
             by_setting[setting][int(number)] = result
-    return [SettingResults(setting, by_setting[setting.key]) for setting in plan.settings]
-
-
-def references_by_conditions(settings: Sequence[SettingResults]) -> dict[Any, ReferenceDistance]:
-    """Return the reference distances by `SettingResults.conditions`.
-
-    Greedy's are over all its robots.
-    """
-    return {
+    grouped = [SettingResults(setting, by_setting[setting.key]) for setting in plan.settings]
+    references = {
         one.conditions: _reference(one)
-        for one in settings
+        for one in grouped
         if one.setting.role == "reference"
         and one.setting.training.agent == "greedy"
         and one.setting.trial.plans_with is None
     }
-
-
-def stratum(one: SettingResults, references: Mapping[Any, ReferenceDistance]) -> Stratum:
-    """Return a setting's seeds and its reference as a stratum of the bootstrap."""
-    return Stratum(one.total_m, one.finished_m, references.get(one.conditions, ReferenceDistance()))
+    none = ReferenceDistance()
+    return [one._replace(reference=references.get(one.conditions, none)) for one in grouped]
 
 
 def _reference(greedy: SettingResults) -> ReferenceDistance:
@@ -116,15 +120,7 @@ def _reference(greedy: SettingResults) -> ReferenceDistance:
 
 
 def setting_fields(one: SettingResults) -> dict[str, Any]:
-    """Return the fields that identify a setting; search agents have no training parameters."""
-    at = one.setting.training
-    return {
-        "gait": one.setting.gait,
-        "observation": at.observation,
-        "robot": one.setting.robot,
-        "world": one.setting.world,
-        "agent": at.agent,
-        **one.setting.parameters,
-        "blocks": one.setting.trial.blocks,
-        "half_side_m": at.grid_side_m / 2,
-    }
+    """Return the fields that identify a setting in a summary."""
+    half_side_m = one.setting.training.grid_side_m / 2
+    blocks = one.setting.trial.blocks
+    return {**one.setting.fields, "blocks": blocks, "half_side_m": half_side_m}

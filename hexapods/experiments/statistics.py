@@ -4,7 +4,7 @@ Shares of seeds have Wilson intervals. The method is that of Agarwal et al., "De
 of the statistical precipice" (2021).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, Literal, NamedTuple
 
@@ -34,6 +34,20 @@ class Interval(NamedTuple):
     value: float
     low: float | None = None
     high: float | None = None
+
+    def as_json(self, name: str, unit: str = "") -> dict[str, Any]:
+        """Return it as an entry of a summary; `unit` is a suffix of all names, such as `_m`."""
+        return {f"{name}{unit}": self.value, f"low{unit}": self.low, f"high{unit}": self.high}
+
+    @classmethod
+    def of(cls, entry: "Interval | Mapping[str, Any]") -> "Interval":
+        """Return an interval, read from an entry of a summary if it is one."""
+        if isinstance(entry, Interval):
+            return entry
+        unit = "_m" if "low_m" in entry else ""
+        names = (f"{name}{unit}" for name in ("probability", "share", "iqm"))
+        value = next(entry[name] for name in names if name in entry)
+        return cls(value, entry[f"low{unit}"], entry[f"high{unit}"])
 
     def __neg__(self) -> "Interval":
         """Return the interval of the negated value, to test whether it is below a threshold."""

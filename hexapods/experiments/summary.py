@@ -13,10 +13,10 @@ from hexapods.experiments.claims import CLAIMS_OF
 from hexapods.experiments.claims.judging import judge
 from hexapods.experiments.config import DISTURBED, SUMMARY_FORMAT, ExperimentConfig
 from hexapods.experiments.measures import (
-    ReferenceDistance,
+    WALKER_SHARE,
     best_known_relative,
     compare_with_published,
-    learning_curve,
+    curve_entry,
     measure_against_references,
     summarise_distances,
 )
@@ -27,11 +27,9 @@ from hexapods.experiments.published import published
 from hexapods.experiments.setting_results import (
     SettingResults,
     group_by_setting,
-    references_by_conditions,
     setting_fields,
-    stratum,
 )
-from hexapods.experiments.statistics import bootstrap_exceeds, improvement
+from hexapods.experiments.statistics import bootstrap_exceeds, improvement, share_at_least
 from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worker import versions
 from hexapods.experiments.worlds import compare_in_worlds
@@ -63,7 +61,6 @@ def summarise(
     """
     plan = _plan(config)
     settings = group_by_setting(plan, results)
-    references = references_by_conditions(settings)
     walked = [one for one in settings if one.setting.role != "timed"]
     is_disturbed = config.experiment in DISTURBED
     summary: dict[str, Any] = {
@@ -75,11 +72,9 @@ def summarise(
         "trials": _count_trials(plan, settings, set_aside or {}),
         "cost": None if cost is None else dict(cost),
         "parameters": list(plan.settings[0].parameters),
-        "settings": [_setting(one, references, config) for one in walked],
-        "pooled": _pooled(walked, references, config),
-        "curves": [
-            _curve(one, references, config.seed) for one in walked if one.setting.trial.blocks > 1
-        ],
+        "settings": [_setting(one, config) for one in walked],
+        "pooled": _pooled(walked, config),
+        "curves": [_curve(one, config.seed) for one in walked if one.setting.trial.blocks > 1],
         "versus": [] if is_disturbed else _versus(walked, config.seed),
         "timed": [_timed(one) for one in settings if one.setting.role == "timed" and one.succeeded],
         "worlds": compare_in_worlds(walked, config.seed) if is_disturbed else [],
@@ -95,33 +90,26 @@ def _plan(config: ExperimentConfig) -> Plan:
     return Plan(config)
 
 
-def _setting(
-    one: SettingResults, references: Mapping[Any, ReferenceDistance], config: ExperimentConfig
-) -> dict[str, Any]:
-    seeds = stratum(one, references)
+def _setting(one: SettingResults, config: ExperimentConfig) -> dict[str, Any]:
     cell = published(one.setting.gait, one.setting.training.agent, one.setting.practised_steps)
-    printed = compare_with_published(cell, seeds.total_m, seeds.finished_m)
+    printed = compare_with_published(cell, one.total_m, one.finished_m)
     elapsed = [result.elapsed_s for result in one.succeeded if result.elapsed_s is not None]
     return {
         "key": one.setting.key,
         "role": one.setting.role,
         **setting_fields(one),
-        "n": len(seeds.total_m),
+        "n": len(one.total_m),
         "failed": len(one.results) - len(one.succeeded),
-        "total": summarise_distances(seeds.total_m, config.seed),
-        "finished": summarise_distances(seeds.finished_m, config.seed),
-        "best_known_m": seeds.reference.best_known_m,
-        **measure_against_references([seeds], config.seed),
+        "total": summarise_distances(one.total_m, config.seed),
+        "finished": summarise_distances(one.finished_m, config.seed),
+        "best_known_m": one.reference.best_known_m,
+        **measure_against_references([one], config.seed),
         "elapsed_s": elapsed[0] if elapsed and one.setting.role == "reference" else None,
         "published": printed if config.experiment == "table1" else None,
     }
 
 
-def _pooled(
-    settings: Sequence[SettingResults],
-    references: Mapping[Any, ReferenceDistance],
-    config: ExperimentConfig,
-) -> list[dict[str, Any]]:
+def _pooled(settings: Sequence[SettingResults], config: ExperimentConfig) -> list[dict[str, Any]]:
     """Measure each learner over its gaits, which are the strata of the bootstrap.
 
     Outside Table 1 also search agents other than greedy: without intervals or shares of seeds,
@@ -129,14 +117,13 @@ def _pooled(
     """
     entries = []
     for group in _group_by_gait(one for one in settings if _is_compared(one, config)):
-        strata = [stratum(one, references) for one in group]
         shared = {k: v for k, v in setting_fields(group[0]).items() if k != "gait"}
         gaits = [one.setting.gait for one in group]
-        n = sum(len(one.total_m) for one in strata)
-        measured = measure_against_references(strata, config.seed)
+        n = sum(len(one.total_m) for one in group)
+        measured = measure_against_references(group, config.seed)
         if group[0].setting.role == "reference":
             measured = {k: v if k in _DISTANCE_SHARES else None for k, v in measured.items()}
-        known = best_known_relative(strata)
+        known = best_known_relative(group)
         entries.append({**shared, "gaits": gaits, "n": n, "best_known_relative": known, **measured})
     return entries
 
@@ -155,14 +142,21 @@ def _group_by_gait(settings: Iterable[SettingResults]) -> list[list[SettingResul
     return list(groups.values())
 
 
-def _curve(
-    one: SettingResults, references: Mapping[Any, ReferenceDistance], seed: int
-) -> dict[str, Any]:
-    reference = references.get(one.conditions, ReferenceDistance())
+def _curve(one: SettingResults, seed: int) -> dict[str, Any]:
+    """Return the learning curve: distance against steps of practice, with its references."""
     blocks = list(zip(*(result.distances_m for result in one.succeeded), strict=True))
-    block = one.setting.training.steps
-    points = learning_curve(blocks, block, reference, seed)
-    return {"key": one.setting.key, **setting_fields(one), **points}
+    greedy_m = one.reference.total_m
+    limit = None if greedy_m is None else WALKER_SHARE * greedy_m
+    return {
+        "key": one.setting.key,
+        **setting_fields(one),
+        "steps": [one.setting.training.steps * (1 + number) for number in range(len(blocks))],
+        **curve_entry(blocks, seed),
+        "walkers": [None if limit is None else share_at_least(p, limit).value for p in blocks],
+        "points_m": [list(points) for points in blocks],
+        "greedy_m": greedy_m,
+        "best_known_m": one.reference.best_known_m,
+    }
 
 
 def _versus(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any]]:
@@ -189,9 +183,7 @@ def _versus(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any
             {
                 **shared,
                 **agents,
-                "probability": probability.value,
-                "low": probability.low,
-                "high": probability.high,
+                **probability.as_json("probability"),
                 "verdict": bootstrap_exceeds(probability, 0.5, fewest),
             }
         )

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple, Protocol
 
 from hexapods import __version__
 from hexapods.domain.errors import HexapodError
-from hexapods.experiments.trial import TrialConfig, TrialResult, run_trial
+from hexapods.experiments.plan import Trial
+from hexapods.experiments.trial import TrialResult, run_trial
 
 
 class ClusterLost(HexapodError):
@@ -30,18 +31,31 @@ class VersionMismatch(HexapodError):
     """A worker that joined later has other versions, and would compute other results."""
 
 
-class Attempt(NamedTuple):
-    """One attempt at a trial on a worker: its result, or the reason that there is none.
+class Outcome(NamedTuple):
+    """A completed trial: its result, or the reason that it was set aside."""
 
-    Attributes:
-        result: None if the trial raised.
-        reason: the error in a sentence; None if there is a result.
-        compute_s: time that the worker computed.
-    """
-
+    key: str
     result: TrialResult | None
-    reason: str | None
+    """None if it was set aside."""
+    set_aside: str | None
+    """The reason that there is no result, in a sentence."""
     compute_s: float
+    """Time that a worker computed."""
+
+    def as_json(self) -> dict[str, Any]:
+        """Encode to plain JSON types, as stored in databases and results folders."""
+        result = None if self.result is None else self.result.as_json()
+        return {**self._asdict(), "result": result}
+
+    @classmethod
+    def from_json(cls, row: Mapping[str, Any]) -> "Outcome":
+        """Decode the output of `as_json`.
+
+        Raises:
+            KeyError, TypeError, ValueError: if it is malformed.
+        """
+        result = None if row["result"] is None else TrialResult.from_json(row["result"])
+        return cls(str(row["key"]), result, row["set_aside"], float(row["compute_s"]))
 
 
 class Task(Protocol):
@@ -57,10 +71,10 @@ class Workers(Protocol):
     def count(self) -> int:
         """Return how many tasks they compute at once; raises ClusterLost if they are lost."""
 
-    def submit(self, configs: Sequence[TrialConfig]) -> Task:
+    def submit(self, trials: Sequence[Trial]) -> Task:
         """Let a worker run a batch of trials."""
 
-    def result(self, task: Any) -> list[Attempt]:
+    def result(self, task: Any) -> list[Outcome]:
         """Return the result of a task that has ended.
 
         Raises:
@@ -71,11 +85,11 @@ class Workers(Protocol):
         """
 
 
-def run_batch(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> list[Attempt]:
+def run_batch(trials: Sequence[Trial], expected: Mapping[str, str]) -> list[Outcome]:
     """Run a batch of trials on a worker, one after the other.
 
     Args:
-        configs: the trials.
+        trials: the trials.
         expected: versions of the submitting process, as by `versions`.
 
     Raises:
@@ -84,20 +98,20 @@ def run_batch(configs: Sequence[TrialConfig], expected: Mapping[str, str]) -> li
     differs = difference(expected, versions())
     if differs is not None:
         raise VersionMismatch(f"a worker that joined would compute other results: it has {differs}")
-    return [_timed(config) for config in configs]
+    return [_run(trial) for trial in trials]
 
 
-def _timed(config: TrialConfig) -> Attempt:
+def _run(trial: Trial) -> Outcome:
     began_s = time.perf_counter()
     result, reason = None, None
     try:
-        result = run_trial(config)
+        result = run_trial(trial.config)
     except HexapodError as error:
         reason = str(error)
     # User-supplied agents are untrusted code: they may raise anything, and call `sys.exit`.
     except (Exception, SystemExit) as error:
         reason = f"something in it broke ({type(error).__name__}: {error})"
-    return Attempt(result, reason, time.perf_counter() - began_s)
+    return Outcome(trial.key, result, reason, time.perf_counter() - began_s)
 
 
 def versions() -> dict[str, str]:

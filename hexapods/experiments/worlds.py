@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from statistics import fmean, median
+from statistics import median
 from typing import Any
 
 import numpy as np
 
-from hexapods.experiments.measures import REACHED_SHARE
+from hexapods.experiments.measures import REACHED_SHARE, curve_entry, iqm_entry
 from hexapods.experiments.setting_results import SettingResults, setting_fields
 from hexapods.experiments.statistics import Points, iqm_interval, share_at_least
 from hexapods.runs.lane import LaneConfig, PlanningModel, plans_with
@@ -62,7 +62,7 @@ def _entry(one: SettingResults, known: Mapping[str, Any], seed: int) -> dict[str
         "greedy_m": greedy_m,
         "greedy_nominal_m": known.get("greedy_nominal_m"),
         "best_known_m": best_m,
-        "distance": _interval(one.total_m, seed),
+        "distance": iqm_entry([one.total_m], seed),
         "of_greedy": _share_of(one.total_m, greedy_m, seed),
         "of_best_known": _share_of(one.total_m, best_m, seed),
         **(_practice(one, greedy_m, best_m, seed) if practises else _NO_PRACTICE),
@@ -91,11 +91,11 @@ def _practice(
     areas = tuple(mean_distance_m(steps, walk.distances_m) for walk in walks)
     share = RECOVERY_SHARE if is_recovery else REACHED_SHARE
     return {
-        "curve": {"steps": steps, **_curve(distances, seed)},
-        "mean_m": _interval(areas, seed),
+        "curve": {"steps": steps, **curve_entry(distances, seed)},
+        "mean_m": iqm_entry([areas], seed),
         "until_greedy": _until(steps, distances, greedy_m, share),
         "until_best_known": _until(steps, distances, best_m, share),
-        "earned": {"steps": steps, **_curve(earned, seed)} if is_recovery else None,
+        "earned": {"steps": steps, **curve_entry(earned, seed)} if is_recovery else None,
     }
 
 
@@ -133,28 +133,11 @@ def _until(
     return {
         "of": share,
         "median_steps": None if math.isinf(middle) else middle,
-        "reached": reached.value,
-        "low": reached.low,
-        "high": reached.high,
+        **reached.as_json("reached"),
     }
-
-
-def _curve(columns: Curves, seed: int) -> dict[str, list[Any]]:
-    intervals = [iqm_interval((points,), seed) for points in columns]
-    return {
-        "iqm_m": [one.value for one in intervals],
-        "low_m": [one.low for one in intervals],
-        "high_m": [one.high for one in intervals],
-        "mean_m": [fmean(points) for points in columns],
-    }
-
-
-def _interval(points: Points, seed: int) -> dict[str, Any]:
-    middle = iqm_interval((points,), seed)
-    return {"iqm": middle.value, "low": middle.low, "high": middle.high}
 
 
 def _share_of(points: Points, reference_m: float | None, seed: int) -> dict[str, Any] | None:
     if reference_m is None or reference_m < MIN_REFERENCE_M:
         return None
-    return _interval(tuple(point / reference_m for point in points), seed)
+    return iqm_entry([tuple(point / reference_m for point in points)], seed)

@@ -3,6 +3,7 @@
 import importlib
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import mujoco
@@ -41,8 +42,9 @@ def pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.ui
             yield caption.drawn(picture, time_s, [pose[1] for pose in poses])
 
 
-def _gl_context(width: int, height: int) -> Any:
-    """Return an OpenGL context of this thread, to be used in a `with` block."""
+@contextmanager
+def _gl_context(width: int, height: int) -> Iterator[None]:
+    """Make an OpenGL context the one of this thread within a `with` block."""
     name = "osmesa" if os.environ.get("MUJOCO_GL", "").lower() == "osmesa" else "egl"
     import_extra("OpenGL", VIDEO_EXTRA, "a video")
     try:
@@ -52,20 +54,10 @@ def _gl_context(width: int, height: int) -> Any:
     # PyOpenGL raises errors of many kinds where the library is missing.
     except Exception as error:
         raise no_opengl(error) from error
-    return _Closing(context)
-
-
-class _Closing:
-    """Frees an OpenGL context at the end of a `with` block."""
-
-    def __init__(self, context: Any) -> None:
-        self._context = context
-
-    def __enter__(self) -> None:
-        """Do nothing: the context is current."""
-
-    def __exit__(self, *_: object) -> None:
-        self._context.free()
+    try:
+        yield
+    finally:
+        context.free()
 
 
 class _Scene:

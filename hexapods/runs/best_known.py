@@ -14,7 +14,7 @@ import numpy as np
 
 from hexapods.domain.disturbances import Push, SensorNoise, is_nothing
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.observation import legal_actions, observe, planned_offsets
+from hexapods.domain.observation import legal_actions, observe
 from hexapods.domain.robot import PRESETS, Robot
 from hexapods.domain.simulator import Simulator
 from hexapods.domain.types import Cells
@@ -77,7 +77,7 @@ def _keep(simulator: Simulator[Any], ends: list[Any], width: int) -> list[Any]:
     kept: list[Any] = []
     taken: dict[Cells, int] = {}
     for index in np.argsort([-end.distance_m for end in ends], kind="stable").tolist():
-        cells = tuple(simulator.grid.nearest(x, y) for x, y in planned_offsets(ends[index]))
+        cells = tuple(simulator.grid.nearest(x, y) for x, y in ends[index].feet.offsets_m)
         if taken.get(cells, 0) < SAME_CELLS:
             taken[cells] = taken.get(cells, 0) + 1
             kept.append(ends[index])

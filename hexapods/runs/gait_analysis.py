@@ -11,15 +11,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from itertools import takewhile
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from annotated_types import Ge, Le
 from numpy.typing import NDArray
 
 from hexapods.domain.disturbances import Lost, Payload
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.posture import rotation_matrices
+from hexapods.domain.records import Record
 from hexapods.domain.robot import Robot
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
@@ -40,18 +42,21 @@ MAX_LOOKED_BACK = 10_000
 """So many steps from the end the repetitions of a cycle are counted."""
 
 
+Share = Annotated[float, Ge(0), Le(1)]
+
+
 @dataclass(frozen=True)
-class LegGait:
+class LegGait(Record):
     """Footfalls of a leg in a window: when it stands [s], and the share of that."""
 
-    leg: int
+    leg: Annotated[int, Ge(1)]
     stance: list[Interval]
-    duty_factor: float
+    duty_factor: Share
 
 
 @dataclass(frozen=True)
-class Cycle:
-    """The sequence of steps that a walk repeats at its end: observations and actions.
+class Cycle(Record):
+    """The sequence of steps that a walk repeats at its end, at least three times.
 
     Attributes:
         steps: its length.
@@ -62,16 +67,16 @@ class Cycle:
         actions: (group, cell) of each step, beginning with that of `first_step`.
     """
 
-    steps: int
+    steps: Annotated[int, Ge(1)]
     period_s: float
-    first_step: int
-    repeats: int
+    first_step: Annotated[int, Ge(0)]
+    repeats: Annotated[int, Ge(CYCLE_REPEATS)]
     advance_m: float
     actions: list[tuple[int, int]]
 
 
 @dataclass(frozen=True)
-class Posture:
+class Posture(Record):
     """The torso over time: the height of its centre over flat ground, its pitch and roll.
 
     Attributes:
@@ -91,7 +96,7 @@ class Posture:
 
 
 @dataclass(frozen=True)
-class ServoEffort:
+class ServoEffort(Record):
     """Torque and mechanical work of the servos.
 
     Attributes:
@@ -116,7 +121,7 @@ class ServoEffort:
 
 
 @dataclass(frozen=True)
-class GaitFigures:
+class GaitFigures(Record):
     """Figures of a walk between two times of robot time.
 
     Attributes:
@@ -137,7 +142,7 @@ class GaitFigures:
     distance_m: float
     speed_m_s: float
     speed_body_lengths_s: float
-    duty_factor: float
+    duty_factor: Share
     mass_kg: float
     legs: list[LegGait]
     cycle: Cycle | None
@@ -240,18 +245,14 @@ def gait_summary(figures: GaitFigures | None) -> dict[str, Any] | None:
     if figures is None:
         return None
     effort = figures.effort
+    numbers = ("from_s", "to_s", "speed_m_s", "speed_body_lengths_s", "duty_factor")
+    efforts = ("largest_torque_nm", "energy_j", "cost_of_transport")
     return {
-        "from_s": figures.from_s,
-        "to_s": figures.to_s,
-        "speed_m_s": figures.speed_m_s,
-        "speed_body_lengths_s": figures.speed_body_lengths_s,
-        "duty_factor": figures.duty_factor,
+        **{name: getattr(figures, name) for name in numbers},
         "leg_duty_factors": [leg.duty_factor for leg in figures.legs],
         "cycle": None if figures.cycle is None else asdict(figures.cycle),
         "mass_kg": figures.mass_kg,
-        "largest_torque_nm": None if effort is None else effort.largest_torque_nm,
-        "energy_j": None if effort is None else effort.energy_j,
-        "cost_of_transport": None if effort is None else effort.cost_of_transport,
+        **{name: None if effort is None else getattr(effort, name) for name in efforts},
     }
 
 

@@ -5,7 +5,7 @@ import struct
 import threading
 import zipfile
 from collections.abc import Mapping
-from typing import IO, Any, NamedTuple, Protocol
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,19 +18,6 @@ _SUFFIX = ".npy"
 
 class CompressedFile(DamagedFile):
     """A file that is compressed, and so can be read only as a whole."""
-
-
-class Slices(Protocol):
-    """Arrays of which parts are read."""
-
-    def __contains__(self, name: object) -> bool:
-        """Whether there is an array of this name."""
-
-    def length(self, name: str) -> int:
-        """Return the length of an array."""
-
-    def rows(self, name: str, first: int = 0, end: int | None = None) -> NDArray[Any]:
-        """Return a part of an array, or all of one without dimensions."""
 
 
 class ArraySlices:
@@ -147,3 +134,7 @@ def _array(whole: IO[bytes], archive: zipfile.ZipFile, member: zipfile.ZipInfo) 
     *_, name, extra = _LOCAL_HEADER.unpack(whole.read(_LOCAL_HEADER.size))
     begin = member.header_offset + _LOCAL_HEADER.size + name + extra
     return _Array(begin + header, shape, dtype)
+
+
+Slices = ArraySlices | NpzSlices
+"""Arrays of which parts are read."""

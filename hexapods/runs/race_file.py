@@ -92,7 +92,10 @@ def race_recording(arrays: Mapping[str, NDArray[Any]]) -> list[LaneRecording]:
     file = RaceFile(ArraySlices(arrays))
     lanes = []
     for number, head in enumerate(file.heads):
-        steps = LaneSteps(file.part(number, 0, head.steps).all()) if head.steps else LaneSteps()
+        steps = LaneSteps()
+        if head.steps:
+            stored = file.part(number, 0, head.steps)
+            steps = LaneSteps.read(rows_of(stored.columns, no_figures()), [stored])
         lanes.append(LaneRecording(head.agent, head.rest_qpos, steps, head.failure))
     return lanes
 

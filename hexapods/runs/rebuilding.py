@@ -72,7 +72,7 @@ class LoggedSensors:
     @property
     def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
         """Each group's offset (x, y) from home by dead reckoning."""
-        return tuple(zip(self.feet.lateral_m, self.feet.forward_m, strict=True))
+        return self.feet.offsets_m
 
 
 @dataclass(frozen=True)

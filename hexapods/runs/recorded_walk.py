@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,27 +12,7 @@ from hexapods.domain.types import Action, Cells
 from hexapods.domain.world import World
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 from hexapods.runs.recording import LaneRecording, LaneSteps, PracticeRecording
-from hexapods.runs.records import Evaluated, StepTaken
-
-
-class WalkedStep(Protocol):
-    """A recorded step: a `LaneStep`, a `StepTaken` with its motion, or one of an evaluation."""
-
-    @property
-    def step(self) -> int:
-        """Its number, counted from 1."""
-
-    @property
-    def observation(self) -> Cells | None:
-        """Observation before the action; None if it was not recorded."""
-
-    @property
-    def action(self) -> Action | None:
-        """The action; None if it was not recorded."""
-
-    @property
-    def motion(self) -> Motion | None:
-        """The motion, which all recorded steps here have."""
+from hexapods.runs.records import Evaluated, LaneStep, StepTaken
 
 
 class EvaluatedStep(NamedTuple):
@@ -42,6 +22,10 @@ class EvaluatedStep(NamedTuple):
     motion: Motion
     observation: None = None
     action: None = None
+
+
+WalkedStep = LaneStep | StepTaken | EvaluatedStep
+"""A recorded step; those here have a motion."""
 
 
 @dataclass(frozen=True)

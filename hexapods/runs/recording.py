@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from hexapods.domain.simulator import Motion
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.runs.records import ActionValues, Evaluated, LaneStep, StepTaken
-from hexapods.runs.step_figures import GrowingArray, Rows, no_figures, row_of
+from hexapods.runs.step_figures import GrowingArray, Rows, columns_of, no_figures, rows_of
 
 Arrays = dict[str, NDArray[Any]]
 _STEP_OVERHEAD_BYTES = 1000
@@ -70,7 +70,7 @@ class LaneSteps(Sequence[LaneStep]):
             self._figures = GrowingArray(no_figures(len(step.observation)))
         self._newest[1].append(step)
         # The figures count, so last.
-        self._figures.extend([row_of(step, self._figures.rows)])
+        self._figures.extend(rows_of(columns_of(step), self._figures.rows))
 
     def store(self, stored: StoredSteps, count: int) -> None:
         """Forget the oldest steps in memory, of which `count` are stored now."""

@@ -66,7 +66,7 @@ class GrowingArray:
         count = self._count  # read first: the rows, which may be replaced, are at least so many
         return self._rows[:count]
 
-    def extend(self, rows: Rows | list[Any]) -> None:
+    def extend(self, rows: Rows) -> None:
         """Append rows."""
         count = self._count + len(rows)
         if count > len(self._rows):
@@ -82,34 +82,6 @@ def no_figures(groups: int = 0) -> Rows:
     return np.empty(0, figures_type(groups))
 
 
-def row_of(step: LaneStep, before: Rows) -> tuple[Any, ...]:
-    """Return the row of a step.
-
-    Args:
-        step: the step.
-        before: the rows of the steps before it.
-    """
-    low, high = (before[-1]["lowest"], before[-1]["highest"]) if len(before) else (0.0, 0.0)
-    if step.action_values is not None:
-        values = step.action_values.values
-        low, high = np.fmin(low, np.nanmin(values)), np.fmax(high, np.nanmax(values))
-    motion = step.motion
-    return (
-        step.reward_m,
-        step.distance_m,
-        step.decision_s,
-        step.transitions,
-        low,
-        high,
-        motion.time_s[-1],
-        motion.qpos[:, 1].max(),
-        motion.qpos[-1, TILT],
-        len(motion.time_s),
-        step.observation,
-        step.action,
-    )
-
-
 class StepColumns(NamedTuple):
     """Consecutive steps of a lane as they are in a file; n steps with k frames in all."""
 
@@ -121,15 +93,25 @@ class StepColumns(NamedTuple):
     """Number of frames of each step, (n,)."""
     motion: Motion
     """The frames of all steps."""
-    values: NDArray[np.float32] | None
+    values: NDArray[np.floating[Any]] | None
     """Action values before each step, (n, groups, cells)."""
 
 
-def rows_of(columns: StepColumns, before: Rows) -> Rows:
-    """Return the rows of consecutive steps, at least one; those of the steps before are `before`.
+def columns_of(step: LaneStep) -> StepColumns:
+    """Return a step as columns with one row; its action values keep their precision."""
+    values = None if step.action_values is None else step.action_values.values[None]
+    return StepColumns(
+        np.array([(step.reward_m, step.distance_m, step.transitions, step.decision_s)]),
+        np.array([step.observation]),
+        np.array([step.action]),
+        np.array([len(step.motion.time_s)]),
+        step.motion,
+        values,
+    )
 
-    Equal to those of `row_of`.
-    """
+
+def rows_of(columns: StepColumns, before: Rows) -> Rows:
+    """Return the rows of consecutive steps, at least one, after those of the steps before."""
     rows = np.empty(len(columns.frames), figures_type(columns.observation.shape[1]))
     for place, name in enumerate(("reward_m", "distance_m", "transitions", "decision_s")):
         rows[name] = columns.scalars[:, place]

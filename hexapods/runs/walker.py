@@ -14,7 +14,6 @@ from hexapods.domain.observation import (
     legal_actions,
     measured_offsets,
     observe,
-    planned_offsets,
 )
 from hexapods.domain.simulator import Simulator, Step, WalkState
 from hexapods.domain.types import Action, Cells, FloatArray
@@ -112,7 +111,7 @@ class Sensors:
     @property
     def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
         """Each group's offset (x, y) from home by dead reckoning."""
-        return planned_offsets(self._state)
+        return self._state.feet.offsets_m
 
 
 class SimulatorExpand:

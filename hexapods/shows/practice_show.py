@@ -11,16 +11,14 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 from operator import attrgetter, itemgetter
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hexapods.domain.posture import has_fallen
-from hexapods.domain.simulator import Motion
+from hexapods.domain.posture import has_fallen, yaw_rad
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.clocks import Clock
+from hexapods.runs.recorded_walk import RecordedSteps
 from hexapods.runs.recording import PracticeRecording, pose_at
 from hexapods.runs.records import ActionValues, StepTaken
 from hexapods.shows.race_lane import MARCHING_M, MARCHING_STEPS
@@ -36,7 +34,6 @@ from hexapods.shows.stage_frame import (
     SceneSpec,
     StageFrame,
     rotated,
-    yaw_rad,
 )
 
 SLOW_STEPS = 10
@@ -75,14 +72,17 @@ class PracticeShow:
         fell_at_step: int | None = None,
     ) -> None:
         self.spec, self.steps, self._step_s = spec, steps, step_s
+        self.duration_s = steps * step_s
+        """Practice time of all the steps that were ordered [s]."""
         self.ends_at_time_out = False
         self._pace, self._recording, self._world = pace, recording, world
         self._fell_at_step = fell_at_step
         self._searched = 0
         """Number of the last step in which a fall was looked for."""
-        self._recorded: list[_RecordedStep] = []
+        self._steps: list[StepTaken] = []
+        """The steps whose motion is recorded."""
         self._step_numbers: list[int] = []
-        self._rest_qpos = rest_pose(spec).astype(np.float32)
+        self._walk = RecordedSteps(rest_pose(spec).astype(np.float32), self._steps)
         self._evaluations: list[Ghost] = []
         self._done: float | None = None
         """Playback position in steps, with a fraction; None before the first step is recorded."""
@@ -106,11 +106,6 @@ class PracticeShow:
         return self._run_ended and (
             not self._step_numbers or (self._done or 0) >= self._step_numbers[-1]
         )
-
-    @property
-    def duration_s(self) -> float:
-        """Practice time of all the steps that were ordered [s]."""
-        return self.steps * self._step_s
 
     @property
     def recorded(self) -> tuple[tuple[float, float], ...]:
@@ -216,12 +211,10 @@ class PracticeShow:
         recording = self._recording()
         if recording is None:
             return
-        self._rest_qpos = recording.rest_qpos
         steps = recording.steps
-        self._recorded = [
-            _RecordedStep(step, step.motion) for step in steps if step.motion is not None
-        ]
-        self._step_numbers = [recorded.step.step for recorded in self._recorded]
+        self._steps = [step for step in steps if step.motion is not None]
+        self._walk = RecordedSteps(recording.rest_qpos, self._steps)
+        self._step_numbers = [step.step for step in self._steps]
         for step in steps[bisect_right(steps, self._range.last_step, key=attrgetter("step")) :]:
             self._range.include(step.step, step.action_values)
         world, last = self._world(), self.steps - 1
@@ -233,10 +226,11 @@ class PracticeShow:
 
     def _look_for_fall(self, world: World) -> None:
         if self._fell_at_step is None:
-            for step, motion in self._recorded[bisect_right(self._step_numbers, self._searched) :]:
-                pose, ground_m = motion.qpos[-1].tolist(), world.ground_m(step.step - 1)
-                if has_fallen(self.spec.robot, pose, ground_m):
-                    self._fell_at_step = step.step - 1
+            first = bisect_right(self._step_numbers, self._searched)
+            for index, number in enumerate(self._step_numbers[first:], first):
+                pose = self._walk.motion(index).qpos[-1].tolist()
+                if has_fallen(self.spec.robot, pose, world.ground_m(number - 1)):
+                    self._fell_at_step = number - 1
                     break
         self._searched = self._step_numbers[-1] if self._step_numbers else 0
 
@@ -278,10 +272,10 @@ class PracticeShow:
         if self._done is None:
             at_start = world.as_of(0)
             return LaneFrame(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
-        index = min(bisect_left(self._step_numbers, self._current_step()), len(self._recorded) - 1)
-        step, motion = self._recorded[index]
+        index = min(bisect_left(self._step_numbers, self._current_step()), len(self._steps) - 1)
+        step, motion = self._steps[index], self._walk.motion(index)
         elapsed_s = (self._done - (step.step - 1)) * float(motion.time_s[-1])
-        pose = pose_at(self._start(index), motion, elapsed_s)
+        pose = pose_at(self._walk.pose_before(index), motion, elapsed_s)
         qpos = self._relative_to_start_line(index, pose)
         return LaneFrame(
             qpos,
@@ -298,27 +292,16 @@ class PracticeShow:
             origin=self._origin,
         )
 
-    def _start(self, index: int) -> NDArray[np.float32]:
-        """Return the qpos at the start of a recorded step, or its first known one after a gap."""
-        number, poses = self._step_numbers[index], self._recorded[index].motion.qpos
-        if number == 1:
-            return self._rest_qpos
-        follows = index > 0 and self._step_numbers[index - 1] == number - 1
-        start: NDArray[np.float32] = (
-            self._recorded[index - 1].motion.qpos[-1] if follows else poses[0]
-        )
-        return start
-
     def _relative_to_start_line(self, index: int, pose: FloatArray) -> FloatArray:
         """Return the pose as if its episode had begun on the start line, straight ahead."""
-        episode = self._recorded[index].step.episode
+        episode = self._steps[index].episode
         if self._episode != episode:
             first = index
-            while first and self._recorded[first - 1].step.episode == episode:
+            while first and self._steps[first - 1].episode == episode:
                 first -= 1
-            start, rest = self._start(first), rest_pose(self.spec)
+            start, rest = self._walk.pose_before(first), rest_pose(self.spec)
             x_m, y_m = start[:2].tolist()
-            turn_rad = yaw_rad(start[3:7]) - yaw_rad(rest[3:7])
+            turn_rad = yaw_rad(start[3:7].tolist()) - yaw_rad(rest[3:7].tolist())
             self._episode, self._origin = episode, Origin(x_m, y_m, turn_rad)
         x_m, y_m, turn_rad = self._origin
         return rotated(pose, np.array([x_m, y_m]), -turn_rad)
@@ -327,7 +310,7 @@ class PracticeShow:
         before = index - MARCHING_STEPS
         if before < 0 or self._step_numbers[before] != self._step_numbers[index] - MARCHING_STEPS:
             return False
-        gained = sum(recorded.step.reward_m for recorded in self._recorded[before:index])
+        gained = sum(step.reward_m for step in self._steps[before:index])
         return gained < MARCHING_M
 
     def _action_values(self, step: StepTaken) -> ActionValuesView | None:
@@ -338,13 +321,6 @@ class PracticeShow:
         return ActionValuesView(
             learned.values, learned.visits, step.observation, step.action, low, high
         )
-
-
-class _RecordedStep(NamedTuple):
-    """A step whose motion is recorded."""
-
-    step: StepTaken
-    motion: Motion
 
 
 class ValueRange:

@@ -1,7 +1,6 @@
 """Playback of one lane of a race: pose, progress and action values at a given race time."""
 
 from hexapods.domain.robot import Robot
-from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
 from hexapods.runs.clocks import Clock, Moment, Timetable, crossing_s, crossing_step, distance_at
 from hexapods.runs.recording import LaneRecording, pose_at
@@ -20,6 +19,11 @@ class RaceLane:
         clock: clock that times the steps.
         robot: the robot that walks.
         world: the world in which it walks.
+
+    Attributes:
+        timetable: race times of the steps recorded so far.
+        crossing_s: race time at which it crosses the finish line [s]; None until that is recorded.
+        fell_at_step: first step in which it fell, counted from 0; None until that is recorded.
     """
 
     def __init__(
@@ -27,17 +31,17 @@ class RaceLane:
     ) -> None:
         self.recording, self.steps = recording, steps
         self._robot, self._world = robot, world
-        self._timetable = Timetable(clock)
+        self.timetable = Timetable(clock)
         self._searched = 0
         """Number of steps in which a crossing and a fall were looked for."""
-        self._crossing_step: int | None = None
-        self._crossing_s: float | None = None
-        self._fell_at_step: int | None = None
+        self.crossing_step: int | None = None
+        self.crossing_s: float | None = None
+        self.fell_at_step: int | None = None
 
     @property
     def all_recorded(self) -> bool:
         """Whether all steps of the lane are recorded."""
-        return len(self._timetable) == self.steps
+        return len(self.timetable) == self.steps
 
     @property
     def is_over(self) -> bool:
@@ -45,65 +49,46 @@ class RaceLane:
         return self.all_recorded or self.recording.failure is not None
 
     @property
-    def step_ends_s(self) -> FloatArray:
-        """Race times at which the steps recorded so far end [s]."""
-        return self._timetable.ends
-
-    @property
-    def crossing_s(self) -> float | None:
-        """Race time at which it crosses the finish line [s]; None until that is recorded."""
-        return self._crossing_s
-
-    @property
-    def fell_at_step(self) -> int | None:
-        """First step in which it fell, counted from 0; None until that is recorded."""
-        return self._fell_at_step
-
-    @property
     def end_s(self) -> float:
         """Race time at the end of the last step recorded so far [s]."""
-        return self._timetable.total_s
+        return self.timetable.total_s
 
     def update(self) -> None:
         """Extend the timetable by new steps, and look for what happened in them."""
-        self._timetable.extend(self.recording.steps)
-        first, end = self._searched, len(self._timetable)
+        self.timetable.extend(self.recording.steps)
+        first, end = self._searched, len(self.timetable)
         if first == end:
             return
         self._searched = end
-        if self._crossing_step is None:
-            self._crossing_step = crossing_step(self.recording, first, end)
+        if self.crossing_step is None:
+            self.crossing_step = crossing_step(self.recording, first, end)
             self._time_crossing()
-        if self._fell_at_step is None:
-            self._fell_at_step = fell_at_step(self.recording, self._robot, self._world, first)
+        if self.fell_at_step is None:
+            self.fell_at_step = fell_at_step(self.recording, self._robot, self._world, first)
 
     def retime(self, clock: Clock) -> None:
         """Recompute the timetable under a clock."""
-        self._timetable = Timetable(clock)
-        self._timetable.extend(self.recording.steps)
+        self.timetable = Timetable(clock)
+        self.timetable.extend(self.recording.steps)
         self._time_crossing()
         self.update()
 
     def _time_crossing(self) -> None:
-        if self._crossing_step is not None:
-            self._crossing_s = crossing_s(self.recording, self._timetable, self._crossing_step)
-
-    def moment_at(self, time_s: float) -> Moment:
-        """Return the step, and the part of it, that the lane is in at a race time [s]."""
-        return self._timetable.at(time_s)
+        if self.crossing_step is not None:
+            self.crossing_s = crossing_s(self.recording, self.timetable, self.crossing_step)
 
     def time_of(self, moment: Moment) -> float:
         """Return the race time of a moment [s]: the inverse of `moment_at`."""
-        ends = self._timetable.ends
+        ends = self.timetable.ends
         if moment.step >= len(ends):
             return self.end_s
         began = float(ends[moment.step - 1]) if moment.step else 0.0
-        thought = float(self._timetable.thought[moment.step])
+        thought = float(self.timetable.thought[moment.step])
         return began + moment.thinking * (thought - began) + moment.motion_s
 
     def distance_at(self, time_s: float) -> float:
         """Return the distance along the track at a race time [m]."""
-        return distance_at(self.recording, self._timetable, time_s)
+        return distance_at(self.recording, self.timetable, time_s)
 
     def view(self, time_s: float, complete: bool) -> LaneFrame:
         """Return the lane as shown at a race time, its pose interpolated.
@@ -112,8 +97,8 @@ class RaceLane:
             time_s: race time [s].
             complete: whether the lane will take no further steps.
         """
-        moment, lane = self.moment_at(time_s), self.recording
-        steps_taken = len(self._timetable)
+        moment, lane = self.timetable.at(time_s), self.recording
+        steps_taken = len(self.timetable)
         computing = not complete and time_s >= self.end_s  # its next decision is not recorded yet
         at_end = complete and time_s >= self.end_s
         if moment.step >= steps_taken or at_end or (computing and steps_taken):
@@ -139,7 +124,7 @@ class RaceLane:
 
     def _standing_view(self, time_s: float, complete: bool, computing: bool) -> LaneFrame:
         """Return the lane at its end, or while its next decision is still being computed."""
-        lane, steps_taken = self.recording, len(self._timetable)
+        lane, steps_taken = self.recording, len(self.timetable)
         total = int(lane.steps.figures[steps_taken - 1]["transitions"]) if steps_taken else 0
         return LaneFrame(
             lane.start_qpos(steps_taken),
@@ -159,11 +144,11 @@ class RaceLane:
         )
 
     def _fall_before(self, steps_taken: int) -> int | None:
-        fell = self._fell_at_step
+        fell = self.fell_at_step
         return fell if fell is not None and fell < steps_taken else None
 
     def _crossed(self, time_s: float) -> bool:
-        return self._crossing_s is not None and time_s >= self._crossing_s
+        return self.crossing_s is not None and time_s >= self.crossing_s
 
     def _marching(self, steps_taken: int) -> bool:
         """Whether the last `MARCHING_STEPS` of the steps taken gained under `MARCHING_M`."""

@@ -72,15 +72,11 @@ class RaceShow:
         if original is not None and len(original.lanes) == len(spec.lane_specs):
             self._branch_step = original.step
             self._original_lanes = self._playing(original.lanes, original.world)
-        self._time_s = 0.0
+        self.time_s = 0.0
+        """Playback position in race time [s]."""
         self._freeze_left_s = 0.0
         self._run_ended = self._waiting = False
         self._rate = SPEED
-
-    @property
-    def time_s(self) -> float:
-        """Playback position in race time [s]."""
-        return self._time_s
 
     @property
     def ended(self) -> bool:
@@ -109,14 +105,14 @@ class RaceShow:
     @property
     def step_ends_s(self) -> list[FloatArray]:
         """For each lane the race times at which its steps end [s]."""
-        return [lane.step_ends_s for lane in self._lanes]
+        return [lane.timetable.ends for lane in self._lanes]
 
     def marks(self) -> list[Mark]:
         """Return what happened, in order of time, as far as all lanes are computed."""
         found = [] if self.first_finish_s is None else [Mark("time-out", self.first_finish_s)]
         changes = self._world.change_steps
         for number, lane in enumerate(self._lanes):
-            ends = lane.step_ends_s
+            ends = lane.timetable.ends
             found += [
                 Mark("disturbance", float(ends[step - 1]), number, step)
                 for step in changes
@@ -142,15 +138,15 @@ class RaceShow:
             return
         limit = self._horizon_s
         # Of a race that is resumed less is computed than was shown.
-        self._time_s = min(self._time_s, limit)
+        self.time_s = min(self.time_s, limit)
         self._waiting = not self._all_complete and self._slow_down_near(limit)
-        target, first = self._time_s + elapsed_s * self._rate, self.first_finish_s
+        target, first = self.time_s + elapsed_s * self._rate, self.first_finish_s
         if elapsed_s and limit - target < _SNAP_S:
             target = limit
-        if first is not None and self._time_s < first <= target:
+        if first is not None and self.time_s < first <= target:
             self._freeze_left_s = PHOTO_FINISH_S
             target = first
-        self._time_s = min(target, limit)
+        self.time_s = min(target, limit)
 
     def _slow_down_near(self, limit: float) -> bool:
         """Reduce the playback rate near the newest step of a live race (buffer control).
@@ -160,14 +156,14 @@ class RaceShow:
         Returns:
             Whether the buffer is nearly empty, so that playback practically waits.
         """
-        full_rate, self._rate = self._rate, min(self._rate, (limit - self._time_s) / BUFFER_S)
+        full_rate, self._rate = self._rate, min(self._rate, (limit - self.time_s) / BUFFER_S)
         return self._rate < full_rate / 4
 
     def seek(self, time_s: float) -> None:
         """Set the playback position to a race time [s], at most to where all lanes are computed."""
         self._update_lanes()
         self._freeze_left_s = 0.0
-        self._time_s = min(max(time_s, 0.0), self._horizon_s)
+        self.time_s = min(max(time_s, 0.0), self._horizon_s)
 
     def seek_end(self) -> None:
         """Set the playback position to where the show ends: time-out, or the last step."""
@@ -178,23 +174,23 @@ class RaceShow:
         """Change the clock and keep the leading lane at the same moment of its walk."""
         self._update_lanes()
         at_end, first = self._is_at_end, self.first_finish_s
-        at_finish = first is not None and self._time_s == first
-        leader = max(self._lanes, key=lambda lane: lane.moment_at(self._time_s), default=None)
-        moment = leader.moment_at(self._time_s) if leader else None
+        at_finish = first is not None and self.time_s == first
+        leader = max(self._lanes, key=lambda lane: lane.timetable.at(self.time_s), default=None)
+        moment = leader.timetable.at(self.time_s) if leader else None
         self.clock = clock
         for lane in (*self._lanes, *self._original_lanes):
             lane.retime(self.clock)
         first = self.first_finish_s
         if at_end:
-            self._time_s = self._end_s
+            self.time_s = self._end_s
         elif at_finish and first is not None:
-            self._time_s, self._freeze_left_s = first, PHOTO_FINISH_S
+            self.time_s, self._freeze_left_s = first, PHOTO_FINISH_S
         elif leader and moment:
-            self._time_s = min(leader.time_of(moment), self._horizon_s)
+            self.time_s = min(leader.time_of(moment), self._horizon_s)
 
     def frame(self, run_label: RunLabel) -> StageFrame:
         """Return the frame at the playback position."""
-        lanes = tuple(lane.view(self._time_s, self._complete(lane)) for lane in self._lanes)
+        lanes = tuple(lane.view(self.time_s, self._complete(lane)) for lane in self._lanes)
         at_start = self._world.as_of(0)
         at_rest = LaneFrame(rest_pose(self.spec), 0, self.steps, 0.0, conditions=at_start)
         lanes = lanes or (at_rest,) * len(self.spec.lane_specs)
@@ -205,7 +201,7 @@ class RaceShow:
             label=self._label(run_label, lanes),
             lanes=self._with_ranks(lanes),
             ghost_lanes=tuple(map(self._original, range(len(self._original_lanes)))),
-            time_s=self._time_s,
+            time_s=self.time_s,
             duration_s=self.duration_s,
             computed_s=self._horizon_s,
             time_out_s=self.first_finish_s,
@@ -245,10 +241,10 @@ class RaceShow:
     def _automatic_speed(self) -> float:
         first = self.first_finish_s
         under_way = sum(
-            not self._complete(lane) or self._time_s < lane.end_s for lane in self._lanes
+            not self._complete(lane) or self.time_s < lane.end_s for lane in self._lanes
         )
         alone = len(self._lanes) > 1 and under_way == 1
-        past_first = first is not None and self._time_s >= first
+        past_first = first is not None and self.time_s >= first
         return LAST_LANE_SPEED if alone and past_first else SPEED
 
     @property
@@ -258,14 +254,14 @@ class RaceShow:
 
     @property
     def _is_at_end(self) -> bool:
-        return self._all_complete and self._time_s >= self._end_s
+        return self._all_complete and self.time_s >= self._end_s
 
     @property
     def _ends_here(self) -> bool:
         """Whether playback is at time-out and does not go on."""
         if not self.ends_at_time_out or self._freeze_left_s or self._is_at_end:
             return False
-        return self._time_s > 0 and self._time_s == self.first_finish_s
+        return self.time_s > 0 and self.time_s == self.first_finish_s
 
     @property
     def _end_s(self) -> float:
@@ -288,7 +284,7 @@ class RaceShow:
                 return
             if recorded is not self._source:
                 self._source, self._lanes = recorded, self._playing(recorded, self._world)
-                self._time_s = min(self._time_s, self._horizon_s)
+                self.time_s = min(self.time_s, self._horizon_s)
         self._is_final = self._run_ended
         for lane in self._lanes:
             lane.update()
@@ -303,15 +299,15 @@ class RaceShow:
         """Return a lane in the original race; None before the races part."""
         if number >= len(self._lanes):
             return None
-        if self._lanes[number].moment_at(self._time_s).step < self._branch_step:
+        if self._lanes[number].timetable.at(self.time_s).step < self._branch_step:
             return None
-        return self._original_lanes[number].view(self._time_s, complete=True)
+        return self._original_lanes[number].view(self.time_s, complete=True)
 
     def _with_ranks(self, lanes: tuple[LaneFrame, ...]) -> tuple[LaneFrame, ...]:
         """Rank the lanes by distance now; after time-out by distance at that time."""
         first = self.first_finish_s
         distances = [lane.distance_m for lane in lanes]
-        if first is not None and self._time_s >= first:
+        if first is not None and self.time_s >= first:
             distances = [lane.distance_at(first) for lane in self._lanes]
         ranks = [1 + sum(other > own + 1e-9 for other in distances) for own in distances]
         return tuple(replace(lane, rank=rank) for lane, rank in zip(lanes, ranks, strict=True))

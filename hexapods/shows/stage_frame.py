@@ -233,12 +233,6 @@ def _table(values: FloatArray) -> list[list[float | None]]:
     return [[None if math.isnan(v) else round(v, 5) for v in row] for row in rows]
 
 
-def yaw_rad(wxyz: NDArray[np.floating[Any]]) -> float:
-    """Return the yaw of a rotation, a quaternion (w, x, y, z): anticlockwise from above [rad]."""
-    w, x, y, z = wxyz.tolist()
-    return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-
-
 def rotated(pose: FloatArray, about: FloatArray, turn_rad: float) -> FloatArray:
     """Return a pose translated in the plane and then rotated about the vertical.
 

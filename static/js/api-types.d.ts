@@ -18,13 +18,13 @@ export interface AgentOption {
   description: string;
   learns: boolean;
   /**
-   * whether it plans with a simulator: takes `plans_with`
+   * whether it plans with a simulator: takes `plans_with`.
    */
   searches: boolean;
   needs_practice: boolean;
   keeps_learning: boolean;
   /**
-   * of a look-ahead agent without settings: how many steps it simulates
+   * of a look-ahead agent without settings: how many steps it simulates.
    */
   steps_ahead: number | null;
   color: string;
@@ -45,33 +45,33 @@ export interface SettingOption {
   unit: string | null;
   help: string;
   /**
-   * the valid values, in words
+   * the valid values, in words.
    */
   valid: string;
   minimum: number | null;
   maximum: number | null;
   /**
-   * whether the minimum itself is not valid
+   * whether the minimum itself is not valid.
    */
   excludes_minimum: boolean;
   /**
-   * whether the maximum itself is not valid
+   * whether the maximum itself is not valid.
    */
   excludes_maximum: boolean;
   is_number: boolean;
   is_boolean: boolean;
   is_whole: boolean;
   /**
-   * the valid words, if only certain words are valid
+   * the valid words, if only certain words are valid.
    */
   choices: string[];
   /**
-   * the titles of these words, in their order
+   * the titles of these words, in their order.
    */
   choice_titles: string[];
   default: number | string | boolean | null;
   /**
-   * whether it may change while a training runs
+   * whether it may change while a training runs.
    */
   is_live: boolean;
 }
@@ -106,6 +106,9 @@ export interface BeliefView {
  * The moment of another race at which a race branches off; until then both are the same.
  */
 export interface Branch {
+  /**
+   * id of the other race.
+   */
   race_id: string;
   /**
    * How many steps of that race are repeated.
@@ -135,11 +138,11 @@ export interface Change {
  */
 export interface ChoiceView {
   /**
-   * the best by its scores, a random one, or one that is not known yet
+   * the best by its scores, a random one, or one that is not known yet.
    */
   kind: "exploited" | "explored" | "unknown";
   /**
-   * what its scores are
+   * what its scores are.
    */
   criterion: string;
   /**
@@ -149,19 +152,19 @@ export interface ChoiceView {
   best: [number, number][];
   runner_up: [number, number] | null;
   /**
-   * score of the action, less that of the runner-up
+   * score of the action, less that of the runner-up.
    */
   margin_m: number | null;
   /**
-   * probability of a random action
+   * probability of a random action.
    */
   epsilon: number | null;
   /**
-   * random number that was compared with it
+   * random number that was compared with it.
    */
   draw: number | null;
   /**
-   * of this action in this state
+   * of this action in this state.
    */
   probability: number;
   sentences: string[];
@@ -276,16 +279,32 @@ export interface Evaluation {
   epsilon: number;
 }
 /**
- * The sequence of steps that the walk repeats at its end, at least three times.
- *
- * `first_step` is counted from 0; `actions` are [pair, cell]; `advance_m` is of one period.
+ * The sequence of steps that a walk repeats at its end, at least three times.
  */
-export interface CycleView {
+export interface Cycle {
+  /**
+   * its length.
+   */
   steps: number;
+  /**
+   * its duration.
+   */
   period_s: number;
+  /**
+   * the step in which the repetition begins, counted from 0.
+   */
   first_step: number;
+  /**
+   * how often it was walked, in full.
+   */
   repeats: number;
+  /**
+   * the distance along the track in one period, on average.
+   */
   advance_m: number;
+  /**
+   * (group, cell) of each step, beginning with that of `first_step`.
+   */
   actions: [number, number][];
 }
 /**
@@ -393,31 +412,31 @@ export interface DisturbanceOption {
     [k: string]: FieldOption;
   };
   /**
-   * the field that says how much happens
+   * the field that says how much happens.
    */
   size: string | null;
   /**
-   * the size at which nothing happens: a number, or the robot's part that has it
+   * the size at which nothing happens: a number, or the robot's part that has it.
    */
   nothing: number | string | null;
   /**
-   * whether it holds until another of the same thing
+   * whether it holds until another of the same thing.
    */
   lasts: boolean;
   /**
-   * fields that tell, beside the kind, what it changes; each leg is one thing
+   * fields that tell, beside the kind, what it changes; each leg is one thing.
    */
   identified_by: string[];
   /**
-   * part of a leg to which it happens; empty for all of it
+   * part of a leg to which it happens; empty for all of it.
    */
   part: string[];
   /**
-   * whether it only ends what happened before
+   * whether it only ends what happened before.
    */
   repairs: boolean;
   /**
-   * of a leg to which it has happened: limp, repaired
+   * of a leg to which it has happened: limp, repaired.
    */
   adjective: string;
   simulators: string[];
@@ -432,43 +451,43 @@ export interface FieldOption {
   unit: string | null;
   help: string;
   /**
-   * the valid values, in words
+   * the valid values, in words.
    */
   valid: string;
   minimum: number | null;
   maximum: number | null;
   /**
-   * whether the minimum itself is not valid
+   * whether the minimum itself is not valid.
    */
   excludes_minimum: boolean;
   /**
-   * whether the maximum itself is not valid
+   * whether the maximum itself is not valid.
    */
   excludes_maximum: boolean;
   is_number: boolean;
   is_boolean: boolean;
   is_whole: boolean;
   /**
-   * the valid words, if only certain words are valid
+   * the valid words, if only certain words are valid.
    */
   choices: string[];
   /**
-   * the titles of these words, in their order
+   * the titles of these words, in their order.
    */
   choice_titles: string[];
   default: number | string | boolean | null;
   /**
-   * whether it may change while a training runs
+   * whether it may change while a training runs.
    */
   is_live: boolean;
   /**
-   * its name in a text, such as `limp:legs=1,4:at=25`
+   * its name in a text, such as `limp:legs=1,4:at=25`.
    */
   short: string;
   is_list: boolean;
   is_required: boolean;
   /**
-   * narrower limits by the choice of another field
+   * narrower limits by the choice of another field.
    */
   ranges: RangesView | null;
 }
@@ -557,6 +576,9 @@ export interface ProgressView {
  * Config of a training.
  */
 export interface TrainingConfigView {
+  /**
+   * a named gait, or a gait given by its leg pairs.
+   */
   gait:
     | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
     | {
@@ -585,6 +607,9 @@ export interface TrainingConfigView {
         }[]
       | undefined;
   };
+  /**
+   * `mujoco` (physics) or `kinematic` (ideal, no slip).
+   */
   simulator: "mujoco" | "kinematic";
   /**
    * Points along each side of the foot grid: more choices, more to learn.
@@ -595,6 +620,8 @@ export interface TrainingConfigView {
    */
   grid_side_m: number;
   /**
+   * what happens to the robot and the ground, by step.
+   *
    * Items: A disturbance from a step on; the fields of its kind are further members.
    */
   disturbances: {
@@ -614,6 +641,9 @@ export interface TrainingConfigView {
    * Everything that is random follows from this number: the same seed, the same run.
    */
   seed: number;
+  /**
+   * observation mode, `measured`, `commanded` or `planned`.
+   */
   observation: "measured" | "commanded" | "planned";
   /**
    * settings of the agent, by name
@@ -633,6 +663,9 @@ export interface TrainingConfigView {
    * How fast it practises: max, or a number of times real time.
    */
   pace: "max" | number;
+  /**
+   * a registered name or `my.module:Agent`.
+   */
   agent: string;
   continue_from: string | null;
 }
@@ -676,6 +709,9 @@ export interface RaceView {
  * Config of a race.
  */
 export interface RaceConfigView {
+  /**
+   * a named gait, or a gait given by its leg pairs.
+   */
   gait:
     | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
     | {
@@ -704,6 +740,9 @@ export interface RaceConfigView {
         }[]
       | undefined;
   };
+  /**
+   * `mujoco` (physics) or `kinematic` (ideal, no slip).
+   */
   simulator: "mujoco" | "kinematic";
   /**
    * Points along each side of the foot grid: more choices, more to learn.
@@ -714,6 +753,8 @@ export interface RaceConfigView {
    */
   grid_side_m: number;
   /**
+   * what happens to the robot and the ground, by step.
+   *
    * Items: A disturbance from a step on; the fields of its kind are further members.
    */
   disturbances: {
@@ -725,6 +766,9 @@ export interface RaceConfigView {
    * How far the robot that the seed draws differs from its design, as a share.
    */
   tolerance: number;
+  /**
+   * in order.
+   */
   lanes: LaneView[];
   /**
    * How many steps each robot has in the race.
@@ -734,12 +778,20 @@ export interface RaceConfigView {
    * Everything that is random follows from this number: the same seed, the same run.
    */
   seed: number;
+  /**
+   * the race whose first steps this one repeats, if any.
+   */
   branch_from: Branch | null;
 }
 /**
  * A lane of a race, with the id of the training whose Q-table it uses.
+ *
+ * The settings of an agent with training are those of the training.
  */
 export interface LaneView {
+  /**
+   * a registered name or `my.module:Agent`.
+   */
   agent: string;
   /**
    * How the agent reads its state; with a training as in the training.
@@ -750,7 +802,7 @@ export interface LaneView {
    */
   keep_learning: boolean;
   /**
-   * model that it plans with; null if it does not search
+   * model that it plans with; null if it does not search.
    */
   plans_with: ("world" | "start" | "nominal") | null;
   /**
@@ -760,7 +812,7 @@ export interface LaneView {
     [k: string]: number | string | boolean | null;
   };
   /**
-   * whether `plans_with` was left out
+   * whether `plans_with` was left out.
    */
   plans_with_by_default: boolean;
   training_id: string | null;
@@ -856,6 +908,9 @@ export interface ExperimentView {
  * Config of an experiment. `experiment_config` adds the defaults of the experiment.
  */
 export interface ExperimentConfig {
+  /**
+   * `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid; `league`: learners and searchers in several worlds; `recovery`: learners to which something happens in the middle of their practice.
+   */
   experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
   /**
    * How often each setting is tried, each time with other random numbers.
@@ -865,7 +920,13 @@ export interface ExperimentConfig {
    * Everything that is random follows from this number: the same seed, the same run.
    */
   seed: number;
+  /**
+   * the learners; in a sweep also look-ahead agents. Table 1 has a fixed list.
+   */
   agents: string[];
+  /**
+   * every combination is a setting.
+   */
   gaits: (
     | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
     | {
@@ -875,8 +936,13 @@ export interface ExperimentConfig {
         pairs?: [number, number][];
       }
   )[];
+  /**
+   * every combination is a setting.
+   */
   observations: ("measured" | "commanded" | "planned")[];
   /**
+   * every combination is a setting.
+   *
    * Items: A preset, and by name the parts that differ from it.
    */
   robots: {
@@ -896,8 +962,13 @@ export interface ExperimentConfig {
         }[]
       | undefined;
   }[];
+  /**
+   * simulator of all trials.
+   */
   simulator: "mujoco" | "kinematic";
   /**
+   * values of these fields of a training; every combination is a setting.
+   *
    * Items: How many steps it practises; the paper uses 500 and 1000.
    */
   steps: number[];
@@ -908,18 +979,30 @@ export interface ExperimentConfig {
     [k: string]: (number | string | boolean | null)[];
   };
   /**
+   * values of these fields of a training; every combination is a setting.
+   *
    * Items: The share of random steps falls after every so many steps.
    */
   steps_per_episode: number[];
   /**
+   * values of these fields of a training; every combination is a setting.
+   *
    * Items: Points along each side of the foot grid: more choices, more to learn.
    */
   divisions: number[];
   /**
+   * values of these fields of a training; every combination is a setting.
+   *
    * Items: Side of the square in which each foot may be put; every leg must reach all of it.
    */
   grid_side_m: number[];
+  /**
+   * number of blocks of `steps` of practice; between blocks the table is saved and loaded.
+   */
   blocks: number;
+  /**
+   * names of worlds, or disturbances as on the command line; every one is a setting.
+   */
   worlds: string[];
   /**
    * How far the robot that the seed draws differs from its design, as a share.
@@ -959,11 +1042,11 @@ export interface StageView {
   run_id: string | null;
   kind: "idle" | "training" | "race";
   /**
-   * `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is at time-out; `showing`: it has ended, its picture has not; `ended`: both have
+   * `empty`; `live`: the run is computed; `decided`: it is computed, and its picture is at time-out; `showing`: it has ended, its picture has not; `ended`: both have.
    */
   phase: "empty" | "live" | "decided" | "showing" | "ended";
   /**
-   * why the run is on stage: it was `started`, a person has `chosen` it, the server replays it (`automatic`), or it was shown last before the server's start (`restored`)
+   * why the run is on stage: it was `started`, a person has `chosen` it, the server replays it (`automatic`), or it was shown last before the server's start (`restored`).
    */
   origin: "none" | "started" | "chosen" | "automatic" | "restored";
   time_s: number;
@@ -1010,7 +1093,7 @@ export interface SceneView {
   time_s: number;
   duration_s: number | null;
   /**
-   * time of the run up to which it is computed
+   * time of the run up to which it is computed.
    */
   computed_s: number;
   time_out_s: number | null;
@@ -1040,7 +1123,7 @@ export interface SceneLane {
   futures: number;
   futures_total: number;
   /**
-   * whether it has used all its steps, or failed
+   * whether it has used all its steps, or failed.
    */
   done: boolean;
   halted: boolean;
@@ -1075,12 +1158,12 @@ export interface SceneActionValues {
   cell_names: string[];
   cells_m: [number, number][];
   /**
-   * by leg pair and cell; null where the foot already stands
+   * by leg pair and cell; null where the foot already stands.
    */
   values_m: (number | null)[][];
   visits: (number | null)[][];
   /**
-   * the cell of each leg pair
+   * the cell of each leg pair.
    */
   current: number[];
   next: NextAction | null;
@@ -1143,7 +1226,7 @@ export interface ExperimentOption {
     [k: string]: unknown;
   };
   /**
-   * by simulator: the defaults that are others there
+   * by simulator: the defaults that are others there.
    */
   simulator_defaults: {
     [k: string]: {
@@ -1151,7 +1234,7 @@ export interface ExperimentOption {
     };
   };
   /**
-   * the agents that it can compare
+   * the agents that it can compare.
    */
   agents: string[];
 }
@@ -1159,6 +1242,9 @@ export interface ExperimentOption {
  * Page of experiments.
  */
 export interface ExperimentPage {
+  /**
+   * Cursor of the next page; null on the last page.
+   */
   next_cursor: string | null;
   items: ExperimentView[];
 }
@@ -1187,20 +1273,20 @@ export interface ExplanationView {
   reward_m: number;
   next_observation: number[] | null;
   /**
-   * how often each move had been tried here before, by leg pair and cell
+   * how often each move had been tried here before, by leg pair and cell.
    */
   visits: (number | null)[][] | null;
   choice: ChoiceView | null;
   /**
-   * null if it learned nothing from it
+   * null if it learned nothing from it.
    */
   update: UpdateView | null;
   /**
-   * null if it does not search
+   * null if it does not search.
    */
   search: SearchView | null;
   /**
-   * why the choice is not explained
+   * why the choice is not explained.
    */
   unexplained: string | null;
 }
@@ -1211,7 +1297,7 @@ export interface UpdateView {
   summary: string;
   direct: ValueUpdateView | null;
   /**
-   * the value in the end, as planning may change it again
+   * the value in the end, as planning may change it again.
    */
   stored: number | null;
   others: OtherUpdates;
@@ -1235,14 +1321,14 @@ export interface ValueUpdateView {
   move: string;
   rule: string;
   /**
-   * the rule with rounded numbers put in
+   * the rule with rounded numbers put in.
    */
   numbers: string;
   terms: TermView[];
   before: number;
   after: number;
   /**
-   * whether the rule was checked and gives `after`
+   * whether the rule was checked and gives `after`.
    */
   is_exact: boolean;
 }
@@ -1283,19 +1369,19 @@ export interface FutureView {
    */
   action: [number, number];
   /**
-   * of the step, as simulated
+   * of the step, as simulated.
    */
   reward_m: number;
   /**
-   * what the search compared
+   * what the search compared.
    */
   return_m: number;
   /**
-   * simulated ones that begin with it
+   * simulated ones that begin with it.
    */
   sequences: number;
   /**
-   * how far these look ahead
+   * how far these look ahead.
    */
   steps: number;
 }
@@ -1305,99 +1391,192 @@ export interface FutureView {
 export interface ExportOption {
   title: string;
   /**
-   * below `/api/v1/runs/{run_id}/`
+   * below `/api/v1/runs/{run_id}/`.
    */
   address: string;
   /**
-   * of the request; POST is for operators only
+   * of the request; POST is for operators only.
    */
   method: "GET" | "POST";
   ending: string;
   /**
-   * the command that installs what the server lacks; null if it lacks nothing
+   * the command that installs what the server lacks; null if it lacks nothing.
    */
   install: string | null;
 }
 /**
- * Figures of a walk in the window.
- *
- * `distance_m` is along the direction that the robot faced at first; a body length is the
- * diameter of the torso.
+ * Gait analysis of a race, lane by lane, or of a training; times are robot time [s].
  */
-export interface GaitFiguresView {
-  from_s: number;
-  to_s: number;
-  distance_m: number;
-  speed_m_s: number;
-  speed_body_lengths_s: number;
+export interface GaitAnalysis {
   /**
-   * mean of all legs
+   * of the run.
    */
-  duty_factor: number;
-  mass_kg: number;
-  legs: LegGaitView[];
+  part: "race" | "practice" | "evaluation";
   /**
-   * null if the walk has no limit cycle
+   * duration of a step.
    */
-  cycle: CycleView | null;
-  posture: PostureView;
+  step_s: number;
   /**
-   * null if it was not recorded
+   * of a race all, of a training one.
    */
-  effort: ServoEffortView | null;
+  lanes: GaitLane[];
 }
 /**
- * Footfalls of a leg: when its foot is on the ground, [from s, to s], and the share of that.
+ * A robot's walk; `figures` are null if nothing of it lies in the window.
  */
-export interface LegGaitView {
+export interface GaitLane {
+  /**
+   * its agent.
+   */
+  agent: string;
+  /**
+   * robot time of what is recorded.
+   */
+  recorded_from_s: number;
+  /**
+   * robot time of what is recorded.
+   */
+  recorded_to_s: number;
+  /**
+   * of the window.
+   */
+  figures: GaitFigures | null;
+  /**
+   * why there are neither torque nor energy, in a sentence.
+   */
+  no_effort: string | null;
+}
+/**
+ * Figures of a walk between two times of robot time.
+ */
+export interface GaitFigures {
+  /**
+   * the window.
+   */
+  from_s: number;
+  /**
+   * the window.
+   */
+  to_s: number;
+  /**
+   * along the direction that the robot faces at the beginning of the recorded steps.
+   */
+  distance_m: number;
+  /**
+   * distance by time.
+   */
+  speed_m_s: number;
+  /**
+   * speed by the diameter of the torso.
+   */
+  speed_body_lengths_s: number;
+  /**
+   * mean of all legs that the robot has.
+   */
+  duty_factor: number;
+  /**
+   * of the robot with its payload, mean over the window.
+   */
+  mass_kg: number;
+  /**
+   * footfalls of each leg.
+   */
+  legs: LegGait[];
+  /**
+   * null if the walk does not end in one, or its choices were not recorded.
+   */
+  cycle: Cycle | null;
+  /**
+   * The torso over time: the height of its centre over flat ground, its pitch and roll.
+   */
+  posture: {
+    /**
+     * robot time of the samples.
+     */
+    time_s: number[];
+    /**
+     * at those times; pitch is positive with the front up, roll with the left side up.
+     */
+    height_m: number[];
+    /**
+     * at those times; pitch is positive with the front up, roll with the left side up.
+     */
+    pitch_deg: number[];
+    /**
+     * at those times; pitch is positive with the front up, roll with the left side up.
+     */
+    roll_deg: number[];
+    /**
+     * lowest and highest of all frames.
+     *
+     * @minItems 2
+     * @maxItems 2
+     */
+    height_range_m: [number, number];
+    /**
+     * lowest and highest of all frames.
+     *
+     * @minItems 2
+     * @maxItems 2
+     */
+    pitch_range_deg: [number, number];
+    /**
+     * lowest and highest of all frames.
+     *
+     * @minItems 2
+     * @maxItems 2
+     */
+    roll_range_deg: [number, number];
+  };
+  /**
+   * null if it was not recorded.
+   */
+  effort: ServoEffort | null;
+}
+/**
+ * Footfalls of a leg in a window: when it stands [s], and the share of that.
+ */
+export interface LegGait {
   leg: number;
   stance: [number, number][];
   duty_factor: number;
 }
 /**
- * The torso over time: its centre's height over flat ground, pitch and roll.
- *
- * Pitch is positive with the front up, roll with the left side up. Ranges are of all recorded
- * poses, which in a long window are more than the samples.
+ * Torque and mechanical work of the servos.
  */
-export interface PostureView {
-  time_s: number[];
-  height_m: number[];
-  pitch_deg: number[];
-  roll_deg: number[];
-  height_range_m: [number, number];
-  pitch_range_deg: [number, number];
-  roll_range_deg: [number, number];
-}
-/**
- * Torque, positive mechanical work and cost of transport of the servos.
- *
- * Samples of `torque_nm` are the largest torque of any servo since the sample before, those of
- * `power_w` the mean power of all. `cost_of_transport` is energy by weight and distance, null
- * without distance. Losses in motors and electronics are not simulated.
- */
-export interface ServoEffortView {
-  time_s: number[];
-  torque_nm: number[];
-  power_w: number[];
-  largest_torque_nm: number;
-  torque_limit_nm: number;
-  energy_j: number;
-  mean_power_w: number;
-  cost_of_transport: number | null;
-}
-/**
- * A robot's walk; `figures` are null if nothing of it lies in the window.
- */
-export interface GaitLaneView {
-  agent: string;
-  recorded_from_s: number;
-  recorded_to_s: number;
-  figures: GaitFiguresView | null;
+export interface ServoEffort {
   /**
-   * why there are neither torque nor energy, in a sentence
+   * robot time of the samples.
    */
-  no_effort: string | null;
+  time_s: number[];
+  /**
+   * the largest torque of any servo since the sample before, by magnitude.
+   */
+  torque_nm: number[];
+  /**
+   * mean positive mechanical power of all servos since the sample before.
+   */
+  power_w: number[];
+  /**
+   * in the window.
+   */
+  largest_torque_nm: number;
+  /**
+   * of each servo.
+   */
+  torque_limit_nm: number;
+  /**
+   * positive mechanical work in the window; what servos draw on top is not simulated.
+   */
+  energy_j: number;
+  /**
+   * energy by time.
+   */
+  mean_power_w: number;
+  /**
+   * energy by weight times distance; null without distance.
+   */
+  cost_of_transport: number | null;
 }
 /**
  * A gait, with the directions of its legs [°] and the pairs of legs that move together.
@@ -1409,17 +1588,6 @@ export interface GaitOption {
   forward_deg: number;
   azimuths_deg: number[];
   pairs: [number, number][];
-}
-/**
- * Gait analysis of a race, lane by lane, or of a training.
- */
-export interface GaitView {
-  part: "race" | "practice" | "evaluation";
-  /**
-   * duration of a step
-   */
-  step_s: number;
-  lanes: GaitLaneView[];
 }
 /**
  * Status and version of the server.
@@ -1475,7 +1643,7 @@ export interface OptionsView {
     [k: string]: SettingOption;
   };
   /**
-   * [lowest, highest]; `settings` says which of them are not valid themselves
+   * [lowest, highest]; `settings` says which of them are not valid themselves.
    */
   limits: {
     [k: string]: [number | null, number | null];
@@ -1484,13 +1652,13 @@ export interface OptionsView {
     [k: string]: string;
   };
   /**
-   * names of fields that are no declared settings
+   * names of fields that are no declared settings.
    */
   titles: {
     [k: string]: string;
   };
   /**
-   * files of a recorded walk
+   * files of a recorded walk.
    */
   exports: ExportOption[];
 }
@@ -1522,7 +1690,7 @@ export interface RobotOption {
       | undefined;
   };
   /**
-   * parts in whose place a disturbance puts another value, as they were built
+   * parts in whose place a disturbance puts another value, as they were built.
    */
   built: {
     [k: string]: number;
@@ -1620,6 +1788,9 @@ export interface QTableView {
  * Page of races.
  */
 export interface RacePage {
+  /**
+   * Cursor of the next page; null on the last page.
+   */
   next_cursor: string | null;
   items: RaceView[];
 }
@@ -1669,15 +1840,15 @@ export interface ReplayMark {
   kind: "time-out" | "crossing" | "fall" | "disturbance" | "evaluation";
   time_s: number;
   /**
-   * from 0; null if it concerns all lanes
+   * from 0; null if it concerns all lanes.
    */
   lane: number | null;
   /**
-   * that begins then, or in which a robot fell, from 0
+   * that begins then, or in which a robot fell, from 0.
    */
   step: number | null;
   /**
-   * that an evaluation reached
+   * that an evaluation reached.
    */
   distance_m: number | null;
 }
@@ -1687,41 +1858,41 @@ export interface ReplayMark {
 export interface ReplayView {
   run_id: string;
   /**
-   * of the run whose lanes are shown as ghosts
+   * of the run whose lanes are shown as ghosts.
    */
   ghost_id: string | null;
   kind: "training" | "race";
   /**
-   * that times a race; null for a training
+   * that times a race; null for a training.
    */
   clock: ("paper" | "wall" | "free") | null;
   /**
-   * whether the run will record no more
+   * whether the run will record no more.
    */
   complete: boolean;
   /**
-   * null while it is not known
+   * null while it is not known.
    */
   duration_s: number | null;
   /**
-   * intervals that can be shown; of a long practice the first and newest steps
+   * intervals that can be shown; of a long practice the first and newest steps.
    */
   recorded_s: [number, number][];
   /**
-   * for each lane, of its recorded steps
+   * for each lane, of its recorded steps.
    */
   step_ends_s: number[][];
   marks: ReplayMark[];
   /**
-   * time between two frames of level 0
+   * time between two frames of level 0.
    */
   frame_s: number;
   /**
-   * number of frames in a segment
+   * number of frames in a segment.
    */
   segment_frames: number;
   /**
-   * each level has half as many frames as the one below
+   * each level has half as many frames as the one below.
    */
   lowest_level: number;
   highest_level: number;
@@ -1730,6 +1901,9 @@ export interface ReplayView {
  * Page of runs of every kind.
  */
 export interface RunPage {
+  /**
+   * Cursor of the next page; null on the last page.
+   */
   next_cursor: string | null;
   items: (TrainingView | RaceView | ExperimentView)[];
 }
@@ -1787,7 +1961,7 @@ export interface SettingView {
 export interface SpectatorsView {
   address: string | null;
   /**
-   * SVG image as a data URI
+   * SVG image as a data URI.
    */
   qr_code: string | null;
   reason: string;
@@ -1817,7 +1991,7 @@ export interface SummaryView {
   trials: SummaryCounts;
   cost: Cost | null;
   /**
-   * names of what is varied beside place and agent
+   * names of what is varied beside place and agent.
    */
   parameters: string[];
   settings: SettingView[];
@@ -1948,16 +2122,16 @@ export interface TableView {
   cell_names: string[];
   step: number;
   /**
-   * number of all states
+   * number of all states.
    */
   states: number;
   first: number;
   /**
-   * action values [m], pair by pair; null where illegal
+   * action values [m], pair by pair; null where illegal.
    */
   values: (number | null)[][];
   /**
-   * how often each was tried; a value without a try is no estimate
+   * how often each was tried; a value without a try is no estimate.
    */
   visits: (number | null)[][];
   best: [number, number][];
@@ -1973,11 +2147,11 @@ export interface TimelineLane {
   training_id: string | null;
   color: string;
   /**
-   * that it has taken so far
+   * that it has taken so far.
    */
   steps: number;
   /**
-   * number of steps told as one; 1 in all but long races
+   * number of steps told as one; 1 in all but long races.
    */
   stride: number;
   points: [number, number][];
@@ -2001,6 +2175,9 @@ export interface TimelineView {
  * Page of trainings.
  */
 export interface TrainingPage {
+  /**
+   * Cursor of the next page; null on the last page.
+   */
   next_cursor: string | null;
   items: TrainingView[];
 }

@@ -4,7 +4,8 @@ from typing import Any
 
 import pytest
 
-from app.api.gait_answers import GaitView
+from app.api.gait import GaitAnalysis
+from hexapods.domain.records import from_json
 from tests.api.calls import Api, refused
 
 
@@ -15,8 +16,8 @@ def raced(api: Api) -> dict[str, Any]:
     return api.finished(api.race(lanes=lanes, simulator="mujoco", steps=12))
 
 
-def gait(api: Api, run: dict[str, Any], **query: Any) -> GaitView:
-    return GaitView.model_validate(api.get(f"/runs/{run['id']}/gait", params=query))
+def gait(api: Api, run: dict[str, Any], **query: Any) -> GaitAnalysis:
+    return from_json(GaitAnalysis, api.get(f"/runs/{run['id']}/gait", params=query))
 
 
 def test_gait_of_a_race_has_the_figures_of_each_lane(api: Api, raced: dict[str, Any]) -> None:

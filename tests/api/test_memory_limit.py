@@ -82,7 +82,9 @@ def test_unfinished_bodies_are_refused_beyond_the_share(port: int) -> None:
     with ExitStack() as stack:
         length = f"Content-Length: {64 * MB}\r\n\r\n".encode()
         held = BODIES_SHARE_BYTES // (16 * MB)
-        senders = [send_request(stack, port, "POST /small", length) for _ in range(held + 1)]
+        senders = [
+            send_request(stack, port, "POST /api/v1/import", length) for _ in range(held + 1)
+        ]
         for sender in senders[:held]:
             sender.sendall(bytes(16 * MB - 256 * 1024))
         time.sleep(0.5)

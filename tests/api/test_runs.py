@@ -105,3 +105,16 @@ def test_several_runs_are_exported_deleted_and_taken_in_again(api: Api) -> None:
     refused(api.call("DELETE", "/runs"), 422, "id is missing", "the id of a run")
     many = "&".join("id=a" for _ in range(101))
     refused(api.call("DELETE", f"/runs?{many}"), 422, "up to 100 of them")
+
+
+def test_a_repeated_start_of_a_copy_returns_it_although_the_original_is_gone(api: Api) -> None:
+    original = api.finished(api.train(name="Once", steps=5, evaluate_every=0))
+    once = {"headers": {"Idempotency-Key": "copied-once"}}
+    path = f"/runs/{original['id']}/again"
+    copy = api.call("POST", path, **once).json()
+    api.finished(copy)
+    assert api.call("DELETE", f"/trainings/{original['id']}").status_code == 204
+    repeated = api.call("POST", path, **once)
+    assert repeated.status_code == 202
+    assert repeated.json()["id"] == copy["id"]
+    refused(api.call("POST", path), 404, original["id"])

@@ -1,13 +1,14 @@
-"""Responses that cannot be completed: an error after their start, and the end of the server."""
+"""Responses that cannot be completed: an error after their start, the end of server or client."""
 
 import asyncio
 import logging
 from collections.abc import Iterator
 
+import anyio
 import pytest
 from fastapi import FastAPI
 from starlette.responses import StreamingResponse
-from starlette.types import Message, Scope
+from starlette.types import Message, Receive, Scope
 
 from app.api import problems
 from app.api.memory_limit import HeldBodies
@@ -109,3 +110,39 @@ def test_other_errors_are_raised() -> None:
 
     with pytest.raises(RuntimeError, match="unexpected"):
         asyncio.run(Unfinished(broken)(dict(SCOPE), receive, send))
+
+
+async def receive_disconnect() -> Message:
+    return {"type": "http.disconnect"}
+
+
+async def receive_request() -> Message:
+    return {"type": "http.request", "body": b"", "more_body": False}
+
+
+async def ignore(message: Message) -> None:
+    del message
+
+
+def failing(error: Exception) -> Unfinished:
+    async def app(scope: Scope, receive: Receive, send: object) -> None:
+        await receive()
+        raise error
+
+    return Unfinished(app)
+
+
+BROKEN = anyio.BrokenResourceError()
+
+
+@pytest.mark.parametrize("error", [BROKEN, ExceptionGroup("", [ExceptionGroup("", [BROKEN])])])
+def test_a_stream_error_after_a_disconnect_is_suppressed(error: Exception) -> None:
+    asyncio.run(failing(error)(dict(SCOPE), receive_disconnect, ignore))
+    with pytest.raises(type(error)):
+        asyncio.run(failing(error)(dict(SCOPE), receive_request, ignore))
+
+
+def test_other_errors_after_a_disconnect_are_raised() -> None:
+    for error in (ValueError(), ExceptionGroup("", [BROKEN, ValueError()])):
+        with pytest.raises(type(error)):
+            asyncio.run(failing(error)(dict(SCOPE), receive_disconnect, ignore))

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from app.archive import archive
-from app.archive.transfer import RUN, export_many, export_run, import_run, import_runs
+from app.archive.transfer import RUN, export_many, import_runs
 from app.storage import stored_races
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound, StorageFull
@@ -21,7 +21,7 @@ from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run, State
 from app.storage.run_ids import RunIds
 from app.storage.stored_races import RACE, race_file
-from app.storage.stored_recordings import PRACTICE, evaluations_file, transitions_file
+from app.storage.stored_trainings import PRACTICE, evaluations_file, transitions_file
 from hexapods.agents.registry import OURS
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput
@@ -30,6 +30,7 @@ from hexapods.domain.world import World
 from hexapods.runs.lane import PlanningModel, lane_config
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.race_file import race_arrays
+from tests.archive.exported import export_run, import_run
 from tests.storage.ended_runs import ended_race, ended_training, result_of_race
 from tests.storage.stores import ODD, opened, temporary_store, training
 
@@ -49,7 +50,7 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunStore]:
 
 def imported(data: bytes, store: RunStore | None = None) -> Run:
     with temporary_store() if store is None else nullcontext(store) as target:
-        return import_run(target, data, RunIds(), tuple(OURS), "run.zip")
+        return import_run(target, data, RunIds(), "run.zip")
 
 
 def imported_runs(data: bytes, store: RunStore) -> list[Run]:
@@ -112,7 +113,7 @@ def test_export_and_import_preserve_everything(
     data = export_run(source, run_id)
     with opened(tmp_path, None) as target:
         assert imported(data, target) == source.get(run_id)
-        assert target.evaluations(run_id) == source.evaluations(run_id)
+        assert target.curves.get(run_id) == source.curves.get(run_id)
         for name in (TABLE, RACE, PRACTICE, transitions_file(0)):
             assert target.artifact(run_id, name) == source.artifact(run_id, name)
         assert export_run(target, run_id) == data
@@ -591,7 +592,7 @@ def test_invalid_logs_of_steps_are_refused(source: RunStore) -> None:
 def test_future_and_malformed_ids_are_replaced(source: RunStore, store: RunStore) -> None:
     for run_id in ("zzzzzzzzz0000", "0", "training", "1zzzzzzzzzzzz"):
         data, ids = rewritten(export_run(source, TRAINING), _set("id", run_id, "run")), RunIds()
-        run = import_run(store, data, ids, tuple(OURS), "run.zip")
+        run = import_run(store, data, ids, "run.zip")
         assert run.id != run_id
         assert store.get(run.id) == replace(source.get(TRAINING), id=run.id)
         assert ids() > run.id

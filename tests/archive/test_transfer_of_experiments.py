@@ -10,14 +10,14 @@ import pytest
 
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
-from app.archive.transfer import export_run
 from app.storage.database.store import RunStore
 from app.storage.run import State
 from hexapods.agents.registry import OURS
 from hexapods.experiments.config import SUMMARY, experiment_config
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.trial import run_trial
+from hexapods.experiments.worker import Outcome
+from tests.archive.exported import export_run
 from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
 from tests.storage.ended_runs import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened
@@ -47,7 +47,7 @@ def test_export_and_import_preserve_everything(source: RunStore, tmp_path: Path)
     data = export_run(source, RUN_ID)
     with opened(tmp_path, None) as target:
         assert imported(data, target) == source.get(RUN_ID)
-        assert target.trials(RUN_ID) == source.trials(RUN_ID)
+        assert target.trials.get(RUN_ID) == source.trials.get(RUN_ID)
         for name in (SUMMARY, "trials.csv"):
             assert target.artifact(RUN_ID, name) == source.artifact(RUN_ID, name)
         assert export_run(target, RUN_ID) == data
@@ -56,15 +56,15 @@ def test_export_and_import_preserve_everything(source: RunStore, tmp_path: Path)
 def test_incomplete_experiments_are_imported_with_their_trials(
     source: RunStore, store: RunStore, tmp_path: Path
 ) -> None:
-    config, rows = source.get(RUN_ID).config, source.trials(RUN_ID)[:2]
+    config, rows = source.get(RUN_ID).config, source.trials.get(RUN_ID)[:2]
     states: dict[str, State] = {"0000000000001": "interrupted", "0000000000002": "stopped"}
     for run_id, state in {**states, "0000000000003": "failed"}.items():
         run = experiment(run_id, state=state, config=config, total=4, done=2, workers=2)
         store.create(run)
-        store.append_trials(run_id, rows)
+        store.trials.append(run_id, rows)
         with opened(tmp_path / run_id, None) as target:
             assert imported(export_run(store, run_id), target) == run
-            assert target.trials(run_id) == rows
+            assert target.trials.get(run_id) == rows
 
 
 def test_unregistered_agents_are_refused_without_importing_their_module(
@@ -161,9 +161,9 @@ def test_rewards_of_a_recovery_are_preserved(store: RunStore, tmp_path: Path) ->
     rows = [Outcome(trial.key, run_trial(trial.config), None, 0.1).as_json() for trial in trials]
     run = experiment(RUN_ID, state="stopped", config=config, total=3, done=len(rows), workers=1)
     store.create(run)
-    store.append_trials(RUN_ID, rows)
+    store.trials.append(RUN_ID, rows)
 
     with opened(tmp_path, None) as target:
         assert imported(export_run(store, RUN_ID), target).config == config
-        assert list(target.trials(RUN_ID)) == list(store.trials(RUN_ID))
-        assert len(target.trials(RUN_ID)[-1]["result"]["earned_m"]) == 6
+        assert list(target.trials.get(RUN_ID)) == list(store.trials.get(RUN_ID))
+        assert len(target.trials.get(RUN_ID)[-1]["result"]["earned_m"]) == 6

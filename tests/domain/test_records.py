@@ -1,16 +1,17 @@
 """Configs as JSON: what is written is read again, and what earlier versions wrote."""
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import pytest
+from pydantic import TypeAdapter
 
 from hexapods.domain.gait import GaitSpec, read_gait
-from hexapods.domain.records import from_json, to_json
+from hexapods.domain.records import Record, from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import world
-from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.config import Seed, TrainingConfig, training_config
 from hexapods.runs.lane import LaneConfig, lane_config
 from hexapods.runs.race_config import RaceConfig
 
@@ -88,3 +89,26 @@ def test_a_stored_end_after_the_run_is_read_as_it_was_accepted() -> None:
     for config in (training_config(gait=GAIT), RaceConfig(gait=GAIT, lanes=LANES)):
         stored = {**to_json(config), "disturbances": [long]}
         assert from_json(type(config), stored) == replace(config, world=world([long]))
+
+
+def test_a_records_docstring_describes_it_and_its_fields() -> None:
+    @dataclass(frozen=True)
+    class Pace(Record):
+        """How fast it walks.
+
+        Attributes:
+            speed_m_s: distance by time; None
+                without a step.
+            seed: of all that is random.
+        """
+
+        speed_m_s: float | None
+        seed: Seed
+        steps: int
+
+    described = TypeAdapter(Pace).json_schema()
+    assert described["description"] == "How fast it walks."
+    members = {name: one.get("description") for name, one in described["properties"].items()}
+    assert members["speed_m_s"] == "distance by time; null without a step."
+    assert members["steps"] is None
+    assert "random follows from this number" in members["seed"], "a setting's own help goes first"

@@ -6,9 +6,9 @@ from contextlib import suppress
 import psutil
 
 from hexapods.experiments.config import ExperimentConfig, experiment_config
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.plan import Plan, Trial
 from hexapods.experiments.trial import TrialResult, run_trial
+from hexapods.experiments.worker import Outcome
 
 CRASHING = "tests.experiments.crashing_agent:CrashingAgent"
 

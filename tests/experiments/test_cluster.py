@@ -74,7 +74,7 @@ def test_workers_of_this_machine_open_no_port_and_leave_no_files_or_processes(
 def test_a_worker_that_takes_too_much_memory_is_killed() -> None:
     endless = trials_of(small(seeds=1, steps=9_000_000))[-1]
     with local_workers(1, most_bytes=1 << 20) as workers:
-        task = workers.submit([endless.config])
+        task = workers.submit([endless])
         with pytest.raises(WorkerDied):
             workers.result(task)
     assert not workers_of(psutil.Process())

@@ -10,9 +10,10 @@ import pytest
 
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import experiment_config
-from hexapods.experiments.engine import Outcome, run_trials
+from hexapods.experiments.engine import run_trials
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.trial import TrialResult
+from hexapods.experiments.worker import Outcome
 from tests.experiments import crashing_agent
 from tests.experiments.clusters import (
     CRASHING,

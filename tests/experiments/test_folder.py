@@ -12,9 +12,9 @@ import pytest
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import ExperimentConfig, experiment_config
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.folder import TRIALS, NotKept, open_results
 from hexapods.experiments.trial import TrialResult, run_trial
+from hexapods.experiments.worker import Outcome
 from tests.experiments.clusters import small, trials_of
 
 CONFIG = small(seeds=3)

@@ -15,7 +15,6 @@ from hexapods.domain.errors import HexapodError
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.settings import Setting, declare
 from hexapods.experiments.config import experiment_config
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.folder import open_results
 from hexapods.experiments.plan import Plan, Trial
 from hexapods.experiments.progress import Progress
@@ -26,6 +25,7 @@ from hexapods.experiments.tuning.report import command, tuning_files
 from hexapods.experiments.tuning.study import Study
 from hexapods.experiments.tuning.summary import summarise_tuning
 from hexapods.experiments.tuning.tuning import BATCH, NothingTried, Run, Tuning, search_seeds
+from hexapods.experiments.worker import Outcome
 from hexapods.runs.config import agent_settings
 
 LRO = "left-right-origin"

@@ -22,7 +22,7 @@ def tried(config: ExperimentConfig) -> dict[str, Any]:
 def stored_results(store: RunStore, run_id: str) -> dict[str, Any]:
     """Return the results in a store by key, with the lists of a database turned into tuples."""
     results: dict[str, Any] = {}
-    for row in store.trials(run_id):
+    for row in store.trials.get(run_id):
         assert row["set_aside"] is None
         results[row["key"]] = {**row["result"], "distances_m": tuple(row["result"]["distances_m"])}
     return results

@@ -14,6 +14,7 @@ from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import ExperimentStart
 from app.storage.database.store import RunStore
+from app.storage.database.trials import Trials
 from app.storage.errors import Conflict, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run
@@ -27,19 +28,20 @@ from tests.jobs.test_jobs import pid_of
 from tests.jobs.waiting import wait_until, wait_until_ended
 from tests.served import is_job
 from tests.storage.ended_runs import experiment_result
-from tests.storage.stores import of_type
 
 
 def wait_for_more_trials(store: RunStore, run: Run, done: int) -> None:
-    wait_until(lambda: len(store.trials(run.id)) > done or store.get(run.id).state not in NOT_ENDED)
+    wait_until(
+        lambda: len(store.trials.get(run.id)) > done or store.get(run.id).state not in NOT_ENDED
+    )
     assert store.get(run.id).state == "running"
 
 
 def wait_until_settled(store: RunStore, run: Run) -> Sequence[Mapping[str, Any]]:
     """Wait until no more trials arrive at the server, and return them."""
     rows: Sequence[Mapping[str, Any]] | None = None
-    while rows != store.trials(run.id):
-        rows = store.trials(run.id)
+    while rows != store.trials.get(run.id):
+        rows = store.trials.get(run.id)
         time.sleep(1.0)
     return rows
 
@@ -58,7 +60,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     """Paused, stopped, killed and resumed, it gives the results of an uninterrupted run."""
     before = worker_pids()
     config = sweep(seeds=24, steps=(1000,))
-    run = jobs.experiment(ExperimentStart(config, workers=1))
+    run = jobs.start(ExperimentStart(config, workers=1))
     assert (run.name, run.total, run.kind) == ("Sweep, 24 seeds", 25, "experiment")
 
     wait_for_more_trials(store, run, 0)
@@ -67,13 +69,13 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     wait_until(lambda: len(worker_pids() - before) == 1)
     paused = wait_until_settled(store, run)
     time.sleep(0.3)
-    assert store.trials(run.id) == paused
+    assert store.trials.get(run.id) == paused
     jobs.resume(run.id)
     wait_for_more_trials(store, run, len(paused))
 
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.error) == ("stopped", None)
-    kept = store.trials(run.id)
+    kept = store.trials.get(run.id)
     assert stopped.done == len(kept) < 25
     result = experiment_result(stopped)
     assert result.trials == TrialCounts(done=len(kept), total=25, failed=0, set_aside=0)
@@ -95,7 +97,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     finished = wait_until_ended(store, run)
     assert (finished.state, finished.done, finished.error) == ("finished", 25, None)
     assert stored_results(store, run.id) == tried(config)
-    times = {row["key"]: row["compute_s"] for row in store.trials(run.id)}
+    times = {row["key"]: row["compute_s"] for row in store.trials.get(run.id)}
     assert all(times[row["key"]] == row["compute_s"] for row in kept), "some were repeated"
     with pytest.raises(Conflict, match="failed or interrupted or paused or stopped"):
         jobs.resume(run.id)
@@ -113,33 +115,33 @@ def check_summary(store: RunStore, run: Run, config: ExperimentConfig) -> None:
     assert cost["workers"] == 1
     assert cost["wall_s"] > 0
     assert cost["compute_s"] == pytest.approx(
-        sum(row["compute_s"] for row in store.trials(run.id)), rel=0.01
+        sum(row["compute_s"] for row in store.trials.get(run.id)), rel=0.01
     )
     assert (store.artifact(run.id, REPORT) or b"").startswith(b"<!doctype html>")
 
 
-class FullStore(RunStore):
-    """Fake store without disk space for trials until `room` is set."""
+class FullTrials(Trials):
+    """Fake table without disk space for trials until `room` is set."""
 
     room = 0
 
-    def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
+    def append(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         if self.room == 0:
             raise StorageFull("the disk of the data folder is full; delete runs")
         self.room -= 1
-        super().append_trials(run_id, rows)
+        super().append(run_id, rows)
 
 
 def test_full_disk_fails_the_run_which_resumes_once_there_is_space(store: RunStore) -> None:
-    store = of_type(FullStore, store)
+    store.trials = trials = FullTrials(store.database)
     jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
     try:
-        run = jobs.experiment(ExperimentStart(sweep(), workers=1))
+        run = jobs.start(ExperimentStart(sweep(), workers=1))
         failed = wait_until_ended(store, run)
         assert failed.state == "failed"
         assert "the disk of the data folder is full" in (failed.error or "")
-        store.room = 1_000
+        trials.room = 1_000
         jobs.resume(run.id)
         assert wait_until_ended(store, run).state == "finished"
         assert stored_results(store, run.id) == tried(sweep())
@@ -149,17 +151,17 @@ def test_full_disk_fails_the_run_which_resumes_once_there_is_space(store: RunSto
 
 def test_invalid_trials_are_set_aside_and_the_others_are_kept(jobs: Jobs, store: RunStore) -> None:
     config = sweep(agents=("q-learning", "tests.own_agents:Clumsy"))
-    run = wait_until_ended(store, jobs.experiment(ExperimentStart(config, name="Mine", workers=1)))
+    run = wait_until_ended(store, jobs.start(ExperimentStart(config, name="Mine", workers=1)))
     assert (run.name, run.state, run.done) == ("Mine", "finished", run.total)
     assert experiment_result(run).trials == TrialCounts(done=4, total=7, failed=0, set_aside=3)
-    for row in store.trials(run.id):
+    for row in store.trials.get(run.id):
         assert (row["result"] is None) == ("Clumsy" in row["key"])
         assert row["result"] is not None or "I tripped" in row["set_aside"]
 
 
 def test_queued_or_starting_experiment_stops_at_once(jobs: Jobs, store: RunStore) -> None:
     config = sweep(seeds=100, steps=(2000,))
-    first, second = (jobs.experiment(ExperimentStart(config)) for _ in range(2))
+    first, second = (jobs.start(ExperimentStart(config)) for _ in range(2))
     assert jobs.stop(second.id).state == "stopped"
     wait_until(lambda: store.get(first.id).state == "running")
     stopped = jobs.stop(first.id)
@@ -178,15 +180,15 @@ def test_too_large_or_unreachable_grid_is_rejected(jobs: Jobs) -> None:
     ):
         fields = {"simulator": "kinematic", **lists}
         with pytest.raises(InvalidInput, match=message):
-            jobs.experiment(ExperimentStart(experiment_config("sweep", fields)))
+            jobs.start(ExperimentStart(experiment_config("sweep", fields)))
     with pytest.raises(Unreachable):
-        jobs.experiment(ExperimentStart(sweep(grid_side_m=(0.3,))))
+        jobs.start(ExperimentStart(sweep(grid_side_m=(0.3,))))
     with pytest.raises(InvalidInput, match="cores of this machine"):
-        jobs.experiment(ExperimentStart(sweep(), workers=512))
+        jobs.start(ExperimentStart(sweep(), workers=512))
 
 
 def test_experiments_of_the_paper_are_within_the_limits(jobs: Jobs) -> None:
     for name, total in (("table1", 1008), ("figure4", 248)):
-        run = jobs.experiment(ExperimentStart(experiment_config(name, {})))
+        run = jobs.start(ExperimentStart(experiment_config(name, {})))
         assert run.total == total == Plan(experiment_config(name, {})).total
         jobs.stop(run.id)

@@ -99,7 +99,7 @@ def test_progress_reported_while_a_run_is_paused_does_not_undo_the_pause(
     jobs = Jobs(store, Recordings(store), bus, cores=1)
     jobs.open()
     try:
-        run = jobs.train(TrainingStart(ENDLESS))
+        run = jobs.start(TrainingStart(ENDLESS))
         wait_for_progress(store, run)
         hold.set()
         assert arrived.wait(LONG_S)

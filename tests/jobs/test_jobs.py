@@ -49,7 +49,7 @@ def pid_of(run: Run) -> int:
 
 
 def test_runs_start_in_order_of_submission(jobs: Jobs, store: RunStore) -> None:
-    runs = [jobs.train(training()) for _ in range(3)]
+    runs = [jobs.start(training()) for _ in range(3)]
     last = wait_until_ended(store, runs[-1])
     starts = [store.get(run.id).started_at for run in runs]
     assert starts == sorted(starts, key=str)
@@ -59,16 +59,16 @@ def test_runs_start_in_order_of_submission(jobs: Jobs, store: RunStore) -> None:
 
 
 def test_queue_is_bounded(jobs: Jobs, store: RunStore) -> None:
-    first = jobs.train(endless())
+    first = jobs.start(endless())
     wait_for_progress(store, first)
     for _ in range(MAX_QUEUED):
-        jobs.train(endless())
+        jobs.start(endless())
     with pytest.raises(Busy, match="32") as error:
-        jobs.train(endless())
+        jobs.start(endless())
     assert error.value.retry_after_s > 0
     lanes = [LaneStart("greedy")]
     with pytest.raises(Busy):
-        jobs.race(RaceStart(WALK, lanes, 50, 0))
+        jobs.start(RaceStart(WALK, lanes, 50, 0))
     queued = store.list(state="queued").items
     assert len(queued) == MAX_QUEUED
     places = [jobs.view(run)["queue_position"] for run in reversed(queued)]
@@ -80,9 +80,9 @@ def test_queue_is_bounded(jobs: Jobs, store: RunStore) -> None:
 
 
 def test_paused_job_frees_its_core(jobs: Jobs, store: RunStore) -> None:
-    first = jobs.train(endless())
+    first = jobs.start(endless())
     wait_for_progress(store, first)
-    second = jobs.train(training())
+    second = jobs.start(training())
     assert store.get(second.id).state == "queued"
     jobs.pause(first.id)
     assert wait_until_ended(store, second).state == "finished"
@@ -99,7 +99,7 @@ def test_runs_that_live_and_wait_are_renamed_for_good(store: RunStore) -> None:
     jobs = Jobs(store, Recordings(store), bus, cores=1)
     jobs.open()
     try:
-        live, waiting = jobs.train(endless()), jobs.train(training())
+        live, waiting = jobs.start(endless()), jobs.start(training())
         wait_for_progress(store, live)
         for run in (live, waiting):
             assert jobs.annotate(run.id, {"name": "after", "tags": ("ice",)}).name == "after"
@@ -119,7 +119,7 @@ def test_runs_that_live_and_wait_are_renamed_for_good(store: RunStore) -> None:
 def test_change_and_stop_take_effect_between_two_steps(jobs: Jobs, store: RunStore) -> None:
     mujoco = WalkingProblem(gait="left-right-origin")
     start = TrainingStart(training_config(**vars(mujoco), steps=1_000_000, evaluate_every=0))
-    run = jobs.train(start)
+    run = jobs.start(start)
     wait_for_progress(store, run)
     changed = jobs.change(run.id, {"settings": {"alpha": 0.2}})
     assert changed.changes[0]["settings"]["alpha"] == 0.2
@@ -133,7 +133,7 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunSto
     """Its look-ahead baseline would take half a minute at eight divisions."""
     slow = WalkingProblem(gait="left-right-origin", divisions=8, grid_side_m=0.03)
     config = training_config(**vars(slow), steps=100, evaluate_every=1, steps_per_episode=1)
-    run = jobs.train(TrainingStart(config))
+    run = jobs.start(TrainingStart(config))
     wait_for_progress(store, run)
     time.sleep(0.5)
     assert jobs.pause(run.id).state == "paused"
@@ -147,7 +147,7 @@ def test_commands_take_effect_during_a_long_evaluation(jobs: Jobs, store: RunSto
 def test_stop_interrupts_a_long_decision(jobs: Jobs, store: RunStore) -> None:
     """The second lane would search for ever; greedy's step is kept."""
     lanes = [LaneStart("greedy"), LaneStart("tests.own_agents:Undecided")]
-    race = jobs.race(RaceStart(WALK, lanes, 50, 0))
+    race = jobs.start(RaceStart(WALK, lanes, 50, 0))
     wait_for_progress(store, race)
     stopped = jobs.stop(race.id)
 
@@ -160,7 +160,7 @@ def test_race_whose_agent_does_not_let_itself_be_stopped_is_ended(
 ) -> None:
     monkeypatch.setattr(Job, "stop_grace_s", 0.5)
     lanes = [LaneStart("greedy"), LaneStart("tests.own_agents:Ponderous")]
-    race = jobs.race(RaceStart(WALK, lanes, 50, 0))
+    race = jobs.start(RaceStart(WALK, lanes, 50, 0))
     wait_for_progress(store, race)
     stopped = jobs.stop(race.id)
 
@@ -175,7 +175,7 @@ def test_stop_keeps_what_was_learned_although_the_last_evaluation_takes_too_long
     jobs: Jobs, store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Job, "stop_grace_s", 3.0)
-    run = jobs.train(training(steps=1000, agent="tests.own_agents:Slow"))
+    run = jobs.start(training(steps=1000, agent="tests.own_agents:Slow"))
     wait_for_progress(store, run)
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.error) == (
@@ -197,7 +197,7 @@ def test_run_is_stopped_although_the_disk_has_no_room_for_its_table(
 
     monkeypatch.setattr(store, "put_artifact", put_all_but_tables)
     monkeypatch.setattr(Job, "stop_grace_s", 1.0)
-    run = jobs.train(training(steps=1000, agent="tests.own_agents:Slow"))
+    run = jobs.start(training(steps=1000, agent="tests.own_agents:Slow"))
     wait_for_progress(store, run)
     assert jobs.stop(run.id).state == "stopped"
     with pytest.raises(Conflict, match="before it kept a table"):
@@ -208,7 +208,7 @@ def test_number_of_live_changes_is_limited(
     jobs: Jobs, store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.jobs.jobs.MAX_CHANGES", 2)
-    run = jobs.train(endless())
+    run = jobs.start(endless())
     wait_for_progress(store, run)
     jobs.change(run.id, {"settings": {"alpha": 0.5}})
     jobs.change(run.id, {"pace": 10})
@@ -220,7 +220,7 @@ def test_number_of_live_changes_is_limited(
 
 def test_starting_run_stops_at_once(jobs: Jobs, store: RunStore) -> None:
     # It takes a step in 3 s: the second one would come long after it is seen to run.
-    run = jobs.train(training(steps=100, pace=0.1, evaluate_every=0))
+    run = jobs.start(training(steps=100, pace=0.1, evaluate_every=0))
     wait_until(lambda: store.get(run.id).state == "running")
     stopped = jobs.stop(run.id)
     assert stopped.state == "stopped"
@@ -228,26 +228,26 @@ def test_starting_run_stops_at_once(jobs: Jobs, store: RunStore) -> None:
 
 
 def test_killed_process_fails_its_run_and_names_the_signal(jobs: Jobs, store: RunStore) -> None:
-    run = jobs.train(endless())
+    run = jobs.start(endless())
     wait_for_progress(store, run)
     os.kill(pid_of(run), signal.SIGKILL)
     now = wait_until_ended(store, run)
     assert now.state == "failed"
     assert "SIGKILL" in (now.error or "")
-    assert wait_until_ended(store, jobs.train(training())).state == "finished", "others go on"
+    assert wait_until_ended(store, jobs.start(training())).state == "finished", "others go on"
 
 
 @pytest.mark.parametrize("is_killed", [False, True])
 def test_process_that_an_agent_started_ends_with_its_job(
     jobs: Jobs, store: RunStore, is_killed: bool
 ) -> None:
-    run = jobs.train(training(steps=100, pace=20, agent="tests.own_agents:Parent"))
+    run = jobs.start(training(steps=100, pace=20, agent="tests.own_agents:Parent"))
     wait_for_progress(store, run)
     (left,) = psutil.Process(pid_of(run)).children()
     if is_killed:
         os.kill(pid_of(run), signal.SIGKILL)
     assert wait_until_ended(store, run).state == ("failed" if is_killed else "finished")
-    assert wait_until_ended(store, jobs.train(training())).state == "finished", "the core is free"
+    assert wait_until_ended(store, jobs.start(training())).state == "finished", "the core is free"
     wait_until(lambda: not left.is_running() or left.status() == psutil.STATUS_ZOMBIE)
 
 
@@ -255,7 +255,7 @@ def test_jobs_outlive_a_stop_of_the_server_that_stops_them_too(
     jobs: Jobs, store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As Ctrl-Z in a terminal, or a paused container."""
-    run = jobs.train(endless())
+    run = jobs.start(endless())
     wait_for_progress(store, run)
     job, now_s = psutil.Process(pid_of(run)), time.monotonic
     job.suspend()
@@ -269,7 +269,7 @@ def test_jobs_outlive_a_stop_of_the_server_that_stops_them_too(
 
 
 def test_race_fails_if_its_training_fails(jobs: Jobs, store: RunStore) -> None:
-    race = jobs.race(RaceStart(WALK, [LaneStart("q-learning", training=endless())], 50, 0))
+    race = jobs.start(RaceStart(WALK, [LaneStart("q-learning", training=endless())], 50, 0))
     race_training = store.get(race.waiting_for[0])
     wait_for_progress(store, race_training)
     os.kill(pid_of(race_training), signal.SIGSEGV)
@@ -280,7 +280,7 @@ def test_race_fails_if_its_training_fails(jobs: Jobs, store: RunStore) -> None:
 
 
 def test_one_of_many_concurrent_stops_succeeds(jobs: Jobs, store: RunStore) -> None:
-    run = jobs.train(endless())
+    run = jobs.start(endless())
     wait_for_progress(store, run)
     stopped, conflicts = [], []
 
@@ -302,10 +302,10 @@ def test_race_result_reports_a_shared_machine(store: RunStore) -> None:
     jobs = Jobs(store, Recordings(store), EventBus(), cores=2)
     jobs.open()
     try:
-        alone = wait_until_ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
-        other = jobs.train(endless())
+        alone = wait_until_ended(store, jobs.start(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
+        other = jobs.start(endless())
         wait_for_progress(store, other)
-        shared = wait_until_ended(store, jobs.race(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
+        shared = wait_until_ended(store, jobs.start(RaceStart(WALK, [LaneStart("greedy")], 5, 0)))
         assert [result_of_race(run).shared_machine for run in (alone, shared)] == [False, True]
     finally:
         jobs.close()
@@ -314,7 +314,7 @@ def test_race_result_reports_a_shared_machine(store: RunStore) -> None:
 def test_close_leaves_no_process(store: RunStore) -> None:
     jobs = Jobs(store, Recordings(store), EventBus(), cores=2)
     jobs.open()
-    runs = [jobs.train(endless()) for _ in range(3)]
+    runs = [jobs.start(endless()) for _ in range(3)]
     for run in runs[:2]:
         wait_for_progress(store, run)
     children = [psutil.Process(pid_of(run)) for run in runs[:2]]
@@ -329,7 +329,7 @@ def test_close_waits_for_no_decision(store: RunStore, monkeypatch: pytest.Monkey
     jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
     lanes = [LaneStart("greedy"), LaneStart("tests.own_agents:Undecided")]
-    race = jobs.race(RaceStart(WALK, lanes, 50, 0))
+    race = jobs.start(RaceStart(WALK, lanes, 50, 0))
     wait_for_progress(store, race)
     jobs.close()
     assert store.get(race.id).state == "interrupted"
@@ -341,7 +341,7 @@ def test_last_picture_of_a_race_outlives_the_server(
     """What a race has recorded is stored while it runs: a server that is killed stores nothing."""
     monkeypatch.setattr("app.jobs.job.CHECKPOINT_EVERY_S", 0.0)
     lanes = [LaneStart("greedy"), LaneStart("tests.own_agents:Undecided")]
-    race = jobs.race(RaceStart(WALK, lanes, 50, 0))
+    race = jobs.start(RaceStart(WALK, lanes, 50, 0))
     wait_for_progress(store, race)
 
     wait_until(lambda: any(lane.steps for lane in Recordings(store).race(race.id) or ()))
@@ -352,7 +352,7 @@ def test_worker_process_has_lower_priority_than_the_server(store: RunStore) -> N
     jobs = Jobs(store, Recordings(store), EventBus(), niceness=15)
     jobs.open()
     try:
-        run = jobs.train(endless())
+        run = jobs.start(endless())
         wait_for_progress(store, run)
         lower = min(psutil.Process().nice() + 15, 19)
         assert psutil.Process(pid_of(run)).nice() == lower
@@ -362,7 +362,7 @@ def test_worker_process_has_lower_priority_than_the_server(store: RunStore) -> N
 
 def test_agent_that_does_not_learn_cannot_be_trained(jobs: Jobs) -> None:
     with pytest.raises(InvalidInput, match="does not learn"):
-        jobs.train(training(agent="greedy"))
+        jobs.start(training(agent="greedy"))
 
 
 class FailingStore(RunStore):
@@ -408,14 +408,14 @@ def test_runs_survive_temporary_store_failures(store: RunStore) -> None:
     jobs.open()
     try:
         store.failures = 1
-        late = jobs.train(training())
+        late = jobs.start(training())
         assert wait_until_ended(store, late).state == "finished"
-        run = jobs.train(endless())
+        run = jobs.start(endless())
         wait_for_progress(store, run)
         store.failures = 2
         os.kill(pid_of(run), signal.SIGKILL)
         assert "SIGKILL" in (wait_until_ended(store, run).error or "")
-        assert wait_until_ended(store, jobs.train(training())).state == "finished"
+        assert wait_until_ended(store, jobs.start(training())).state == "finished"
     finally:
         jobs.close()
 
@@ -438,7 +438,7 @@ def test_run_whose_process_dies_during_resume_is_queued_again(store: RunStore) -
     jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
     try:
-        run = jobs.train(endless())
+        run = jobs.start(endless())
         wait_for_progress(store, run)
         jobs.pause(run.id)
         store.pid = pid_of(run)

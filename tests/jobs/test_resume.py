@@ -58,13 +58,13 @@ def test_training_resumes_from_its_checkpoint(
     store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
-    run = first.train(TrainingStart(SLOW))
+    run = first.start(TrainingStart(SLOW))
     wait_until(lambda: store.get(run.id).done > 45)
     first.close()
     before = store.get(run.id)
     assert (before.state, before.done > 45) == ("interrupted", True)
     assert before.ended_at is not None
-    store.append_evaluations(run.id, [{"step": 10_000, "distance_m": 9.0, "epsilon": 0.0}])
+    store.curves.append(run.id, [{"step": 10_000, "distance_m": 9.0, "epsilon": 0.0}])
 
     second = open_jobs()
     resumed = second.resume(run.id)
@@ -75,8 +75,8 @@ def test_training_resumes_from_its_checkpoint(
         None,
     )
     wait_until(lambda: store.get(run.id).done > before.done)
-    assert [row["step"] for row in store.evaluations(run.id)][:2] == [20, 40]
-    assert max(row["step"] for row in store.evaluations(run.id)) < 10_000
+    assert [row["step"] for row in store.curves.get(run.id)][:2] == [20, 40]
+    assert max(row["step"] for row in store.curves.get(run.id)) < 10_000
     assert store.get(run.id).started_at == before.started_at
     stopped = second.stop(run.id)
     assert stopped.state == "stopped"
@@ -95,7 +95,7 @@ def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
     walk = WalkingProblem(gait="left-right-origin")
     config = training_config(**vars(walk), steps=200, pace=10, evaluate_every=0)
     jobs = open_jobs()
-    run = jobs.train(TrainingStart(config))
+    run = jobs.start(TrainingStart(config))
     wait_for_progress(store, run)
     happened = [jobs.disturb(run.id, Limp(legs=(1, 4)))]
     wait_until(lambda: store.artifact(run.id, CHECKPOINT))
@@ -132,8 +132,8 @@ def test_training_without_a_checkpoint_restarts_from_its_table(
     store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     jobs = open_jobs()
-    table = wait_until_ended(store, jobs.train(TrainingStart(SHORT)))
-    direct = wait_until_ended(store, jobs.train(TrainingStart(SHORT, continue_from=table.id)))
+    table = wait_until_ended(store, jobs.start(TrainingStart(SHORT)))
+    direct = wait_until_ended(store, jobs.start(TrainingStart(SHORT, continue_from=table.id)))
     unfinished = training(
         "zz", config=SHORT, total=60, state="interrupted", continued_from=table.id
     )
@@ -157,8 +157,8 @@ def test_table_that_a_queued_run_needs_cannot_be_deleted(store: RunStore) -> Non
     source = ended_training(store, "a")
     assert isinstance(source.config, TrainingConfig)
     jobs = Jobs(store, Recordings(store), EventBus())  # not opened, so that all runs stay queued
-    practice = jobs.train(TrainingStart(source.config, continue_from="a"))
-    race = jobs.race(RaceStart(WALK, [LaneStart("q-learning", training_id="a")], steps=5, seed=0))
+    practice = jobs.start(TrainingStart(source.config, continue_from="a"))
+    race = jobs.start(RaceStart(WALK, [LaneStart("q-learning", training_id="a")], steps=5, seed=0))
     for run in (practice, race):
         with pytest.raises(Conflict, match=f"{run.kind} {run.id} waits, and needs its table"):
             jobs.delete("a")
@@ -197,7 +197,7 @@ def test_resumed_race_resumes_its_training_first(
 ) -> None:
     first = open_jobs()
     lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
-    race = first.race(RaceStart(WALK, lanes, steps=5, seed=0))
+    race = first.start(RaceStart(WALK, lanes, steps=5, seed=0))
     (practice_id,) = race.waiting_for
     wait_for_progress(store, store.get(practice_id))
     first.close()
@@ -268,8 +268,8 @@ def test_run_queued_at_shutdown_can_be_queued_again(
     store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:
     first = open_jobs()
-    wait_for_progress(store, first.train(TrainingStart(SLOW)))
-    waiting = first.train(TrainingStart(SHORT))
+    wait_for_progress(store, first.start(TrainingStart(SLOW)))
+    waiting = first.start(TrainingStart(SHORT))
     first.close()
     now = store.get(waiting.id)
     assert (now.state, now.done) == ("interrupted", 0)

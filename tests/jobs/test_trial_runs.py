@@ -41,11 +41,11 @@ def test_a_trial_run_here_has_the_trials_distance(
     jobs: Jobs, store: RunStore, name: Any, given: dict[str, Any]
 ) -> None:
     config = experiment_config(name, given)
-    experiment = jobs.experiment(ExperimentStart(config))
+    experiment = jobs.start(ExperimentStart(config))
     jobs.stop(experiment.id)
     by_role = {trial.setting.key.rpartition("/")[2]: trial for trial in Plan(config).trials()}
     for trial in by_role.values():
-        made = wait_until_ended(store, jobs.run_trial(experiment.id, trial.key))
+        made = wait_until_ended(store, jobs.start(trial_start(config, experiment.id, trial.key)))
         assert made.state == "finished", made.error
         assert made.notes == f"Trial {trial.key} of experiment {experiment.id}."
         assert isinstance(made.result, TrainingResult | RaceResult)

@@ -22,7 +22,6 @@ import numpy as np
 from sqlalchemy import Connection, Engine, event, select
 
 from app.archive import table_import
-from app.archive.transfer import export_run, import_run
 from app.events.bus import EventBus
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
@@ -41,6 +40,7 @@ from hexapods.runs.records import Evaluated, StepTaken
 from hexapods.runs.results import training_result
 from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
+from tests.archive.exported import export_run, import_run
 from tests.jobs.played import played_job
 from tests.storage.ended_runs import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training
@@ -111,12 +111,12 @@ class Breaker:
 
 def import_archive(store: RunStore, folder: Path) -> None:
     data = (folder.parent / "run.zip").read_bytes()
-    import_run(store, data, RunIds.of(store), tuple(OURS), "run.zip", key=KEY)
+    import_run(store, data, RunIds.of(store), "run.zip", key=KEY)
 
 
 def import_experiment(store: RunStore, folder: Path) -> None:
     data = (folder.parent / "experiment.zip").read_bytes()
-    import_run(store, data, RunIds.of(store), tuple(OURS), "experiment.zip", key=KEY)
+    import_run(store, data, RunIds.of(store), "experiment.zip", key=KEY)
 
 
 def import_table(store: RunStore, folder: Path) -> None:
@@ -131,7 +131,7 @@ def start(store: RunStore, folder: Path) -> None:
         LaneStart("q-learning", training=TrainingStart(CONFIG, "Its practice")),
         LaneStart("greedy"),
     ]
-    _jobs(store).race(RaceStart(walk, lanes, 5, 0, "Started"), KEY)
+    _jobs(store).start(RaceStart(walk, lanes, 5, 0, "Started"), KEY)
 
 
 def finish(store: RunStore, folder: Path) -> None:
@@ -228,7 +228,7 @@ def inspect_store(store: RunStore, folder: Path) -> dict[str, Any]:
     runs = [_whole(store, run) for run in store.list().runs]
     referenced = store.database.read(lambda c: c.execute(select(ARTIFACTS.c.file)).scalars().all())
     on_disk = [path.name for path in folder.glob("artifacts/*/*") if path.is_file()]
-    key = store.find_key(KEY.key)
+    key = store.keys.find(KEY.key)
     return {
         "runs": sorted(runs, key=lambda run: str(run["name"])),
         "key_is_of": None if key is None else store.get(key.run_ids[-1]).name,
@@ -248,9 +248,9 @@ def _whole(store: RunStore, run: Run) -> dict[str, Any]:
         "state": run.state,
         "has_result": run.result is not None,
         "has_table": has_table,
-        "evaluations": len(store.evaluations(run.id)),
+        "evaluations": len(store.curves.get(run.id)),
         "recorded": 0 if recorded is None else len(recorded.evaluations),
-        "trials": len(store.trials(run.id)),
+        "trials": len(store.trials.get(run.id)),
     }
 
 

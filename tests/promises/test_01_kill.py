@@ -72,7 +72,7 @@ def check(store: RunStore, acknowledged: dict[str, dict[str, int]]) -> None:
         run = store.get(run_id)
         # A write in progress at the kill may have been committed without its acknowledgement.
         assert run.state in (["finished"] if "finished" in lines else ["interrupted", "finished"])
-        steps = [row["step"] for row in store.evaluations(run_id)]
+        steps = [row["step"] for row in store.curves.get(run_id)]
         assert steps == list(range(1, len(steps) + 1))
         assert len(steps) >= lines.get("evaluated", 0)
         data = store.artifact(run_id, CHECKPOINT)

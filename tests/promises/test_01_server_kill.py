@@ -37,7 +37,7 @@ def test_a_kill_loses_at_most_one_checkpoint(launch: Callable[..., Served], tmp_
             stored_run = store.get(run["id"])
             data = store.artifact(run["id"], CHECKPOINT)
             step = 0 if data is None else from_bytes(data, "the checkpoint").meta["step"]
-            rows = [row["step"] for row in store.evaluations(run["id"])]
+            rows = [row["step"] for row in store.curves.get(run["id"])]
         assert stored_run.state == "interrupted"
         assert step >= acknowledged
         assert rows == list(range(100, len(rows) * 100 + 1, 100)), "neither gaps nor duplicates"

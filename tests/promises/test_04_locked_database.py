@@ -40,7 +40,7 @@ def test_a_locked_database_loses_nothing(
             try:
                 for number, run_id in enumerate(contested):
                     row = {"step": number, "distance_m": 0.5, "epsilon": 0.5}
-                    store.append_evaluations(f"t{thread}", [row])
+                    store.curves.append(f"t{thread}", [row])
                     store.put_artifact(f"t{thread}", "q-table.npz", bytes([number]) * 1000)
                     try:
                         store.change(run_id, QUEUED, "running", done=thread)
@@ -70,7 +70,7 @@ def test_a_locked_database_loses_nothing(
         assert took_s > HELD_S, "the lock must have delayed the writes"
         assert sorted(won) == contested, "each run has exactly one winner"
         for number in range(THREADS):
-            assert [row["step"] for row in store.evaluations(f"t{number}")] == list(range(WRITES))
+            assert [row["step"] for row in store.curves.get(f"t{number}")] == list(range(WRITES))
             assert store.artifact(f"t{number}", "q-table.npz") == bytes([WRITES - 1]) * 1000
 
 

@@ -83,6 +83,6 @@ def test_sigterm_ends_an_experiment_and_its_cluster(
 
     with opened(tmp_path, None) as store:
         now = store.get(run["id"])
-        trials = store.trials(run["id"])
+        trials = store.trials.get(run["id"])
     assert (now.state, now.error) == ("interrupted", "The server was stopped while it ran.")
     assert len(trials) >= now.done > 0

@@ -70,7 +70,7 @@ def practice(jobs: Jobs, steps: int = 40) -> Run:
     config = training_config(
         gait="left-right-origin", simulator="kinematic", steps=steps, pace=20, evaluate_every=0
     )
-    return jobs.train(TrainingStart(config))
+    return jobs.start(TrainingStart(config))
 
 
 def until(is_so: Callable[[], bool]) -> None:

@@ -15,7 +15,6 @@ from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, text
 
 import hexapods
-from app.archive.transfer import import_run
 from app.events.run_view import run_view
 from app.storage.database import migration
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
@@ -25,7 +24,7 @@ from app.storage.database.schema import METADATA
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE
 from app.storage.run_ids import RunIds
-from hexapods.runs.config import usable_agents
+from tests.archive.exported import import_run
 from tests.postgresql import PostgresServer
 from tests.promises.released import sample
 from tests.storage.stores import BACKENDS, TRIALS, database_url, opened, training
@@ -71,9 +70,9 @@ def check(store: RunStore, revision: str) -> None:
     for run in runs:
         assert store.get(run.id) == run
     if revision >= "0002":
-        assert store.trials(sample.EXPERIMENT.id) == TRIALS
+        assert store.trials.get(sample.EXPERIMENT.id) == TRIALS
     first = sample.RUNS[0].id
-    assert store.evaluations(first) == sample.CURVE
+    assert store.curves.get(first) == sample.CURVE
     assert store.artifact(first, TABLE) == sample.FILE
 
 
@@ -118,9 +117,9 @@ def test_a_data_folder_of_version_0_1_opens_with_all_its_runs(tmp_path: Path) ->
 
         # Each archive of that version is taken in, and is the run that the data folder has.
         with opened(tmp_path / "new", None) as other:
-            ids, agents = RunIds(), usable_agents()
+            ids = RunIds()
             for file in sorted((tmp_path / "archives").iterdir()):
-                imported = import_run(other, file.read_bytes(), ids, agents, file.name)
+                imported = import_run(other, file.read_bytes(), ids, file.name)
                 assert imported == store.get(imported.id)
 
         practised = hexapods.load(tmp_path / "q.npz")

@@ -25,7 +25,7 @@ from sqlalchemy import text
 
 from app.archive import archive
 from app.archive.archived_trials import TRIALS
-from app.archive.transfer import RUN, export_run
+from app.archive.transfer import RUN
 from app.events.run_view import run_view
 from app.storage.database.engine import Database, postgresql_engine
 from app.storage.database.opening import DATABASE_FILE
@@ -35,6 +35,7 @@ from app.storage.errors import Damaged
 from app.storage.run import TABLE, DamagedRun
 from hexapods.runs import tables
 from hexapods.runs.tables import from_bytes
+from tests.archive.exported import export_run
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import serving
 from tests.cli.running import in_process

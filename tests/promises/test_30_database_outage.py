@@ -109,7 +109,7 @@ def test_after_the_longest_wait_a_job_is_interrupted_and_can_be_resumed(
         jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
         jobs.open()
         try:
-            run = jobs.train(TrainingStart(config))
+            run = jobs.start(TrainingStart(config))
             wait_for_progress(store, run)
             outage(own_postgresql, "stops", 4.0)
             wait_until(lambda: ready_store(store))

@@ -18,9 +18,9 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.archive.transfer import export_run
 from app.storage.disk_space import MB
 from app.storage.run import TABLE
+from tests.archive.exported import export_run
 from tests.promises.breaking_writes import OPERATIONS
 from tests.promises.length import at_length
 from tests.promises.processes import start_script

@@ -20,7 +20,7 @@ def main(folder: str, url: str, first: int) -> None:
             store.create(training(run_id, total=1000, state="running"))
             emit(f"created {run_id}")
             for step in range(1, 6):
-                store.append_evaluations(
+                store.curves.append(
                     run_id, [{"step": step, "distance_m": step / 8, "epsilon": 0.5}]
                 )
                 emit(f"evaluated {run_id} {step}")

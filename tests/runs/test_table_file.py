@@ -19,16 +19,8 @@ from hexapods.runs.tables import Checkpoint, snapshot, to_bytes
 CONFIG = training_config(gait="left-right-origin", simulator="kinematic", steps=10)
 
 
-class Held:
-    def __init__(self, data: bytes) -> None:
-        self.data = data
-
-    def read_at(self, offset: int, length: int) -> bytes:
-        return self.data[offset : offset + length]
-
-
 def opened(data: bytes) -> TableFile:
-    return TableFile(Held(data), io.BytesIO(data), "it")
+    return TableFile(io.BytesIO(data), "it")
 
 
 def with_values(table: QTable, config: TrainingConfig) -> Checkpoint:

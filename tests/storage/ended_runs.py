@@ -44,7 +44,7 @@ def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps
             recordings.add(run_id, record)
         if isinstance(record, Evaluated):
             row = {n: getattr(record, n) for n in ("step", "distance_m", "epsilon")}
-            store.append_evaluations(run_id, [row])
+            store.curves.append(run_id, [row])
     taken = learner.take_transitions()
     assert taken is not None
     recordings.log(run_id, taken)
@@ -94,7 +94,7 @@ def ended_experiment(store: RunStore, run_id: str) -> Run:
         {"key": key, "result": result.as_json(), "set_aside": None, "compute_s": 0.5}
         for key, result in results.items()
     ]
-    store.append_trials(run_id, rows)
+    store.trials.append(run_id, rows)
     summary = summarise(config, results)
     store.put_artifact(run_id, SUMMARY, json.dumps(summary).encode())
     store.put_artifact(run_id, "trials.csv", trials_as_csv(config, rows))

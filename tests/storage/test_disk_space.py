@@ -35,7 +35,7 @@ def test_start_is_refused_if_the_quota_leaves_too_little(store: RunStore) -> Non
     store.create(training("0old"))
     store.put_artifact("0old", TABLE, bytes(6 * MB))
     with pytest.raises(StorageFull, match="raise HEXAPODS_QUOTA_MB"):
-        jobs.train(START)
+        jobs.start(START)
     with pytest.raises(StorageFull, match="delete runs"):
         store.check_disk_space()
     assert [run.id for run in store.list().items] == ["0old"]
@@ -44,7 +44,7 @@ def test_start_is_refused_if_the_quota_leaves_too_little(store: RunStore) -> Non
     assert store.artifact("0old", TABLE) == bytes(6 * MB)
     store.change("0old", QUEUED, "stopped")
     store.delete("0old")
-    assert jobs.train(START).state == "queued"
+    assert jobs.start(START).state == "queued"
 
 
 def test_start_is_refused_if_the_disk_leaves_too_little(

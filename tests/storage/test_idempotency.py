@@ -1,6 +1,7 @@
 """Idempotency keys: a repeated request returns the same run, for a day and across restarts."""
 
 import threading
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 
@@ -30,19 +31,29 @@ class Starts:
         return run
 
 
+def run_of(
+    idempotency: Idempotency,
+    key: str | None,
+    request: bytes,
+    start: Callable[[IdempotencyKey | None], Run],
+) -> Run:
+    (run,) = idempotency.runs(key, request, lambda key: [start(key)])
+    return run
+
+
 def count(store: RunStore) -> int:
     return len(store.list().items)
 
 
 def test_key_starts_one_run_and_rejects_another_request(store: RunStore) -> None:
     idempotency, start = Idempotency(store), Starts(store)
-    assert idempotency.run(None, b"x", start) != idempotency.run(None, b"x", start)
-    run = idempotency.run("key", b"x", start)
-    assert idempotency.run("key", b"x", start) == run
-    assert Idempotency(store).run("key", b"x", start) == run
-    assert idempotency.run("other", b"x", start) != run
+    assert run_of(idempotency, None, b"x", start) != run_of(idempotency, None, b"x", start)
+    run = run_of(idempotency, "key", b"x", start)
+    assert run_of(idempotency, "key", b"x", start) == run
+    assert run_of(Idempotency(store), "key", b"x", start) == run
+    assert run_of(idempotency, "other", b"x", start) != run
     with pytest.raises(InvalidInput, match="Idempotency-Key"):
-        idempotency.run("key", b"y", start)
+        run_of(idempotency, "key", b"y", start)
     assert count(store) == 4
 
 
@@ -51,11 +62,12 @@ def test_import_stores_its_key(store: RunStore) -> None:
 
     def add(key: IdempotencyKey | None) -> Run:
         run = training("00000000000t1", state="finished")
-        return store.add(run, Content(artifacts={"q-table.npz": b"x"}), new_id, key)
+        content = Content(artifacts={"q-table.npz": b"x"})
+        return store.add([(run, content)], new_id, key)[0]
 
-    run = idempotency.run("key", b"x", add)
-    assert idempotency.run("key", b"x", add) == run
-    assert idempotency.run("other", b"x", add).id != run.id
+    run = run_of(idempotency, "key", b"x", add)
+    assert run_of(idempotency, "key", b"x", add) == run
+    assert run_of(idempotency, "other", b"x", add).id != run.id
     assert count(store) == 2
 
 
@@ -67,7 +79,7 @@ def test_concurrent_requests_with_one_key_return_the_same_run(store: RunStore) -
         return start(key)
 
     with ThreadPoolExecutor(8) as pool:
-        futures = [pool.submit(idempotency.run, "key", b"x", slowly) for _ in range(8)]
+        futures = [pool.submit(run_of, idempotency, "key", b"x", slowly) for _ in range(8)]
         gate.set()
         runs = {future.result().id for future in futures}
     assert len(runs) == count(store) == 1
@@ -80,16 +92,16 @@ def test_failed_start_can_be_retried_with_the_same_key(store: RunStore) -> None:
         raise Busy("later", 1)
 
     with pytest.raises(Busy):
-        idempotency.run("key", b"x", refuse)
-    assert idempotency.run("key", b"x", Starts(store)).state == "finished"
+        run_of(idempotency, "key", b"x", refuse)
+    assert run_of(idempotency, "key", b"x", Starts(store)).state == "finished"
 
 
 def test_key_of_a_deleted_run_raises_gone(store: RunStore) -> None:
     idempotency, start = Idempotency(store), Starts(store)
-    run = idempotency.run("key", b"x", start)
+    run = run_of(idempotency, "key", b"x", start)
     store.delete(run.id)
     with pytest.raises(Gone, match=f"{run.id}.*send a new key"):
-        idempotency.run("key", b"x", start)
+        run_of(idempotency, "key", b"x", start)
     assert count(store) == 0
 
 
@@ -109,13 +121,13 @@ def test_keys_expire_after_a_day_or_beyond_the_maximum(
     monkeypatch.setattr(keys, "datetime", Clock)
     monkeypatch.setattr(keys, "MAX_KEYS", 5)
     idempotency, start = Idempotency(store), Starts(store)
-    first = idempotency.run("key", b"x", start)
+    first = run_of(idempotency, "key", b"x", start)
     monkeypatch.setattr(Clock, "ahead", KEY_LIFETIME - timedelta(minutes=1))
-    assert idempotency.run("key", b"x", start) == first
+    assert run_of(idempotency, "key", b"x", start) == first
     monkeypatch.setattr(Clock, "ahead", KEY_LIFETIME + timedelta(minutes=1))
-    assert idempotency.run("key", b"y", start) != first
+    assert run_of(idempotency, "key", b"y", start) != first
     for number in range(10):
         monkeypatch.setattr(Clock, "ahead", Clock.ahead + timedelta(seconds=1))
-        idempotency.run(f"key {number}", b"x", start)
-    kept = [n for n in range(10) if store.find_key(f"key {n}") is not None]
+        run_of(idempotency, f"key {number}", b"x", start)
+    kept = [n for n in range(10) if store.keys.find(f"key {n}") is not None]
     assert kept == [5, 6, 7, 8, 9]

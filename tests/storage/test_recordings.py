@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.storage import stored_recordings
+from app.storage import stored_trainings
 from app.storage.database.store import RunStore
-from app.storage.recordings import Recordings
-from app.storage.stored_recordings import CACHE_RECORDINGS, StoredRecordings
+from app.storage.recordings import CACHE_RECORDINGS, Recordings
+from app.storage.stored_races import GrowingRace
+from app.storage.stored_trainings import GrowingTraining, read_training
 from hexapods.runs.recording import LaneRecording, PracticeRecording
 from hexapods.runs.records import Evaluated, StepTaken
 from hexapods.runs.transition_log import Logged, TransitionLog, Transitions
@@ -123,7 +124,7 @@ def of_newest_motion(recording: PracticeRecording) -> PracticeRecording:
 
 
 def assert_stored(store: RunStore, recording: PracticeRecording) -> None:
-    stored = StoredRecordings(store).whole_training("a")
+    stored = read_training(store, "a")
     assert stored is not None
     assert_same(stored, recording)
 
@@ -146,7 +147,7 @@ def steps_of(log: TransitionLog | None) -> list[Logged]:
 def test_log_survives_restarts_and_is_cut_where_the_training_resumes(
     store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(stored_recordings, "TRANSITIONS_PER_FILE", 20)
+    monkeypatch.setattr(stored_trainings, "TRANSITIONS_PER_FILE", 20)
     store.create(training("a"))
     whole, rest = logged(70), practise(1).rest_qpos
     recordings = Recordings(store)
@@ -189,7 +190,7 @@ def test_saving_again_writes_only_new_files(
         put_artifact(run_id, name, data, **fields)
 
     monkeypatch.setattr(store, "put_artifact", spy)
-    monkeypatch.setattr(stored_recordings, "EVALUATIONS_PER_FILE", 2)
+    monkeypatch.setattr(stored_trainings, "EVALUATIONS_PER_FILE", 2)
     store.create(training("a"))
     practised = practise(60)
     recordings = Recordings(store)
@@ -248,12 +249,12 @@ def test_a_log_can_be_read_while_its_training_ends(store: RunStore) -> None:
     store.create(training("a"))
     recordings = Recordings(store)
 
-    class EndsOnceSeen(dict[str, TransitionLog | None]):
+    class EndsOnceSeen(dict[str, GrowingTraining | GrowingRace]):
         def __contains__(self, run_id: object) -> bool:
             was_there = super().__contains__(run_id)
-            recordings._drop(str(run_id))
+            self.pop(str(run_id), None)
             return was_there
 
-    recordings._logs = EndsOnceSeen()
+    recordings._growing = EndsOnceSeen()
     recordings.begin_training("a", np.zeros(8, np.float32))
     assert recordings.transitions("a") is not None

@@ -101,8 +101,8 @@ def test_nan_in_a_result_is_what_was_not_measured(store: RunStore) -> None:
 
 def test_nan_in_a_curve_is_preserved(store: RunStore) -> None:
     store.create(training("a"))
-    store.append_evaluations("a", [{"step": 1, "distance_m": math.nan, "epsilon": 1.0}])
-    assert math.isnan(store.evaluations("a")[0]["distance_m"])
+    store.curves.append("a", [{"step": 1, "distance_m": math.nan, "epsilon": 1.0}])
+    assert math.isnan(store.curves.get("a")[0]["distance_m"])
 
 
 def test_unknown_run_raises_not_found(store: RunStore) -> None:
@@ -110,16 +110,16 @@ def test_unknown_run_raises_not_found(store: RunStore) -> None:
         for look in (
             store.get,
             store.delete,
-            store.evaluations,
-            store.trials,
-            lambda i: store.append_trials(i, TRIALS),
-            lambda i: store.append_trials(i, []),
+            store.curves.get,
+            store.trials.get,
+            lambda i: store.trials.append(i, TRIALS),
+            lambda i: store.trials.append(i, []),
             lambda i: store.update(i, done=1),
             lambda i: store.update_progress(i, 1),
             lambda i: store.change(i, NOT_ENDED, "failed"),
             lambda i: store.artifact(i, "a"),
             lambda i: store.put_artifact(i, "a", b""),
-            lambda i: store.append_evaluations(i, [{"step": 1, "distance_m": 0.0, "epsilon": 0}]),
+            lambda i: store.curves.append(i, [{"step": 1, "distance_m": 0.0, "epsilon": 0}]),
         ):
             with pytest.raises(NotFound):
                 look(run_id)
@@ -360,30 +360,30 @@ def test_repeated_evaluations_replace_the_curve_from_their_step_on(store: RunSto
     def row(step: int, distance: float) -> dict[str, float]:
         return {"step": step, "distance_m": distance, "epsilon": 1 - step / 1000}
 
-    store.append_evaluations(run.id, [])
-    store.append_evaluations(run.id, [row(50, 0.1), row(100, 0.2)])
-    store.append_evaluations(run.id, [row(150, 0.3)])
-    assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.2), row(150, 0.3)]
-    store.append_evaluations(run.id, [row(100, 0.25)])
-    assert store.evaluations(run.id) == [row(50, 0.1), row(100, 0.25)]
+    store.curves.append(run.id, [])
+    store.curves.append(run.id, [row(50, 0.1), row(100, 0.2)])
+    store.curves.append(run.id, [row(150, 0.3)])
+    assert store.curves.get(run.id) == [row(50, 0.1), row(100, 0.2), row(150, 0.3)]
+    store.curves.append(run.id, [row(100, 0.25)])
+    assert store.curves.get(run.id) == [row(50, 0.1), row(100, 0.25)]
 
 
 def test_trials_are_sorted_and_replaced_by_key(store: RunStore) -> None:
     store.create(experiment("a"), experiment("b"))
-    assert store.trials("a") == []
+    assert store.trials.get("a") == []
     first, second = TRIALS
-    store.append_trials("a", [second])
-    store.append_trials("a", [first])
-    store.append_trials("b", [first])
-    assert store.trials("a") == TRIALS
+    store.trials.append("a", [second])
+    store.trials.append("a", [first])
+    store.trials.append("b", [first])
+    assert store.trials.get("a") == TRIALS
     better = {**second, "result": first["result"], "set_aside": None}
-    store.append_trials("a", [better, second, better])
-    assert store.trials("a") == [first, better]
+    store.trials.append("a", [better, second, better])
+    assert store.trials.get("a") == [first, better]
     store.change("a", QUEUED, "stopped")
     store.delete("a")
-    assert store.trials("b") == [first]
+    assert store.trials.get("b") == [first]
     store.create(experiment("a"))
-    assert store.trials("a") == []
+    assert store.trials.get("a") == []
 
 
 def test_artifact_replaces_the_one_with_its_name(store: RunStore) -> None:
@@ -464,14 +464,14 @@ def test_pages_are_stable_while_runs_are_added(store: RunStore) -> None:
 def test_only_an_ended_run_is_deleted_and_completely(store: RunStore) -> None:
     run = queued_run(store)
     store.put_artifact(run.id, "a", b"1")
-    store.append_evaluations(run.id, [{"step": 50, "distance_m": 0.1, "epsilon": 0.5}])
+    store.curves.append(run.id, [{"step": 50, "distance_m": 0.1, "epsilon": 0.5}])
     assert store.artifact(run.id, "a") == b"1"
     assert store.artifact(run.id, "b") is None
     with pytest.raises(Conflict, match="queued"):
         store.delete(run.id)
     store.change(run.id, QUEUED | LIVE, "stopped")
     store.delete(run.id)
-    for look in (store.get, store.delete, store.evaluations):
+    for look in (store.get, store.delete, store.curves.get):
         with pytest.raises(NotFound, match=run.id):
             look(run.id)
     with pytest.raises(NotFound):
@@ -500,7 +500,7 @@ def test_evaluations_after_a_step_are_deleted(store: RunStore) -> None:
     run, other = queued_run(store), queued_run(store)
     for one in (run, other):
         rows = [{"step": step, "distance_m": 0.1, "epsilon": 0.0} for step in (50, 100, 150)]
-        store.append_evaluations(one.id, rows)
-    store.delete_evaluations(run.id, after_step=100)
-    assert [row["step"] for row in store.evaluations(run.id)] == [50, 100]
-    assert [row["step"] for row in store.evaluations(other.id)] == [50, 100, 150]
+        store.curves.append(one.id, rows)
+    store.curves.delete_after(run.id, after_step=100)
+    assert [row["step"] for row in store.curves.get(run.id)] == [50, 100]
+    assert [row["step"] for row in store.curves.get(other.id)] == [50, 100, 150]

@@ -18,7 +18,7 @@ from hexapods.domain.errors import DamagedFile
 from hexapods.runs.race_file import race_arrays, race_recording
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.records import LaneFailed
-from hexapods.runs.step_figures import row_of
+from hexapods.runs.step_figures import columns_of, rows_of
 from tests.runs.test_recording import a_race, assert_same
 from tests.storage.stores import copy_new_database, opened, race
 
@@ -133,7 +133,7 @@ def test_a_figure_follows_from_the_steps(raced: list[LaneRecording]) -> None:
     lane = raced[0]
     for number, step in enumerate(lane.steps):
         row = lane.steps.figures[number]
-        assert row == np.array(row_of(step, lane.steps.figures[:number]), row.dtype)
+        assert row == rows_of(columns_of(step), lane.steps.figures[:number])[0]
         assert row["motion_s"] == step.motion.time_s[-1]
         assert row["furthest_m"] == step.motion.qpos[:, 1].max()
         values = [s.action_values.values for s in lane.steps[: number + 1] if s.action_values]

@@ -4,16 +4,15 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from typing import Any
 
 import pytest
 
 from app.jobs.process_pool import ProcessPool
-from app.jobs.stopping import Stopping
 from app.jobs.submissions import ExperimentStart, LaneStart, RaceStart, TrainingStart
 from app.storage.errors import Busy
-from app.what_if.estimate import MAX_AT_ONCE, Estimates
+from app.what_if.estimate import MAX_WAITING, Estimates
 from app.what_if.step_time import TimedSteps
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import InvalidInput
@@ -51,18 +50,6 @@ class TimedPool(ProcessPool):
     def _times_of(self, kinds: Sequence[TimedSteps]) -> list[Any]:
         self.timed += [one.training.agent for one in kinds]
         return [0.1 if one.practises else 1.0 for one in kinds]
-
-
-class CountedTurns(Stopping):
-    """Counts the requests that have come as far as waiting for a turn."""
-
-    asked = 0
-
-    @contextmanager
-    def holding(self, lock: threading.Lock) -> Iterator[None]:
-        self.asked += 1
-        with super().holding(lock):
-            yield
 
 
 def training(**fields: Any) -> TrainingStart:
@@ -117,22 +104,21 @@ def test_trials_that_are_not_timed_count_as_those_of_the_same_agent(
     assert estimated_s == pytest.approx(gaits * (greedy_s + learner_s))
 
 
-def test_more_than_one_request_that_waits_is_refused_as_busy() -> None:
+def test_too_many_requests_that_wait_are_refused_as_busy() -> None:
     pool = TimedPool()
-    turns = CountedTurns()
-    estimates = Estimates(pool, cores=1, stopping=turns)
+    estimates = Estimates(pool, cores=1)
     known_s = estimates.of(training(steps=100))
-    with ThreadPoolExecutor(MAX_AT_ONCE) as threads, pool.held():
+    count = 1 + MAX_WAITING
+    with ThreadPoolExecutor(count) as threads, pool.held():
         asked = [
-            threads.submit(estimates.of, training(steps=100, agent="sarsa"))
-            for _ in range(MAX_AT_ONCE)
+            threads.submit(estimates.of, training(steps=100, agent="sarsa")) for _ in range(count)
         ]
-        wait_until(lambda: turns.asked == 1 + MAX_AT_ONCE)
-        with pytest.raises(Busy, match="other estimates are waiting") as busy:
+        wait_until(lambda: estimates.turns.waiting == MAX_WAITING)
+        with pytest.raises(Busy, match="estimates are waiting") as busy:
             estimates.of(training(steps=100, agent="dyna-q"))
         assert busy.value.retry_after_s > 0
         assert estimates.of(training(steps=100)) == known_s
-    assert [one.result() for one in asked] == [known_s] * MAX_AT_ONCE
+    assert [one.result() for one in asked] == [known_s] * count
     assert pool.timed == ["q-learning", "sarsa"]
     assert estimates.of(training(steps=100, agent="dyna-q")) == known_s
 

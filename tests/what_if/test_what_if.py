@@ -14,8 +14,14 @@ from scipy import stats
 
 from app.jobs.process_pool import NICENESS, ProcessPool
 from app.storage.errors import Busy
-from app.what_if.turns import MAX_WAITING
-from app.what_if.what_if import SEEDS, SPECTATORS_LIMIT_S, Asker, WhatIf, _interquartile_mean
+from app.what_if.what_if import (
+    MAX_WAITING,
+    SEEDS,
+    SPECTATORS_LIMIT_S,
+    Asker,
+    WhatIf,
+    _interquartile_mean,
+)
 from hexapods.agents.registry import OURS, learns
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput

@@ -19,7 +19,17 @@ class Curves:
         self._database = database
 
     def append(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        """See `RunStore.append_evaluations`."""
+        """Append rows to a training's curve, replacing its rows from the first new step on.
+
+        A training that resumes from a checkpoint repeats the evaluations after that checkpoint.
+
+        Args:
+            run_id: id of the training.
+            rows: `step`, `distance_m` [m] and `epsilon` (exploration rate) of each evaluation.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
         if not rows:
             return
         first = min(row["step"] for row in rows)
@@ -42,7 +52,7 @@ class Curves:
             connection.execute(insert(EVALUATIONS), [{"run_id": run_id, **row} for row in part])
 
     def get(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """See `RunStore.evaluations`."""
+        """Return a training's curve so far, by step: `step`, `distance_m`, `epsilon`."""
         curve = select(EVALUATIONS).where(EVALUATIONS.c.run_id == run_id)
 
         def work(connection: Connection) -> Sequence[Row]:
@@ -55,7 +65,7 @@ class Curves:
         ]
 
     def delete_after(self, run_id: str, after_step: int) -> None:
-        """See `RunStore.delete_evaluations`."""
+        """Delete the rows of a training's curve after this step."""
         later = EVALUATIONS.c.run_id == run_id, EVALUATIONS.c.step > after_step
         self._database.write(
             lambda connection: connection.execute(delete(EVALUATIONS).where(*later))

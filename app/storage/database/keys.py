@@ -41,7 +41,7 @@ class Keys:
         connection.execute(insert(_KEYS), [row])
 
     def find(self, key: str) -> KeyRecord | None:
-        """See `RunStore.find_key`."""
+        """Look up an idempotency key; None if it was not used within its lifetime."""
         since = datetime.now(UTC) - KEY_LIFETIME
         query = select(_KEYS.c.digest, _KEYS.c.run_id).where(
             _KEYS.c.key == key, _KEYS.c.created_at >= since

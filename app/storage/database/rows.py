@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import fields
 from datetime import UTC, datetime
 from functools import lru_cache
-from typing import Any, TypeVar
+from typing import Any
 
 from app.storage.database.columns import decode_json, decode_tags
 from app.storage.database.queries import MAX_CELL_CHARS, public_id
@@ -26,15 +26,11 @@ from hexapods.domain.records import from_json, to_json
 from hexapods.domain.text import MAX_MESSAGE, NOTES_CONTROLS, message, visible
 from hexapods.runs.race_config import RaceConfig
 
-MAX_COUNT = 2**53
-"""Maximum of steps or trials: JavaScript's largest exact integer."""
 _MAX_TEXT = 10_000
 _MAX_CACHED_CONFIG_CHARS = 10_000
 """Longer configs are parsed anew each time instead of being cached."""
-_JSON = ("lane_training_ids", "waiting_for", "changes", "result")
-_LISTS: Mapping[str, Any] = {"lane_training_ids": str | None, "waiting_for": str, "changes": dict}
+_LISTS = ("lane_training_ids", "waiting_for", "changes")
 _TIMES = ("created_at", "started_at", "ended_at")
-T = TypeVar("T")
 
 
 def encode_run(run: Run) -> dict[str, Any]:
@@ -73,7 +69,7 @@ def decode_run(row: Mapping[str, Any]) -> Run:
 def try_decode_run(row: Mapping[str, Any]) -> AnyRun:
     """Decode a row that `queries` read; return a `DamagedRun` if that fails."""
     try:
-        return Run(**_decode_fields(row))
+        return _decode(row)
     except Exception as error:  # parsing a config of another version may raise anything
         return DamagedRun(
             id=public_id(row["id"]),
@@ -85,49 +81,36 @@ def try_decode_run(row: Mapping[str, Any]) -> AnyRun:
         )
 
 
-def _decode_fields(row: Mapping[str, Any]) -> dict[str, Any]:
-    values = {**row, **{name: _json(name, row[name]) for name in _JSON}}
+def _decode(row: Mapping[str, Any]) -> Run:
+    if public_id(row["id"]) != row["id"]:
+        raise ValueError("its id is malformed")
+    if row["kind"] not in KINDS:
+        raise ValueError(f"its kind is none of {', '.join(KINDS)}")
+    values = {k: v for k, v in row.items() if k not in ("config", "result")}
+    for name in _LISTS:
+        values[name] = tuple(_json(name, row[name]))
     values |= {name: _time(name, row[name]) for name in _TIMES}
     for name in ("name", "error", "continued_from"):
         values[name] = _text(name, row[name], is_needed=name == "name")
     values["tags"] = tuple(visible(tag) for tag in decode_tags(_limited("tags", row["tags"])))
     values["notes"] = visible(_limited("notes", row["notes"]), NOTES_CONTROLS)
-    _check_scalars(row, values)
-    for name, kinds in _LISTS.items():
-        values[name] = tuple(_list(name, values[name], kinds))
+    for name in ("eta_s", "greedy_distance_m", "changes"):
+        if not is_finite(values[name]):
+            raise ValueError(f"its {name} has NaN or an infinity")
     parse = _config if len(row["config"]) <= _MAX_CACHED_CONFIG_CHARS else _config.__wrapped__
     values["config"] = config = parse(row["kind"], row["config"])
-    if values["result"] is not None:
+    if (result := _json("result", row["result"])) is not None:
         # NaN, which earlier versions stored, is what was not measured.
-        result = finite(values["result"])
-        values["result"] = from_json(RESULTS[row["kind"]], result, extra="ignore")
+        values["result"] = from_json(RESULTS[row["kind"]], finite(result), extra="ignore")
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
         raise ValueError("its numbers of lanes and of training ids differ")
-    return values
+    return from_json(Run, values)
 
 
 @lru_cache(maxsize=512)
 def _config(kind: str, text: str) -> Config:
     """Parse a config, cached: parsing dominates a listing, and many runs have the same config."""
     return from_json(CONFIGS[kind], _json("config", text))  # type: ignore[index]  # it is checked
-
-
-def _check_scalars(row: Mapping[str, Any], values: Mapping[str, Any]) -> None:
-    if public_id(row["id"]) != row["id"]:
-        raise ValueError("its id is malformed")
-    for name, choices in (("kind", KINDS), ("state", STATES)):
-        if row[name] not in choices:
-            raise ValueError(f"its {name} is none of {', '.join(choices)}")
-    if values["created_at"] is None:
-        raise ValueError("its created_at is missing")
-    for name in ("done", "total", "workers"):
-        _check_count(name, row[name], is_needed=name != "workers")
-    for name in ("eta_s", "greedy_distance_m"):
-        if row[name] is not None and not isinstance(row[name], int | float):
-            raise ValueError(f"its {name} is not a number")
-    for name in ("eta_s", "greedy_distance_m", "changes"):
-        if not is_finite(values[name]):
-            raise ValueError(f"its {name} has NaN or an infinity")
 
 
 def _json(name: str, text: Any) -> Any:
@@ -172,19 +155,6 @@ def _limited(name: str, value: Any) -> str:
         raise ValueError(f"its {name} is not a text")
     if len(value) > _MAX_TEXT:
         raise ValueError(f"its {name} is too long")
-    return value
-
-
-def _check_count(name: str, value: Any, *, is_needed: bool) -> None:
-    if value is None and not is_needed:
-        return
-    if not isinstance(value, int) or not 0 <= value <= MAX_COUNT:
-        raise ValueError(f"its {name} is not a count")
-
-
-def _list(name: str, value: Any, kinds: Any) -> list[Any]:
-    if not isinstance(value, list) or not all(isinstance(one, kinds) for one in value):
-        raise ValueError(f"its {name} is not a list of valid items")
     return value
 
 

@@ -45,7 +45,6 @@ from app.storage.run import (
     Content,
     DamagedRun,
     IdempotencyKey,
-    KeyRecord,
     Kind,
     ListedRuns,
     Run,
@@ -68,6 +67,8 @@ class RunStore:
     Attributes:
         database: where the rows are.
         files: where the artifacts are.
+        curves, trials: learning curves of trainings, and trials of experiments.
+        keys: idempotency keys.
         sessions: storage of operators' browser sessions, in the same database.
     """
 
@@ -75,7 +76,7 @@ class RunStore:
         self.database, self.files = database, files
         self._progress = ProgressCache()
         self._artifacts = Artifacts(database, files)
-        self._curves, self._trials, self._keys = Curves(database), Trials(database), Keys(database)
+        self.curves, self.trials, self.keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SessionRows(database)
 
     def check_disk_space(self) -> None:
@@ -109,21 +110,11 @@ class RunStore:
 
         def work(connection: Connection) -> None:
             connection.execute(insert(RUNS), rows)
-            self._keys.insert(connection, key, [runs[-1].id])
+            self.keys.insert(connection, key, [runs[-1].id])
 
         self.database.write(work)
 
     def add(
-        self,
-        run: Run,
-        content: Content,
-        new_id: Callable[[], str],
-        key: IdempotencyKey | None = None,
-    ) -> Run:
-        """Insert an ended run with its content, as `add_all`."""
-        return self.add_all([(run, content)], new_id, key)[0]
-
-    def add_all(
         self,
         imported: Sequence[tuple[Run, Content]],
         new_id: Callable[[], str],
@@ -150,7 +141,7 @@ class RunStore:
             added = []
             for (run, content), files in zip(imported, stored, strict=True):
                 added.append(self._insert(connection, run, content, files, new_id))
-            self._keys.insert(connection, key, [run.id for run in added])
+            self.keys.insert(connection, key, [run.id for run in added])
             return added
 
         try:
@@ -179,15 +170,11 @@ class RunStore:
         existing = connection.execute(select(RUNS.c.id).where(RUNS.c.id == run.id)).first()
         added = run if existing is None else replace(run, id=new_id())
         connection.execute(insert(RUNS), [encode_run(added)])
-        self._curves.insert(connection, added.id, content.evaluations)
-        self._trials.insert(connection, added.id, content.trials)
+        self.curves.insert(connection, added.id, content.evaluations)
+        self.trials.insert(connection, added.id, content.trials)
         self._artifacts.insert(connection, added.id, files)
         # Decoded again, so that a run that could not be read later is rejected now.
         return decode_run(fetch_run_row(connection, added.id))
-
-    def find_key(self, key: str) -> KeyRecord | None:
-        """Look up an idempotency key; None if it was not used within its lifetime."""
-        return self._keys.find(key)
 
     def get(self, run_id: str) -> Run:
         """Return the run with its newest progress.
@@ -337,49 +324,6 @@ class RunStore:
 
         self.files.remove(*self.database.write(work))
         self._progress.drop(run_id)
-
-    def append_evaluations(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Append rows to a training's curve, replacing its rows from the first new step on.
-
-        A training that resumes from a checkpoint repeats the evaluations after that checkpoint.
-
-        Args:
-            run_id: id of the training.
-            rows: `step`, `distance_m` [m] and `epsilon` (exploration rate) of each evaluation.
-
-        Raises:
-            NotFound: if there is no such run.
-        """
-        self._curves.append(run_id, rows)
-
-    def evaluations(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """Return a training's curve so far, by step: `step`, `distance_m`, `epsilon`."""
-        return self._curves.get(run_id)
-
-    def delete_evaluations(self, run_id: str, after_step: int) -> None:
-        """Delete the rows of a training's curve after this step."""
-        self._curves.delete_after(run_id, after_step)
-
-    def append_trials(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        """Add trials of an experiment, replacing those with the same key (upsert).
-
-        Args:
-            run_id: id of the experiment.
-            rows: `key`, `result` (plain types, or None), `set_aside` (why there is no result, or
-                None) and `compute_s` [s].
-
-        Raises:
-            NotFound: if there is no such run.
-        """
-        self._trials.append(run_id, rows)
-
-    def trials(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """Return the trials of an experiment so far, sorted by key.
-
-        Raises:
-            NotFound: if there is no such run.
-        """
-        return self._trials.get(run_id)
 
     def put_artifact(
         self,

@@ -20,7 +20,16 @@ class Trials:
         self._database = database
 
     def append(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
-        """See `RunStore.append_trials`."""
+        """Add trials of an experiment, replacing those with the same key (upsert).
+
+        Args:
+            run_id: id of the experiment.
+            rows: `key`, `result` (plain types, or None), `set_aside` (why there is no result, or
+                None) and `compute_s` [s].
+
+        Raises:
+            NotFound: if there is no such run.
+        """
         # Deduplicated by key, since one INSERT must not contain a primary key twice.
         added = [{"run_id": run_id, **row} for row in {row["key"]: row for row in rows}.values()]
         again = delete(TRIALS).where(TRIALS.c.run_id == run_id, TRIALS.c.key == bindparam("again"))
@@ -41,7 +50,13 @@ class Trials:
             connection.execute(insert(TRIALS), [{"run_id": run_id, **row} for row in rows])
 
     def get(self, run_id: str) -> Sequence[Mapping[str, Any]]:
-        """See `RunStore.trials`. A trial that cannot be decoded is returned as set aside."""
+        """Return the trials of an experiment so far, sorted by key.
+
+        A trial that cannot be decoded is returned as set aside.
+
+        Raises:
+            NotFound: if there is no such run.
+        """
         query = select(*_UNDECODED).where(TRIALS.c.run_id == run_id).order_by(TRIALS.c.key)
 
         def work(connection: Connection) -> Sequence[Row]:

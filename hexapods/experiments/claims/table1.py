@@ -50,10 +50,9 @@ def _real_time(case: Case, steps: int) -> CaseFinding | None:
     if pool is None or pool["relative_finished"] is None:
         return None
     relative = pool["relative_finished"]
-    middle = Interval(relative["iqm"], relative["low"], relative["high"])
     fewest = min(one["n"] for one in case.settings if one["steps"] == steps)
     return CaseFinding.of(
-        bootstrap_exceeds(middle, REACHED_SHARE, fewest),
+        bootstrap_exceeds(Interval.of(relative), REACHED_SHARE, fewest),
         f"When Q-learning has taken its 50 steps it has come {shares(relative)} as far as greedy, "
         f"and {percent(pool['beats_greedy']['share'])} of the walks are ahead. The paper's own "
         f"four gaits average {percent(_papers_share(steps))}.",
@@ -93,7 +92,7 @@ def _on_par(case: Case) -> CaseFinding | None:
     finished = pool["beats_greedy"]
     also = f" At time-out {percent(finished['share'])} are ahead of greedy." if finished else ""
     return CaseFinding.of(
-        Interval(reached["share"], reached["low"], reached["high"]).exceeds(0.5),
+        Interval.of(reached).exceeds(0.5),
         f"After 500 steps {shares(reached)} of {counted(pool['n'], 'walk')} reach "
         f"{percent(REACHED_SHARE)} of greedy's total distance.{also}",
     )

@@ -1,7 +1,7 @@
 """Write an experiment's report as files: the page, figures, all trials as CSV, and the summary."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -39,15 +39,13 @@ def report_files(
     yield REPORT, page(summary).encode()
 
 
-def write_report(
-    folder: Path, summary: Mapping[str, Any], results: Mapping[str, TrialResult]
-) -> Path:
-    """Write all files into a folder, each atomically, and return the page's path.
+def write_files(folder: Path, files: Iterable[tuple[str, bytes]]) -> Path:
+    """Write the files of a report into a folder, each atomically, and return the page's path.
 
     Raises:
         OSError: if a file cannot be written.
     """
-    for name, content in report_files(summary, results):
+    for name, content in files:
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(path, content)

@@ -53,10 +53,10 @@ _FIRST = (
 
 def page(summary: Mapping[str, Any]) -> str:
     """Render the page; Jinja escapes every value, so that names cannot inject markup."""
-    cases = cases_of(summary)
+    cases, name = cases_of(summary), summary["experiment"]
     context: Mapping[str, Any] = {
         "summary": summary,
-        "title": TITLES[summary["experiment"]],
+        "title": TITLES[name],
         "policy": POLICY,
         "lead": _lead(summary),
         "in_short": _claims_summary(summary["claims"]),
@@ -68,10 +68,12 @@ def page(summary: Mapping[str, Any]) -> str:
         "units": tables.UNITS,
         "about_best_known": f"{DEFINITION} {COVERAGE}",
         "has_best_known": any(one["best_known_m"] for one in summary["settings"]),
-        "table1": _tables_of("table1", tables.table1, summary, cases),
-        "plain_tables": _tables_of("figure4", tables.curves, summary, cases)
-        + _tables_of("sweep", tables.sweep, summary, cases)
-        + tables.worlds(summary),
+        "table1": [tables.table1(case) for case in cases] if name == "table1" else [],
+        "plain_tables": [
+            *(tables.curves(case) for case in cases if name == "figure4"),
+            *(tables.sweep(case) for case in cases if name == "sweep"),
+            *tables.worlds(summary),
+        ],
         "versus": tables.versus(summary) if summary["versus"] else None,
         "story": [
             {"heading": section["heading"], "paragraphs": section["text"].split("\n")}
@@ -94,11 +96,11 @@ def command(config: Mapping[str, Any]) -> str:
     for field in dict.fromkeys((*_FIRST, *chosen)):
         if field in chosen and (field in ("seeds", "seed") or chosen[field] != defaults.get(field)):
             option = ExperimentConfig.option_of(field)
-            arguments += [part for text in _option_values(chosen[field]) for part in (option, text)]
+            arguments += [part for text in option_values(chosen[field]) for part in (option, text)]
     return shlex.join(arguments)
 
 
-def _option_values(value: Any) -> list[str]:
+def option_values(value: Any) -> list[str]:
     """Return an option's arguments: one comma-separated list, or each alone if one is JSON."""
     values = value if isinstance(value, list) else [value]
     plain = [_as_word(one) for one in values]
@@ -112,12 +114,6 @@ def _as_word(value: Any) -> str | None:
     if isinstance(value, Mapping):
         return str(value["preset"]) if set(value) == {"preset"} else None
     return str(value)
-
-
-def _tables_of(
-    experiment: str, table: Any, summary: Mapping[str, Any], cases: Sequence[Case]
-) -> list[Any]:
-    return [table(case) for case in cases] if summary["experiment"] == experiment else []
 
 
 def _lead(summary: Mapping[str, Any]) -> str:

@@ -1,6 +1,6 @@
 """The report's tables as formatted cells."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from hexapods.agents.appearance import title_of
@@ -18,7 +18,7 @@ from hexapods.experiments.measures import REACHED_SHARE
 from hexapods.experiments.narrative.sweep import combination_name
 from hexapods.experiments.plan import EARNING_STEPS
 from hexapods.experiments.published import COLUMNS, DISTANCES, published
-from hexapods.experiments.statistics import CONFIDENCE
+from hexapods.experiments.statistics import CONFIDENCE, Interval
 from hexapods.experiments.worlds import RECOVERY_SHARE
 from hexapods.runs.lane import PLANNING_MODEL_TITLES, PlanningModel
 
@@ -29,7 +29,19 @@ UNITS: Mapping[str, str] = {
 }
 MAX_ROWS = 200
 _DISTANCE_NAMES: Mapping[str, str] = {"finished": "At time-out", "total": "Total"}
-_NONE = "–"
+Cell = tuple[str, str]
+"""A value and its interval as text; the second is empty without one."""
+NOTHING: Cell = ("–", "")
+
+
+class Table(NamedTuple):
+    """A table with a name at the beginning of each row."""
+
+    label: str
+    columns: Sequence[str]
+    rows: Sequence[tuple[str, Sequence[Cell]]]
+    left_out: int = 0
+    """Number of further rows, which are in the summary only."""
 
 
 class Number(NamedTuple):
@@ -43,44 +55,66 @@ class Number(NamedTuple):
     """The paper's value; empty if it has none."""
 
 
-class Cell(NamedTuple):
+class PaperCell(NamedTuple):
     """A cell of Table 1: our value in each unit, with the paper's."""
 
     numbers: Sequence[Number]
-    quantile: str
+    quantile: str = ""
     """`P10`: 10 % of our seeds lie below the printed value; empty without one."""
-    outside: bool
+    outside: bool = False
     """Whether the printed value lies outside the central 95 % of our seeds."""
 
 
-def table1(case: Case) -> dict[str, Any]:
-    """Build the paper's Table 1 for a case: for each gait a row per kind of distance."""
+class PaperTable(NamedTuple):
+    """Table 1: for each gait a row per kind of distance."""
+
+    label: str
+    columns: Sequence[str]
+    gaits: Sequence[tuple[str, Sequence[tuple[str, Sequence[PaperCell]]]]]
+
+
+def cell(
+    estimate: Interval | Mapping[str, Any] | None,
+    form: Callable[[float], str] = number,
+    form_of_limits: Callable[[float], str] | None = None,
+) -> Cell:
+    """Return an estimate and its interval as text.
+
+    Args:
+        estimate: an interval, or an entry of a summary that has one.
+        form: formats a number.
+        form_of_limits: formats the limits; by default `form`.
+    """
+    if estimate is None:
+        return NOTHING
+    value, *limits = Interval.of(estimate)
+    texts = [(form_of_limits or form)(limit) for limit in limits if limit is not None]
+    return form(value), _range_text(*texts) if texts else ""
+
+
+def share_cell(share: Mapping[str, Any] | None) -> Cell:
+    """Return a share and its interval as text."""
+    return cell(share, percent, lambda limit: number(100 * limit, 0))
+
+
+def table1(case: Case) -> PaperTable:
+    """Build the paper's Table 1 for a case."""
     steps = {one["steps"] for one in case.settings if one["role"] == "learner"}
     columns = [one for one in COLUMNS if one[1] in steps or not one[1]]
+
+    def row(gait: str, kind: str) -> tuple[str, Sequence[PaperCell]]:
+        cells = [_table1_cell(case, gait, kind, agent, n) for agent, n, _ in columns]
+        return _DISTANCE_NAMES[kind], [*cells, _best_known_cell(case, gait, kind)]
+
     gaits = dict.fromkeys(one["gait"] for one in case.settings)
-    return {
-        "label": case.label,
-        "columns": [*(name for _, _, name in columns), "Best known"],
-        "gaits": [
-            {
-                "name": gait_name_with_papers(gait),
-                "rows": [
-                    {
-                        "name": _DISTANCE_NAMES[kind],
-                        "cells": [
-                            *(_table1_cell(case, gait, kind, agent, n) for agent, n, _ in columns),
-                            _best_known_cell(case, gait, kind),
-                        ],
-                    }
-                    for kind in DISTANCES
-                ],
-            }
-            for gait in gaits
-        ],
-    }
+    return PaperTable(
+        case.label,
+        [*(name for _, _, name in columns), "Best known"],
+        [(gait_name_with_papers(gait), [row(gait, kind) for kind in DISTANCES]) for gait in gaits],
+    )
 
 
-def _table1_cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Cell:
+def _table1_cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> PaperCell:
     one, greedy = case.setting(gait, steps, agent), case.setting(gait, 0, "greedy")
     distances = one[kind] if one else None
     half_m = next(s["half_side_m"] for s in case.settings)
@@ -91,34 +125,29 @@ def _table1_cell(case: Case, gait: str, kind: str, agent: str, steps: int) -> Ce
         ("h", half_m, half_m),
         ("r", _iqm_m(greedy, kind), _papers_value(gait, kind, "greedy", 0)),
     ):
-        value, span = _in_unit(unit, distances, by)
-        numbers.append(Number(unit, value, span, _printed_text(unit, papers, papers_by, gait)))
+        ours = _in_unit(unit, distances, by)
+        numbers.append(Number(unit, *ours, _printed_text(unit, papers, papers_by, gait)))
     quantile = one["published"][f"{kind}_quantile"] if one and one["published"] else None
+    if quantile is None:
+        return PaperCell(numbers)
     tail = (1 - CONFIDENCE) / 2
-    return Cell(
-        numbers,
-        "" if quantile is None else f"P{100 * quantile:.0f}",
-        quantile is not None and not tail <= quantile <= 1 - tail,
-    )
+    return PaperCell(numbers, f"P{100 * quantile:.0f}", not tail <= quantile <= 1 - tail)
 
 
-def _best_known_cell(case: Case, gait: str, kind: str) -> Cell:
+def _best_known_cell(case: Case, gait: str, kind: str) -> PaperCell:
     """Return the best known distance of 50 steps; there is none at time-out."""
     one = next(s for s in case.settings if s["gait"] == gait)
     best_m = one["best_known_m"] if kind == "total" else None
     greedy_m = _iqm_m(case.setting(gait, 0, "greedy"), kind)
     units = (("m", 1.0), ("h", one["half_side_m"]), ("r", greedy_m))
-    values = [(unit, _format(unit, best_m / by) if best_m and by else _NONE) for unit, by in units]
-    return Cell([Number(unit, value, "", "") for unit, value in values], "", False)
+    known = Interval(best_m) if best_m else None
+    return PaperCell([Number(unit, *_in_unit(unit, known, by), "") for unit, by in units])
 
 
-def _in_unit(unit: str, distances: Mapping[str, Any] | None, by: float | None) -> tuple[str, str]:
-    if distances is None or not by:
-        return _NONE, ""
-    value = _format(unit, distances["iqm_m"] / by)
-    if distances["low_m"] is None:
-        return value, ""
-    return value, _range_text(*(_format(unit, distances[end] / by) for end in ("low_m", "high_m")))
+def _in_unit(unit: str, distance: Interval | Mapping[str, Any] | None, by: float | None) -> Cell:
+    if distance is None or not by:
+        return NOTHING
+    return cell(distance, lambda value: _format(unit, value / by))
 
 
 def _range_text(low: str, high: str) -> str:
@@ -150,39 +179,32 @@ def _iqm_m(one: Mapping[str, Any] | None, kind: str) -> float | None:
     return float(one[kind]["iqm_m"]) if one and one[kind] else None
 
 
-def curves(case: Case) -> dict[str, Any]:
+def curves(case: Case) -> Table:
     """Build the table of Figure 4: one row per curve, at a few steps of practice."""
     drawn = [one for one in case.curves if one["steps"]]
     steps = drawn[0]["steps"] if drawn else []
     chosen = [at for at in (250, 500, 1000, 2000) if at in steps] or steps
     several = len({one["agent"] for one in drawn}) > 1
-    return {
-        "label": case.label,
-        "columns": [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy", "Best known"],
-        "rows": [
-            {
-                "name": gait_name(one["gait"]) + (f", {title_of(one['agent'])}" if several else ""),
-                "cells": [_curve_cell(one, steps.index(at)) for at in chosen]
-                + [
-                    (_NONE if one["walkers"][-1] is None else percent(one["walkers"][-1]), ""),
-                    *(
-                        (_NONE if one[field] is None else number(one[field]), "")
-                        for field in ("greedy_m", "best_known_m")
-                    ),
-                ],
-            }
-            for one in drawn
-        ],
-        "left_out": 0,
-    }
+
+    def row(one: Mapping[str, Any]) -> tuple[str, Sequence[Cell]]:
+        name = gait_name(one["gait"]) + (f", {title_of(one['agent'])}" if several else "")
+        walkers = one["walkers"][-1]
+        references = [one[field] for field in ("greedy_m", "best_known_m")]
+        return name, [
+            *(_curve_cell(one, steps.index(at)) for at in chosen),
+            NOTHING if walkers is None else cell(Interval(walkers), percent),
+            *(NOTHING if far_m is None else cell(Interval(far_m)) for far_m in references),
+        ]
+
+    columns = [f"{at:,} steps" for at in chosen] + ["Walk", "Greedy", "Best known"]
+    return Table(case.label, columns, [row(one) for one in drawn])
 
 
-def _curve_cell(curve: Mapping[str, Any], block: int) -> tuple[str, str]:
-    value, low, high = curve["iqm_m"][block], curve["low_m"][block], curve["high_m"][block]
-    return number(value), "" if low is None else _range_text(number(low), number(high))
+def _curve_cell(curve: Mapping[str, Any], block: int) -> Cell:
+    return cell(Interval(*(curve[name][block] for name in ("iqm_m", "low_m", "high_m"))))
 
 
-def worlds(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
+def worlds(summary: Mapping[str, Any]) -> list[Table]:
     """Build the tables of a league or recovery: one for each world and gait, best first."""
     groups: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
     for one in summary.get("worlds", ()):
@@ -215,124 +237,91 @@ def agent_name(one: Mapping[str, Any]) -> str:
 
 def _world_table(
     rows: Sequence[Mapping[str, Any]], is_recovery: bool, summary: Mapping[str, Any]
-) -> dict[str, Any]:
+) -> Table:
     best_m = rows[0]["best_known_m"]
     known = "" if best_m is None else f"; best known {metres(best_m)}"
-    ordered = sorted(rows, key=lambda one: -float(one["distance"]["iqm"]))
     learner = next((one for one in rows if one["curve"]), None)
     at: list[int] = learner["curve"]["steps"] if learner and is_recovery else []
     share = percent(RECOVERY_SHARE if is_recovery else REACHED_SHARE)
-    columns = [f"After {step:,}" for step in at] or ["Distance", "Mean over practice"]
     earning = [step for step in at if step % EARNING_STEPS == 0]
-    columns += [f"Earned in {step + 1:,}–{step + EARNING_STEPS:,}" for step in earning]
-    columns += [
+    columns = [
+        *([f"After {step:,}" for step in at] or ["Distance", "Mean over practice"]),
+        *(f"Earned in {step + 1:,}–{step + EARNING_STEPS:,}" for step in earning),
         "Of greedy",
         "Of best known",
         f"Steps to {share} of greedy",
         f"Steps to {share} of best known",
         "Seeds",
     ]
-    return {
-        "label": f"{place_name(place_of(rows[0]), summary)}{known}",
-        "columns": columns,
-        "rows": [
-            {
-                "name": agent_name(one),
-                "cells": [
-                    *_distance_cells(one, at),
-                    *(
-                        _curve_cell(one["earned"], at.index(step)) if one["earned"] else (_NONE, "")
-                        for step in earning
-                    ),
-                    share_cell(one["of_greedy"], "iqm"),
-                    share_cell(one["of_best_known"], "iqm"),
-                    _until_cell(one["until_greedy"]),
-                    _until_cell(one["until_best_known"]),
-                    (f"{one['n']:,}", ""),
-                ],
-            }
-            for one in ordered
-        ],
-        "left_out": 0,
-    }
+
+    def row(one: Mapping[str, Any]) -> tuple[str, Sequence[Cell]]:
+        earned = one["earned"]
+        return agent_name(one), [
+            *_distance_cells(one, at),
+            *(_curve_cell(earned, at.index(step)) if earned else NOTHING for step in earning),
+            share_cell(one["of_greedy"]),
+            share_cell(one["of_best_known"]),
+            _until_cell(one["until_greedy"]),
+            _until_cell(one["until_best_known"]),
+            (f"{one['n']:,}", ""),
+        ]
+
+    ordered = sorted(rows, key=lambda one: -float(one["distance"]["iqm"]))
+    label = f"{place_name(place_of(rows[0]), summary)}{known}"
+    return Table(label, columns, [row(one) for one in ordered])
 
 
-def _distance_cells(one: Mapping[str, Any], at: Sequence[int]) -> list[tuple[str, str]]:
+def _distance_cells(one: Mapping[str, Any], at: Sequence[int]) -> list[Cell]:
     """Return the distances at the evaluations of a recovery, or the last and the mean [m]."""
     if at and one["curve"]:
         return [_curve_cell(one["curve"], place) for place in range(len(at))]
     if at:
-        return [(_NONE, "")] * (len(at) - 1) + [interval_cell(one["distance"])]
-    return [interval_cell(one["distance"]), interval_cell(one["mean_m"])]
+        return [NOTHING] * (len(at) - 1) + [cell(one["distance"])]
+    return [cell(one["distance"]), cell(one["mean_m"])]
 
 
-def interval_cell(middle: Mapping[str, Any] | None) -> tuple[str, str]:
-    """Return a distance and its interval as text [m]."""
-    if middle is None:
-        return _NONE, ""
-    low, high = middle["low"], middle["high"]
-    return number(middle["iqm"]), "" if low is None else _range_text(number(low), number(high))
-
-
-def _until_cell(until: Mapping[str, Any] | None) -> tuple[str, str]:
+def _until_cell(until: Mapping[str, Any] | None) -> Cell:
     if until is None:
-        return _NONE, ""
+        return NOTHING
     steps = until["median_steps"]
     value = "not reached" if steps is None else f"{steps:,.0f}"
     return value, f"by {percent(until['reached'])}"
 
 
-def sweep(case: Case) -> dict[str, Any]:
+def sweep(case: Case) -> Table:
     """Build the table of a sweep: every combination over all gaits, best first."""
     pools = [one for one in case.pooled if one["relative"]]
     best = sorted(pools, key=lambda one: -float(one["relative"]["iqm"]))
-    return {
-        "label": case.label,
-        "columns": ["Of greedy's distance", "Of best known", "Walk", "Ahead at time-out", "Seeds"],
-        "rows": [
-            {
-                "name": combination_name(one, case),
-                "cells": [
-                    share_cell(one["relative"], "iqm"),
-                    share_cell(one["of_best_known"], "iqm"),
-                    share_cell(one["walkers"]),
-                    share_cell(one["beats_greedy"]),
-                    (f"{one['n']:,}", ""),
-                ],
-            }
+    measures = ("relative", "of_best_known", "walkers", "beats_greedy")
+    return Table(
+        case.label,
+        ["Of greedy's distance", "Of best known", "Walk", "Ahead at time-out", "Seeds"],
+        [
+            (
+                combination_name(one, case),
+                [*(share_cell(one[name]) for name in measures), (f"{one['n']:,}", "")],
+            )
             for one in best[:MAX_ROWS]
         ],
-        "left_out": max(0, len(best) - MAX_ROWS),
-    }
+        max(0, len(best) - MAX_ROWS),
+    )
 
 
-def share_cell(share: Mapping[str, Any] | None, middle: str = "share") -> tuple[str, str]:
-    """Return a share, which has the name `middle`, and its interval as text."""
-    if share is None:
-        return _NONE, ""
-    low, high = share["low"], share["high"]
-    value = percent(share[middle])
-    return value, "" if low is None else _range_text(*(number(100 * end, 0) for end in (low, high)))
-
-
-def versus(summary: Mapping[str, Any]) -> dict[str, Any]:
+def versus(summary: Mapping[str, Any]) -> Table:
     """Build the table of pairs of learning agents, with the probability of improvement."""
     furthest = {"yes": "the first", "no": "the second", "not established": "not established"}
     pairs = summary["versus"]
-    return {
-        "label": "",
-        "columns": ["Probability", "Further"],
-        "rows": [
-            {
-                "name": f"{title_of(one['a'])} before {title_of(one['b'])}, "
+    return Table(
+        "",
+        ["Probability", "Further"],
+        [
+            (
+                f"{title_of(one['a'])} before {title_of(one['b'])}, "
                 f"{gait_name(one['gait'])}, {case_label(one['observation'], one['robot'])}, "
                 f"{one['blocks'] * one['steps']:,} steps",
-                "cells": [
-                    (shares({**one, "share": one["probability"]}), ""),
-                    (furthest[one["verdict"]], ""),
-                ],
-            }
+                [(shares(one), ""), (furthest[one["verdict"]], "")],
+            )
             for one in pairs[:MAX_ROWS]
         ],
-        "left_out": max(0, len(pairs) - MAX_ROWS),
-    }
+        max(0, len(pairs) - MAX_ROWS),
+    )

@@ -5,7 +5,6 @@ import json
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from io import StringIO
-from pathlib import Path
 from typing import Any
 
 from hexapods.agents.appearance import title_of
@@ -23,13 +22,12 @@ from hexapods.experiments.report.drawing import (
     figure_style,
     style_axes,
 )
-from hexapods.experiments.report.page import POLICY, environment, inlined_figures
-from hexapods.experiments.report.tables import agent_name, interval_cell, share_cell
+from hexapods.experiments.report.page import POLICY, environment, inlined_figures, option_values
+from hexapods.experiments.report.tables import Cell, Table, agent_name, cell, share_cell
 from hexapods.experiments.tuning.config import OBJECTIVES, TuningConfig, config_json
 from hexapods.experiments.tuning.ranges import declared_range
 from hexapods.experiments.tuning.summary import gains
 from hexapods.experiments.tuning.tuning import Tuning, objective_m
-from hexapods.files import write_atomically
 from hexapods.runs.best_known import DEFINITION
 from hexapods.runs.config import agent_settings
 
@@ -74,18 +72,6 @@ def tuning_files(
     yield REPORT, tuning_page(summary).encode()
 
 
-def write_tuning(
-    folder: Path, tuning: Tuning, progress: Progress, summary: Mapping[str, Any]
-) -> None:
-    """Write all files into a folder, each atomically.
-
-    Raises:
-        OSError: if a file cannot be written.
-    """
-    for name, content in tuning_files(tuning, progress, summary):
-        write_atomically(folder / name, content)
-
-
 def tuning_page(summary: Mapping[str, Any]) -> str:
     """Render the page; Jinja escapes every value, so that names cannot inject markup."""
     search, config = summary["search"], summary["config"]
@@ -118,7 +104,7 @@ def command(config: Mapping[str, Any]) -> str:
         value = config[field]
         if field in _ALWAYS or value != defaults[field]:
             option = TuningConfig.option_of(field)
-            arguments += [option, _as_word(value[0] if isinstance(value, list) else value)]
+            arguments += [option, *option_values(value)]
     usual = [str(one) for one in map(declared_range, agent_settings(agent).values()) if one]
     for text in config["ranges"]:
         if text not in usual:
@@ -135,12 +121,6 @@ def held_out_name(one: Mapping[str, Any]) -> str:
     return agent_name(one) + roles.get(one["name"], "")
 
 
-def _as_word(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return str(value["preset"]) if set(value) == {"preset"} else json.dumps(value)
-    return str(value)
-
-
 def _lead(config: Mapping[str, Any]) -> str:
     (gait,), (world,) = config["gaits"], config["worlds"]
     simulator = "MuJoCo" if config["simulator"] == "mujoco" else "the kinematic simulator"
@@ -153,48 +133,39 @@ def _lead(config: Mapping[str, Any]) -> str:
     )
 
 
-def _held_out_table(summary: Mapping[str, Any]) -> dict[str, Any]:
+def _held_out_table(summary: Mapping[str, Any]) -> Table:
     entries = sorted(summary["held_out"], key=lambda one: -float(one["distance"]["iqm"]))
     best_m = next((one["best_known_m"] for one in entries), None)
-    return {
-        "label": "" if best_m is None else f"best known {metres(best_m)}",
-        "columns": _COLUMNS,
-        "rows": [
-            {
-                "name": held_out_name(one),
-                "cells": [
-                    interval_cell(one["distance"]),
-                    interval_cell(one["mean_m"]),
-                    share_cell(one["of_greedy"], "iqm"),
-                    share_cell(one["of_best_known"], "iqm"),
-                    (f"{one['n']:,}", ""),
-                ],
-            }
-            for one in entries
-        ],
-        "left_out": 0,
-    }
+
+    def row(one: Mapping[str, Any]) -> tuple[str, Sequence[Cell]]:
+        return held_out_name(one), [
+            cell(one["distance"]),
+            cell(one["mean_m"]),
+            share_cell(one["of_greedy"]),
+            share_cell(one["of_best_known"]),
+            (f"{one['n']:,}", ""),
+        ]
+
+    label = "" if best_m is None else f"best known {metres(best_m)}"
+    return Table(label, _COLUMNS, [row(one) for one in entries])
 
 
-def _candidate_table(summary: Mapping[str, Any]) -> dict[str, Any]:
+def _candidate_table(summary: Mapping[str, Any]) -> Table:
     ranges, tried = summary["search"]["ranges"], _tried(summary)
     best = sorted(tried, key=lambda one: (-one["value_m"], one["number"]))[:BEST]
     shown = best + [one for one in tried if one["number"] == 0 and one not in best]
-    return {
-        "label": "the best candidates of the search, and the defaults",
-        "columns": [*(one["title"] for one in ranges), "In the search"],
-        "rows": [
-            {
-                "name": "Defaults" if one["number"] == 0 else f"Candidate {one['number']}",
-                "cells": [
-                    *((_value_text(one["values"][own["name"]]), "") for own in ranges),
-                    (f"{number(one['value_m'], 3)}", ""),
-                ],
-            }
-            for one in shown
-        ],
-        "left_out": len(tried) - len(shown),
-    }
+
+    def row(one: Mapping[str, Any]) -> tuple[str, Sequence[Cell]]:
+        values = [(_value_text(one["values"][own["name"]]), "") for own in ranges]
+        name = "Defaults" if one["number"] == 0 else f"Candidate {one['number']}"
+        return name, [*values, (number(one["value_m"], 3), "")]
+
+    return Table(
+        "the best candidates of the search, and the defaults",
+        [*(one["title"] for one in ranges), "In the search"],
+        [row(one) for one in shown],
+        len(tried) - len(shown),
+    )
 
 
 def _scatter(one: Mapping[str, Any], summary: Mapping[str, Any]) -> Picture:

@@ -16,7 +16,7 @@ from hexapods.experiments.formatting import counted, distance, number
 from hexapods.experiments.names import trial_names
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.setting_results import SettingResults, group_by_setting
-from hexapods.experiments.statistics import Interval, bootstrap_exceeds, paired_interval
+from hexapods.experiments.statistics import bootstrap_exceeds, paired_interval
 from hexapods.experiments.tuning.config import OBJECTIVES, Objective, config_json
 from hexapods.experiments.tuning.ranges import SearchRange
 from hexapods.experiments.tuning.tuning import Candidate, Tuning, objective_m
@@ -141,9 +141,7 @@ def _gain(
     )
     gain = paired_interval([pairs], lambda iqms: iqms[0] - iqms[1], seed)
     return {
-        "iqm": gain.value,
-        "low": gain.low,
-        "high": gain.high,
+        **gain.as_json("iqm"),
         "n": len(both),
         "is_better": bootstrap_exceeds(gain, 0.0, len(both)),
     }
@@ -174,7 +172,7 @@ def _verdict(gain: Mapping[str, Any] | None, what: str) -> str:
     if gain is None:
         return "On the held-out seeds there is nothing to compare: no seed has a result of both."
     held_out = f"On {counted(gain['n'], 'held-out seed')}"
-    difference = distance(Interval(gain["iqm"], gain["low"], gain["high"]))
+    difference = distance(gain)
     if gain["is_better"] == "yes":
         return f"{held_out} the tuned settings are better: {what} greater by {difference}."
     if gain["is_better"] == "no":
@@ -188,9 +186,6 @@ def _verdict(gain: Mapping[str, Any] | None, what: str) -> str:
 def gains(summary: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
     """Return each objective with the difference of tuned settings and defaults as text."""
     return [
-        (
-            OBJECTIVES[name],
-            "–" if one is None else distance(Interval(one["iqm"], one["low"], one["high"])),
-        )
+        (OBJECTIVES[name], "–" if one is None else distance(one))
         for name, one in summary["gain"].items()
     ]

@@ -12,12 +12,12 @@ from typing import NamedTuple
 from hexapods.agents.registry import check_problem
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.settings import SettingValues, Value
-from hexapods.experiments.engine import Outcome
 from hexapods.experiments.plan import Plan, Trial, TrialSetting, trial_seed
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.trial import TrialConfig, TrialResult
 from hexapods.experiments.tuning.config import Objective, TuningConfig
 from hexapods.experiments.tuning.study import Study
+from hexapods.experiments.worker import Outcome
 from hexapods.experiments.worlds import mean_distance_m
 from hexapods.runs.config import problem_of
 
@@ -151,8 +151,8 @@ class Tuning:
             count = min(BATCH, self.config.candidates - len(self.candidates))
             asked = [self._candidate(*study.ask()) for _ in range(count)]
             trials = [trial for _, own in asked for trial in own]
-            yield from run(_remaining(trials, progress, retry))
-            if _remaining(trials, progress):
+            yield from run(progress.remaining(retry, of=trials))
+            if progress.remaining(of=trials):
                 return
             for candidate, own in asked:
                 tried = self._judged(candidate, own, progress)
@@ -161,8 +161,8 @@ class Tuning:
         if self.tuned != self.defaults:
             self.plan = Plan(self.config, [self.tuned])
         held_out = list(self.plan.trials())
-        yield from run(_remaining(held_out, progress, retry))
-        self.is_complete = not _remaining(held_out, progress)
+        yield from run(progress.remaining(retry, of=held_out))
+        self.is_complete = not progress.remaining(of=held_out)
 
     def _candidate(self, number: int, values: Mapping[str, Value]) -> tuple[Candidate, list[Trial]]:
         candidate = Candidate(number, SettingValues(values))
@@ -217,13 +217,3 @@ def objective_m(objective: Objective, config: TrialConfig, result: TrialResult) 
     if objective == "distance":
         return result.distances_m[-1]
     return mean_distance_m(config.evaluations, result.distances_m)
-
-
-def _remaining(trials: Iterable[Trial], progress: Progress, retry: bool = False) -> list[Trial]:
-    """Return the trials without an outcome, each once; with `retry` also those set aside."""
-    by_key = {trial.key: trial for trial in trials}
-    return [
-        trial
-        for key, trial in by_key.items()
-        if key not in progress.results and (retry or key not in progress.set_aside)
-    ]

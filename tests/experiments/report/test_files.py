@@ -22,7 +22,7 @@ from hexapods.experiments.config import (
     ExperimentConfig,
     experiment_config,
 )
-from hexapods.experiments.report.files import report_files, write_report
+from hexapods.experiments.report.files import report_files, write_files
 from hexapods.experiments.report.page import POLICY, command, page
 from hexapods.experiments.report.trials_csv import trials_csv
 from hexapods.experiments.summary import summarise
@@ -69,7 +69,7 @@ def test_the_same_trials_give_the_same_bytes() -> None:
 def test_an_older_report_is_replaced(tmp_path: Path) -> None:
     summary, results = small()
     (tmp_path / "report.html").write_text("older")
-    written = write_report(tmp_path, summary, results)
+    written = write_files(tmp_path, report_files(summary, results))
     assert written == tmp_path / "report.html"
     assert written.read_text() == page(summary)
     files = {one.relative_to(tmp_path).as_posix() for one in tmp_path.rglob("*") if one.is_file()}

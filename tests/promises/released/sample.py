@@ -60,7 +60,7 @@ FILE = bytes(range(256)) * 4
 def put(store: RunStore) -> None:
     """Fill an empty store."""
     store.create(*RUNS, EXPERIMENT)
-    store.append_trials(EXPERIMENT.id, TRIALS)
-    store.append_evaluations(RUNS[0].id, CURVE)
+    store.trials.append(EXPERIMENT.id, TRIALS)
+    store.curves.append(RUNS[0].id, CURVE)
     store.put_artifact(RUNS[0].id, TABLE, FILE)
     store.update(RUNS[0].id, **ANNOTATIONS)

@@ -26,13 +26,13 @@ def test_store_is_readable_while_its_server_runs(settings: Settings) -> None:
     with opened(settings.data, settings.database_url) as store:
         store.create(training("a", state="running"), training("b"))
         store.put_artifact("a", TABLE, b"learned")
-        store.append_evaluations("a", [{"step": 5, "distance_m": 0.5, "epsilon": 0.5}])
+        store.curves.append("a", [{"step": 5, "distance_m": 0.5, "epsilon": 0.5}])
         with open_read_only(settings) as reader, open_read_only(settings) as second:
             assert [run.id for run in reader.list().items] == ["b", "a"]
             # Opening read-only does not mark runs as interrupted.
             assert second.get("a").state == "running"
             assert reader.artifact("a", TABLE) == b"learned"
-            assert reader.evaluations("a") == store.evaluations("a")
+            assert reader.curves.get("a") == store.curves.get("a")
             store.change("a", RUNNING, "finished")
             assert reader.get("a").state == "finished"
     with open_read_only(settings) as reader:

@@ -1,4 +1,4 @@
-"""Turns of requests that take all cores: one at a time, those of operators first."""
+"""Turns of requests that take long: one at a time, those of operators first."""
 
 import itertools
 import threading
@@ -8,8 +8,6 @@ from contextlib import contextmanager
 
 from app.storage.errors import Busy
 
-MAX_WAITING = 4
-"""Requests of operators, and of spectators, that may wait."""
 GRACE_S = 1.0
 """For so long an operator's request lets a spectator's go on, which is mostly done by then [s]."""
 _LOOK_EVERY_S = 0.1
@@ -19,8 +17,14 @@ _RETRY_S = 5
 class Turns:
     """Gives turns to requests, each in a thread of its own. Thread-safe."""
 
-    def __init__(self) -> None:
-        """Create it with nobody waiting."""
+    def __init__(self, what: str, max_waiting: int) -> None:
+        """Create it with nobody waiting.
+
+        Args:
+            what: name of the requests, for the error: `questions`.
+            max_waiting: requests of operators, and of spectators, that may wait.
+        """
+        self._what, self._max_waiting = what, max_waiting
         self._changed = threading.Condition()
         self._waiting: list[tuple[bool, int]] = []
         """Whether each is a spectator's, and its number; the least is the next."""
@@ -33,12 +37,14 @@ class Turns:
         return len(self._waiting)
 
     @contextmanager
-    def turn(self, is_operator: bool, check: Callable[[], None]) -> Iterator[Callable[[], None]]:
+    def turn(
+        self, check: Callable[[], None], *, is_operator: bool = True
+    ) -> Iterator[Callable[[], None]]:
         """Wait for the turn, and have it.
 
         Args:
-            is_operator: whether it comes before the requests of spectators.
             check: called ten times a second while it waits; if it raises, it waits no more.
+            is_operator: whether it comes before the requests of spectators.
 
         Returns:
             what to call while having the turn, often: it calls `check`, and raises `Busy` if an
@@ -49,8 +55,9 @@ class Turns:
         """
         ticket = (not is_operator, next(self._numbers))
         with self._changed:
-            if sum(one[0] == ticket[0] for one in self._waiting) >= MAX_WAITING:
-                raise Busy(f"{MAX_WAITING} questions are waiting; ask again later", 2)
+            if sum(one[0] == ticket[0] for one in self._waiting) >= self._max_waiting:
+                waiting = f"{self._max_waiting} {self._what} are waiting"
+                raise Busy(f"{waiting}; ask again later", 2)
             self._waiting.append(ticket)
             try:
                 while self._is_taken or min(self._waiting) != ticket:

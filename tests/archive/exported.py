@@ -1,0 +1,18 @@
+"""One run as an archive, and back."""
+
+from app.archive.transfer import export_chunks, import_runs
+from app.storage.database.store import RunStore
+from app.storage.run import IdempotencyKey, Run
+from app.storage.run_ids import RunIds
+from hexapods.agents.registry import OURS
+
+
+def export_run(store: RunStore, run_id: str) -> bytes:
+    return b"".join(export_chunks(store, run_id))
+
+
+def import_run(
+    store: RunStore, data: bytes, ids: RunIds, label: str, key: IdempotencyKey | None = None
+) -> Run:
+    (run,) = import_runs(store, data, ids, tuple(OURS), label, is_one=True, key=key)
+    return run
