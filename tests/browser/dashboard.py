@@ -18,6 +18,34 @@ _AXE = Path(__file__).with_name("vendor") / "axe.min.js"
 _TRANSITIONS_HAVE_ENDED = """() => Promise.all(document.getAnimations()
     .filter(({effect}) => effect.getComputedTiming().endTime !== Infinity)
     .map(animation => animation.finished.catch(() => {})))"""
+# A box to tick is met by its label too, and a thin mark by what lies around it (its `::after`). Of
+# links within a sentence the text gives the height.
+_TOO_SMALL = """least => {
+    const controls = "a[href], button, input, select, textarea, summary, [role=slider], [role=tab]";
+    const isShown = one => one.checkVisibility({visibilityProperty: true});
+    const isInSentence = one => getComputedStyle(one).display.startsWith("inline")
+        && [...one.parentElement.childNodes].some(n => n.nodeType === 3 && n.textContent.trim());
+    const around = one => {
+        const {content, position, width, height} = getComputedStyle(one, "::after");
+        const isThere = content !== "none" && position === "absolute";
+        return {width: isThere ? parseFloat(width) : 0, height: isThere ? parseFloat(height) : 0};
+    };
+    const sizeOf = one => {
+        const boxes = [one, ...(one.labels ?? [])].map(each => each.getBoundingClientRect());
+        const all = [...boxes, around(one)];
+        return ["width", "height"].map(side => Math.max(...all.map(box => box[side])));
+    };
+    return [...document.querySelectorAll(controls)]
+        .filter(one => isShown(one) && !isInSentence(one))
+        .map(one => [one, sizeOf(one)])
+        .filter(([, sizes]) => Math.min(...sizes) < least - 0.5)
+        .map(([one, sizes]) =>
+            `${one.outerHTML.slice(0, 120)}: ${sizes.map(size => size.toFixed(1)).join(" x ")}`);
+}"""
+_UNFOLD = """() => [...document.querySelectorAll("details:not([open])")]
+    .forEach(one => one.toggleAttribute("open", one.toggleAttribute("data-unfolded", true)))"""
+_FOLD = """() => document.querySelectorAll("[data-unfolded]").forEach(one =>
+    ["open", "data-unfolded"].forEach(name => one.removeAttribute(name)))"""
 # A route of Playwright would stop each request of the page, to look at its address.
 WITHOUT_3D = """Object.defineProperty(HTMLIFrameElement.prototype, "src", {set() {}})"""
 _STATUS = re.compile(r"status of (\d+)")
@@ -234,6 +262,13 @@ class Dashboard:
         options = "{iframes: false, resultTypes: ['violations']}"
         found = self.page.evaluate(f"axe.run(document, {options})")
         return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
+
+    def small_targets(self, least_px: int) -> list[str]:
+        """Return the controls that are smaller than they may be, in all that can be unfolded."""
+        self.page.evaluate(_UNFOLD)
+        found: list[str] = self.page.evaluate(_TOO_SMALL, least_px)
+        self.page.evaluate(_FOLD)
+        return found
 
     def get(self, path: str) -> Any:
         """Return the API's answer to this page."""

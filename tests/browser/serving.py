@@ -62,7 +62,7 @@ class Serving:
             self.stop()
             raise RuntimeError(f"the server did not start; it said: {''.join(self._said)}")
 
-    def link(self, view: str = "", **state: object) -> str:
+    def link(self, view: str = "", /, **state: object) -> str:
         """Return the address that opens the page in a state: its depth, its tab, the form."""
         return f"{self.address}?{urlencode(state)}#{view}"
 

@@ -14,8 +14,9 @@ from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
+STEPS = 20
 SHORT = {
-    "steps": 20,
+    "steps": STEPS,
     "evaluate_every": 5,
     "race_steps": 5,
     "simulator": "kinematic",
@@ -260,9 +261,8 @@ def seeks_in_the_practice_on_stage(dashboard: Dashboard) -> None:
     expect(curve).to_have_class(re.compile("seeks"))
     box = box_of(curve)
     # The bar has the steps of the practice, the stage their time.
-    steps = SHORT["steps"]
-    expect(dashboard.moment).to_have_attribute("max", str(steps))
+    expect(dashboard.moment).to_have_attribute("max", str(STEPS))
     time_s = sought(page, lambda: curve.click(position={"x": box["width"] / 2, "y": 40}))
     dashboard.eventually(lambda: int(dashboard.moment.input_value()) > 0, "that step is shown")
-    assert float(dashboard.moment.input_value()) == pytest.approx(steps / 2, abs=2)
+    assert float(dashboard.moment.input_value()) == pytest.approx(STEPS / 2, abs=2)
     assert time_s > 0

@@ -176,18 +176,23 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     assert dashboard.complaints == []
     page.close()
 
-    picks_a_leg(with_3d)
-    with_3d.button("Stuck").click()
-    with_3d.page.get_by_role("button", name=re.compile(r"^Race on from \d")).click()
+    branches_by_a_pick(with_3d, branch)
+
+
+def branches_by_a_pick(dashboard: Dashboard, held: dict[str, Any]) -> None:
+    """What happens to a leg that is picked in the picture starts a branch of the race there."""
+    picks_a_leg(dashboard)
+    dashboard.button("Stuck").click()
+    dashboard.page.get_by_role("button", name=re.compile(r"^Race on from \d")).click()
 
     def newest() -> dict[str, Any]:
-        config: dict[str, Any] = with_3d.get("/api/v1/races")["items"][0]["config"]
+        config: dict[str, Any] = dashboard.get("/api/v1/races")["items"][0]["config"]
         return config
 
-    with_3d.eventually(lambda: newest()["branch_from"]["race_id"] == branch["id"], "a branch")
+    dashboard.eventually(lambda: newest()["branch_from"]["race_id"] == held["id"], "a branch")
     last = newest()["disturbances"][-1]
     assert (last["kind"], last["leg"]) == ("stuck", 3)
-    expect(with_3d.scoreboard).to_contain_text(f"The same as {branch['name']} before")
+    expect(dashboard.scoreboard).to_contain_text(f"The same as {held['name']} before")
 
 
 def picks_a_leg(dashboard: Dashboard) -> None:
@@ -204,7 +209,9 @@ def picks_a_leg(dashboard: Dashboard) -> None:
     page.keyboard.press("ArrowRight")
     page.keyboard.press("Enter")
     menu = page.get_by_role("region", name=re.compile("^Informed.*, leg 3$"))
-    expect(menu.get_by_role("group", name="What happens").get_by_role("button").first).to_be_focused()
+    expect(
+        menu.get_by_role("group", name="What happens").get_by_role("button").first
+    ).to_be_focused()
     assert dashboard.violations() == []
     place = legs.get_by_role("button", name="Leg 3").bounding_box()
     assert place is not None

@@ -5,7 +5,7 @@ from itertools import combinations
 from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, Route, expect
+from playwright.sync_api import Browser, Locator, Route, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving

@@ -126,7 +126,9 @@ def test_a_state_is_shown_in_the_scene_and_found_from_it(
 
     # A click in the table draws the ghost; another moves it, and Escape takes it away.
     grid.click(position={"x": 3, "y": 1})
-    state = re.compile(r"stands in this state: legs 1\+4 home, legs 2\+5 home, (legs 3\+6 [a-z ]+)\.")
+    state = re.compile(
+        r"stands in this state: legs 1\+4 home, legs 2\+5 home, (legs 3\+6 [a-z ]+)\."
+    )
     expect(note).to_contain_text(state)
     view.wait_for_function(HAS_NODE, arg=f"{GHOST}/0")
     found = state.search(note.inner_text())

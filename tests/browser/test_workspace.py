@@ -33,6 +33,8 @@ SIZES: list[ViewportSize] = [
     {"width": 1280, "height": 720},
     {"width": 1920, "height": 1080},
 ]
+LEAST_PX = 24
+"""Of a control: WCAG 2.2, 2.5.8."""
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 _OVERFLOW = """() => {
     const {scrollWidth, scrollHeight} = document.scrollingElement;
@@ -79,9 +81,11 @@ def keeps_budgets(dashboard: Dashboard, state: str) -> None:
 
 
 def is_accessible(dashboard: Dashboard) -> None:
-    """Check each tab of each depth, in both themes."""
+    """Check each tab of each depth, in both themes; each control can be met by a pointer."""
     found: dict[str, list[str]] = {}
     for depth, tab in each_tab(dashboard):
+        if too_small := dashboard.small_targets(LEAST_PX):
+            found[f"{depth} {tab} targets"] = too_small
         for theme in THEMES:
             dashboard.page.emulate_media(color_scheme=theme)
             if violations := dashboard.violations():

@@ -25,12 +25,14 @@ import { RaceChart } from "./race-chart.js";
 export function Board() {
   const rows = standings.value;
   const isPractice = shownRun.value?.kind === "training";
+  // In a presenter's window the lanes have the room: a chart has small type.
+  const hasChart = !rows || !page.isPresenting.value;
   return html`
     <section class="board-tab" aria-label="Scoreboard">
       ${rows ? html`<${Standings} rows=${rows} />` : html`<${StartList} />`}
       ${isAtLeast("try") && html`<${Choices} />`}
       ${rows && isTimedOut.value && html`<${ByEachClock} rows=${rows} />`}
-      ${rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`}
+      ${hasChart && (rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`)}
       ${rows && !page.isPresenting.value && html`
         <p class="dim fine">${ruleOf(rows, clockTitle(clock.value))}${
           isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>

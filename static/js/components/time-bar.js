@@ -157,12 +157,12 @@ function labelsAbove(known, width) {
 const weightOf = ({ kind }) => ["time-out", "fall", "disturbance", "change", "crossing"].indexOf(kind);
 
 /**
- * Each mark: a line, and for those who try a button that goes there.
+ * Each mark: a line, and for those who try a button that goes there; not under a thumb, which meets several at once.
  * @param {{ place: (at: number) => string }} props
  */
 const Marks = ({ place }) => html`
   <span class="marks">
-    ${marks.value.map((one) => (one.isMinor || !isAtLeast("try")
+    ${marks.value.map((one) => (one.isMinor || !isAtLeast("try") || isPhone.value
       ? html`<i class=${one.kind} style=${{ left: place(one.at) }} aria-hidden="true"></i>`
       : html`
         <button class=${one.kind} style=${{ left: place(one.at) }} title=${markInWords(one)}

@@ -1,0 +1,84 @@
+"""On a phone: what is how many taps away, and every tab fits, is accessible and meets a thumb."""
+
+import re
+from pathlib import Path
+from typing import Literal
+
+import pytest
+from playwright.sync_api import Browser, ViewportSize, expect
+
+from tests.browser.budget import shown_on
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import finished, hold, serving
+from tests.browser.test_spectators import RACE, TOKEN
+from tests.browser.test_workspace import BUDGETS, each_tab
+from tests.conftest import new_page
+
+pytestmark = pytest.mark.timeout(300)
+
+PHONE: ViewportSize = {"width": 390, "height": 844}
+NARROW: ViewportSize = {"width": 360, "height": 780}
+THUMB_PX = 40
+THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+
+
+def test_a_phone(flat_browser: Browser, tmp_path: Path) -> None:
+    with (
+        serving(tmp_path, token=TOKEN) as server,
+        server.api(TOKEN) as api,
+        new_page(flat_browser, viewport=PHONE, has_touch=True, is_mobile=True) as page,
+    ):
+        hold(api, finished(api, "races", RACE), 5.0)
+        dashboard = Dashboard(page, has_3d=False)
+        dashboard.open(server.address)
+        taps_of_a_spectator(dashboard)
+        dashboard.open(f"{server.address}?token={TOKEN}")
+        fits_and_is_accessible(dashboard)
+        assert dashboard.complaints == []
+
+
+def taps_of_a_spectator(dashboard: Dashboard) -> None:
+    """Who leads, a replay of one's own, why, and settings of one's own."""
+    page = dashboard.page
+    # Without a tap: who leads and why, and no more than may be shown at once.
+    expect(dashboard.headline).to_have_text(re.compile("leads|level"))
+    expect(dashboard.headline).to_be_in_viewport(ratio=1)
+    dashboard.stand_in_for_stage()
+    shown, budget = shown_on(page), BUDGETS["Watch"]
+    assert shown.controls <= budget.controls
+    assert shown.words <= budget.words
+    # One: a replay of one's own. The stage stays where it is while the page is read.
+    dashboard.button("Replay on this page").tap()
+    expect(page.get_by_role("slider", name="Moment of your replay")).to_be_visible()
+    stage = page.get_by_role("region", name="Stage", exact=True)
+    expect(stage).to_be_in_viewport(ratio=1)
+    dashboard.button("Live").tap()
+    # At most two: the step, explained.
+    page.get_by_role("tab", name="Why").tap()
+    expect(page.get_by_role("region", name="Explanation")).to_contain_text("moved legs")
+    # Three: what thirty robots make of one's own α.
+    dashboard.group("Depth").get_by_role("button", name="Study").tap()
+    page.get_by_role("tab", name="What if").tap()
+    dashboard.button("Try other settings").tap()
+    alpha = page.get_by_role("spinbutton", name="Learning rate, as a number")
+    alpha.fill("0.2")
+    expect(page.get_by_role("img", name=re.compile("^These settings: "))).to_be_visible()
+
+
+def fits_and_is_accessible(dashboard: Dashboard) -> None:
+    """No tab of any depth scrolls sideways, is too small for a thumb, or fails axe."""
+    page = dashboard.page
+    found: dict[str, list[str]] = {}
+    for depth, tab in each_tab(dashboard):
+        for size in (NARROW, PHONE):
+            page.set_viewport_size(size)
+            if (width := dashboard.scroll_width()) > size["width"]:
+                found[f"{depth} {tab} at {size['width']}"] = [f"{width} px wide"]
+        expect(dashboard.headline).to_be_in_viewport(ratio=1)
+        if too_small := dashboard.small_targets(THUMB_PX):
+            found[f"{depth} {tab} targets"] = too_small
+        for theme in THEMES:
+            page.emulate_media(color_scheme=theme)
+            if violations := dashboard.violations():
+                found[f"{depth} {tab} {theme}"] = violations
+    assert found == {}
