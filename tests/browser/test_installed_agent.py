@@ -153,9 +153,10 @@ def test_a_sweep_tries_its_values(client: httpx2.Client) -> None:
 def test_the_page_changes_it_during_a_training(
     dashboard: Dashboard, served: Serving, client: httpx2.Client
 ) -> None:
-    dashboard.open(f"{served.address}?agent=wanderer&simulator=kinematic&steps=100000&pace=4")
+    form = {"agent": "wanderer", "simulator": "kinematic", "steps": 100_000, "pace": 4}
+    dashboard.open(served.link(**form, depth="study", tab="train"))
     page = dashboard.page
-    dashboard.unfold_settings()
+    dashboard.unfold("More settings")
     expect(page.get_by_label("Optimism")).to_have_value("0.5")
     dashboard.button("Train, don’t race").click()
     expect(page.get_by_role("slider", name="Exploration now ε")).to_be_visible()

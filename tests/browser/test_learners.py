@@ -50,11 +50,13 @@ def changed(dashboard: Dashboard) -> dict[str, Any]:
 
 def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
-    dashboard.open(f"{server.address}?{LONG}")
+    dashboard.open(f"{server.address}?{LONG}&depth=try&tab=train")
     expect(trace_decay(dashboard)).to_have_count(0)
     learner(dashboard).select_option("Sarsa(λ)")
     expect(trace_decay(dashboard)).to_have_value("0.9")
+    dashboard.open_tab("Board")
     expect(dashboard.start_list.first).to_contain_text("Sarsa(λ)")
+    dashboard.open_tab("Train")
     trace_decay(dashboard).fill("0.5")
     expect(page).to_have_url(re.compile(r"agent=sarsa-lambda.*trace_decay=0\.5"))
 
@@ -88,8 +90,8 @@ def test_settings_of_the_learner_act_on_its_training(dashboard: Dashboard, serve
 
 def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
-    dashboard.open(f"{server.address}?{SHORT}")
-    dashboard.unfold_settings()
+    dashboard.open(f"{server.address}?{SHORT}&depth=study&tab=train")
+    dashboard.unfold("Race")
     page.get_by_role("checkbox", name="Two-step", exact=True).uncheck()
     learner(dashboard).select_option("Sarsa(λ)")
     expect(page.get_by_role("checkbox", name="Sarsa(λ)", exact=True)).to_be_checked()
@@ -104,6 +106,7 @@ def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, serve
     expect(page.get_by_role("checkbox", name="Sarsa(λ)", exact=True)).to_be_checked()
 
     dashboard.primary.click()
+    dashboard.open_tab("Board")
     dashboard.eventually(dashboard.has_figures, "the scoreboard fills")
     configs = {one["config"]["agent"]: one["config"] for one in trainings(dashboard)}
     assert set(configs) == {"q-learning", "sarsa-lambda"}

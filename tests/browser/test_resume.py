@@ -46,6 +46,7 @@ def test_an_interrupted_training_goes_on_at_a_click(tmp_path: Path, dashboard: D
         dashboard.button("Resume").click()
         expect(note).to_have_count(0)
         dashboard.eventually(lambda: done(dashboard) > left_at, "another step")
+        dashboard.choose_depth("Try")
         dashboard.button("Stop").click()
 
 

@@ -17,9 +17,10 @@ SHORT = urlencode({"steps": 60, "simulator": "kinematic", "evaluate_every": 0})
 
 def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
-    dashboard.open(f"{server.address}?{SHORT}")
-    panel = page.get_by_role("region", name="What if?")
-    expect(panel).to_contain_text("Move a slider")
+    dashboard.open(f"{server.address}?{SHORT}&depth=study")
+    # It is tried as it is once the tab is open, and again whenever a setting comes to rest.
+    panel = dashboard.open_tab("What if")
+    expect(panel).to_contain_text("Ideal (no slip)")
     before = dashboard.primary.bounding_box()
 
     page.get_by_role("slider", name="Learning rate α").fill("0.8")
@@ -31,10 +32,10 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
     assert dashboard.primary.bounding_box() == before
     assert dashboard.violations() == []
 
-    page.get_by_label("Learner", exact=True).select_option("Linear model")
+    chooses_learner(dashboard, "Linear model")
     expect(panel).to_contain_text("Ideal (no slip)")
     expect(chosen).to_have_accessible_name(re.compile(r" 30 of 30 walk\."))
-    page.get_by_label("Learner", exact=True).select_option("Q-learning")
+    chooses_learner(dashboard, "Q-learning")
 
     practice = page.get_by_role("spinbutton", name="Practice, as a number")
     practice.fill("5000")
@@ -45,6 +46,7 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
     practice.fill("60")
     expect(panel).not_to_contain_text("at most")
 
+    dashboard.open_tab("Train")
     expect(dashboard.button("Practise 60 more, don’t race")).to_have_count(0)
     dashboard.button("Train, don’t race").click()
     dashboard.button("Practise 60 more, don’t race").click()
@@ -52,6 +54,12 @@ def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Se
     second, first = trainings(dashboard)
     assert second["config"]["continue_from"] == first["id"]
     assert second["config"]["settings"]["alpha"] == 0.8
+
+
+def chooses_learner(dashboard: Dashboard, title: str) -> None:
+    """Choose another learner where the next training is set, and come back."""
+    dashboard.open_tab("Train").get_by_label("Learner", exact=True).select_option(title)
+    dashboard.open_tab("What if")
 
 
 def trainings(dashboard: Dashboard) -> list[dict[str, Any]]:
@@ -62,13 +70,12 @@ def trainings(dashboard: Dashboard) -> list[dict[str, Any]]:
 def test_a_server_that_is_away_is_told_and_asked_again(
     dashboard: Dashboard, server: Serving
 ) -> None:
-    page = dashboard.page
-    dashboard.open(server.address)
-    panel = page.get_by_role("region", name="What if?")
-    # The page is live before it has the options that its forms are made of.
-    expect(panel).to_contain_text("Move a slider")
+    dashboard.open(server.link(depth="study"))
+    # The tab has what it needs, and asks once it is open.
+    dashboard.open_tab("Train")
     server.kill()
-    panel.get_by_role("button", name="Try the settings as they are").click()
+    expect(dashboard.connection).to_have_text("reconnecting")
+    panel = dashboard.open_tab("What if")
     expect(panel.get_by_role("alert")).to_contain_text("does not answer")
     expect(panel.get_by_role("button", name="Try again")).to_be_visible()
     dashboard.complaints.clear()
