@@ -35,6 +35,7 @@ from hexapods.assembly import build_walkers
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import from_json, to_json
+from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
 from hexapods.runs.best_known import best_known_in_race_m
@@ -52,7 +53,7 @@ from hexapods.trainings import Table, Training, learned_by, training_from_bytes
 CONFIG = "config"
 """Array of a saved race with its config as JSON."""
 _DIGEST = "digest"
-_LANE_ARGUMENTS = ("table", "observation", "keep_learning", "plans_with")
+_LANE_ARGUMENTS = ("table", *declared_fields(LaneConfig))
 
 
 class Lane(NamedTuple):
@@ -184,7 +185,8 @@ def lane(
         observation: how it reads its state; with a table as in the practice, else `measured`.
         keep_learning: whether it learns from each step of the race; None for its default.
         plans_with: model that a search plans with; see `LaneConfig`.
-        settings: the agent's settings; none with a table, which has those of its practice.
+        settings: further fields of `LaneConfig`, and the agent's settings; none of these with a
+            table, which has those of its practice.
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.

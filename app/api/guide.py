@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from markdown_it.token import Token
 
 CONTENTS = (
-    ("Start", ("tutorial", "worlds", "replays", "comparing", "spectators", "exports")),
+    ("Start", ("page", "tutorial", "worlds", "replays", "comparing", "spectators", "exports")),
     ("Experiments", ("experiments", "figures", "python", "operations")),
     ("How it works", ("learners", "linear-model", "search", "explanations", "gait-analysis")),
     ("Inside", ("architecture",)),

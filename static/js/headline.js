@@ -159,6 +159,8 @@ export function ruleOf(rows, clockTitle) {
 const LONGER = 0.1;
 /** Steps in which a robot marches on the spot, by the board's rule; and in which two lanes "began". */
 const FEW_STEPS = 10;
+/** A share of the time for thinking that is worth a sentence. */
+const LEAST_THOUGHT = 0.005;
 /** Fewer steps before or after a disturbance tell nothing of it. */
 const FEWEST_STEPS = 3;
 /** Steps after a disturbance are shorter at least by this share, if it is to be the reason. */
@@ -293,7 +295,7 @@ export function workOf(winner, tracks, time, steps) {
   const ends_m = track ? stepEnds(track, time) : null;
   if (!track || !ends_m) return null;
   const { thought, walked: walking } = timeSpent(track, time);
-  if (thought + walking <= 0) return null;
+  if (thought < LEAST_THOUGHT * (thought + walking) || thought + walking <= 0) return null;
   const share = percentage(thought / (thought + walking));
   return `It thought for ${share} of the time, and made ${whole(ends_m.length - 1)} steps of ${whole(steps)}.`;
 }

@@ -282,3 +282,19 @@ export function beginningOf(agent, name, values) {
   const [first] = namesOfSymbol(live_settings[name].symbol, Object.entries(settings));
   return values[name] ?? values[first ?? ""] ?? null;
 }
+
+// ---- where the fields of the form are
+
+export const ROBOT_FIELDS = ["robot", "simulator", "divisions", "grid_side_m", "tolerance"];
+/** Fields beside the learner's main settings that those who try see. */
+const TRIED_FIELDS = ["agent", "steps", "gait", "world"];
+
+/**
+ * The tab in which a field of the form is, and whether only those who study see it.
+ * @param {string} field
+ * @param {string} agent the chosen learner
+ */
+export const placeOf = (field, agent) => ({
+  tab: ["world", "disturb", ...ROBOT_FIELDS].includes(field) ? "world" : "train",
+  isFull: !TRIED_FIELDS.includes(field) && !mainSettings(agent).some(({ name }) => name === field),
+});

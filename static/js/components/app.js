@@ -3,13 +3,12 @@ import { announcement } from "../headline.js";
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { page } from "../page-state.js";
-import { clickedCell, isPhone, nextTheme, present, share, theme, toastMessage } from "../page.js";
+import { clickedCell, helpIsOpen, isPhone, nextTheme, present, share, theme, toastMessage } from "../page.js";
 import { card, closeLesson, openLesson } from "../lesson.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
 import { html, Icon, Loaded, loaded } from "./elements.js";
-import { HelpDialog } from "./help.js";
 import { toggleHelp } from "./keyboard.js";
 import { LessonCard } from "./lesson.js";
 import { Panel, ThumbTabs } from "./panel.js";
@@ -22,7 +21,7 @@ export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
   <${Header} />
   <main id="main" tabindex="-1"><${Main} /></main>
-  <${HelpDialog} />
+  <${Help} />
   <${Toast} />
   <p class="sr-only" role="status">${announcement}</p>
 `;
@@ -77,6 +76,11 @@ function Workspace({ isHidden }) {
     </div>
   `;
 }
+
+const loadHelp = () => import("./help.js").then(({ HelpDialog }) => HelpDialog);
+
+/** Loaded when it is first opened, and there since then. */
+const Help = () => (helpIsOpen.value || loaded.value.help) && html`<${Loaded} name="help" load=${loadHelp} />`;
 
 const loadDesk = () => import("./desk.js").then(({ Desk }) => Desk);
 

@@ -10,14 +10,13 @@ import { ignored, page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
-import { agentOf, learners } from "../settings.js";
+import { agentOf, learners, placeOf } from "../settings.js";
 import { scene } from "../store.js";
 import { inFormWords } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
 import {
   EstimateNote, goToField, Held, html, Icon, Loaded, Problem, ProgressBar, UnknownParts,
 } from "./elements.js";
-import { placeOf } from "./settings.js";
 
 /** @import { Run } from "../types.js" */
 
@@ -61,10 +60,21 @@ function showField(field) {
   const { agent, lanes } = form.value;
   const owner = learners.value.find(({ name, settings }) => lanes.includes(name) && field in settings);
   if (owner && !(field in agentOf(agent).settings)) chooseLearner(owner.name);
-  const place = placeOf(field);
+  const place = placeOf(field, form.value.agent);
   if (place.isFull) setDepth("study");
   openTab(place.tab);
-  requestAnimationFrame(() => goToField(`field-${field}`));
+  goWhenThere(`field-${field}`);
+}
+
+/** The tab of a field may be loaded first. */
+const LONGEST_WAIT_MS = 5000;
+
+/** Focus a field as soon as it is there. @param {string} id */
+function goWhenThere(id, since = performance.now()) {
+  requestAnimationFrame(() => {
+    if (document.getElementById(id)) goToField(id);
+    else if (performance.now() - since < LONGEST_WAIT_MS) goWhenThere(id, since);
+  });
 }
 
 const busyLabel = () => {
@@ -87,7 +97,7 @@ function MissingLane() {
 
 /** The tabs in which runs are prepared; on a phone the others need the room. */
 const hasRoomForOthers = () =>
-  isAtLeast("try") && ["train", "world", ...(isPhone.value ? [] : ["board"])].includes(tab.value);
+  isAtLeast("try") && (tab.value === "train" || (!isPhone.value && tab.value === "board"));
 
 const SecondaryActions = () => html`
   <div class="others">

@@ -132,7 +132,7 @@ export function ActionValues() {
       <h3 id="action-values-title" title=${ABOUT}>Values in this state [mm]</h3>
       <${Values} known=${known} />
       ${known.visits && isAtLeast("study") && html`<${ValuesKey} />`}
-      <p class="next-move"><${NextMove} known=${known} /></p>
+      ${isAtLeast("study") && html`<p class="next-move"><${NextMove} known=${known} /></p>`}
     </section>
   `;
 }

@@ -15,8 +15,10 @@ import { firstWish, legKinds } from "./world-controls.js";
 /** @import { Disturbance, Run } from "../types.js" */
 /** @import { Pick } from "../legs.js" */
 
+export const Legs = () => html`<${LegMarks} /><${LegMenu} />`;
+
 /** The numbers of the legs of the followed robot, to choose from. */
-export function LegMarks() {
+function LegMarks() {
   const group = useRef(/** @type {HTMLElement | null} */ (null));
   const lane = legsOf.value;
   useEffect(() => {
@@ -51,7 +53,7 @@ export function LegMarks() {
 const EDGE_PX = 12;
 const BESIDE_PX = 40;
 
-export function LegMenu() {
+function LegMenu() {
   const at = picked.value;
   return at && html`<${MenuAt} at=${at} key=${`${at.lane} ${at.what} ${at.leg}`} />`;
 }

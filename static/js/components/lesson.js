@@ -15,7 +15,7 @@ export function LessonCard() {
     <section class="card-bar" aria-label="Lesson">
       <span class="card-number">Card ${cardNumber} of ${cards.value.length}</span>
       <p aria-live="polite"><b>${shown.title}${/[?.]$/.test(shown.title) ? "" : "."}</b>${" "}
-        ${!isPhone.value && html`<span>${shown.ask && outcome.value ? "" : shown.text}</span>`}</p>
+        <span>${shown.ask && (outcome.value || isPhone.value) ? "" : shown.text}</span></p>
       ${shown.ask && html`<${Prediction} />`}
       <button class="secondary compact" onClick=${() => turnCard(1)}>${isLast ? "Done" : "Next"}</button>
       ${isAtLeast("try") && html`

@@ -1,24 +1,18 @@
 // The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import { practiseAtPaceOfPicture } from "../live-changes.js";
-import { whole } from "../format.js";
 import { headline, leaderColor, moveTold, practiceTitle, reason } from "../headline.js";
-import { heldRace, liveTraining, phase, shownRun, steering } from "../on-stage.js";
+import { phase, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { replayProblem } from "../replay.js";
 import { isOperator } from "../selectors.js";
-import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
+import { scale } from "../time.js";
 import {
   canPin, isAtLeast, isPanelHidden, openTab, pinnedTab, tab, tabAbout, tabs, tabTitle, togglePin,
 } from "../workspace.js";
 import { Board, Facts } from "./board.js";
 import { html, Icon, Loaded } from "./elements.js";
 import { Foot } from "./foot.js";
-import { LearningChart } from "./learning.js";
-import { TrainSettings, WorldSettings } from "./settings.js";
-import { WhatIf } from "./what-if.js";
-import { Branch, LiveWorld } from "./world-controls.js";
 
 /** @import { FunctionComponent } from "preact" */
 
@@ -139,6 +133,9 @@ export function ThumbTabs() {
 // ---- what the open tab shows
 
 const loadRemote = () => import("./remote.js").then(({ Remote }) => Remote);
+const loadTrain = () => import("./train-tab.js").then(({ TrainTab }) => TrainTab);
+const loadWorld = () => import("./world-tab.js").then(({ WorldTab }) => WorldTab);
+const loadWhatIf = () => import("./what-if.js").then(({ WhatIf }) => WhatIf);
 const loadWhy = () => import("./steps/why.js").then(({ Why }) => Why);
 const loadTable = () => import("./steps/table.js").then(({ Table }) => Table);
 const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
@@ -146,12 +143,12 @@ const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 /** @type {Record<string, FunctionComponent>} */
 const CONTENTS = {
   "board": Board,
-  "train": TrainTab,
-  "world": WorldTab,
+  "train": () => html`<${Loaded} name="training settings" load=${loadTrain} />`,
+  "world": () => html`<${Loaded} name="world" load=${loadWorld} />`,
   "why": () => html`<${Loaded} name="explanation" load=${loadWhy} />`,
   "gait": () => html`<${Loaded} name="gait analysis" load=${loadGait} />`,
   "table": () => html`<${Loaded} name="table" load=${loadTable} />`,
-  "what-if": WhatIf,
+  "what-if": () => html`<${Loaded} name="what-if" load=${loadWhatIf} />`,
 };
 
 /** @param {{ name: string }} props */
@@ -197,86 +194,4 @@ function useFade(host) {
     return () => watcher.disconnect();
   }, []);
   return follows;
-}
-
-// ---- Train
-
-function TrainTab() {
-  return html`
-    <div class="train-tab">
-      <${TrainSettings} />
-      <${Steering} />
-      <${LearningChart} />
-    </div>
-  `;
-}
-
-/** What a live setting acts on while the computation is ahead of the picture: its next step, or the next training. */
-function Steering() {
-  const state = steering.value;
-  if (state === null) return null;
-  const isOver = state === "computed";
-  const words = isOver
-    ? html`<b>Acts on the next training:</b> this one is computed to its end; the picture is still on its way.`
-    : html`<b>Acts from step ${whole(state.step)}</b>, which is computed next${seenStep(state)}.`;
-  return html`
-    <div class="steering" role="note">
-      <p>${words}</p>
-      <button class="link" onClick=${practiseAtPaceOfPicture}>
-        ${isOver ? "Let the next one practise" : "Practise on"} at the pace of the picture, to steer it
-      </button>
-    </div>
-  `;
-}
-
-/** @param {{ shown: number | null }} state */
-const seenStep = ({ shown }) => (shown === null ? "; it is not on stage" : `; the picture shows step ${whole(shown)}`);
-
-// ---- World
-
-/** What can be disturbed now comes before the world of the next run. */
-function WorldTab() {
-  const canDisturb = liveTraining.value !== null || heldRace.value !== null;
-  return html`
-    <div class="world-tab">
-      ${canDisturb && html`<${FromNow} />`}
-      <${Happened} />
-      <${WorldSettings} />
-      ${!canDisturb && html`
-        <p class="dim fine">
-          Hold a race that has been computed, or start a training: then its robots can be disturbed here, or by a click
-          on a leg.
-        </p>
-      `}
-    </div>
-  `;
-}
-
-const FromNow = () => html`
-  <section aria-label="From the moment shown">
-    <h3>From the moment shown${shownMoment()}</h3>
-    ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
-  </section>
-`;
-
-const shownMoment = () => (scale.value ? `, ${positionInWords(scale.value, scale.value.picture)}` : "");
-
-/** What happened in the run on stage so far, each with a way to its moment. */
-function Happened() {
-  const all = marks.value.filter(({ kind }) => ["disturbance", "fall", "change"].includes(kind));
-  const known = scale.value;
-  if (!known || !all.length) return null;
-  return html`
-    <details class="more happened-list" open>
-      <summary>What happened<span class="dim"> · ${all.length}</span></summary>
-      <ul>
-        ${all.map((one) => html`
-          <li>
-            <b class="num">${positionInWords(known, one.at)}</b> <span>${markInWords(one)}</span>
-            <button class="link" onClick=${() => seekTo(one.at, { isHeld: true })}>Go there</button>
-          </li>
-        `)}
-      </ul>
-    </details>
-  `;
 }

@@ -7,7 +7,7 @@ import { liveTraining, trainingInView } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,
-  settingOf, sliderOf,
+  ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
 import { choicesOf, gaitTitle, labelOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
@@ -69,15 +69,6 @@ export const WorldSettings = () => html`
     `}
   </fieldset>
 `;
-
-/** Fields beside the learner's main settings that those who try see. */
-const TRIED_FIELDS = ["agent", "steps", "gait", "world"];
-
-/** The tab in which a field of the form is, and whether only those who study see it. @param {string} field */
-export const placeOf = (field) => ({
-  tab: ["world", "disturb", ...ROBOT_FIELDS].includes(field) ? "world" : "train",
-  isFull: !TRIED_FIELDS.includes(field) && !mainSettings(form.value.agent).some(({ name }) => name === field),
-});
 
 /**
  * Settings that are folded into one line. `fields` are those inside: one that is not valid is named by the summary.
@@ -262,8 +253,6 @@ const MoreSettings = () => html`
 `;
 
 // ---- the robot
-
-const ROBOT_FIELDS = ["robot", "simulator", "divisions", "grid_side_m", "tolerance"];
 
 function robotChosen() {
   const { robot, simulator, tolerance } = form.value;

@@ -5,19 +5,17 @@ import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
 import { metres, sentence, times, whole } from "../format.js";
 import { page } from "../page-state.js";
-import { closeLegs, legPoints, legsOf, picked } from "../legs.js";
+import { closeLegs, legPoints, legsAreOpen, legsOf, picked } from "../legs.js";
 import { clickedCell, drawHere, shownTheme } from "../page.js";
-import { standings } from "../race.js";
 import { closeReplay, drawIn, isBuffering, replayProblem } from "../replay.js";
 import {
-  conditionsShown, isDecided, playbackName, raceScene, resumableOnStage, shownRun,
+  conditionsShown, isDecided, playbackName, resumableOnStage, shownRun,
 } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
 import { isAtLeast } from "../workspace.js";
-import { html, Icon, Problem } from "./elements.js";
-import { LegMarks, LegMenu } from "./leg-menu.js";
+import { html, Icon, Loaded, Problem } from "./elements.js";
 
 /** @import { Message } from "../replay-frames.js" */
 /** @import { Scene } from "../types.js" */
@@ -56,8 +54,7 @@ export function Stage() {
         <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
         ${(status === "loading" || isRefused(status)) && html`<${StagePlaceholder} status=${status} />`}
         <${StageLabels} />
-        <${LegMarks} />
-        <${LegMenu} />
+        ${legsAreOpen.value && html`<${Loaded} name="legs" load=${loadLegs} />`}
         <${StageNotes} />
         <${ReplayProblem} />
         ${isAway && html`
@@ -70,6 +67,8 @@ export function Stage() {
     </section>
   `;
 }
+
+const loadLegs = () => import("./leg-menu.js").then(({ Legs }) => Legs);
 
 /**
  * Take what the frame tells: clicks, places of legs, and its status.
@@ -236,12 +235,11 @@ function StagePlaceholder({ status }) {
   `;
 }
 
-// ---- labels: the run, the speed, the lanes that think, the colours of the foot grid
+// ---- labels: the run, its conditions and speed, the colours of the foot grid
 
 const GRID_COLOURS = "Colours of the foot grid: dark is worth less, light is worth more, grey was never tried";
 
 function StageLabels() {
-  const thinking = (raceScene.value && !stage.value?.ended && standings.value?.filter((row) => row.isThinking)) || [];
   const labels = useRef(/** @type {HTMLElement | null} */ (null));
   const measure = () => measureChips(/** @type {HTMLElement} */ (labels.current));
   // After the page is painted: before, the browser would lay it out twice.
@@ -253,13 +251,6 @@ function StageLabels() {
   return html`
     <div class="labels" role="group" aria-label="Labels of the picture" ref=${labels}>
       <${SceneChips} />
-      <div class="chips">
-        ${thinking.map((row) => html`
-          <p class="chip thinker" style=${{ "--agent": row.color }} key=${row.lane}>
-            <span class="swatch"></span>${row.title} is thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)}
-          </p>
-        `)}
-      </div>
       ${scene.value?.action_values && html`
         <p class="chip legend" aria-label=${GRID_COLOURS}>
           worth less<span class="ramp" aria-hidden="true"></span>more<i aria-hidden="true"></i>never tried

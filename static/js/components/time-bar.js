@@ -4,7 +4,7 @@ import { endAtTimeOut, setStage, skipToEnd } from "../actions.js";
 import { canPlay, clock, isPlaying, playbackName, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
-import { closeReplay, openReplay, stepReplay } from "../replay.js";
+import { closeReplay, openReplay, replayProblem, stepReplay } from "../replay.js";
 import { percent, shareOf, ticks } from "../scale.js";
 import { isOperator } from "../selectors.js";
 import { scene, stage } from "../store.js";
@@ -24,7 +24,7 @@ export function TimeBar() {
   return html`
     <div class=${`time-bar ${isOwn ? "own" : ""}`} role="group" aria-label="Time">
       ${known && html`<${PlayButton} />`}
-      ${isOwn && html`<${StepButtons} />`}
+      ${isOwn && known && html`<${StepButtons} />`}
       ${known ? html`<${Track} known=${known} />` : html`<p class="dim no-time">${nothingToSee()}</p>`}
       ${isOneLaneLeft(scene.value) && canPlay.value && html`
         <button class="quiet square" onClick=${skipToEnd} aria-label="Skip to the end" title="Skip to the end">
@@ -39,7 +39,7 @@ export function TimeBar() {
 }
 
 const nothingToSee = () => {
-  if (page.run.value !== null) return "Loading your replay…";
+  if (page.run.value !== null) return replayProblem.value ? "No run is shown." : "Loading your replay…";
   return stage.value?.run_id ? "Its first steps are being computed." : "The robots stand on the start line.";
 };
 

@@ -177,7 +177,7 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb 
   });
   return html`
     <div class="slider disturb">
-      <label for=${id}>${kind.title}</label>
+      <label for=${id} title=${kind.description}>${kind.title}</label>
       <input type="range" id=${id} min=${ends.min} max=${ends.max} step=${ends.step} value=${at} disabled=${isDisabled}
         style=${shareIn(at, ends)} aria-valuetext=${words} aria-describedby=${`${id}-help`} ...${handlers(kind.size)} />
       <output class="num" for=${id}>${words}</output>
@@ -192,7 +192,7 @@ function KindSlider({ kind, conditions, config: { robot, simulator }, onDisturb 
           As built
         </button>
       `}
-      <p class="sentence" id=${`${id}-help`}>${kind.description}</p>
+      <p class=${isAtLeast("study") ? "sentence" : "sr-only"} id=${`${id}-help`}>${kind.description}</p>
     </div>
     ${isAtLeast("study") && others.map(([name, setting]) => {
       const more = {

@@ -14,12 +14,12 @@ const MAX_MOVES = 6;
 const SHORTEST_BAR = 0.02;
 
 /**
- * `isFull`: with the update of its values, as the rule with its numbers.
+ * `isFull`: with where its feet were, and the update of its values as the rule with its numbers.
  * @param {{ told: Explanation, isFull: boolean }} props
  */
 export const ExplainedStep = ({ told, isFull }) => html`
   <div class="told">
-    <${Happened} told=${told} />
+    ${isFull && html`<${Happened} told=${told} />`}
     <${Choice} told=${told} />
     ${isFull && html`<${Update} told=${told} />`}
   </div>

@@ -1,0 +1,53 @@
+// The tab of the world: what can be disturbed now, what has happened, and the world of the next run.
+import { heldRace, liveTraining } from "../on-stage.js";
+import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
+import { html } from "./elements.js";
+import { WorldSettings } from "./settings.js";
+import { Branch, LiveWorld } from "./world-controls.js";
+
+/** What can be disturbed now comes before the world of the next run. */
+export function WorldTab() {
+  const canDisturb = liveTraining.value !== null || heldRace.value !== null;
+  return html`
+    <div class="world-tab">
+      ${canDisturb && html`<${FromNow} />`}
+      <${Happened} />
+      <${WorldSettings} />
+      ${!canDisturb && html`
+        <p class="dim fine">
+          Hold a race that has been computed, or start a training: then its robots can be disturbed here, or by a click
+          on a leg.
+        </p>
+      `}
+    </div>
+  `;
+}
+
+const FromNow = () => html`
+  <section aria-label="From the moment shown">
+    <h3>From the moment shown${shownMoment()}</h3>
+    ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
+  </section>
+`;
+
+const shownMoment = () => (scale.value ? `, ${positionInWords(scale.value, scale.value.picture)}` : "");
+
+/** What happened in the run on stage so far, each with a way to its moment. */
+function Happened() {
+  const all = marks.value.filter(({ kind }) => ["disturbance", "fall", "change"].includes(kind));
+  const known = scale.value;
+  if (!known || !all.length) return null;
+  return html`
+    <details class="more happened-list" open>
+      <summary>What happened<span class="dim"> · ${all.length}</span></summary>
+      <ul>
+        ${all.map((one) => html`
+          <li>
+            <b class="num">${positionInWords(known, one.at)}</b> <span>${markInWords(one)}</span>
+            <button class="link" onClick=${() => seekTo(one.at, { isHeld: true })}>Go there</button>
+          </li>
+        `)}
+      </ul>
+    </details>
+  `;
+}
