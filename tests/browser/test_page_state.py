@@ -89,7 +89,7 @@ def test_what_a_link_says_in_vain_is_told(dashboard: Dashboard, shared_server: S
     for valid in ("watch, try, study", "board, train, world, why", "race, experiments, runs"):
         expect(told).to_contain_text(valid)
     # A field of the form keeps its text, in the link too; the page beside it is as ever.
-    expect(dashboard.start_list.first).to_be_visible()
+    expect(dashboard.scoreboard).to_be_visible()
     expect(dashboard.primary).to_have_attribute("aria-disabled", "true")
     expect(page).to_have_url(f"{shared_server.address}?steps=many")
     assert dashboard.violations() == []

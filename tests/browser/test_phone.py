@@ -55,7 +55,7 @@ def taps_of_a_spectator(dashboard: Dashboard) -> None:
     dashboard.button("Live").tap()
     # At most two: the step, explained.
     page.get_by_role("tab", name="Why").tap()
-    expect(page.get_by_role("region", name="Explanation")).to_contain_text("moved legs")
+    expect(page.get_by_role("region", name="Explanation")).to_contain_text("Why this move")
     # Three: what thirty robots make of one's own α.
     dashboard.group("Depth").get_by_role("button", name="Study").tap()
     page.get_by_role("tab", name="What if").tap()

@@ -157,7 +157,7 @@ def overlaps(dashboard: Dashboard) -> list[tuple[str, str]]:
 
 
 def test_the_values_of_the_state_are_a_table(dashboard: Dashboard, server: Serving) -> None:
-    dashboard.open(f"{server.address}?{LONG}&depth=try&tab=train")
+    dashboard.open(f"{server.address}?{LONG}&depth=study&tab=train")
     dashboard.button("Train, don’t race").click()
     panel = dashboard.open_tab("Why")
     values = panel.get_by_role("region", name="Values in this state").get_by_role("table")

@@ -60,7 +60,7 @@ def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_serve
     # Who watches has the reason, and a way back.
     dashboard.choose_depth("Watch")
     dashboard.panel.get_by_role("button", name=re.compile("^Explain")).click()
-    expect(told).to_contain_text("Q-learning moved legs")
+    expect(told).to_contain_text("Why this move")
     expect(told).not_to_contain_text("new value")
     dashboard.panel.get_by_role("button", name="Back to the board").click()
     expect(dashboard.scoreboard).to_be_visible()

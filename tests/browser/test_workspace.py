@@ -20,11 +20,10 @@ TABS = {
 }
 BUDGETS = {"Watch": Shown(12, 150), "Try": Shown(40, 220), "Study": Shown(60, 300)}
 OVER_BUDGET = {
-    "practising Try Why": Shown(40, 280),
-    "racing Try Why": Shown(40, 290),
+    "practising Try Why": Shown(40, 250),
+    "racing Try Why": Shown(40, 260),
     "ended Watch ": Shown(12, 185),
-    "ended Try World": Shown(42, 245),
-    "ended Try Why": Shown(40, 290),
+    "ended Try Why": Shown(40, 262),
 }
 """What does not keep its budget yet, and how much it shows: to be cut, never to be raised."""
 DESK: ViewportSize = {"width": 1440, "height": 900}
