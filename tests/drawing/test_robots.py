@@ -1,6 +1,7 @@
 """Legs to which something has happened, ghosts of the original race, and what name labels say."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,8 +28,10 @@ def looks(
 ) -> dict[int, list[Look]]:
     """Return the looks of the parts of each leg of a lane's robot; leg 0 is the torso."""
     nodes, found = scene_nodes(server), dict[int, list[Look]]()
-    for number, part in enumerate(RobotMesh(spec.robot).parts):
-        node, count = nodes[f"/world/run/{root}/{number}"], len(part.links)
+    mesh = RobotMesh(spec.robot)
+    for number, part in enumerate(mesh.parts):
+        name = mesh.part_name(number) if root == "robots" else number
+        node, count = nodes[f"/world/run/{root}/{name}"], len(part.links)
         colors = node["batched_colors"].reshape(-1, 3)[lane * count :][:count]
         scales = node["batched_scales"]
         own = np.ones(count) if scales is None else scales[lane * count :][:count]
@@ -37,6 +40,25 @@ def looks(
             leg = 0 if link == 1 else 1 + (int(link) - 2) // 4
             found.setdefault(leg, []).append((tuple(color), scale))
     return found
+
+
+def torsos(server: InProcessViser) -> dict[str, Any]:
+    """Return the properties of the first batch of the robots."""
+    node: dict[str, Any] = scene_nodes(server)["/world/run/robots/0/torso"]
+    return node
+
+
+def test_batches_are_named_by_whose_links_their_instances_are() -> None:
+    mesh = RobotMesh(race_of(1).robot)
+    names = [mesh.part_name(number) for number in range(len(mesh.parts))]
+
+    assert names[0] == "0/torso"
+    assert [name.partition("/")[0] for name in names] == [str(n) for n in range(len(names))]
+    for name, part in zip(names, mesh.parts, strict=True):
+        # The page finds by it which leg was picked: instance n is a link of the nth leg named.
+        legs = name.partition("/legs-")[2].split("-") if "/legs-" in name else []
+        assert len(legs) in (0, len(part.links)), name
+    assert any("/legs-1-2-3-4-5-6" in name for name in names)
 
 
 def test_limp_leg_is_grey_and_a_lost_one_is_not_drawn(server: InProcessViser) -> None:
@@ -81,7 +103,7 @@ def test_scene_without_disturbances_sends_no_scales(server: InProcessViser) -> N
     spec = race_of(1)
     StageScene(server).draw(frame_of(spec, lane_in(spec)))
 
-    assert scene_nodes(server)["/world/run/robots/0"]["batched_scales"] is None
+    assert torsos(server)["batched_scales"] is None
 
 
 def test_original_is_a_ghost_on_the_lane_of_the_fork(server: InProcessViser) -> None:
@@ -99,7 +121,7 @@ def test_original_is_a_ghost_on_the_lane_of_the_fork(server: InProcessViser) -> 
 
     assert 0 < node["opacity"] < 1
     y = node["batched_positions"].reshape(2, -1, 3)[0, 0, 1]
-    robot = scene_nodes(server)["/world/run/robots/0"]["batched_positions"].reshape(2, -1, 3)
+    robot = torsos(server)["batched_positions"].reshape(2, -1, 3)
     assert y - robot[0, 0, 1] == pytest.approx(0.4, abs=1e-6)
     parts = looks(server, spec, root="ghost-robots")
     assert {scale for leg in parts.values() for _, scale in leg} == {1.0}, "it has all its legs"

@@ -55,7 +55,7 @@ def test_frames_of_the_page_are_the_joint_positions_that_were_simulated(parts: S
         segment, arrays = decoded(base64.b64decode(blocks[f"segment-{number}"]))
         time_s = segment["frames"][-1]["time_s"]
         state = shown(segment["frames"], arrays)
-        moved = f"{SCENE_ROOT}/robots/0 batched_positions"
+        moved = f"{SCENE_ROOT}/robots/{mesh.part_name(0)} batched_positions"
         drawn = np.frombuffer(state[moved], np.float32).reshape(len(LANES), -1, 3)
         for lane, view in enumerate(replay.frame_at(time_s).lanes):
             expected = mesh.body_poses(view.qpos).positions[mesh.parts[0].links]

@@ -36,7 +36,7 @@ class Visit:
     def __init__(self, dashboard: Dashboard, data: Path, chance: random.Random) -> None:
         self._dashboard, self._data, self._chance = dashboard, data, chance
         self._server = Serving(data)
-        dashboard.open(self._server.address)
+        dashboard.open(self._server.link(depth="try", tab="board"))
 
     def close(self) -> None:
         self._server.stop()
@@ -193,7 +193,7 @@ class Words:
                 wrong.append(f"headline of a race that is {race['state']}: {self._headline}")
             wrong += [f"a rank: {row}" for row in self._rows if not row.startswith("–")]
         elif stage["ended"] and race["state"] == "finished":
-            if not re.search(r" wins| tie:", self._headline):
+            if not re.search(r" wins | tie$", self._headline):
                 wrong.append(f"headline of a finished race: {self._headline}")
             ranks = sorted(int(row.split()[0]) for row in self._rows)
             if ranks != sorted(one["rank"] for one in figures):
@@ -201,7 +201,7 @@ class Words:
         elif not stage["ended"] and re.search("Stopped|Interrupted|Failed", self._headline):
             wrong.append(f"an end before the end: {self._headline}")
         is_timed_out = time_out_s is not None and stage["time_s"] >= time_out_s - 0.01
-        if re.search(" wins| tie:", self._headline) and not is_timed_out:
+        if re.search(" wins | tie$", self._headline) and not is_timed_out:
             wrong.append(f"an outcome before time-out: {self._headline}")
         return wrong
 
