@@ -1,6 +1,7 @@
 """The dashboard's page and files: compression, entity tags, preloads."""
 
 import gzip
+import re
 from pathlib import Path
 
 import pytest
@@ -125,28 +126,24 @@ def test_accepted_encodings(header: str, *, expected: bool) -> None:
     assert accepts_gzip(header) is expected
 
 
+def imported_later(script: Path, folder: Path) -> list[str]:
+    """Return the modules that a script imports when they are first needed."""
+    # In comments stand types of modules.
+    found = re.findall(r'import\("(\.[^"]+)"\)(?:\.then\(|;)', script.read_text("utf-8"))
+    modules = [(script.parent / path).resolve() for path in found]
+    return [module.relative_to(folder.resolve().parent).as_posix() for module in modules]
+
+
 def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Api) -> None:
     page = api.client.get("/").text
     folder = assets.static_dir()
     modules = imported_modules("static/js/main.js", folder)
-    lazy = (
-        "experiments/experiments",
-        "runs/runs",
-        "compare/compare",
-        "steps/steps",
-        "gait",
-        "audience",
-    )
-    opened = {
-        *(f"static/js/components/{name}.js" for name in (*lazy, "chart-files", "own-choices")),
-        "static/js/spectators.js",
-        # Of files that play a replay offline.
-        "static/js/offline/player.js",
-    }
+    scripts = [*(folder / "js").rglob("*.js")]
+    opened = {path for script in scripts for path in imported_later(script, folder)}
+    opened.add("static/js/offline/player.js")  # of files that play a replay offline
     later = {path for one in opened for path in imported_modules(one, folder)} - {*modules}
 
-    every = {*(folder / "js").rglob("*.js")}
-    assert {folder.parent / path for path in (*modules, *later)} == every
+    assert {folder.parent / path for path in (*modules, *later)} == {*scripts}
     assert opened <= later
     assert not [module for module in later if module in page]
     for module in [*modules, *(f"static/vendor/{p.name}" for p in folder.glob("vendor/*.js"))]:
