@@ -142,9 +142,10 @@ class Child:
     def kill(self) -> None:
         """Kill it (SIGKILL) and its group: at once, or as soon as it starts."""
         self.is_killed = True
+        pid = self.pid  # another thread may end it meanwhile
         with suppress(ValueError):  # it has ended
-            if self.pid is not None and self._process.is_alive():
-                _kill_group(self.pid)
+            if pid is not None and self._process.is_alive():
+                _kill_group(pid)
                 self._process.kill()  # it may have no group yet
 
     def end(self) -> int | None:
