@@ -14,10 +14,10 @@ from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
-STEPS = 20
+STEPS = 8
 SHORT = {
     "steps": STEPS,
-    "evaluate_every": 5,
+    "evaluate_every": 2,
     "race_steps": 5,
     "simulator": "kinematic",
     "lanes": "q-learning,greedy",

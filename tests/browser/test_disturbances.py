@@ -35,11 +35,15 @@ def test_a_leg_is_broken_while_a_robot_practises(
     dashboard: Dashboard, flat_browser: Browser, shared_server: Serving
 ) -> None:
     page = dashboard.page
-    # Where there is room, the curve stays beside the controls.
     page.set_viewport_size({"width": 1920, "height": 1080})
-    dashboard.open(f"{shared_server.address}?{LONG}&depth=study&tab=world&pinned=train")
+    dashboard.open(f"{shared_server.address}?{LONG}&depth=study&tab=train")
+    # Where there is room, the curve stays beside the controls.
+    dashboard.button("Pin this tab").click()
+    dashboard.open_tab("World")
     expect(page.get_by_role("group", name="Legs, seen from above")).to_have_count(0)
+    dashboard.open_tab("Board")
     dashboard.button("Train, don’t race").click()
+    dashboard.open_tab("World")
     beside = page.get_by_role("region", name="Pinned: Train")
     curve = beside.get_by_role("img", name=re.compile("^Learning curve"))
     walks = re.compile(r"^Learning curve: 0\.[45]\d\sm after.*; best known 0\.5\d\sm\.$")
@@ -112,8 +116,9 @@ def tells_others(browser: Browser, server: Serving) -> None:
 def only_sensors_of_an_ideal_robot(dashboard: Dashboard, server: Serving) -> None:
     """It has no ground and no servos."""
     page = dashboard.page
-    dashboard.open(f"{server.address}?{IDEAL}&depth=study&tab=world")
+    dashboard.open(f"{server.address}?{IDEAL}&depth=study&tab=train")
     dashboard.button("Train, don’t race").click()
+    dashboard.open_tab("World")
     expect(disturbances_now(dashboard)).to_contain_text("only sensor noise can happen there")
     expect(dashboard.button("Leg 1")).to_have_attribute("aria-disabled", "true")
     expect(page.get_by_role("slider", name="Slope", exact=True)).to_be_disabled()

@@ -13,8 +13,8 @@ pytestmark = pytest.mark.timeout(300)
 
 SHORT = urlencode(
     {
-        "steps": 20,
-        "evaluate_every": 10,
+        "steps": 4,
+        "evaluate_every": 2,
         "race_steps": 3,
         "simulator": "kinematic",
         "lanes": "q-learning,greedy",

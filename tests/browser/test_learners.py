@@ -13,7 +13,7 @@ from tests.browser.serving import Serving
 pytestmark = pytest.mark.timeout(300)
 
 SHORT = urlencode(
-    {"steps": 20, "evaluate_every": 0, "race_steps": 3, "simulator": "kinematic", "alpha": 0.5}
+    {"steps": 6, "evaluate_every": 0, "race_steps": 3, "simulator": "kinematic", "alpha": 0.5}
 )
 LONG = urlencode({"steps": 100_000, "pace": 8})
 SMALL_SWEEP = urlencode(
@@ -114,7 +114,7 @@ def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, serve
     assert configs["sarsa-lambda"]["settings"]["trace_decay"] == 0.9
     assert "trace_decay" not in configs["q-learning"]["settings"]
 
-    expect(dashboard.primary).to_have_text("Practise 20 more, race again")
+    expect(dashboard.primary).to_have_text("Practise 6 more, race again")
     dashboard.primary.click()
     dashboard.eventually(lambda: len(trainings(dashboard)) == 4, "the trainings that continue")
     first, second, *before = trainings(dashboard)

@@ -13,22 +13,21 @@ from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
 
-SHORT = urlencode({"steps": 20, "evaluate_every": 10, "race_steps": 3})
+SHORT = urlencode({"steps": 8, "evaluate_every": 4, "race_steps": 3})
 LONG = urlencode({"steps": 100_000, "pace": 8})
 
 
 @pytest.mark.looks_at_3d
 def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
-    page.set_viewport_size({"width": 1440, "height": 900})
     dashboard.open(f"{server.address}?{SHORT}&depth=study&tab=train")
     expect(dashboard.shown_run).to_have_text("On the start line")
     before = dashboard.picture()
 
-    expect(dashboard.primary).to_have_text("Train 20 steps, then race")
+    expect(dashboard.primary).to_have_text("Train 8 steps, then race")
     dashboard.primary.click()
 
-    expect(dashboard.shown_run).to_contain_text("of 20")
+    expect(dashboard.shown_run).to_contain_text("of 8")
     dashboard.open_tab("Board")
     expect(dashboard.standings).to_be_visible()
     dashboard.eventually(lambda: dashboard.picture() != before, "the robots move in the canvas")
@@ -61,14 +60,14 @@ def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> No
     dashboard.open(f"{server.address}?{SHORT}&depth=study&tab=board")
     expect(dashboard.headline).to_have_text(verdict)
     check_widths_of_the_scoreboard(dashboard)
-    expect(dashboard.primary).to_have_text("Practise 20 more, race again")
+    expect(dashboard.primary).to_have_text("Practise 8 more, race again")
     dashboard.primary.click()
     dashboard.choose_depth("Watch")
-    expect(dashboard.scoreboard).to_contain_text("40 steps of practice")
-    expect(dashboard.primary).to_have_text("Practise 20 more, race again")
+    expect(dashboard.scoreboard).to_contain_text("16 steps of practice")
+    expect(dashboard.primary).to_have_text("Practise 8 more, race again")
 
     runs = dashboard.get("/api/v1/trainings")["items"]
-    assert [run["progress"]["done"] for run in runs] == [20, 20]
+    assert [run["progress"]["done"] for run in runs] == [8, 8]
     assert runs[0]["config"]["continue_from"] == runs[1]["id"]
     assert dashboard.complaints == []
 
@@ -98,7 +97,7 @@ def check_crosshairs(dashboard: Dashboard) -> None:
         re.compile(r"^0 steps: Q-learning 0\.00\sm, Greedy \d\.\d\d\sm, Best known 0\.51\sm$"),
     )
     curve.press("ArrowRight")
-    expect(curve).to_have_attribute("aria-valuetext", re.compile("^10 steps: "))
+    expect(curve).to_have_attribute("aria-valuetext", re.compile("^4 steps: "))
 
 
 def check_widths_of_the_scoreboard(dashboard: Dashboard) -> None:
