@@ -190,6 +190,7 @@ def test_a_custom_robot_stays_whole_from_link_to_run_to_form(
 
     dashboard.open(shared_server.link(**link, depth="study"))
     expect_custom_robot()
+    dashboard.open_tab("Train")
     dashboard.button("Train, don’t race").click()
     page.get_by_role("link", name="Runs").click()
     row = dashboard.runs.filter(has_text=name)

@@ -71,11 +71,11 @@ def test_a_server_that_is_away_is_told_and_asked_again(
     dashboard: Dashboard, server: Serving
 ) -> None:
     dashboard.open(server.link(depth="study"))
-    # The tab has what it needs, and asks once it is open.
-    dashboard.open_tab("Train")
+    panel = dashboard.open_tab("What if")
+    expect(panel).to_contain_text("Ideal (no slip)")
     server.kill()
     expect(dashboard.connection).to_have_text("reconnecting")
-    panel = dashboard.open_tab("What if")
+    panel.get_by_role("slider", name="Learning rate α").fill("0.8")
     expect(panel.get_by_role("alert")).to_contain_text("does not answer")
     expect(panel.get_by_role("button", name="Try again")).to_be_visible()
     dashboard.complaints.clear()
