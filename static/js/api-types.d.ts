@@ -276,6 +276,20 @@ export interface Evaluation {
   epsilon: number;
 }
 /**
+ * Thinned learning curves, of the runs that have one, in the order of their ids.
+ */
+export interface CurvesView {
+  curves: ThinnedCurve[];
+}
+/**
+ * A few points of a training's learning curve, by step.
+ */
+export interface ThinnedCurve {
+  id: string;
+  steps: number[];
+  distances_m: (number | null)[];
+}
+/**
  * The sequence of steps that the walk repeats at its end, at least three times.
  *
  * `first_step` is counted from 0; `actions` are [pair, cell]; `advance_m` is of one period.
@@ -529,6 +543,10 @@ export interface SnapshotView {
 export interface TrainingView {
   id: string;
   name: string;
+  /**
+   * whether somebody named it; else its name tells its config
+   */
+  is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   can_resume: boolean;
   queue_position: number | null;
@@ -655,6 +673,10 @@ export interface TrainingResult {
 export interface RaceView {
   id: string;
   name: string;
+  /**
+   * whether somebody named it; else its name tells its config
+   */
+  is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   can_resume: boolean;
   queue_position: number | null;
@@ -836,6 +858,10 @@ export interface FiguresUnderClock {
 export interface ExperimentView {
   id: string;
   name: string;
+  /**
+   * whether somebody named it; else its name tells its config
+   */
+  is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   can_resume: boolean;
   queue_position: number | null;

@@ -356,6 +356,17 @@ class RunStore:
         """Return a training's curve so far, by step: `step`, `distance_m`, `epsilon`."""
         return self._curves.get(run_id)
 
+    def thinned_evaluations(
+        self, run_ids: Collection[str], most: int
+    ) -> Mapping[str, Sequence[tuple[int, float]]]:
+        """Return a few points of several curves, with one query: by id (step, distance [m]).
+
+        Args:
+            run_ids: ids of trainings; those without evaluations have no entry.
+            most: points of a curve at most, at even distances; the newest is one of them.
+        """
+        return self._curves.thinned(run_ids, most)
+
     def delete_evaluations(self, run_id: str, after_step: int) -> None:
         """Delete the rows of a training's curve after this step."""
         self._curves.delete_after(run_id, after_step)
