@@ -45,15 +45,18 @@ def experiment_name(config: ExperimentConfig) -> str:
 
 
 def is_named(run: Run) -> bool:
-    """Return whether a run has another name than the one that is made of its config."""
+    """Return whether a run has another name than those made of its config, here or by 0.1."""
     config = run.config
     if isinstance(config, TrainingConfig):
-        return run.name != training_name(config, is_continued=run.continued_from is not None)
+        made = training_name(config, is_continued=run.continued_from is not None)
+        earlier = f"{whole(config.steps)} steps: {config.resolved_gait.title}"
+        return run.name not in (made, earlier)
     if isinstance(config, ExperimentConfig):
         return run.name != experiment_name(config)
     if config.branch_from is not None:
         return not run.name.endswith(_branch_end(config.branch_from.step))
-    return run.name != race_name(config)
+    earlier = f"Race: {config.resolved_gait.title}"
+    return run.name not in (race_name(config), earlier)
 
 
 def _branch_end(step: int) -> str:

@@ -19,7 +19,7 @@ import { curveOf, followCurves } from "./training.js";
 export const MAX_COMPARED = 8;
 const LETTERS = "ABCDEFGH";
 /** Of runs, which may all have the same agent: Okabe and Ito's colours, and dashes for who cannot tell them apart. */
-const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8A6D3B", "#7F7F7F"];
+export const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8A6D3B", "#7F7F7F"];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 3], [12, 3, 2, 3, 2, 3], [1, 2], [14, 5]];
 
 // ---- which runs: `#compare?runs=a,b,c`
@@ -150,9 +150,8 @@ const DISTURBANCES = [
     (run.kind === "training" ? changesInWords(run.config.agent, rateChanges(run)).join(", ") || NOTHING : null)],
 ];
 
-/** The settings of the runs side by side. */
-export const comparedSettings = computed(() => {
-  const all = comparable.value.map(runOf);
+/** The settings of trainings and races side by side. @param {Run[]} all */
+export function settingRows(all) {
   const agents = [...new Set(all.flatMap(({ config: { agent } }) => (agent ? [agent] : [])))];
   const own = Object.entries(settingsOf(agents)).map(([name, setting]) =>
     row(name, fullTitle(setting), all.map(({ config }) =>
@@ -166,7 +165,10 @@ export const comparedSettings = computed(() => {
   const told = (/** @type {typeof SETTINGS} */ list) =>
     list.map(([name, title, cell]) => row(name, title, all.map(cell)));
   return [...told(SETTINGS), ...plain, ...own, ...told(DISTURBANCES)].filter(isTold);
-});
+}
+
+/** The settings of the runs that are compared. */
+export const comparedSettings = computed(() => settingRows(comparable.value.map(runOf)));
 
 /** Whether any run has something of a row. @param {Row} row */
 const isTold = ({ cells }) => cells.some((one) => one !== null && one !== NOTHING);

@@ -65,8 +65,11 @@ def test_a_run_tells_whether_somebody_named_it(api: Api) -> None:
     other = api.start("/races", {"branch_from": branch, "disturbances": [slope]})
     assert (other["name"], other["is_named"]) == (f"{race['name']}, from step 2", False)
     assert [api.finished(other)["is_named"], race["is_named"]] == [False, False]
-    api.call("PATCH", f"/runs/{run['id']}", json={"name": "My first"})
-    assert api.look(run)["is_named"]
+    path = f"/runs/{run['id']}"
+    assert api.call("PATCH", path, json={"name": "My first"}).json()["is_named"]
+    # As version 0.1 made them.
+    earlier = {"name": "5 steps: Left-right, opposite"}
+    assert not api.call("PATCH", path, json=earlier).json()["is_named"]
     assert api.call("POST", f"/runs/{more['id']}/again").json()["is_named"] is False
 
 

@@ -1,0 +1,130 @@
+// A run in words: its name, what is told beside it, and what came of it.
+import { paceOf } from "./experiments/runs.js";
+import { count, distanceApart, metres, percentage, sentence, whole } from "./format.js";
+import { commonInWords, differenceInWords, fieldsOf, variedIn } from "./run-settings.js";
+import { distanceOf } from "./runs.js";
+import { isActive } from "./selectors.js";
+import { agentOf } from "./settings.js";
+import { references } from "./store.js";
+import { describeRun, runTitle } from "./titles.js";
+
+/** @import { AnyRun } from "./runs.js" */
+/** @import { LaneResult, Run } from "./types.js" */
+
+// ---- names
+
+/** Whether a person has named a run; a damaged one has the name that could be read. @param {AnyRun} run */
+export const isNamed = (run) => "damaged" in run || run.is_named;
+
+/** The name of a run by itself. @param {AnyRun} run */
+export function titleOf(run) {
+  if ("damaged" in run) return run.name || `A ${run.kind ?? "run"} that cannot be read`;
+  return run.kind === "experiment" ? runTitle(run) : run.name || sentence(run.kind);
+}
+
+/** Words that begin a line: a symbol stays as it is. @param {string} words */
+export const beginning = (words) => (/^[a-z]/.test(words) ? sentence(words) : words);
+
+/**
+ * What is told of a run beside its name: what its name has, and what is by default, is left out.
+ * @param {Run} run
+ */
+export function factsOf(run) {
+  if (run.kind === "experiment") return [describeRun(run)];
+  const title = titleOf(run).toLowerCase();
+  return commonInWords([fieldsOf(run)], []).filter((fact) => !title.includes(fact.toLowerCase()));
+}
+
+// ---- what came of it
+
+/** @param {Run} run @returns {number | null} */
+export const greedyOf = ({ id, kind, greedy_distance_m, result }) =>
+  (kind === "training" ? greedy_distance_m ?? references.value[id] ?? result?.greedy_distance_m ?? null : null);
+
+/** Share of greedy's distance on the same robot; null where either is not known. @param {Run} run */
+export function shareOf(run) {
+  const [own, greedy] = [distanceOf(run), greedyOf(run)];
+  return run.kind === "training" && own !== null && greedy ? percentage(own / greedy) : null;
+}
+
+/** The lanes of a race at time-out under the paper clock, the first before the others. @param {Run} run */
+export const ranked = ({ result }) => (result?.lanes ?? [])
+  .map((lane, number) => ({ number, lane, ...lane.clocks.paper }))
+  .sort((a, b) => (a.rank ?? Infinity) - (b.rank ?? Infinity));
+
+/**
+ * The first lane of a race; null without ranks, and of a race that was stopped before its time-out, which earlier
+ * versions ranked.
+ * @param {Run} run
+ * @returns {LaneResult | null}
+ */
+export function winnerOf(run) {
+  const [first] = ranked(run);
+  const isTimedOut = run.result?.lanes?.some(({ steps }) => steps >= run.config.steps);
+  return first?.rank === 1 && isTimedOut ? first.lane : null;
+}
+
+/** The result of a run in short: "0.33 m", "Greedy 0.32 m"; empty without one. @param {AnyRun} run */
+export function resultInWords(run) {
+  if ("damaged" in run) return "";
+  if (run.kind === "experiment") return paceOf(run).label;
+  const distance = distanceOf(run);
+  if (run.kind === "training") return run.result ? metres(distance) : "";
+  const winner = winnerOf(run);
+  return winner ? `${agentOf(winner.agent).title} ${metres(distance)}` : "";
+}
+
+/** A name with what came of it: "500 steps, α 0.3 → 0.33 m". @type {(name: string, run: AnyRun) => string} */
+export const withResult = (name, run) => [name, resultInWords(run)].filter(Boolean).join(" → ");
+
+/** A walk that gains under a centimetre in ten steps is none; it has fifty. */
+const MARCHING_M = 0.05;
+const LEVEL_M = 0.01;
+
+/** What came of a run besides its distance: "marching on the spot", "Greedy 3 cm before Sarsa". @param {Run} run */
+export function outcomeInWords(run) {
+  if (run.kind === "experiment") return paceOf(run).label;
+  if (isActive(run)) return run.progress.total ? percentage(run.progress.done / run.progress.total) : "";
+  if (run.kind === "race") return marginInWords(run);
+  const { distance_m = null, fell_at_step: fell = null } = run.result ?? {};
+  const early = run.state === "finished" ? "" : `after ${count(run.progress.done, "step")}`;
+  const walk = distance_m !== null && Math.abs(distance_m) < MARCHING_M ? "marching on the spot" : "";
+  const backwards = distance_m !== null && distance_m <= -MARCHING_M ? "walks backwards" : "";
+  const fall = fell === null || run.kind !== "training" ? "" : `fell at step ${whole(fell + 1)}`;
+  return run.kind === "training" ? [early, walk, backwards, fall].filter(Boolean).join(", ") : "";
+}
+
+/** By how much a race was won. @param {Run} run */
+function marginInWords(run) {
+  const winner = winnerOf(run);
+  const [first, second] = ranked(run);
+  const [a, b] = [first?.finished_distance_m ?? null, second?.finished_distance_m ?? null];
+  if (!winner || a === null || b === null) return "";
+  const [best, next] = [winner, second.lane].map(({ agent }) => agentOf(agent).title);
+  return a - b < LEVEL_M ? `${best} level with ${next}` : `${best} ${distanceApart(a - b)} before ${next}`;
+}
+
+// ---- names among others
+
+/** Runs that differ in more have their own names. */
+const MAX_TOLD = 3;
+
+/**
+ * Short names for runs that are shown together, by what they differ in: "α 0.3"; those that people gave stay.
+ * @param {AnyRun[]} runs
+ * @returns {string[]}
+ */
+export function namesAmong(runs) {
+  const [first] = runs;
+  const walks = runs.filter((run) => !("damaged" in run) && run.kind !== "experiment" && run.kind === first.kind);
+  const isAlike = walks.length === runs.length;
+  const fields = isAlike ? /** @type {Run[]} */ (walks).map(fieldsOf) : [];
+  const varied = variedIn(fields);
+  const isShort = varied.length > 0 && varied.length <= MAX_TOLD;
+  const names = runs.map((run, n) =>
+    (isNamed(run) || !isShort ? titleOf(run) : beginning(differenceInWords(fields[n], varied))));
+  return names.map((name, n) => {
+    const before = names.slice(0, n).filter((one) => one === name).length;
+    return before ? `${name} (${before + 1})` : name;
+  });
+}
