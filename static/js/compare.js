@@ -5,6 +5,7 @@ import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, duration, listed, metres, percentage, sentence, whole } from "./format.js";
 import { page } from "./page-state.js";
 import { formRobot } from "./robots.js";
+import { greedyOf, namesAmong } from "./run-words.js";
 import { absentIds, distanceOf, followRuns } from "./runs.js";
 import { isActive } from "./selectors.js";
 import { agentOf, choiceTitle, fullTitle, laneTitle, settingsOf } from "./settings.js";
@@ -51,8 +52,12 @@ export function followCompared() {
  * @property {string | null} problem
  */
 
-/** @param {Run} run */
-export const titleOf = (run) => run.name || sentence(run.kind);
+/** Names of the runs that are known, by what they differ in. @type {Signal<Map<string, string>>} */
+const names = computed(() => {
+  const known = comparedIds.value.flatMap((id) => runs.value.get(id) ?? []);
+  const all = namesAmong(known);
+  return new Map(known.map(({ id }, n) => [id, all[n]]));
+});
 
 /** @type {Signal<Compared[]>} */
 export const compared = computed(() =>
@@ -61,7 +66,7 @@ export const compared = computed(() =>
     const problem = problemOf(id, run);
     return {
       id, letter: LETTERS[number], color: COLOURS[number], dash: DASHES[number], problem,
-      title: run ? titleOf(run) : id, run: problem ? null : run,
+      title: names.value.get(id) ?? id, run: problem ? null : run,
     };
   }),
 );
@@ -185,9 +190,6 @@ function valueInWords(setting, value) {
 const lanesOf = ({ result }) => result?.lanes ?? [];
 /** @param {LaneResult} lane */
 const atTimeOut = ({ clocks }) => clocks.paper.finished_distance_m;
-/** @param {Run} run @returns {number | null} */
-const greedyOf = ({ kind, greedy_distance_m, result }) =>
-  kind === "training" ? greedy_distance_m ?? result?.greedy_distance_m ?? null : null;
 /** @param {Run} run */
 const bestKnownOf = (run) => run.result?.best_known_m ?? run.best_known_m ?? null;
 

@@ -185,7 +185,7 @@ const onItsOwn = ({ length }) => (length === 1 ? "On its own" : "On their own");
 const trainingsOf = ({ config }) => (config.lanes ?? []).flatMap(({ training_id }) => training_id ?? []);
 
 /**
- * The race to which a run belongs: itself, the one from which it branches off, or the newest that used its table.
+ * The race to which a run belongs: itself, the one from which it branches off, or the first that used its table.
  * @param {AnyRun} run
  * @param {Map<string, Run>} races by the ids of their trainings and of themselves
  */
@@ -205,8 +205,8 @@ function raceOf(run, races) {
 function byRace(runs, everyRun) {
   /** @type {Map<string, Run>} */
   const races = new Map();
-  // The newest come first.
-  for (const race of everyRun.filter(({ kind }) => kind === "race")) {
+  // Not to another race, each time that it races again.
+  for (const race of everyRun.filter(({ kind }) => kind === "race").toReversed()) {
     for (const id of [race.id, ...trainingsOf(race)]) if (!races.has(id)) races.set(id, race);
   }
   /** @type {Map<string, Group>} */

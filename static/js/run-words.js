@@ -106,6 +106,17 @@ function marginInWords(run) {
 
 // ---- names among others
 
+/** The fields of trainings, or of races; none where runs are of several kinds. @param {AnyRun[]} all */
+export const fieldsOfAll = (all) =>
+  (all.every((run) => !("damaged" in run) && run.kind !== "experiment" && run.kind === all[0].kind)
+    ? /** @type {Run[]} */ (all).map(fieldsOf) : []);
+
+/** What runs have in common, in words. @param {AnyRun[]} all */
+export function commonFacts(all) {
+  const fields = fieldsOfAll(all);
+  return fields.length ? commonInWords(fields, variedIn(fields)) : [];
+}
+
 /** Runs that differ in more have their own names. */
 const MAX_TOLD = 3;
 
@@ -115,10 +126,7 @@ const MAX_TOLD = 3;
  * @returns {string[]}
  */
 export function namesAmong(runs) {
-  const [first] = runs;
-  const walks = runs.filter((run) => !("damaged" in run) && run.kind !== "experiment" && run.kind === first.kind);
-  const isAlike = walks.length === runs.length;
-  const fields = isAlike ? /** @type {Run[]} */ (walks).map(fieldsOf) : [];
+  const fields = fieldsOfAll(runs);
   const varied = variedIn(fields);
   const isShort = varied.length > 0 && varied.length <= MAX_TOLD;
   const names = runs.map((run, n) =>

@@ -49,7 +49,7 @@ function lanesOf(runs) {
     kind === "race" ? config.lanes.map(asStarted) : [{ agent: config.agent, training_id: id }]));
   // A training and a race that used its table have one lane together.
   const keyOf = (/** @type {Partial<LaneConfig>} */ lane) => lane.training_id ?? canonical(lane);
-  return [...new Map(all.map((lane) => [keyOf(lane), lane])).values()];
+  return all.filter((lane, n) => all.findIndex((other) => keyOf(other) === keyOf(lane)) === n);
 }
 
 /**

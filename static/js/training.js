@@ -141,7 +141,10 @@ export function followCurves(trainings) {
   let asked = new Set();
   const request = (/** @type {string} */ id) =>
     load(id).catch((/** @type {RequestError} */ error) => {
-      if (isLasting(error)) return;
+      if (isLasting(error)) {
+        asked.delete(id);
+        return;
+      }
       setTimeout(() => wanted.peek().split(" ").includes(id) && request(id), RETRY_MS);
     });
   effect(() => {

@@ -46,7 +46,7 @@ export function Name({ run, title }) {
     const [, maximum] = served().limits.name;
     return html`<${Editor} label="Name" field="name" text=${run.name} maximum=${maximum} save=${save} />`;
   }
-  return html`<h3>${title}</h3><${EditButton} run=${run} field="name" />`;
+  return html`<h2>${title}</h2><${EditButton} run=${run} field="name" />`;
 }
 
 /** @param {string} text */
@@ -94,7 +94,7 @@ export function Notes({ run }) {
   if (!notes) return html`<${Invitation} run=${run} field="notes" words="Add notes" />`;
   return html`
     <div class="kept-notes">
-      <h4>Notes <${EditButton} run=${run} field="notes" /></h4>
+      <h3>Notes <${EditButton} run=${run} field="notes" /></h3>
       <p class="notes">${notes}</p>
     </div>
   `;

@@ -40,7 +40,7 @@ function detailsOf(first) {
 
 /** @param {{ run: DamagedRun }} props */
 const Damaged = ({ run }) => html`
-  <header class="details-head"><h3>${titleOf(run)}</h3><${State} state="damaged" /></header>
+  <header class="details-head"><h2>${titleOf(run)}</h2><${State} state="damaged" /></header>
   <div class="details-body"><p class="bad">${run.damaged}</p><p class="dim">${run.id}</p></div>
   ${isOperator.value && html`
     <footer class="details-foot"><div class="row"><${DeleteButton} run=${run} /></div></footer>

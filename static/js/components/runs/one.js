@@ -19,7 +19,7 @@ export function OneCurve({ run }) {
   const { title, color } = agentOf(run.config.agent);
   return html`
     <section class="chart" aria-label="Learning curve">
-      <h4>Distance in 50 steps <span class="dim">against practice</span></h4>
+      <h3>Distance in 50 steps <span class="dim">against practice</span></h3>
       ${curve.points.length > 1
         ? html`<${CurvesChart} greedy=${greedyOf(run)}
             curves=${[{ id: run.id, name: title, label: metres(curve.points.at(-1)?.distance_m), color, curve }]} />`

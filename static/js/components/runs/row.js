@@ -65,7 +65,7 @@ export function State({ state, run, isTold = false }) {
     <span class=${state === "finished" && !isTold ? "sr-only" : `state ${state}`}>
       <i class="dot" aria-hidden="true"></i><span>${state}</span>
     </span>
-    ${(outcome || place) && html`<span class="dim outcome">${[place, outcome].filter(Boolean).join(", ")}</span>`}
+    ${(outcome || place) && html` <span class="dim outcome">${[place, outcome].filter(Boolean).join(", ")}</span>`}
   `;
 }
 

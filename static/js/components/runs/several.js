@@ -3,8 +3,8 @@ import { COLOURS, MAX_COMPARED } from "../../compare.js";
 import { count, metres } from "../../format.js";
 import { addressOf } from "../../page-state.js";
 import { bestPointOf, commonGreedy, isTraining, MAX_CURVES, repeatAddress, subjects } from "../../run-details.js";
-import { commonInWords, fieldsOf, titleOfSweep, variedIn } from "../../run-settings.js";
-import { namesAmong, resultInWords, shareOf } from "../../run-words.js";
+import { fieldsOf, titleOfSweep, variedIn } from "../../run-settings.js";
+import { commonFacts, fieldsOfAll, namesAmong, resultInWords, shareOf } from "../../run-words.js";
 import { distanceOf } from "../../runs.js";
 import { isOperator } from "../../selectors.js";
 import { curveOf } from "../../training.js";
@@ -25,8 +25,8 @@ export function Several() {
   const named = all.map((run, n) => ({ run, name: names[n], color: COLOURS[n % COLOURS.length] }));
   return html`
     <header class="details-head">
-      <h3>${titleOf(all)}</h3>
-      <p class="dim details-facts">${factsOf(all)}</p>
+      <h2>${titleOf(all)}</h2>
+      <p class="dim details-facts">${commonFacts(all).join(" · ")}</p>
     </header>
     <div class="details-body">
       <${Curves} named=${named} />
@@ -38,22 +38,11 @@ export function Several() {
   `;
 }
 
-/** Where all are of one kind, its fields. @param {AnyRun[]} all */
-const fieldsOfAll = (all) =>
-  (all.every((run) => !("damaged" in run) && run.kind !== "experiment" && run.kind === all[0].kind)
-    ? /** @type {Run[]} */ (all).map(fieldsOf) : []);
-
 /** "Sweep of α, 3 runs" @param {AnyRun[]} all */
 function titleOf(all) {
   const varied = variedIn(fieldsOfAll(all));
   const runs = count(all.length, "run");
   return varied.length === 1 ? `${titleOfSweep(/** @type {Run} */ (all[0]), varied)}, ${runs}` : runs;
-}
-
-/** @param {AnyRun[]} all */
-function factsOf(all) {
-  const fields = fieldsOfAll(all);
-  return fields.length ? commonInWords(fields, variedIn(fields)).join(" · ") : "";
 }
 
 /** Longer names would lie over their lines. */
@@ -70,7 +59,7 @@ function Curves({ named }) {
   if (shown.length === 0) return null;
   return html`
     <section class="chart" aria-label="Learning curves">
-      <h4>Distance in 50 steps <span class="dim">against practice</span></h4>
+      <h3>Distance in 50 steps <span class="dim">against practice</span></h3>
       <${CurvesChart} curves=${shown} greedy=${commonGreedy(shown.map(({ curve }) => curve.run))} />
       ${trainings.length > MAX_CURVES && html`<p class="dim fine">The first ${MAX_CURVES} of ${trainings.length}.</p>`}
     </section>
@@ -128,7 +117,7 @@ function Notes({ named }) {
   const noted = named.filter(({ run }) => "notes" in run && run.notes);
   return noted.length > 0 && html`
     <section class="kept-notes" aria-label="Notes">
-      <h4>Notes</h4>
+      <h3>Notes</h3>
       ${noted.map(({ run, name }) => html`
         <p class="notes" key=${run.id}><b>${name}: </b>${"notes" in run && run.notes}</p>
       `)}
