@@ -243,7 +243,7 @@ const byDay = (runs, now) =>
     .map(([day, own]) => groupOf(`day ${folded(day)}`, day, own));
 
 /** The ways to group, and their titles. */
-export const GROUPINGS = { sweep: "By sweep", race: "By race", day: "By day", none: "No groups" };
+export const GROUPING_TITLES = { sweep: "By sweep", race: "By race", day: "By day", none: "No groups" };
 
 /**
  * Runs in groups. Those of a group keep their order, but for a sweep that `isByValue`, and a race with its trainings.

@@ -25,14 +25,17 @@ export function titleOf(run) {
 /** Words that begin a line: a symbol stays as it is. @param {string} words */
 export const beginning = (words) => (/^[a-z]/.test(words) ? sentence(words) : words);
 
+/** A text as it is compared: names that people type have plain spaces. @param {string} text */
+const plain = (text) => text.toLowerCase().replaceAll("\u00a0", " ");
+
 /**
  * What is told of a run beside its name: what its name has, and what is by default, is left out.
  * @param {Run} run
  */
 export function factsOf(run) {
   if (run.kind === "experiment") return [describeRun(run)];
-  const title = titleOf(run).toLowerCase();
-  return commonInWords([fieldsOf(run)], []).filter((fact) => !title.includes(fact.toLowerCase()));
+  const title = plain(titleOf(run));
+  return commonInWords([fieldsOf(run)], []).filter((fact) => !title.includes(plain(fact)));
 }
 
 // ---- what came of it
@@ -66,8 +69,7 @@ export function winnerOf(run) {
 
 /** The result of a run in short: "0.33 m", "Greedy 0.32 m"; empty without one. @param {AnyRun} run */
 export function resultInWords(run) {
-  if ("damaged" in run) return "";
-  if (run.kind === "experiment") return paceOf(run).label;
+  if ("damaged" in run || run.kind === "experiment") return "";
   const distance = distanceOf(run);
   if (run.kind === "training") return run.result ? metres(distance) : "";
   const winner = winnerOf(run);
@@ -84,14 +86,25 @@ const LEVEL_M = 0.01;
 /** What came of a run besides its distance: "marching on the spot", "Greedy 3 cm before Sarsa". @param {Run} run */
 export function outcomeInWords(run) {
   if (run.kind === "experiment") return paceOf(run).label;
+  if (run.state === "queued") return "";
   if (isActive(run)) return run.progress.total ? percentage(run.progress.done / run.progress.total) : "";
-  if (run.kind === "race") return marginInWords(run);
-  const { distance_m = null, fell_at_step: fell = null } = run.result ?? {};
-  const early = run.state === "finished" ? "" : `after ${count(run.progress.done, "step")}`;
-  const walk = distance_m !== null && Math.abs(distance_m) < MARCHING_M ? "marching on the spot" : "";
-  const backwards = distance_m !== null && distance_m <= -MARCHING_M ? "walks backwards" : "";
-  const fall = fell === null || run.kind !== "training" ? "" : `fell at step ${whole(fell + 1)}`;
-  return run.kind === "training" ? [early, walk, backwards, fall].filter(Boolean).join(", ") : "";
+  return run.kind === "race" ? marginInWords(run) : practiceInWords(run);
+}
+
+/** @param {Run} run */
+function practiceInWords({ state, progress, result }) {
+  const { distance_m = null, fell_at_step: fell = null } = result ?? {};
+  return [
+    state === "finished" ? "" : `after ${count(progress.done, "step")}`,
+    distance_m === null ? "" : walkInWords(distance_m),
+    fell === null ? "" : `fell at step ${whole(fell + 1)}`,
+  ].filter(Boolean).join(", ");
+}
+
+/** What a distance says of the walk; empty of one that goes on. @param {number} distance_m */
+function walkInWords(distance_m) {
+  if (distance_m <= -MARCHING_M) return "walks backwards";
+  return distance_m < MARCHING_M ? "marching on the spot" : "";
 }
 
 /** By how much a race was won. @param {Run} run */

@@ -1,4 +1,4 @@
-// The details beside the list: of which runs they are, their curves in small and in full, and the same with several seeds.
+// The details beside the list: of which runs they are, the small curves of the list, and the same with several seeds.
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import { change, page } from "../../static/js/page-state.js";
@@ -49,7 +49,8 @@ function know(...runs) {
 
 beforeEach(() => {
   connection.value = "connecting";
-  change({ view: "race", selected: [], opened: null, isOverList: false, grouping: "none", list: new URLSearchParams() });
+  change({ view: "race", selected: [], opened: null, isOverList: false });
+  change({ grouping: "none", list: new URLSearchParams() });
   asked = [];
 });
 
@@ -74,7 +75,7 @@ test("details are of the first run, of the one that was opened, or of all that a
   assert.equal(page.isOverList.value, false);
 });
 
-test("small curves come with one request for as many runs as are answered at once, then with each evaluation", async () => {
+test("small curves come for as many runs at once as are answered, then with each evaluation", async () => {
   const runs = [trained({ seed: 1 }), trained({ seed: 2 }), trained({ seed: 3 })];
   know(...runs, makeRun({ kind: "race", name: "Final", config: { lanes: [] } }));
   change({ view: "runs" });

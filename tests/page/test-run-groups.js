@@ -15,8 +15,8 @@ import { makeRun, OPTIONS } from "./options.js";
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
 const { config } = makeRun({});
 
-/** @type {(changes?: object, more?: object) => Run} */
-const trained = ({ settings = {}, ...changes } = /** @type {any} */ ({}), more = {}) => makeRun({
+/** @type {(changes?: { settings?: object, [field: string]: unknown }, more?: object) => Run} */
+const trained = ({ settings = {}, ...changes } = {}, more = {}) => makeRun({
   name: "Learner, 500 steps", is_named: false,
   config: { ...config, ...changes, settings: { ...config.settings, ...settings } }, ...more,
 });

@@ -41,7 +41,9 @@ const PATHS = {
   columns: "M2.5 3h11v10h-11zM6.2 3v10M9.8 3v10",
   back: "M10 3 5 8l5 5",
 };
-const OUTLINED = new Set(["link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present", "pin", "panel", "columns", "back"]);
+const OUTLINED = new Set([
+  "link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present", "pin", "panel", "columns", "back",
+]);
 const SIZE = 16;
 
 /** An icon, drawn in the colour of the text beside it. @param {{ name: keyof typeof PATHS }} props */

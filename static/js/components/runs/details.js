@@ -5,7 +5,7 @@ import { isPhone } from "../../page.js";
 import { addressOf } from "../../page-state.js";
 import { closeDetails, isOfSelection, repeatAddress, subjects } from "../../run-details.js";
 import { runGroups } from "../../run-list.js";
-import { titleOf, withResult } from "../../run-words.js";
+import { outcomeInWords, titleOf, withResult } from "../../run-words.js";
 import { isOperator } from "../../selectors.js";
 import { describeRun } from "../../titles.js";
 import { html, Icon, Problem, ProgressBar } from "../elements.js";
@@ -59,7 +59,7 @@ function wholeName(run) {
 const One = ({ run }) => html`
   <header class="details-head">
     <${Name} run=${run} title=${withResult(wholeName(run), run)} />
-    <p class="details-state"><${State} state=${run.state} run=${run} isTold /></p>
+    <p class="details-state"><${State} state=${run.state} run=${run} outcome=${outcomeInWords(run)} isTold /></p>
     <${RunMenu} run=${run} label="More actions" />
   </header>
   <div class="details-body">

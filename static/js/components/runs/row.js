@@ -13,11 +13,16 @@ import { Thumbnail } from "./thumbnail.js";
 /** @import { AnyRun } from "../../runs.js" */
 /** @import { Run } from "../../types.js" */
 
+/** Beside a longer name there is no room: what came of the run stands below it. */
+const MAX_SHORT = 32;
+
 /** `hasNote`: whether notes stand in the row, and not above its group. @param {{ row: Row, hasNote: boolean }} props */
 export function RunRow({ row: { run, name, facts }, hasNote }) {
   const isOpen = subjects.value.length === 1 && subjects.value[0].id === run.id;
   const title = titleOf(run);
   const kind = run.kind ?? "run";
+  const outcome = "damaged" in run ? "" : outcomeInWords(run);
+  const isShort = name.length <= MAX_SHORT;
   return html`
     <li class=${`run ${isOpen ? "open" : ""}`}>
       <${Box} run=${run} title=${name === title ? title : `${name}: ${title}`} />
@@ -28,9 +33,11 @@ export function RunRow({ row: { run, name, facts }, hasNote }) {
             <button class="run-open" aria-current=${isOpen ? "true" : undefined} title=${title}
               onClick=${() => openDetails(run.id)}>${name}</button>
           </b>
-          ${"damaged" in run ? html`<${State} state="damaged" />` : html`<${State} state=${run.state} run=${run} />`}
+          ${"damaged" in run
+            ? html`<${State} state="damaged" />`
+            : html`<${State} state=${run.state} run=${run} outcome=${isShort ? outcome : ""} />`}
         </p>
-        <${Beside} run=${run} facts=${facts} hasNote=${hasNote} />
+        <${Beside} run=${run} facts=${isShort ? facts : [outcome, ...facts].filter(Boolean)} hasNote=${hasNote} />
       </div>
       <${Cells} run=${run} />
       <${RunMenu} run=${run} label=${`More for this ${kind}`} />
@@ -56,10 +63,9 @@ function Box({ run, title }) {
 
 /**
  * How a run stands, and what came of it; that it has finished is seen only where it `isTold`.
- * @param {{ state: string, run?: Run, isTold?: boolean }} props
+ * @param {{ state: string, run?: Run, outcome?: string, isTold?: boolean }} props
  */
-export function State({ state, run, isTold = false }) {
-  const outcome = run ? outcomeInWords(run) : "";
+export function State({ state, run, outcome = "", isTold = false }) {
   const place = run?.queue_position ? `no. ${run.queue_position}` : "";
   return html`
     <span class=${state === "finished" && !isTold ? "sr-only" : `state ${state}`}>

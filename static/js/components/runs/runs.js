@@ -2,7 +2,7 @@
 import { COLUMNS, shownColumns, toggleColumn } from "../../run-columns.js";
 import { followDetails } from "../../run-details.js";
 import { filters, followRunList, grouping, setFilters, setGrouping } from "../../run-list.js";
-import { GROUPINGS } from "../../run-groups.js";
+import { GROUPING_TITLES } from "../../run-groups.js";
 import { followThumbnails } from "../../run-thumbnails.js";
 import { page } from "../../page-state.js";
 import { isPhone } from "../../page.js";
@@ -57,7 +57,8 @@ function Head() {
         onInput=${(/** @type {Changed} */ { target }) => setFilters({ search: target.value })} />
       <${Segments} label="Kind" choices=${KINDS} value=${kind}
         onValue=${(/** @type {string} */ value) => setFilters({ kind: value })} />
-      <${Choice} label="Groups" choices=${Object.entries(GROUPINGS)} value=${grouping.value} onValue=${setGrouping} />
+      <${Choice} label="Groups" choices=${Object.entries(GROUPING_TITLES)} value=${grouping.value}
+        onValue=${setGrouping} />
       <${ViewMenu} />
       ${isOperator.value && html`<${ImportButton} />`}
     </div>

@@ -45,16 +45,16 @@ function titleOf(all) {
   return varied.length === 1 ? `${titleOfSweep(/** @type {Run} */ (all[0]), varied)}, ${runs}` : runs;
 }
 
-/** Longer names would lie over their lines. */
+/** Longer names would lie over the lines: then the colours of the table tell which is which. */
 const MAX_LABEL = 18;
-/** @param {string} name */
-const labelOf = (name) => (name.length > MAX_LABEL ? `${name.slice(0, MAX_LABEL - 1)}…` : name);
 
 /** @param {{ named: Named[] }} props */
 function Curves({ named }) {
   const trainings = named.filter(({ run }) => isTraining(run));
-  const curves = trainings.slice(0, MAX_CURVES).map(({ run, name, color }) =>
-    ({ id: run.id, name, label: labelOf(name), color, curve: curveOf(/** @type {Run} */ (run)) }));
+  const first = trainings.slice(0, MAX_CURVES);
+  const isShort = first.every(({ name }) => name.length <= MAX_LABEL);
+  const curves = first.map(({ run, name, color }) =>
+    ({ id: run.id, name, label: isShort ? name : "", color, curve: curveOf(/** @type {Run} */ (run)) }));
   const shown = curves.filter(({ curve }) => curve.points.length > 1);
   if (shown.length === 0) return null;
   return html`
