@@ -98,6 +98,9 @@ class RunView(Answer):
 
     id: str
     name: str
+    is_named: Annotated[
+        bool, Field(description="whether somebody named it; else its name tells its config")
+    ]
     state: State
     can_resume: bool
     queue_position: Annotated[int, Field(ge=1)] | None

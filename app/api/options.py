@@ -14,7 +14,8 @@ from app.api.deps import ServicesDep
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
 from app.archive.transfer import MAX_RUNS
-from app.jobs.submissions import MAX_SETTINGS, TITLES
+from app.jobs.submissions import MAX_SETTINGS
+from app.storage.run_names import TITLES
 from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
 from hexapods import __version__

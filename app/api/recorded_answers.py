@@ -27,6 +27,20 @@ class CurveView(Answer):
     best_known_m: float | None
 
 
+class ThinnedCurve(Answer):
+    """A few points of a training's learning curve, by step."""
+
+    id: str
+    steps: list[Count]
+    distances_m: list[float | None]
+
+
+class CurvesView(Answer):
+    """Thinned learning curves, of the runs that have one, in the order of their ids."""
+
+    curves: list[ThinnedCurve]
+
+
 class ActionValue(Answer):
     """Value of an action, [pair, cell], in a state, which is the cell of each pair."""
 

@@ -28,6 +28,7 @@ from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
 from app.api.explanation_answers import ExplanationView
 from app.api.fields import RunId
+from app.api.recorded_answers import CurvesView
 from app.api.run_code import run_code
 from app.api.schemas import AnnotationBody
 from app.archive.transfer import MAX_RUNS
@@ -35,9 +36,12 @@ from app.jobs.jobs import Jobs
 from app.jobs.submissions import CopyStart, Start
 from app.storage.database.listing import Listing
 from app.storage.errors import Conflict, Damaged, NotFound
+from app.storage.json_text import finite
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
 from hexapods.domain.text import MAX_TAG
 
+MAX_POINTS = 40
+"""Points of a thinned curve; its picture is a hundred pixels wide."""
 RunPath = Annotated[str, Path(description="id of the run")]
 RunIdsQuery = Annotated[
     list[RunId],
@@ -127,6 +131,25 @@ def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
         else:
             deleted.append(one)
     return JSONResponse({"deleted": deleted, "kept": kept})
+
+
+@router.get(
+    "/curves",
+    summary="Get a few points of several learning curves",
+    response_model=CurvesView,
+    description=(
+        f"Return up to {MAX_POINTS} points of each training's curve, at even distances and with "
+        "the newest, for small pictures. Runs without evaluations are left out."
+    ),
+)
+def get_curves(services: ServicesDep, ids: RunIdsQuery) -> Response:
+    """Return thinned curves; `GET /trainings/{run_id}/curve` has all points of one."""
+    found = services.store.curves.thinned(frozenset(ids), MAX_POINTS)
+    curves = [
+        {"id": one, "steps": [step for step, _ in points], "distances_m": [d for _, d in points]}
+        for one, points in sorted(found.items())
+    ]
+    return JSONResponse(finite({"curves": curves}))
 
 
 @router.get(

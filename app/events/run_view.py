@@ -10,6 +10,7 @@ from app.storage.run import (
     DamagedRun,
     Run,
 )
+from app.storage.run_names import is_named
 from hexapods.domain.records import to_json
 from hexapods.runs.best_known import best_known_in_race_m
 from hexapods.runs.config import TrainingConfig
@@ -47,6 +48,7 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
         "id": run.id,
         "kind": run.kind,
         "name": run.name,
+        "is_named": is_named(run),
         "state": run.state,
         "config": _config(run),
         "queue_position": queue_position,

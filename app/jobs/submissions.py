@@ -8,16 +8,15 @@ from typing import Any, Protocol
 
 from app.storage.database.store import RunStore
 from app.storage.run import Run
+from app.storage.run_names import branch_name, experiment_name, race_name, training_name
 from app.storage.stored_tables import load_table
-from hexapods.agents.appearance import name_of, title_of
 from hexapods.agents.q_table import MAX_VALUES, table_size
 from hexapods.agents.registry import check_problem, learns, needs_practice
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.observation import Observation
-from hexapods.domain.text import MAX_NAME, whole
-from hexapods.domain.world import WORLDS, check_ends
+from hexapods.domain.world import check_ends
 from hexapods.experiments.config import GRID, ExperimentConfig
 from hexapods.experiments.plan import Plan
 from hexapods.runs.config import TrainingConfig, WalkingProblem, problem_of
@@ -69,7 +68,7 @@ class TrainingStart:
         training = Run(
             id=new_id(),
             kind="training",
-            name=self.name or _training_name(config),
+            name=self.name or training_name(config, is_continued=self.continue_from is not None),
             config=config,
             continued_from=self.continue_from,
             total=config.steps,
@@ -128,7 +127,7 @@ class RaceStart:
         race = Run(
             id=new_id(),
             kind="race",
-            name=self.name or _race_name(config),
+            name=self.name or race_name(config),
             config=config,
             lane_training_ids=tuple(
                 ids.get(number, lane.training_id) for number, lane in enumerate(self.lanes)
@@ -138,30 +137,6 @@ class RaceStart:
             notes=self.notes,
         )
         return [*trainings.values(), race]
-
-
-def _training_name(config: TrainingConfig) -> str:
-    """Return a name by what trainings differ in: `Q-learning, α 0.5, 500 steps, ice`."""
-    practice = f"{name_of(config.agent, config.settings)}, {whole(config.steps)} steps"
-    return f"{practice}{_world_name(config)}"[:MAX_NAME]
-
-
-def _race_name(config: RaceConfig) -> str:
-    """Return a name by what races differ in: `Race: Q-learning, Greedy, Two-step, ice`."""
-    agents = dict.fromkeys(title_of(lane.agent) for lane in config.lanes)
-    return f"Race: {', '.join(agents)}{_world_name(config)}"[:MAX_NAME]
-
-
-def _world_name(problem: WalkingProblem) -> str:
-    """Return `, ice` for a named world in which something happens; else nothing."""
-    titles = [one.title.lower() for one in WORLDS.values() if one.world == problem.world]
-    return "".join(f", {title}" for title in titles if problem.world.disturbances)
-
-
-def _branch_name(original: str, step: int) -> str:
-    """Return the name of a branch; steps count from 1 there, as people count."""
-    end = f", from step {whole(step + 1)}"
-    return original[: MAX_NAME - len(end)] + end
 
 
 @dataclass(frozen=True)
@@ -208,7 +183,7 @@ class BranchStart:
         branch = Run(
             id=new_id(),
             kind="race",
-            name=self.name or _branch_name(original.name, step),
+            name=self.name or branch_name(original.name, step),
             config=replace(config, world=world, branch_from=self.branch),
             lane_training_ids=original.lane_training_ids,
             total=original.total,
@@ -328,13 +303,6 @@ def _check_agent(table: Checkpoint, agent: str, training_id: str) -> None:
         )
 
 
-TITLES = {
-    "table1": "Table 1",
-    "figure4": "Figure 4",
-    "sweep": "Sweep",
-    "league": "League",
-    "recovery": "Recovery",
-}
 MAX_SETTINGS = 2_000
 """All of them are summarised again and again while trials come in, and drawn in one report."""
 
@@ -360,11 +328,10 @@ class ExperimentStart:
         cores = os.cpu_count() or 1
         if workers is not None and workers > cores:
             raise InvalidInput(f"workers must be from 1 to {cores}, the cores of this machine")
-        seeds = "1 seed" if config.seeds == 1 else f"{whole(config.seeds)} seeds"
         experiment = Run(
             id=new_id(),
             kind="experiment",
-            name=self.name or f"{TITLES[config.experiment]}, {seeds}",
+            name=self.name or experiment_name(config),
             config=config,
             workers=workers,
             total=plan.total,

@@ -1,7 +1,7 @@
 """Persistent storage of runs: rows in a database, artifact files beside it.
 
 `database` is the store of runs, in SQLite or PostgreSQL; `run` defines what it stores, `errors` its
-exceptions.
+exceptions, `run_names` the names of runs that nobody has named.
 `artifacts` writes files atomically and verifies their SHA-256; `artifact_file` reads them in
 chunks; `disk_space` enforces the quota of the data folder.
 `recordings`, `stored_trainings` and `stored_races` hold the recorded motion that the stage replays.

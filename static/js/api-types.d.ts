@@ -279,6 +279,20 @@ export interface Evaluation {
   epsilon: number;
 }
 /**
+ * Thinned learning curves, of the runs that have one, in the order of their ids.
+ */
+export interface CurvesView {
+  curves: ThinnedCurve[];
+}
+/**
+ * A few points of a training's learning curve, by step.
+ */
+export interface ThinnedCurve {
+  id: string;
+  steps: number[];
+  distances_m: (number | null)[];
+}
+/**
  * The sequence of steps that a walk repeats at its end, at least three times.
  */
 export interface Cycle {
@@ -548,6 +562,10 @@ export interface SnapshotView {
 export interface TrainingView {
   id: string;
   name: string;
+  /**
+   * whether somebody named it; else its name tells its config
+   */
+  is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   can_resume: boolean;
   queue_position: number | null;
@@ -688,6 +706,10 @@ export interface TrainingResult {
 export interface RaceView {
   id: string;
   name: string;
+  /**
+   * whether somebody named it; else its name tells its config
+   */
+  is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   can_resume: boolean;
   queue_position: number | null;
@@ -888,6 +910,10 @@ export interface FiguresUnderClock {
 export interface ExperimentView {
   id: string;
   name: string;
+  /**
+   * whether somebody named it; else its name tells its config
+   */
+  is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   can_resume: boolean;
   queue_position: number | null;

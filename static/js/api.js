@@ -1,9 +1,9 @@
 // Client of the server: its REST API, one function per request, and its stream of events.
 import { computed, effect, untracked } from "@preact/signals";
 
-/** @import { Annotations, Curve, Disturbance, Explanation, GaitAnalysis, Kind, Options, Page } from "./types.js" */
-/** @import { Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary, Timeline, Trial } from "./types.js" */
-/** @import { Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Annotations, Curve, Curves, Disturbance, Explanation, GaitAnalysis, Kind, Options } from "./types.js" */
+/** @import { Page, Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary, Timeline } from "./types.js" */
+/** @import { Trial, Verb, WhatIfAnswer } from "./types.js" */
 
 // All that a page asks for is below its own address, which tells the stage that it is about.
 const base = () => new URL("api/v1/", document.baseURI);
@@ -277,6 +277,8 @@ export const importRuns = (file) => start("runs/import", file);
  */
 export const importTable = (file, name) => call("POST", `trainings/import?${new URLSearchParams({ name })}`, file);
 
+/** A few points of the curves of several trainings. @type {(ids: string[]) => Promise<Curves>} */
+export const getCurves = (ids) => call("GET", `runs/curves?${idQuery(ids)}`);
 /** @type {(id: string) => Promise<Curve>} */
 export const getCurve = (id) => call("GET", `${pathOf({ kind: "training", id })}/curve`);
 /** @type {(id: string, clock: string) => Promise<Omit<Timeline, "id">>} */
@@ -322,7 +324,6 @@ export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id
 
 /** @returns {Promise<Spectators>} */
 export const getSpectators = () => call("GET", "spectators");
-
 /** @returns {Promise<Stage>} */
 export const getStage = () => call("GET", "stage");
 /** @type {(changes: Partial<Stage> & { time_s?: number }) => Promise<Stage | null>} */

@@ -5,6 +5,7 @@ import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, duration, listed, metres, percentage, sentence, whole } from "./format.js";
 import { page } from "./page-state.js";
 import { formRobot } from "./robots.js";
+import { greedyOf, namesAmong } from "./run-words.js";
 import { absentIds, distanceOf, followRuns } from "./runs.js";
 import { isActive } from "./selectors.js";
 import { agentOf, choiceTitle, fullTitle, laneTitle, settingsOf } from "./settings.js";
@@ -19,7 +20,7 @@ import { curveOf, followCurves } from "./training.js";
 export const MAX_COMPARED = 8;
 const LETTERS = "ABCDEFGH";
 /** Of runs, which may all have the same agent: Okabe and Ito's colours, and dashes for who cannot tell them apart. */
-const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8A6D3B", "#7F7F7F"];
+export const COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8A6D3B", "#7F7F7F"];
 const DASHES = [[], [8, 4], [2, 3], [10, 3, 2, 3], [5, 3], [12, 3, 2, 3, 2, 3], [1, 2], [14, 5]];
 
 // ---- which runs: `#compare?runs=a,b,c`
@@ -51,8 +52,12 @@ export function followCompared() {
  * @property {string | null} problem
  */
 
-/** @param {Run} run */
-export const titleOf = (run) => run.name || sentence(run.kind);
+/** Names of the runs that are known, by what they differ in. @type {Signal<Map<string, string>>} */
+const names = computed(() => {
+  const known = comparedIds.value.flatMap((id) => runs.value.get(id) ?? []);
+  const all = namesAmong(known);
+  return new Map(known.map(({ id }, n) => [id, all[n]]));
+});
 
 /** @type {Signal<Compared[]>} */
 export const compared = computed(() =>
@@ -61,7 +66,7 @@ export const compared = computed(() =>
     const problem = problemOf(id, run);
     return {
       id, letter: LETTERS[number], color: COLOURS[number], dash: DASHES[number], problem,
-      title: run ? titleOf(run) : id, run: problem ? null : run,
+      title: names.value.get(id) ?? id, run: problem ? null : run,
     };
   }),
 );
@@ -150,9 +155,8 @@ const DISTURBANCES = [
     (run.kind === "training" ? changesInWords(run.config.agent, rateChanges(run)).join(", ") || NOTHING : null)],
 ];
 
-/** The settings of the runs side by side. */
-export const comparedSettings = computed(() => {
-  const all = comparable.value.map(runOf);
+/** The settings of trainings and races side by side. @param {Run[]} all */
+export function settingRows(all) {
   const agents = [...new Set(all.flatMap(({ config: { agent } }) => (agent ? [agent] : [])))];
   const own = Object.entries(settingsOf(agents)).map(([name, setting]) =>
     row(name, fullTitle(setting), all.map(({ config }) =>
@@ -166,7 +170,10 @@ export const comparedSettings = computed(() => {
   const told = (/** @type {typeof SETTINGS} */ list) =>
     list.map(([name, title, cell]) => row(name, title, all.map(cell)));
   return [...told(SETTINGS), ...plain, ...own, ...told(DISTURBANCES)].filter(isTold);
-});
+}
+
+/** The settings of the runs that are compared. */
+export const comparedSettings = computed(() => settingRows(comparable.value.map(runOf)));
 
 /** Whether any run has something of a row. @param {Row} row */
 const isTold = ({ cells }) => cells.some((one) => one !== null && one !== NOTHING);
@@ -183,9 +190,6 @@ function valueInWords(setting, value) {
 const lanesOf = ({ result }) => result?.lanes ?? [];
 /** @param {LaneResult} lane */
 const atTimeOut = ({ clocks }) => clocks.paper.finished_distance_m;
-/** @param {Run} run @returns {number | null} */
-const greedyOf = ({ kind, greedy_distance_m, result }) =>
-  kind === "training" ? greedy_distance_m ?? result?.greedy_distance_m ?? null : null;
 /** @param {Run} run */
 const bestKnownOf = (run) => run.result?.best_known_m ?? run.best_known_m ?? null;
 

@@ -127,6 +127,17 @@ export function ago(iso, now = Date.now()) {
 }
 
 /**
+ * A moment where there is little room: "17:14" today, else "24 Nov".
+ * @param {string} iso
+ */
+export function shortTime(iso, now = Date.now()) {
+  const then = new Date(iso);
+  return new Date(now).toDateString() === then.toDateString()
+    ? then.toLocaleTimeString([], { hour: "2-digit", minute: "2-digit", hourCycle: "h23" })
+    : then.toLocaleDateString([], { day: "numeric", month: "short" });
+}
+
+/**
  * Text with a capital first letter; a Greek one is a symbol, and stays as it is.
  * @param {string} text
  */

@@ -28,6 +28,8 @@ const LIST = {
   read: (text) => [...new Set(text.split(",").map((one) => one.trim()).filter(Boolean))],
   write: (list) => list.join(",") || null,
 };
+/** An empty list is a choice, too. @type {Codec<string[] | null>} */
+const NULLABLE_LIST = { read: LIST.read, write: (list) => list?.join(",") ?? null };
 /** Without a value, as a person types it. @type {Codec<boolean>} */
 const FLAG = { read: () => true, write: (isOn) => (isOn ? "" : null) };
 /** @type {Codec<number | null>} */
@@ -77,6 +79,8 @@ const TEXTS = { name: null, initial: NO_TEXTS, read: () => undefined, write: Str
 export const DEPTHS = ["watch", "try", "study"];
 /** The tabs of the panel, in their order. */
 export const TABS = ["board", "train", "world", "why", "gait", "table", "what-if"];
+/** The ways to group the list of runs. */
+export const GROUPINGS = ["sweep", "race", "day", "none"];
 /** Parts of the page that can be hidden. */
 export const HIDEABLE = ["panel", "card"];
 
@@ -117,6 +121,16 @@ const FIELDS = {
   experiment: { part: "experiments", ...TEXTS },
   /** Id of the experiment whose report is shown; null for the newest. */
   report: { part: "experiments", name: "run", initial: null, ...TEXT },
+  /** How the list of runs is grouped; null where the browser's own choice holds. */
+  grouping: { part: "runs", name: "group", initial: null, ...oneOf([null, ...GROUPINGS]) },
+  /** The columns of the list of runs; null where the browser's own choice holds. */
+  columns: { part: "runs", name: "columns", initial: /** @type {string[] | null} */ (null), ...NULLABLE_LIST },
+  /** Ids of the runs that are selected in the list. */
+  selected: { part: "runs", name: "selected", initial: /** @type {string[]} */ ([]), ...LIST },
+  /** Id of the run whose details are shown beside the list; null for the first. */
+  opened: { part: "runs", name: "open", initial: null, ...TEXT },
+  /** Whether the details cover the list, where there is no room for both. */
+  isOverList: { part: "runs", name: "details", initial: false, ...FLAG, isEntry: true },
   /** Filters and order of the list of runs. */
   list: { part: "runs", ...TEXTS },
   /** Ids of the runs that are compared, in their order. */

@@ -35,7 +35,7 @@ export function builtPart(robot, part, presets) {
 }
 
 /** JSON in which the order of an object's fields plays no part. @type {(value: unknown) => string} */
-const canonical = (value) =>
+export const canonical = (value) =>
   JSON.stringify(value, (_key, part) =>
     part && typeof part === "object" && !Array.isArray(part)
       ? Object.fromEntries(Object.entries(part).sort(([a], [b]) => a.localeCompare(b)))

@@ -1,6 +1,8 @@
-// The list of the Runs view: its filters and order, which are in the address, and the runs that it shows.
+// The list of the Runs view: its filters, order and groups, which are in the address, and the runs that it shows.
 import { computed } from "@preact/signals";
-import { page } from "./page-state.js";
+import { GROUPINGS, page } from "./page-state.js";
+import { storedText } from "./page.js";
+import { groupRuns } from "./run-groups.js";
 import { folded, makeList, NO_FILTERS, orderOf } from "./runs.js";
 import { everyRun } from "./selectors.js";
 import { damagedRuns } from "./store.js";
@@ -48,9 +50,35 @@ const passes = (run) => {
 export const shownRuns = computed(() =>
   [...damagedRuns.value.values(), ...everyRun.value]
     .filter(passes)
-    .filter(runList.includes)
+    .filter((run) => runList.includes(run) || page.selected.value.includes(run.id))
     .sort(orderOf(filters.value.sort)),
 );
+
+// ---- their groups
+
+const keptGrouping = storedText("grouping", GROUPINGS[0]);
+
+/** How the list is grouped: as the link says, or as this browser has kept it. */
+export const grouping = computed(() =>
+  page.grouping.value ?? (GROUPINGS.includes(keptGrouping.value) ? keptGrouping.value : GROUPINGS[0]));
+
+/** Choose how the list is grouped, which this browser keeps. @param {string} by */
+export function setGrouping(by) {
+  keptGrouping.value = by;
+  page.grouping.value = by;
+}
+
+/** Orders in which a sweep stands as the list does; else it stands by what differs. */
+const OWN_ORDERS = ["name", "distance"];
+
+/** The runs that are shown, in groups. */
+export const runGroups = computed(() => groupRuns({
+  runs: shownRuns.value, by: grouping.value, everyRun: everyRun.value,
+  isByValue: !OWN_ORDERS.includes(filters.value.sort),
+}));
+
+/** The runs that are shown, from the top to the bottom. */
+export const listedRuns = computed(() => runGroups.value.flatMap(({ rows }) => rows.map(({ run }) => run)));
 
 /** The tags of the known runs, the most frequent first. */
 export const knownTags = computed(() => {

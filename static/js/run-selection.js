@@ -1,32 +1,31 @@
 // The runs of the list that are selected, and what is done with all of them.
-import { computed, signal } from "@preact/signals";
+import { computed } from "@preact/signals";
 import { attempt } from "./actions.js";
 import * as api from "./api.js";
 import { exportAddress } from "./files.js";
 import { listed } from "./format.js";
-import { shownRuns } from "./run-list.js";
+import { page } from "./page-state.js";
+import { listedRuns } from "./run-list.js";
 import { isActive } from "./selectors.js";
 import { markDeleted, requestRun, served } from "./store.js";
 
-/** @import { Signal } from "@preact/signals" */
 /** @import { DamagedRun, Run } from "./types.js" */
 
 /** @typedef {Run | DamagedRun} AnyRun */
 
-/** @type {Signal<Set<string>>} */
-const ids = signal(new Set());
+const ids = computed(() => new Set(page.selected.value));
 /** The run from which a range is selected: the one that was clicked last. @type {string | null} */
 let anchor = null;
 
 /** The selected runs that the list shows: nothing is done with one that nobody sees. */
-export const selected = computed(() => shownRuns.value.filter(({ id }) => ids.value.has(id)));
+export const selected = computed(() => listedRuns.value.filter(({ id }) => ids.value.has(id)));
 /** @param {string} id */
 export const isSelected = (id) => ids.value.has(id);
 
 /** @param {Iterable<string>} chosen */
-const select = (chosen) => (ids.value = new Set(chosen));
+const select = (chosen) => (page.selected.value = [...new Set(chosen)]);
 export const clearSelection = () => select([]);
-export const selectAll = () => select(shownRuns.value.map(({ id }) => id));
+export const selectAll = () => select(listedRuns.value.map(({ id }) => id));
 
 /**
  * Select a run, or no longer; with `isRange` all from the one before to it.
@@ -35,7 +34,7 @@ export const selectAll = () => select(shownRuns.value.map(({ id }) => id));
  * @param {boolean} [isRange]
  */
 export function setSelected(id, isOn, isRange = false) {
-  const shown = shownRuns.value.map((run) => run.id);
+  const shown = listedRuns.value.map((run) => run.id);
   const from = isRange && anchor !== null ? shown.indexOf(anchor) : -1;
   const to = shown.indexOf(id);
   const range = from < 0 ? [id] : shown.slice(Math.min(from, to), Math.max(from, to) + 1);

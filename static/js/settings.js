@@ -214,7 +214,7 @@ export function laneTitle(lane) {
 }
 
 /** A choice says by itself what it is of. @type {(setting: SettingOption, value: unknown) => string} */
-const settingInWords = (setting, value) =>
+export const settingInWords = (setting, value) =>
   kindOf(setting) === "choice" ? String(value) : `${setting.symbol ?? setting.title.toLowerCase()}\u00a0${value}`;
 
 /**

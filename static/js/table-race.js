@@ -1,18 +1,17 @@
-// A race of trained runs against each other: each lane with the table of one.
+// A race of runs against each other: a lane for each training, with its table, and those of each race.
 import { adopt, attempt } from "./actions.js";
 import { startRace } from "./api.js";
 import { count, listed } from "./format.js";
 import { changeIfStillHere } from "./page-state.js";
-import { formRobot, isSame, numberOfLegs } from "./robots.js";
-import { hasTable } from "./selectors.js";
+import { disturbancesOf } from "./disturbances.js";
+import { canonical, formRobot, isSame, numberOfLegs } from "./robots.js";
+import { isNamed, namesAmong, titleOf } from "./run-words.js";
+import { hasTable, isActive } from "./selectors.js";
 import { limitsOf } from "./settings.js";
 import { served } from "./store.js";
-import { gaitTitle, robotTitle, simulatorTitle } from "./titles.js";
+import { agentTitle, gaitTitle, robotTitle, simulatorTitle } from "./titles.js";
 
-/** @import { DamagedRun, Run } from "./types.js" */
-
-/** @param {Run | DamagedRun} run */
-const titleOf = (run) => run.name || run.id;
+/** @import { DamagedRun, LaneConfig, Run } from "./types.js" */
 
 /**
  * Settings that the tables of a race must share: [name, the value, it in words].
@@ -35,25 +34,46 @@ const FROM_FIRST = [
 const differing = (list, runs) => list.filter(([, value]) => runs.some((run) => !isSame(value(run), value(runs[0]))));
 
 /**
- * Why runs cannot race each other with their tables, in a sentence; null if they can.
+ * A lane of a race as it was started: what its search knows by default depends on its race.
+ * @param {LaneConfig} lane
+ */
+function asStarted({ agent, training_id = null, settings, observation, keep_learning, ...lane }) {
+  const own = training_id === null ? { settings } : { training_id };
+  const model = lane.plans_with && !lane.plans_with_by_default ? { plans_with: lane.plans_with } : {};
+  return { agent, ...own, observation, keep_learning, ...model };
+}
+
+/** The lanes of a race of these runs, each once. @param {Run[]} runs */
+function lanesOf(runs) {
+  const all = runs.flatMap(({ id, kind, config }) => /** @type {Partial<LaneConfig>[]} */ (
+    kind === "race" ? config.lanes.map(asStarted) : [{ agent: config.agent, training_id: id }]));
+  // A training and a race that used its table have one lane together.
+  const keyOf = (/** @type {Partial<LaneConfig>} */ lane) => lane.training_id ?? canonical(lane);
+  return all.filter((lane, n) => all.findIndex((other) => keyOf(other) === keyOf(lane)) === n);
+}
+
+/**
+ * Why runs cannot race each other, in a sentence; null if they can.
  * @param {(Run | DamagedRun)[]} runs
  */
 export function obstacle(runs) {
-  const strangers = runs.filter((run) => run.kind !== "training" || "damaged" in run);
+  const strangers = runs.filter((run) => "damaged" in run || run.kind === "experiment");
   if (strangers.length) {
-    return `Only trainings race with their tables: leave out ${listed(strangers.map(titleOf))}.`;
+    return `Only trainings and races have robots that can race: leave out ${listed(strangers.map(titleOf))}.`;
   }
-  const trainings = /** @type {Run[]} */ (runs);
-  const untrained = trainings.filter((run) => !hasTable(run));
-  if (untrained.length) {
-    const [first] = untrained;
-    return `${titleOf(first)} is ${first.state}: a training races once it is finished or stopped.`;
+  const walks = /** @type {Run[]} */ (runs);
+  const [untrained] = walks.filter((run) => (run.kind === "training" ? !hasTable(run) : isActive(run)));
+  if (untrained) {
+    const isTraining = untrained.kind === "training";
+    const words = isTraining ? "a training races once it is finished or stopped" : "its robots race once it has ended";
+    return `${titleOf(untrained)} is ${untrained.state}: ${words}.`;
   }
   const most = limitsOf("lanes").maximum ?? Infinity;
-  if (runs.length < 2) return "Select at least two trainings.";
-  if (runs.length > most) return `A race has up to ${most} lanes: choose fewer than ${count(runs.length, "training")}.`;
-  const differences = differing(SHARED, trainings).map(([name, , words]) => {
-    const values = [...new Set(trainings.map(words))];
+  const { length } = lanesOf(walks);
+  if (runs.length < 2 || length < 2) return "Select at least two runs with different robots.";
+  if (length > most) return `A race has up to ${most} lanes, and these are ${count(length, "lane")}: choose fewer.`;
+  const differences = differing(SHARED, walks).map(([name, , words]) => {
+    const values = [...new Set(walks.map(words))];
     return `${name} (${listed(values.length > 1 ? values : ["custom ones"])})`;
   });
   if (differences.length === 0) return null;
@@ -62,29 +82,38 @@ export function obstacle(runs) {
 }
 
 /**
- * Of which run the race has what not all share: "on the robot of A"; null if they share it.
- * @param {Run[]} trainings
+ * What the race has that not all runs share: the robot of the first, flat ground; null if there is nothing.
+ * @param {Run[]} runs
  */
-export function conditionsOfRace(trainings) {
-  const names = differing(FROM_FIRST, trainings).map(([name, , words]) => `${name} (${words(trainings[0])})`);
-  return names.length ? `All race with the ${listed(names)} of ${titleOf(trainings[0])}.` : null;
+export function conditionsOfRace(runs) {
+  const names = differing(FROM_FIRST, runs).map(([name, , words]) => `${name} (${words(runs[0])})`);
+  const ofFirst = names.length ? [`All race with the ${listed(names)} of ${titleOf(runs[0])}.`] : [];
+  const ground = runs.some((run) => disturbancesOf(run).length) ? ["Nothing happens to the robots in this race."] : [];
+  return [...ofFirst, ...ground].join(" ") || null;
 }
 
-/** @param {Run[]} trainings */
-function bodyOf(trainings) {
-  const { gait, robot, simulator, divisions, grid_side_m } = trainings[0].config;
+/** @param {Run[]} runs */
+function bodyOf(runs) {
+  const { gait, robot, simulator, divisions, grid_side_m } = runs[0].config;
   const { steps } = served().defaults.race;
   const [, most] = served().limits.name;
   return {
     gait, robot: formRobot(robot), simulator, divisions, grid_side_m, steps,
-    name: `Race of ${listed(trainings.map(titleOf))}`.slice(0, most ?? undefined),
-    lanes: trainings.map(({ id, config: { agent } }) => ({ agent, training_id: id })),
+    name: nameOf(runs).slice(0, most ?? undefined), lanes: lanesOf(runs),
   };
 }
 
-/** Start the race, and show it. @param {Run[]} trainings */
-export const raceThem = (trainings) =>
+/** "Race of Anna's and Ben's", "Race of Q-learning: α 0.3 and α 0.5". @param {Run[]} runs */
+function nameOf(runs) {
+  const agents = new Set(runs.map(({ kind, config }) => (kind === "race" ? null : config.agent)));
+  const [agent] = agents;
+  const isOfOne = agents.size === 1 && agent && !runs.some(isNamed);
+  return `Race of ${isOfOne ? `${agentTitle(agent)}: ` : ""}${listed(namesAmong(runs))}`;
+}
+
+/** Start the race, and show it. @param {Run[]} runs */
+export const raceThem = (runs) =>
   attempt("table race", async () => {
     const go = changeIfStillHere();
-    if (await adopt(() => startRace(bodyOf(trainings)))) go({ view: "race" });
+    if (await adopt(() => startRace(bodyOf(runs)))) go({ view: "race" });
   });

@@ -137,12 +137,21 @@ export function followCurves(trainings) {
     const ids = new Set(chains.value.flat().map(({ id }) => id));
     return connection.value === "live" ? [...ids].join(" ") : "";
   });
+  /** Those that were requested and are wanted since. @type {Set<string>} */
+  let asked = new Set();
   const request = (/** @type {string} */ id) =>
     load(id).catch((/** @type {RequestError} */ error) => {
-      if (isLasting(error)) return;
+      if (isLasting(error)) {
+        asked.delete(id);
+        return;
+      }
       setTimeout(() => wanted.peek().split(" ").includes(id) && request(id), RETRY_MS);
     });
-  effect(() => wanted.value.split(" ").filter(Boolean).forEach(request));
+  effect(() => {
+    const before = asked;
+    asked = new Set(wanted.value.split(" ").filter(Boolean));
+    [...asked].filter((id) => !before.has(id)).forEach(request);
+  });
   followRuns(computed(() => chains.value.flatMap(([first]) => first.config.continue_from ?? [])));
 }
 

@@ -9,6 +9,7 @@ export type {
   ClaimView,
   Curve as ScoredCurve,
   CurveOfSetting,
+  CurvesView as Curves,
   CurveView as Curve,
   DamagedRunView as DamagedRun,
   Described,

@@ -35,6 +35,44 @@ def test_an_unknown_filter_value_is_refused_with_the_valid_ones(api: Api) -> Non
     refused(api.call("GET", "/runs/nothing"), 404, "nothing")
 
 
+def test_several_curves_are_answered_at_once_with_few_points(
+    api: Api, trained: dict[str, Any]
+) -> None:
+    often = api.finished(api.train(steps=100, evaluate_every=2))
+    never = api.finished(api.train(steps=5, evaluate_every=0))
+    query = "&".join(f"id={one}" for one in (trained["id"], often["id"], never["id"], "none"))
+    curves = {one["id"]: one for one in api.get(f"/runs/curves?{query}")["curves"]}
+    whole = [api.get(f"/trainings/{run['id']}/curve")["evaluations"] for run in (trained, often)]
+    assert curves.keys() == {trained["id"], often["id"]}
+    few, many = curves[trained["id"]], curves[often["id"]]
+    assert few["steps"] == [row["step"] for row in whole[0]]
+    assert few["distances_m"] == [row["distance_m"] for row in whole[0]]
+    assert many["steps"] == [row["step"] for row in whole[1]][1::2]
+    too_many = "&".join("id=a" for _ in range(101))
+    refused(api.call("GET", f"/runs/curves?{too_many}"), 422, "up to 100 of them")
+    refused(api.call("GET", "/runs/curves"), 422, "id is missing")
+
+
+def test_a_run_tells_whether_somebody_named_it(api: Api) -> None:
+    start = {"steps": 5, "evaluate_every": 0, "settings": {"alpha": 0.5}, "seed": 3}
+    run = api.finished(api.train(**start))
+    assert (run["name"], run["is_named"]) == ("Q-learning, α\u00a00.5, 5 steps, seed 3", False)
+    more = api.finished(api.train(steps=7, evaluate_every=0, continue_from=run["id"]))
+    assert (more["name"], more["is_named"]) == ("Q-learning, 7 more steps, seed 3", False)
+    race = api.finished(api.race(lanes=[{"agent": "greedy"}, {"agent": "two-step"}], steps=3))
+    branch = {"race_id": race["id"], "step": 1}
+    slope = {"kind": "sensor-noise", "at_step": 1, "sd_m": 0.001}
+    other = api.start("/races", {"branch_from": branch, "disturbances": [slope]})
+    assert (other["name"], other["is_named"]) == (f"{race['name']}, from step 2", False)
+    assert [api.finished(other)["is_named"], race["is_named"]] == [False, False]
+    path = f"/runs/{run['id']}"
+    assert api.call("PATCH", path, json={"name": "My first"}).json()["is_named"]
+    # As version 0.1 made them.
+    earlier = {"name": "5 steps: Left-right, opposite"}
+    assert not api.call("PATCH", path, json=earlier).json()["is_named"]
+    assert api.call("POST", f"/runs/{more['id']}/again").json()["is_named"] is False
+
+
 def test_runs_are_renamed_tagged_and_found_by_tag_in_any_order(api: Api) -> None:
     options = {"steps": 10, "evaluate_every": 0}
     one, two = (api.finished(api.train(name=name, **options)) for name in ("Owl 2", "owl 1"))

@@ -216,13 +216,19 @@ class Dashboard:
 
     @property
     def runs(self) -> Locator:
-        """The runs in the list, each headed by its name."""
-        return self.page.get_by_role("list", name="Runs", exact=True).get_by_role("listitem")
+        """The runs in the list and its groups, each headed by its name."""
+        lists = self.page.get_by_role("list", name=re.compile("^Runs(: |$)"))
+        return lists.get_by_role("listitem")
 
     @property
     def run_names(self) -> Locator:
         """The names in the list of runs."""
         return self.runs.get_by_role("heading")
+
+    @property
+    def details(self) -> Locator:
+        """What is shown beside the list of runs: one run, or all that are selected."""
+        return self.page.get_by_role("region", name="Details", exact=True)
 
     def picture(self) -> str:
         """A fingerprint of the robots' canvas, without what stands over it."""

@@ -73,17 +73,15 @@ def test_runs_are_compared_side_by_side_and_raced(
     page.goto(f"{shared_server.address}#runs?search=duel&sort=oldest")
     expect(dashboard.run_names).to_have_text(["Duel calm", "Duel bold", "Duel turned"])
     page.get_by_label("Select all").click()
-    expect(dashboard.group("Selected runs")).to_contain_text(
-        "they differ in gait (Left-right, opposite"
-    )
-    expect(dashboard.button("Race these")).to_have_attribute("aria-disabled", "true")
+    expect(dashboard.details).to_contain_text("they differ in gait (Left-right, opposite")
+    expect(dashboard.button("Race these 3")).to_have_attribute("aria-disabled", "true")
     dashboard.runs.nth(2).get_by_role("checkbox").click()
-    expect(dashboard.button("Race these")).not_to_have_attribute("aria-disabled", "true")
+    expect(dashboard.button("Race these 2")).not_to_have_attribute("aria-disabled", "true")
     page.get_by_role("link", name="Compare 2").click()
 
     # Curves over each other, read at the crosshair by keys.
     expect(page).to_have_url(f"{shared_server.address}#compare?runs={one},{other}")
-    expect(page.get_by_role("img", name=re.compile("^Learning curves: A .* B "))).to_be_visible()
+    expect(page.get_by_role("img", name=re.compile("^Learning curves: A: .* B: "))).to_be_visible()
     reading = page.get_by_role("slider", name=re.compile("learning curves"))
     reading.focus()
     page.keyboard.press("Home")
@@ -112,8 +110,8 @@ def test_runs_are_compared_side_by_side_and_raced(
     dashboard.button("Leave out gone").click()
     dashboard.button("Leave out Duel turned").click()
     assert dashboard.complaints.pop().startswith("404")
-    dashboard.button("Race these").click()
-    expect(page.get_by_role("region", name="Train and race")).to_be_visible()
+    dashboard.button("Race these 2").click()
+    expect(page.get_by_role("region", name="Stage", exact=True)).to_be_visible()
     race = dashboard.get("/api/v1/races?sort=newest&limit=1")["items"][0]
     assert race["name"] == "Race of Duel calm and Duel bold"
     assert [lane["training_id"] for lane in race["config"]["lanes"]] == [one, other]

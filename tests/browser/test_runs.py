@@ -76,8 +76,7 @@ def test_runs_older_than_a_page_are_found_and_shown(
     put(many_runs, {"run_id": race["id"]})
     # A fresh page gets neither the race nor its training with the snapshot.
     dashboard.open(many_runs.address)
-    expect(dashboard.headline).to_have_text(re.compile("^Greedy wins by "))
-    expect(page.get_by_role("img", name=re.compile("^Learning curve: "))).to_be_visible()
+    expect(page.get_by_role("heading", name=re.compile("^Greedy wins by "))).to_be_visible()
     expect(dashboard.rows).to_have_count(2)
 
 
@@ -115,35 +114,39 @@ def test_a_run_gets_a_name_tags_and_notes_in_its_place(
     page.goto(f"{walks.address}#runs?sort=oldest")
     row, names = dashboard.runs.first, dashboard.run_names
     expect(names.first).to_have_text("Walk 0")
-    page.get_by_role("button", name="Rename Walk 3", exact=True).click()
+    dashboard.button("Walk 3").click()
+    dashboard.button("Rename").click()
     page.keyboard.type("Aardvark")
     page.keyboard.press("Enter")
-    page.get_by_label("Order").select_option("by name")
+    expect(dashboard.details.get_by_role("heading", name="Aardvark")).to_be_visible()
+    expect(dashboard.button("Rename")).to_be_focused()
+    choose_order(page, "by name")
     expect(names.first).to_have_text("Aardvark")
 
+    dashboard.button("Walk 0").click()
     row.get_by_label("More for this training").click()
-    dashboard.button("Add tags").click()
+    row.get_by_role("button", name="Add tags").click()
     too_long = "ice, week 3, " + "x" * 31
     page.keyboard.type(too_long)
     page.keyboard.press("Enter")
-    expect(row.get_by_role("alert")).to_contain_text("at most 30 characters")
+    alert = dashboard.details.get_by_role("alert")
+    expect(alert.filter(has_text="at most 30 characters")).to_be_visible()
     field = page.get_by_label("Tags, with commas between")
     expect(field).to_have_value(too_long)
     assert dashboard.complaints.pop().startswith("422")
     field.fill("ice, week 3")
     dashboard.button("Save").click()
-    expect(row.get_by_role("group", name="Tags").get_by_role("button")).to_have_text(
-        ["ice", "week 3"]
-    )
-    row.get_by_label("More for this training").click()
-    dashboard.button("Add notes").click()
+    tags = dashboard.details.get_by_role("group", name="Tags")
+    expect(tags.get_by_role("button", name=re.compile("ice|week"))).to_have_text(["ice", "week 3"])
+    dashboard.details.get_by_role("button", name="Add notes").click()
     page.keyboard.type("Slips.\nTry again.")
     page.keyboard.press("Control+Enter")
-    expect(row.get_by_text("Slips.", exact=True)).to_be_visible()
+    expect(dashboard.details).to_contain_text("Slips.\nTry again.")
+    expect(row).to_contain_text(re.compile("ice.*week 3.*Slips"))
     assert dashboard.violations() == []
 
     row.get_by_label("More for this training").click()
-    dashboard.button("As code").click()
+    row.get_by_role("button", name="As code").click()
     code = page.get_by_role("region", name="Code")
     expect(code).to_contain_text("hexapods train")
     dashboard.button("Python").click()
@@ -151,8 +154,8 @@ def test_a_run_gets_a_name_tags_and_notes_in_its_place(
     assert dashboard.violations() == []
     dashboard.button("Close").click()
     row.get_by_label("More for this training").click()
-    dashboard.button("Run again").click()
-    expect(page.get_by_role("region", name="Train and race")).to_be_visible()
+    row.get_by_role("button", name="Run again").click()
+    expect(page.get_by_role("region", name="Stage", exact=True)).to_be_visible()
     newest = dashboard.get("/api/v1/trainings?sort=newest&limit=1")["items"][0]
     assert (newest["name"], newest["tags"]) == ("Aardvark", ["ice", "week 3"])
 
@@ -173,6 +176,7 @@ def test_several_runs_are_tagged_taken_away_as_a_file_and_brought_back(
     page.keyboard.press("Shift+ArrowDown")
     boxes.nth(2).click(modifiers=["Shift"])
     expect(page.get_by_text("3 runs selected")).to_be_visible()
+    expect(dashboard.details.get_by_role("heading", name="3 runs", exact=True)).to_be_visible()
     assert dashboard.violations() == []
     boxes.nth(0).click()
     page.get_by_label("Tag for the selected runs").fill("moved")
@@ -180,11 +184,11 @@ def test_several_runs_are_tagged_taken_away_as_a_file_and_brought_back(
     page.get_by_role("group", name="Tag", exact=True).get_by_role("button", name="moved").click()
     expect(names).to_have_text(["Walk 10", "Walk 11"])
     page.get_by_label("Search names, ids, tags and notes").fill("")
-    expect(page).to_have_url(re.compile("#runs.tag=moved&sort=name$"))
+    expect(page).to_have_url(re.compile("#runs.selected=[^&]*,[^&]*&tag=moved&sort=name$"))
     page.reload()
     expect(names).to_have_text(["Walk 10", "Walk 11"])
+    expect(page.get_by_text("2 runs selected")).to_be_visible()
 
-    page.get_by_label("Select all").click()
     with page.expect_download() as download:
         page.get_by_role("link", name="Export 2").click()
     archive = download.value.path()  # waits for its end
@@ -211,6 +215,13 @@ def test_several_runs_are_tagged_taken_away_as_a_file_and_brought_back(
     expect(rows).to_have_count(2)
 
 
+def choose_order(page: Page, order: str) -> None:
+    """Choose it in the menu of what is seldom changed, and close that."""
+    page.get_by_text("View", exact=True).click()
+    page.get_by_label("Order").select_option(order)
+    page.keyboard.press("Escape")
+
+
 def drop(page: Page, name: str) -> None:
     """Drop a file, whose content is no archive, on the page."""
     page.evaluate(
@@ -224,3 +235,146 @@ def drop(page: Page, name: str) -> None:
         }""",
         name,
     )
+
+
+LEARNER = "q-learning"
+NOTES = "Forgets."
+
+
+@pytest.fixture(scope="module")
+def sweep(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
+    """A server with trainings that differ in α, one of another learner, and a race of two."""
+    with (
+        serving(tmp_path_factory.mktemp("sweep")) as server,
+        httpx2.Client(base_url=f"{server.address}api/v1") as client,
+    ):
+        common = {**WALK, "steps": 60, "evaluate_every": 20}
+        bodies = [{**common, "settings": {"alpha": alpha}} for alpha in (0.1, 0.5, 0.9)]
+        ids = [finished(client, "trainings", body) for body in bodies]
+        finished(client, "trainings", {**common, "agent": "dyna-q", "steps": 30})
+        lanes = [{"agent": LEARNER, "training_id": ids[0]}, {"agent": "greedy"}]
+        finished(client, "races", {**WALK, "lanes": lanes, "steps": 5})
+        client.patch(f"/runs/{ids[2]}", json={"notes": f"{NOTES}\nSee page 3."})
+        yield server
+
+
+def finished(client: httpx2.Client, kind: str, body: dict[str, Any]) -> str:
+    answer = client.post(f"/{kind}", json=body)
+    assert answer.status_code == 202, answer.text
+    run_id: str = answer.json()["id"]
+    while client.get(f"/{kind}/{run_id}").json()["state"] != "finished":
+        time.sleep(0.05)
+    return run_id
+
+
+def test_a_sweep_is_one_group_named_by_what_differs(dashboard: Dashboard, sweep: Serving) -> None:
+    page, details = dashboard.page, dashboard.details
+    dashboard.open(f"{sweep.address}#runs")
+    group = page.get_by_role("list", name="Runs: Sweep of α")
+    expect(group.get_by_role("heading")).to_have_text(["α\u00a00.1", "α\u00a00.5", "α\u00a00.9"])
+    expect(page.get_by_text("Q-learning · 60 steps · Left-right, opposite")).to_be_visible()
+    expect(page.get_by_text(NOTES, exact=True)).to_be_visible()
+    expect(group.get_by_role("listitem").first).to_contain_text(
+        re.compile(r"Distance −?0\.\d\d\sm")
+    )
+
+    # By keys alone: to the first, its details, and a selection of all three.
+    first = group.get_by_role("checkbox").first
+    first.focus()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(details.get_by_role("heading", level=2)).to_have_text(
+        re.compile(r"^Q-learning, α\s0\.1, 60 steps → −?0\.\d\d\sm$")
+    )
+    first.focus()
+    for _ in range(2):
+        page.keyboard.press("Shift+ArrowDown")
+    expect(details.get_by_role("heading", level=2)).to_have_text("Sweep of α, 3 runs")
+    expect(details.get_by_role("img", name=re.compile("^Learning curves: "))).to_be_visible()
+    expect(details.get_by_role("rowheader")).to_have_text(
+        ["α\u00a00.1", "α\u00a00.5", "α\u00a00.9"], use_inner_text=True
+    )
+    expect(details).to_contain_text("One seed each")
+    assert dashboard.violations() == []
+
+    details.get_by_role("link", name="Repeat, 12 seeds").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_text(re.compile("trials?\\."))).to_be_visible()
+    assert "alpha=0.1;0.5;0.9" in page.url
+    page.go_back()
+    expect(page.get_by_text("3 runs selected")).to_be_visible()
+    dashboard.button("Race these 3").click()
+    expect(page.get_by_role("region", name="Stage", exact=True)).to_be_visible()
+    race = dashboard.get("/api/v1/races?sort=newest&limit=1")["items"][0]
+    assert race["name"] == "Race of Q-learning: α\u00a00.1, α\u00a00.5 and α\u00a00.9"
+
+
+def test_groups_and_columns_are_chosen_and_kept(dashboard: Dashboard, sweep: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(f"{sweep.address}#runs")
+    page.get_by_label("Groups").select_option("By race")
+    race = page.get_by_role("list", name=re.compile("^Runs: Race: Q-learning, Greedy"))
+    expect(race.get_by_role("heading")).to_have_text(
+        ["The race", "Q-learning, α\u00a00.1, 60 steps"]
+    )
+    page.get_by_text("View", exact=True).click()
+    page.get_by_label("Seed").check()
+    page.get_by_label("Of Greedy").check()
+    expect(dashboard.runs.last).to_contain_text(re.compile(r"Seed 0.*Of Greedy −?\d+ %"))
+    assert dashboard.violations() == []
+    expect(page).to_have_url(
+        re.compile("group=race&columns=seed,share,distance,created$|group=race")
+    )
+    page.goto("about:blank")
+    dashboard.open(f"{sweep.address}#runs")
+    expect(page.get_by_label("Groups")).to_have_value("race")
+    expect(dashboard.runs.last).to_contain_text("Of Greedy")
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_view_fills_the_window_and_a_phone_scrolls_it(
+    dashboard: Dashboard, sweep: Serving, theme: str
+) -> None:
+    page = dashboard.page
+    page.emulate_media(color_scheme="light" if theme == "light" else "dark")
+    page.set_viewport_size({"width": 1280, "height": 720})
+    dashboard.open(f"{sweep.address}#runs?group=sweep")
+    expect(dashboard.runs.first).to_be_visible()
+    height = "document.documentElement.scrollHeight"
+    assert (page.evaluate(height), dashboard.scroll_width()) == (720, 1280)
+    assert dashboard.violations() == []
+
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert dashboard.scroll_width() == 390
+    expect(dashboard.details).to_have_count(0)
+    dashboard.button("α\u00a00.5").click()
+    expect(dashboard.details.get_by_role("heading", level=2)).to_contain_text("α\u00a00.5")
+    expect(dashboard.details.get_by_role("link", name="Replay")).to_be_in_viewport(ratio=1)
+    assert dashboard.scroll_width() == 390
+    assert dashboard.violations() == []
+    page.go_back()
+    expect(dashboard.details).to_have_count(0)
+    for number in range(2):
+        dashboard.runs.get_by_role("checkbox").nth(number).click()
+    dashboard.button("Look at these 2").click()
+    expect(dashboard.details.get_by_role("link", name="Compare 2")).to_be_in_viewport(ratio=1)
+    dashboard.details.get_by_role("button", name="Runs").click()
+    expect(dashboard.group("Selection")).to_be_visible()
+    assert dashboard.violations() == []
+
+
+def test_a_lost_connection_is_told_and_the_list_stays(dashboard: Dashboard, tmp_path: Path) -> None:
+    with opened(tmp_path, None) as store:
+        store.create(training(RunIds()(), name="Kept", state="stopped"))
+    server = Serving(tmp_path)
+    try:
+        dashboard.open(f"{server.address}#runs")
+        expect(dashboard.run_names).to_have_text(["Kept"])
+    finally:
+        server.stop()
+    expect(
+        dashboard.page.get_by_text("Reconnecting. This is the last known state.")
+    ).to_be_visible()
+    expect(dashboard.run_names).to_have_text(["Kept"])
+    assert dashboard.violations() == []
+    dashboard.complaints.clear()

@@ -210,7 +210,8 @@ let number = 0;
 export function makeRun(changes) {
   number += 1;
   return /** @type {Run} */ (/** @type {unknown} */ ({
-    id: `run-${String(number).padStart(4, "0")}`, kind: "training", name: null, state: "finished",
+    id: `run-${String(number).padStart(4, "0")}`, kind: "training", name: null, is_named: "name" in changes,
+    state: "finished",
     config: /** @type {any} */ ({ ...TRAINING, pace: "max" }),
     progress: { done: 0, total: 500 }, can_resume: false,
     created_at: new Date(Date.UTC(2030, 0, 1) + 1000 * number).toISOString(),

@@ -9,7 +9,7 @@ import { askAgain, differencesOf, followTables, haveSameStates, tableOf } from "
 import { addressOf, page, read, write } from "../../static/js/page-state.js";
 import { absentIds } from "../../static/js/runs.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
-import { conditionsOfRace, obstacle } from "../../static/js/table-race.js";
+import { conditionsOfRace, obstacle, raceThem } from "../../static/js/table-race.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
@@ -214,11 +214,41 @@ test("trained runs race if gait and grid are the same, and else it says what dif
   assert.match(words, /^They cannot race each other, as they differ in divisions of the foot grid \(2 and 4\): /);
   const running = trained({}, { name: "Young", state: "running" });
   assert.equal(obstacle([one, running]), "Young is running: a training races once it is finished or stopped.");
-  const race = makeRun({ kind: "race", name: "Final" });
-  assert.equal(obstacle([one, race]), "Only trainings race with their tables: leave out Final.");
-  assert.equal(obstacle([one]), "Select at least two trainings.");
-  const many = Array.from({ length: 20 }, () => one);
-  assert.match(obstacle(many) ?? "", /^A race has up to \d+ lanes: choose fewer than 20 trainings\.$/);
+  const experiment = makeRun({ kind: "experiment", name: "All" });
+  assert.equal(obstacle([one, experiment]), "Only trainings and races have robots that can race: leave out All.");
+  assert.equal(obstacle([one]), "Select at least two runs with different robots.");
+  const many = Array.from({ length: 20 }, () => trained({}));
+  assert.match(obstacle(many) ?? "", /^A race has up to \d+ lanes, and these are 20 lanes: choose fewer\.$/);
   const ideal = trained({ simulator: config.simulator === "mujoco" ? "kinematic" : "mujoco" });
   assert.match(conditionsOfRace([one, ideal]) ?? "", /^All race with the simulator \(.*\) of One\.$/);
+});
+
+test("a race brings all its lanes, each as it was started, and a training only once", async () => {
+  const [one, other] = [trained({}), trained({ settings: { alpha: 0.9 } })];
+  const lane = { observation: "measured", keep_learning: false, plans_with: "world", settings: {} };
+  const race = makeRun({
+    kind: "race", name: "Race: Learner, Planner", is_named: false, state: "finished",
+    config: { ...config, steps: 25, lanes: [
+      { ...lane, agent: "learner", training_id: one.id, plans_with: null },
+      { ...lane, agent: "planner", settings: { depth: 2 }, plans_with_by_default: true },
+    ] },
+  });
+  assert.equal(obstacle([race, other]), null);
+  assert.equal(obstacle([{ ...race, state: "running" }, other]),
+    "Race: Learner, Planner is running: its robots race once it has ended.");
+  /** @type {any} */
+  let sent = null;
+  globalThis.fetch = /** @type {any} */ ((/** @type {URL} */ _address, /** @type {RequestInit} */ { body }) => {
+    sent = JSON.parse(String(body));
+    return Promise.resolve(new Response(JSON.stringify(makeRun({ kind: "race", config: { lanes: [] } }))));
+  });
+  applyEvent("snapshot", { runs: [one, other, race], stage: STAGE, scene: null, role: "operator" });
+  await raceThem([race, one, other]);
+  assert.deepEqual(sent.lanes, [
+    { agent: "learner", training_id: one.id, observation: "measured", keep_learning: false },
+    { agent: "planner", settings: { depth: 2 }, observation: "measured", keep_learning: false },
+    { agent: "learner", training_id: other.id },
+  ]);
+  await raceThem([one, other]);
+  assert.equal(sent.name, "Race of Learner: α\u00a00.3 and α\u00a00.9".slice(0, 20));
 });

@@ -45,7 +45,10 @@ test("a link is read as the state that wrote it, each field of it", () => {
   };
   const ofViews = {
     experiments: { experiment: new URLSearchParams("alpha=0.1;0.3&name=A %26 B"), report: "c" },
-    runs: { list: new URLSearchParams("kind=race&tag=µ %26 co") },
+    runs: {
+      list: new URLSearchParams("kind=race&tag=µ %26 co"), grouping: "day", columns: ["alpha", "seed"],
+      selected: ["d", "e"], opened: "d", isOverList: true,
+    },
     compare: { compared: ["a", "b"] },
   };
   const named = ["view", ...Object.keys(changes), ...Object.values(ofViews).flatMap(Object.keys)];

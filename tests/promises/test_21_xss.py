@@ -140,7 +140,7 @@ def test_no_payload_in_a_run_name_is_executed(
     while (shown := rows.count()) < len(payload_runs):
         page.get_by_role("button", name="Show older runs").click()
         expect(rows).not_to_have_count(shown)
-    text = page.locator("li.run .what b").all_text_contents()
+    text = page.locator("li.run").get_by_role("heading").all_text_contents()
     assert {run["name"] for run in payload_runs} <= set(text)
     watched.check()
 

@@ -423,6 +423,7 @@ def test_the_page_shows_the_others_and_deletes_the_damaged_one(
         row = page.locator("li.run", has_text=RACE)
         expect(row).to_contain_text("damaged")
         expect(row).to_contain_text("cannot read")
+        row.get_by_label("More for this").click()
         row.get_by_role("button", name="Delete").click()
         row.get_by_role("button", name="Delete for good?").click()
         expect(page.locator("li.run")).to_have_count(3)

@@ -368,6 +368,20 @@ def test_repeated_evaluations_replace_the_curve_from_their_step_on(store: RunSto
     assert store.curves.get(run.id) == [row(50, 0.1), row(100, 0.25)]
 
 
+def test_thinned_curves_end_with_the_newest_point(store: RunStore) -> None:
+    for run_id, count in (("a", 3), ("b", 100), ("c", 0), ("d", 1)):
+        store.create(training(run_id))
+        rows = ({"step": n, "distance_m": n / 100, "epsilon": 0.0} for n in range(1, count + 1))
+        store.curves.append(run_id, list(rows))
+    store.curves.append("d", [{"step": 1, "distance_m": math.nan, "epsilon": 1.0}])
+    curves = store.curves.thinned(["a", "b", "c", "d", "none"], 30)
+    assert curves.keys() == {"a", "b", "d"}
+    assert curves["a"] == [(1, 0.01), (2, 0.02), (3, 0.03)]
+    assert [step for step, _ in curves["b"]] == list(range(4, 101, 4))
+    assert math.isnan(curves["d"][0][1])
+    assert store.curves.thinned(["b"], 1)["b"] == [(100, 1.0)]
+
+
 def test_trials_are_sorted_and_replaced_by_key(store: RunStore) -> None:
     store.create(experiment("a"), experiment("b"))
     assert store.trials.get("a") == []

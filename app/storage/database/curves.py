@@ -1,9 +1,9 @@
 """Rows of the `evaluations` table: the learning curves of trainings."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import Connection, delete, insert, select
+from sqlalchemy import Connection, delete, func, insert, select
 
 from app.storage.database.engine import Database
 from app.storage.database.queries import Row, fetch_rows, fetch_run_row
@@ -63,6 +63,36 @@ class Curves:
             {name: _number(row[name]) for name in ("step", "distance_m", "epsilon")}
             for row in self._database.read(work)
         ]
+
+    def thinned(
+        self, run_ids: Collection[str], most: int
+    ) -> Mapping[str, Sequence[tuple[int, float]]]:
+        """Return a few points of several curves, with one query: by id (step, distance [m]).
+
+        Args:
+            run_ids: ids of trainings; those without evaluations have no entry.
+            most: points of a curve at most, at even distances; the newest is one of them.
+        """
+        run_id, step = EVALUATIONS.c.run_id, EVALUATIONS.c.step
+        numbered = (
+            select(
+                run_id,
+                step,
+                EVALUATIONS.c.distance_m,
+                func.row_number().over(partition_by=run_id, order_by=step).label("number"),
+                func.count().over(partition_by=run_id).label("total"),
+            )
+            .where(run_id.in_(run_ids))
+            .subquery()
+        )
+        from_last = numbered.c.total - numbered.c.number
+        stride = (numbered.c.total + most - 1) // most
+        kept = select(numbered).where(from_last % stride == 0).order_by(numbered.c.step)
+        curves: dict[str, list[tuple[int, float]]] = {}
+        for row in self._database.read(lambda connection: fetch_rows(connection, kept)):
+            point = (row["step"], _number(row["distance_m"]))
+            curves.setdefault(row["run_id"], []).append(point)
+        return curves
 
     def delete_after(self, run_id: str, after_step: int) -> None:
         """Delete the rows of a training's curve after this step."""

@@ -38,9 +38,12 @@ const PATHS = {
   flag: "M4 14V2.5h8.5L10.8 5.3l1.7 2.7H4",
   pin: "M6 2.5h4v4l2 2.5H4L6 6.5zM8 9v5",
   panel: "M2.5 3h11v10h-11zM9.5 3v10",
+  columns: "M2.5 3h11v10h-11zM6.2 3v10M9.8 3v10",
+  back: "M10 3 5 8l5 5",
 };
 const OUTLINED = new Set([
-  "link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present", "pin", "panel",
+  "link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present", "pin", "panel", "columns",
+  "back",
 ]);
 const SIZE = 16;
 

@@ -1,6 +1,7 @@
 // The view that compares runs: which, their learning curves, results, settings, policies, and replays.
 import { compared, comparable, followCompared, leaveOut, leftOut, MAX_COMPARED } from "../../compare.js";
 import { count } from "../../format.js";
+import { commonFacts } from "../../run-words.js";
 import { isActive } from "../../selectors.js";
 import { html } from "../elements.js";
 import { ReplayLink } from "../replay-link.js";
@@ -16,24 +17,27 @@ followCompared();
 
 export function Compare() {
   const all = compared.value;
-  if (all.length === 0) return html`<div class="compare"><${Nothing} /></div>`;
+  if (all.length === 0) return html`<div class="compare alone"><${Nothing} /></div>`;
   const isEnough = comparable.value.length > 1;
   return html`
     <div class="compare">
-      <section class="panel" aria-labelledby="compare-title">
-        <h2 id="compare-title">Compare ${count(all.length, "run")}</h2>
-        <ul class="compared">${all.map((one) => html`<${ComparedRun} key=${one.id} one=${one} />`)}</ul>
-        ${leftOut.value > 0 && html`
-          <p class="notice" role="status">
-            Up to ${MAX_COMPARED} runs are compared; the link names ${leftOut.value} more, which are left out.
-          </p>
-        `}
-        <div class="compare-foot">
-          <${RaceThem} runs=${comparable.value.map(({ run }) => run)} />
-          <a class="dim" href="#runs">Choose others in the list</a>
+      <section class="compared-column" aria-labelledby="compare-title">
+        <div class="details-head">
+          <h2 id="compare-title">Compare ${count(all.length, "run")}</h2>
+          <a href="#runs">Choose others</a>
+          <p class="dim details-facts">${commonFacts(comparable.value.map(({ run }) => run)).join(" · ")}</p>
         </div>
+        <div class="details-body">
+          <ul class="compared">${all.map((one) => html`<${ComparedRun} key=${one.id} one=${one} />`)}</ul>
+          ${leftOut.value > 0 && html`
+            <p class="notice" role="status">
+              Up to ${MAX_COMPARED} runs are compared; the link names ${leftOut.value} more, which are left out.
+            </p>
+          `}
+        </div>
+        <div class="details-foot"><${RaceThem} runs=${comparable.value.map(({ run }) => run)} /></div>
       </section>
-      ${isEnough ? html`<${Parts} />` : html`<${TooFew} />`}
+      <div class="compared-parts">${isEnough ? html`<${Parts} />` : html`<${TooFew} />`}</div>
     </div>
   `;
 }

@@ -1,22 +1,23 @@
-// Starts a race of trained runs against each other, or says why they cannot race.
+// Starts a race of runs against each other, or says why they cannot race.
 import { pending } from "../../actions.js";
 import { isOperator } from "../../selectors.js";
 import { conditionsOfRace, obstacle, raceThem } from "../../table-race.js";
 import { html, Problem } from "../elements.js";
 
-/** @import { Run } from "../../types.js" */
+/** @import { DamagedRun, Run } from "../../types.js" */
 
-/** @param {{ runs: Run[] }} props */
+/** @param {{ runs: (Run | DamagedRun)[] }} props */
 export function RaceThem({ runs }) {
   if (!isOperator.value || runs.length < 2) return null;
   const problem = obstacle(runs);
+  const walks = /** @type {Run[]} */ (runs);
   return html`
-    <span class="race-them">
-      <button class="secondary compact" disabled=${pending.value["table race"]}
+    <div class="race-them">
+      <p class="dim" id="race-them-words">${problem ?? conditionsOfRace(walks)}</p>
+      <button class="primary" disabled=${pending.value["table race"]}
         aria-disabled=${problem ? "true" : undefined} aria-describedby="race-them-words"
-        onClick=${() => problem || raceThem(runs)}>Race these</button>
-      <span class="dim" id="race-them-words">${problem ?? conditionsOfRace(runs)}</span>
+        onClick=${() => problem || raceThem(walks)}>Race these ${runs.length}</button>
       <${Problem} at="table race" />
-    </span>
+    </div>
   `;
 }

@@ -1,7 +1,8 @@
-// Annotations of a run: its name, tags and notes, each changed in its place.
+// What people say of a run: its name, tags and notes, each changed in its place among the run's details.
 import { signal } from "@preact/signals";
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import { annotate } from "../../actions.js";
+import { openDetails } from "../../run-details.js";
 import { filters, setFilters } from "../../run-list.js";
 import { folded } from "../../runs.js";
 import { isOperator } from "../../selectors.js";
@@ -9,38 +10,43 @@ import { served } from "../../store.js";
 import { html, Icon } from "../elements.js";
 
 /** @import { Changed, Run } from "../../types.js" */
-/** @import { ComponentChildren } from "preact" */
+
+/** @typedef {"name" | "tags" | "notes"} AnnotatedField */
 
 /** Field being changed: the id of a run and the field's name; null if none is. */
 const edited = signal(/** @type {{ id: string, field: string } | null} */ (null));
 
 /**
- * Change a field of a run in its place.
+ * Change a field of a run, among its details.
  * @param {Run} run
- * @param {"name" | "tags" | "notes"} field
+ * @param {AnnotatedField} field
  */
-export const edit = (run, field) => (edited.value = { id: run.id, field });
+export function edit(run, field) {
+  openDetails(run.id);
+  edited.value = { id: run.id, field };
+}
 
-/** @param {Run} run @param {"name" | "tags" | "notes"} field */
+/** @param {Run} run @param {AnnotatedField} field */
 const isEdited = (run, field) => edited.value?.id === run.id && edited.value?.field === field;
 
-/** @param {{ run: Run, title: string, aside: ComponentChildren }} props */
-export function Name({ run, title, aside }) {
+/** @type {Record<AnnotatedField, string>} */
+const VERBS = { name: "Rename", tags: "Change the tags", notes: "Change the notes" };
+
+/** @param {{ run: Run, field: AnnotatedField }} props */
+const EditButton = ({ run, field }) => isOperator.value && html`
+  <button class="quiet square small" id=${`edit-${field}`} aria-label=${VERBS[field]} title=${VERBS[field]}
+    onClick=${() => edit(run, field)}><${Icon} name="edit" /></button>
+`;
+
+/** `title`: what stands there while it is not changed. @param {{ run: Run, title: string }} props */
+export function Name({ run, title }) {
   if (isEdited(run, "name")) {
     /** @param {string} name */
     const save = (name) => annotate(run, { name });
-    return html`<${Editor} label="Name" text=${title} maximum=${served().limits.name[1]} save=${save} />`;
+    const [, maximum] = served().limits.name;
+    return html`<${Editor} label="Name" field="name" text=${run.name} maximum=${maximum} save=${save} />`;
   }
-  return html`
-    <p class="run-name">
-      <b role="heading" aria-level="3">${title}</b>
-      ${aside && html`<span class="dim">${aside}</span>`}
-      ${isOperator.value && html`
-        <button class="quiet square small" aria-label=${`Rename ${title}`} title="Rename"
-          onClick=${() => edit(run, "name")}><${Icon} name="edit" /></button>
-      `}
-    </p>
-  `;
+  return html`<h2>${title}</h2><${EditButton} run=${run} field="name" />`;
 }
 
 /** @param {string} text */
@@ -52,21 +58,27 @@ export function Tags({ run }) {
   if (isEdited(run, "tags")) {
     /** @param {string} text */
     const save = (text) => annotate(run, { tags: splitTags(text) });
-    return html`<${Editor} label="Tags, with commas between" text=${tags.join(", ")} save=${save} />`;
+    return html`<${Editor} label="Tags, with commas between" field="tags" text=${tags.join(", ")} save=${save} />`;
   }
-  if (tags.length === 0) return null;
+  if (tags.length === 0) return html`<${Invitation} run=${run} field="tags" words="Add tags" />`;
   /** @param {string} tag */
   const isChosen = (tag) => folded(tag) === folded(filters.value.tag);
   return html`
-    <p class="tags" role="group" aria-label="Tags">
+    <div class="tags" role="group" aria-label="Tags">
       ${tags.map((tag) => html`
-        <button key=${tag} class="chip" aria-pressed=${isChosen(tag) ? "true" : "false"}
+        <button key=${tag} class="tag-chip" aria-pressed=${isChosen(tag) ? "true" : "false"}
           title=${isChosen(tag) ? "Show runs without it too" : "Show only runs with this tag"}
           onClick=${() => setFilters({ tag: isChosen(tag) ? "" : tag })}>${tag}</button>
       `)}
-    </p>
+      <${EditButton} run=${run} field="tags" />
+    </div>
   `;
 }
+
+/** @param {{ run: Run, field: AnnotatedField, words: string }} props */
+const Invitation = ({ run, field, words }) => isOperator.value && html`
+  <button class="secondary compact add" id=${`edit-${field}`} onClick=${() => edit(run, field)}>${words}</button>
+`;
 
 /** @param {{ run: Run }} props */
 export function Notes({ run }) {
@@ -74,42 +86,49 @@ export function Notes({ run }) {
   if (isEdited(run, "notes")) {
     /** @param {string} text */
     const save = (text) => annotate(run, { notes: text });
+    const [, maximum] = served().limits.notes;
     return html`
-      <${Editor} label="Notes" text=${notes} maximum=${served().limits.notes[1]} save=${save} isLong />
+      <${Editor} label="Notes" field="notes" text=${notes} maximum=${maximum} save=${save} isLong />
     `;
   }
-  if (!notes) return null;
-  const [first, ...others] = notes.split("\n");
-  if (others.length === 0) return html`<p class="notes">${notes}</p>`;
-  return html`<details class="notes"><summary>${first}</summary><p>${others.join("\n")}</p></details>`;
+  if (!notes) return html`<${Invitation} run=${run} field="notes" words="Add notes" />`;
+  return html`
+    <div class="kept-notes">
+      <h3>Notes <${EditButton} run=${run} field="notes" /></h3>
+      <p class="notes">${notes}</p>
+    </div>
+  `;
 }
 
 /**
  * A field in the place of what it changes. Enter saves, in notes with Ctrl; Escape leaves all as it was.
- * @param {{ label: string, text: string, maximum: number, save: (text: string) => unknown, isLong?: boolean }} props
+ * @param {object} props
+ * @param {string} props.label
+ * @param {AnnotatedField} props.field
+ * @param {string} props.text
+ * @param {number | null} [props.maximum]
+ * @param {(text: string) => unknown} props.save
+ * @param {boolean} [props.isLong]
  */
-function Editor({ label, text, maximum, save, isLong = false }) {
+function Editor({ label, field, text, maximum, save, isLong = false }) {
   const [draft, setDraft] = useState(text);
-  const field = useRef(/** @type {HTMLInputElement | null} */ (null));
+  const input = useRef(/** @type {any} */ (null));
   // Before anything can be typed, which would be selected too.
   useLayoutEffect(() => {
-    field.current?.focus();
-    field.current?.select();
+    input.current?.focus();
+    input.current?.select();
   }, []);
   const close = () => {
-    const row = field.current?.closest(".run");
     edited.value = null;
     // The field has the focus, and goes.
-    /** @type {HTMLElement | null | undefined} */
-    const menu = row?.querySelector("summary.square");
-    requestAnimationFrame(() => menu?.focus());
+    requestAnimationFrame(() => document.getElementById(`edit-${field}`)?.focus());
   };
   /** @param {Event} event */
   const submit = async (event) => {
     event.preventDefault();
     const isSaved = draft === text || (await save(draft));
     // Not if another text is edited by now.
-    if (isSaved && field.current) close();
+    if (isSaved && input.current) close();
   };
   /** @param {KeyboardEvent} event */
   const onKeyDown = (event) => {
@@ -117,7 +136,7 @@ function Editor({ label, text, maximum, save, isLong = false }) {
     else if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) submit(event);
   };
   const shared = {
-    ref: field, value: draft, "aria-label": label, maxlength: maximum ?? undefined, onKeyDown,
+    ref: input, value: draft, "aria-label": label, maxlength: maximum ?? undefined, onKeyDown,
     onInput: (/** @type {Changed} */ { target }) => setDraft(target.value),
   };
   return html`

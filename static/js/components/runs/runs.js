@@ -1,68 +1,66 @@
-// The view of all runs: filters, order, selection, import, and the list.
-import { useEffect, useState } from "preact/hooks";
+// The view of all runs: the list with its filters on one side, the details of what was chosen on the other.
+import { COLUMNS, shownColumns, toggleColumn } from "../../run-columns.js";
+import { followDetails } from "../../run-details.js";
+import { filters, followRunList, grouping, setFilters, setGrouping } from "../../run-list.js";
+import { GROUPING_TITLES } from "../../run-groups.js";
+import { followThumbnails } from "../../run-thumbnails.js";
+import { page } from "../../page-state.js";
+import { isPhone } from "../../page.js";
 import { isOperator } from "../../selectors.js";
-import { dismissImport, importFiles, imports } from "../../run-import.js";
-import {
-  clearFilters, filters, followRunList, isFiltered, knownTags, runList, setFilters, shownRuns,
-} from "../../run-list.js";
-import { clearSelection, selectAll, setSelected } from "../../run-selection.js";
 import { served } from "../../store.js";
 import { html, Icon, Segments } from "../elements.js";
 import { CodeDialog } from "./code.js";
-import { RunRow } from "./row.js";
-import { Selection } from "./selection.js";
+import { Details } from "./details.js";
+import { ImportButton, useDrop } from "./import.js";
+import { List } from "./list.js";
+import { SelectionBar } from "./selection.js";
 
 /** @import { Changed } from "../../types.js" */
 
 const KINDS = [["", "All"], ["training", "Trainings"], ["race", "Races"], ["experiment", "Experiments"]];
+/** @type {[string, string][]} */
 const STATES = ["running", "paused", "queued", "finished", "stopped", "failed", "interrupted"]
   .map((state) => [state, state]);
+/** @type {[string, string][]} */
 const SORTS = [
   ["newest", "newest first"], ["oldest", "oldest first"], ["name", "by name"], ["distance", "longest first"],
 ];
-const MAX_TAGS = 12;
 
 followRunList();
+followThumbnails();
+followDetails();
 
 export function Runs() {
-  const shown = shownRuns.value;
   const isDragging = useDrop();
+  const isCovered = isPhone.value && page.isOverList.value;
   return html`
-    <section class=${`panel runs ${isDragging ? "drop" : ""}`} aria-labelledby="runs-title"
-      aria-busy=${runList.isLoading.value ? "true" : "false"}>
-      <${Head} />
-      <${Tags} />
-      <${Imports} />
-      ${shown.length > 0 && html`<${Selection} />`}
-      ${shown.length === 0
-        ? html`<${NoRuns} />`
-        : html`
-          <ul class="run-list" aria-label="Runs" onKeyDown=${moveByKey}>
-            ${shown.map((run) => html`<${RunRow} key=${run.id} run=${run} />`)}
-          </ul>
-        `}
-      <${More} />
+    <div class=${`runs ${isDragging ? "drop" : ""}`}>
+      <section class="list-column" aria-labelledby="runs-title" inert=${isCovered}>
+        <${Head} />
+        <${List} />
+        ${isPhone.value && html`<${SelectionBar} />`}
+      </section>
+      ${(!isPhone.value || isCovered) && html`<${Details} />`}
       ${isDragging && html`<p class="drop-note" role="status">Drop to take in: archives of runs, or Q-tables</p>`}
       <${CodeDialog} />
-    </section>
+    </div>
   `;
 }
 
 function Head() {
-  const { kind, state, search, sort } = filters.value;
+  const { kind, search } = filters.value;
   return html`
     <div class="runs-head">
       <h2 id="runs-title">Runs</h2>
-      ${isOperator.value && html`<${ImportButton} />`}
+      <input class="search" type="search" aria-label="Search names, ids, tags and notes"
+        placeholder="Search" maxlength=${served().limits.name[1]} value=${search}
+        onInput=${(/** @type {Changed} */ { target }) => setFilters({ search: target.value })} />
       <${Segments} label="Kind" choices=${KINDS} value=${kind}
         onValue=${(/** @type {string} */ value) => setFilters({ kind: value })} />
-      <${Choice} label="State" choices=${[["", "any state"], ...STATES]} value=${state}
-        onValue=${(/** @type {string} */ value) => setFilters({ state: value })} />
-      <${Choice} label="Order" choices=${SORTS} value=${sort}
-        onValue=${(/** @type {string} */ value) => setFilters({ sort: value })} />
-      <input class="search" type="search" aria-label="Search names, ids, tags and notes"
-        placeholder="Name, id, tag or note" maxlength=${served().limits.name[1]} value=${search}
-        onInput=${(/** @type {Changed} */ { target }) => setFilters({ search: target.value })} />
+      <${Choice} label="Groups" choices=${Object.entries(GROUPING_TITLES)} value=${grouping.value}
+        onValue=${setGrouping} />
+      <${ViewMenu} />
+      ${isOperator.value && html`<${ImportButton} />`}
     </div>
   `;
 }
@@ -77,146 +75,31 @@ const Choice = ({ label, choices, value, onValue }) => html`
   </label>
 `;
 
-/** The tags in use, to filter by. */
-function Tags() {
-  const { tag } = filters.value;
-  const known = knownTags.value.slice(0, MAX_TAGS);
-  const all = tag === "" || known.includes(tag) ? known : [tag, ...known];
-  if (all.length === 0) return null;
+/** What is seldom changed: the order, the state, and the columns. */
+function ViewMenu() {
+  const { state, sort } = filters.value;
+  const shown = shownColumns.value;
   return html`
-    <div class="tags" role="group" aria-label="Tag">
-      ${all.map((one) => html`
-        <button key=${one} class="chip" aria-pressed=${one === tag ? "true" : "false"}
-          onClick=${() => setFilters({ tag: one === tag ? "" : one })}>${one}</button>
-      `)}
-    </div>
+    <details class="menu view-menu">
+      <summary class="quiet" title="Order, state and columns">
+        <${Icon} name="columns" /><span>View</span>${state && html`<span class="badge">${state}</span>`}
+      </summary>
+      <div class="menu-body">
+        <div class="field">
+          <${Choice} label="Order" choices=${SORTS} value=${sort}
+            onValue=${(/** @type {string} */ value) => setFilters({ sort: value })} />
+          <${Choice} label="State" choices=${[["", "any state"], ...STATES]} value=${state}
+            onValue=${(/** @type {string} */ value) => setFilters({ state: value })} />
+        </div>
+        <fieldset>
+          <legend class="dim">Columns</legend>
+          ${Object.entries(COLUMNS).map(([name, { title }]) => html`
+            <label class="check" key=${name}>
+              <input type="checkbox" checked=${shown.includes(name)} onChange=${() => toggleColumn(name)} />${title}
+            </label>
+          `)}
+        </fieldset>
+      </div>
+    </details>
   `;
-}
-
-// ---- what the list says where there is nothing to list
-
-function NoRuns() {
-  if (runList.error.value) return null;
-  if (!runList.isListed.value) {
-    return html`<p class="no-runs" role="status"><span class="spinner" aria-hidden="true"></span> Loading…</p>`;
-  }
-  if (!isFiltered.value) return html`<div class="no-runs"><${FirstVisit} /></div>`;
-  return html`
-    <div class="no-runs">
-      <p role="status">No run matches these filters.</p>
-      <button class="secondary" onClick=${clearFilters}>Show all runs</button>
-    </div>
-  `;
-}
-
-const FirstVisit = () => html`
-  <p><b>No runs yet.</b></p>
-  <p>
-    Every training, race and experiment is kept here, with its curve, its table, its recording or its
-    report. <a href="#">Start the first one</a>${isOperator.value && ", or drop the file of an exported one here"}.
-  </p>
-`;
-
-function More() {
-  const { error, hasMore, isLoading, loadMore } = runList;
-  if (!hasMore.value && !error.value) return null;
-  const isNewest = filters.value.sort === "newest";
-  return html`
-    <div class="older">
-      <p role="alert">${error}</p>
-      <button class="secondary" aria-disabled=${isLoading.value ? "true" : undefined} onClick=${loadMore}>
-        ${error.value ? "Try again" : `Show ${isNewest ? "older" : "more"} runs`}
-      </button>
-      ${error.value && isFiltered.value && html`
-        <button class="secondary" onClick=${clearFilters}>Show all runs</button>
-      `}
-    </div>
-  `;
-}
-
-// ---- import, by a button and by dropping files anywhere
-
-function ImportButton() {
-  /** @param {{ target: HTMLInputElement }} event */
-  const onChange = ({ target }) => {
-    importFiles([...target.files ?? []]);
-    // So that the same file can be chosen again.
-    target.value = "";
-  };
-  return html`
-    <label class="file-button">
-      <${Icon} name="import" />Import…
-      <input class="sr-only" type="file" multiple accept=".zip,.npz" onChange=${onChange} />
-    </label>
-  `;
-}
-
-const Imports = () => html`
-  <ul class="imports" aria-label="Imports" aria-live="polite">
-    ${imports.value.map(({ key, name, state, words }) => html`
-      <li key=${key} class=${state === "refused" ? "problem" : "notice"}>
-        <span>
-          ${state === "busy" && html`<span class="spinner" aria-hidden="true"></span>`} <b>${name}</b> ${words}
-        </span>
-        ${state !== "busy" && html`
-          <button class="quiet square small" aria-label="Dismiss" onClick=${() => dismissImport(key)}>✕</button>
-        `}
-      </li>
-    `)}
-  </ul>
-`;
-
-/** Take in files that are dropped on the page while this view is open; whether files are dragged over it. */
-function useDrop() {
-  const [isDragging, setDragging] = useState(false);
-  useEffect(() => {
-    /** @param {DragEvent} event */
-    const hasFiles = (event) => isOperator.peek() && event.dataTransfer?.types.includes("Files");
-    /** @type {Record<string, (event: any) => unknown>} */
-    const listeners = {
-      dragover(event) {
-        if (!hasFiles(event)) return;
-        event.preventDefault();
-        setDragging(true);
-      },
-      dragleave: ({ relatedTarget }) => relatedTarget === null && setDragging(false),
-      drop(event) {
-        if (!hasFiles(event)) return;
-        event.preventDefault();
-        setDragging(false);
-        importFiles([...event.dataTransfer.files]);
-      },
-    };
-    for (const [name, listener] of Object.entries(listeners)) addEventListener(name, listener);
-    return () => {
-      for (const [name, listener] of Object.entries(listeners)) removeEventListener(name, listener);
-    };
-  }, []);
-  return isDragging;
-}
-
-// ---- keys in the list, while the box of a run has the focus
-
-/** @type {Record<string, number>} */
-const STEPS = { ArrowDown: 1, ArrowUp: -1 };
-
-/**
- * Up and down go to the next run, with Shift they select it too; Ctrl+A selects all, Escape none.
- * @param {KeyboardEvent & { target: HTMLInputElement, currentTarget: HTMLElement }} event
- */
-function moveByKey(event) {
-  const { key, target, shiftKey } = event;
-  if (!target.matches(".run-box input")) return;
-  if (key in STEPS) {
-    const boxes = /** @type {HTMLInputElement[]} */ ([...event.currentTarget.querySelectorAll(".run-box input")]);
-    const next = boxes[boxes.indexOf(target) + STEPS[key]];
-    if (next && shiftKey) {
-      setSelected(target.value, true);
-      setSelected(next.value, true, true);
-    }
-    next?.focus();
-  } else if (key === "a" && (event.ctrlKey || event.metaKey)) selectAll();
-  else if (key === "Escape") clearSelection();
-  else return;
-  event.preventDefault();
 }

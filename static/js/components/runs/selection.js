@@ -1,56 +1,30 @@
-// The bar of the selection: how many runs are selected, and what can be done with all of them.
+// What can be done with all runs that are selected; on a phone a bar at the thumb leads there.
 import { useState } from "preact/hooks";
 import { pending } from "../../actions.js";
 import { count } from "../../format.js";
-import { addressOf } from "../../page-state.js";
-import { shownRuns } from "../../run-list.js";
+import { openDetails } from "../../run-details.js";
 import {
-  clearSelection, deletable, deleteSelected, exported, selectAll, selected, tagSelected,
+  clearSelection, deletable, deleteSelected, exported, selected, tagSelected,
 } from "../../run-selection.js";
-import { MAX_COMPARED } from "../../compare.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html, Problem } from "../elements.js";
-import { RaceThem } from "../compare/race-them.js";
 
 /** @import { Changed } from "../../types.js" */
 
-export function Selection() {
-  const { length } = selected.value;
-  const isAll = length === shownRuns.value.length;
-  return html`
-    <div class=${`selection ${length ? "on" : ""}`} role="group" aria-label="Selected runs">
-      <label class="check">
-        <input type="checkbox" checked=${isAll} indeterminate=${length > 0 && !isAll}
-          onClick=${() => (isAll ? clearSelection() : selectAll())} />
-        ${length ? `${count(length, "run")} selected` : "Select all"}
-      </label>
-      ${length > 0 && html`<${SelectionActions} />`}
-      <${Problem} at="selection" />
-    </div>
-  `;
-}
-
-function SelectionActions() {
-  const { count: exportable, most, address } = exported.value;
-  return html`
-    <${CompareThem} />
-    <${RaceThem} runs=${selected.value} />
-    ${address
-      ? html`<a class="secondary compact button" href=${address} download>Export ${exportable}</a>`
-      : html`<span class="dim">${exportable ? `An export has up to ${most} runs.` : "None has ended yet."}</span>`}
+export const SelectionActions = () => html`
+  <div class="selection-actions" role="group" aria-label="Selected runs">
+    <${ExportThem} />
     ${isOperator.value && html`<${TagThem} />`}
     ${isOperator.value && deletable.value.length > 0 && html`<${DeleteThem} />`}
-    <button class="quiet compact" onClick=${clearSelection}>Clear</button>
-  `;
-}
+    <${Problem} at="selection" />
+  </div>
+`;
 
-function CompareThem() {
-  const ids = selected.value.filter(({ kind }) => kind !== "experiment").map(({ id }) => id);
-  if (ids.length < 2) return null;
-  if (ids.length > MAX_COMPARED) return html`<span class="dim">Up to ${MAX_COMPARED} runs compare.</span>`;
-  const address = addressOf({ view: "compare", compared: ids });
-  return html`<a class="secondary compact button" href=${address}>Compare ${ids.length}</a>`;
+function ExportThem() {
+  const { count: exportable, most, address } = exported.value;
+  if (address) return html`<a class="secondary compact button" href=${address} download>Export ${exportable}</a>`;
+  return html`<span class="dim">${exportable ? `An export has up to ${most} runs.` : "None has ended yet."}</span>`;
 }
 
 function TagThem() {
@@ -64,7 +38,7 @@ function TagThem() {
     <form class="in-place" onSubmit=${submit}>
       <input type="text" aria-label="Tag for the selected runs" placeholder="Add a tag"
         maxlength=${served().limits.tag[1]} value=${tag}
-          onInput=${(/** @type {Changed} */ { target }) => setTag(target.value)} />
+        onInput=${(/** @type {Changed} */ { target }) => setTag(target.value)} />
       <button class="secondary compact" disabled=${pending.value.selection}>Tag</button>
     </form>
   `;
@@ -81,5 +55,19 @@ function DeleteThem() {
       onClick=${() => (isSure ? deleteSelected() : setSureOf(ids))}>
       ${isSure ? `Delete ${count(length, "run")} for good?` : `Delete ${length}`}
     </button>
+  `;
+}
+
+/** Leads to what can be done with the selection. */
+export function SelectionBar() {
+  const [first] = selected.value;
+  if (!first) return null;
+  return html`
+    <div class="selection-bar" role="group" aria-label="Selection">
+      <button class="quiet" onClick=${clearSelection}>Clear</button>
+      <button class="primary" onClick=${() => openDetails(first.id)}>
+        ${selected.value.length > 1 ? `Look at these ${selected.value.length}` : "Look at this one"}
+      </button>
+    </div>
   `;
 }

@@ -1,0 +1,117 @@
+// The details beside the list: of one run, or of all that are selected.
+import { pending, resumeRun, isShown, showOnStage } from "../../actions.js";
+import { paceOf } from "../../experiments/runs.js";
+import { isPhone } from "../../page.js";
+import { addressOf } from "../../page-state.js";
+import { closeDetails, isOfSelection, repeatAddress, subjects } from "../../run-details.js";
+import { runGroups } from "../../run-list.js";
+import { outcomeInWords, titleOf, withResult } from "../../run-words.js";
+import { isOperator } from "../../selectors.js";
+import { describeRun } from "../../titles.js";
+import { html, Icon, Problem, ProgressBar } from "../elements.js";
+import { ReplayLink } from "../replay-link.js";
+import { Name, Notes, Tags } from "./annotations.js";
+import { DeleteButton, RunMenu } from "./menu.js";
+import { OneCurve, RaceResult, TrainingResult, Settings } from "./one.js";
+import { State } from "./row.js";
+import { Several } from "./several.js";
+
+/** @import { AnyRun } from "../../runs.js" */
+/** @import { DamagedRun, Run } from "../../types.js" */
+
+export function Details() {
+  const [first] = subjects.value;
+  return html`
+    <section class=${`details-column ${isPhone.value ? "over" : ""}`} aria-label="Details">
+      ${isPhone.value && html`
+        <button class="quiet back" onClick=${closeDetails}><${Icon} name="back" />Runs</button>
+      `}
+      ${detailsOf(first)}
+    </section>
+  `;
+}
+
+/** @param {AnyRun | undefined} first */
+function detailsOf(first) {
+  if (!first) return html`<p class="dim nothing">Details of a run stand here.</p>`;
+  if (isOfSelection.value) return html`<${Several} />`;
+  return "damaged" in first ? html`<${Damaged} run=${first} />` : html`<${One} key=${first.id} run=${first} />`;
+}
+
+/** @param {{ run: DamagedRun }} props */
+const Damaged = ({ run }) => html`
+  <header class="details-head"><h2>${titleOf(run)}</h2><${State} state="damaged" /></header>
+  <div class="details-body"><p class="bad">${run.damaged}</p><p class="dim">${run.id}</p></div>
+  ${isOperator.value && html`
+    <footer class="details-foot"><div class="row"><${DeleteButton} run=${run} /></div></footer>
+  `}
+`;
+
+/** The name of a run by itself: with what it differs in from its group, where that is not in it. @param {Run} run */
+function wholeName(run) {
+  const title = titleOf(run);
+  const group = runGroups.value.find(({ isSweep, rows }) => isSweep && rows.some((row) => row.run.id === run.id));
+  const name = group?.rows.find((row) => row.run.id === run.id)?.name ?? title;
+  return run.is_named || title.toLowerCase().includes(name.toLowerCase()) ? title : `${title}, ${name}`;
+}
+
+/** @param {{ run: Run }} props */
+const One = ({ run }) => html`
+  <header class="details-head">
+    <${Name} run=${run} title=${withResult(wholeName(run), run)} />
+    <p class="details-state"><${State} state=${run.state} run=${run} outcome=${outcomeInWords(run)} isTold /></p>
+    <${RunMenu} run=${run} label="More actions" />
+  </header>
+  <div class="details-body">
+    ${run.error && html`<p class="problem">${run.error}</p>`}
+    ${run.kind === "training" && html`<${OneCurve} run=${run} /><${TrainingResult} run=${run} />`}
+    ${run.kind === "race" && html`<${RaceResult} run=${run} />`}
+    ${run.kind === "experiment" ? html`<${Experiment} run=${run} />` : html`<${Settings} run=${run} />`}
+    <div class="annotations"><${Tags} run=${run} /><${Notes} run=${run} /></div>
+  </div>
+  <${Foot} run=${run} />
+`;
+
+/** @param {{ run: Run }} props */
+function Experiment({ run }) {
+  const { share, label, left } = paceOf(run);
+  return html`
+    <p>${describeRun(run)}</p>
+    <${ProgressBar} label="Trials" share=${share} />
+    <p class="dim">${label}${left && `, ${left}`}</p>
+  `;
+}
+
+/** @param {{ run: Run }} props */
+function Foot({ run }) {
+  const isPending = pending.value[run.id];
+  const isWalk = run.kind !== "experiment";
+  const canResume = isOperator.value && run.can_resume && run.state !== "paused";
+  const repeat = isOperator.value ? repeatAddress([run]) : null;
+  return html`
+    <footer class="details-foot">
+      <div class="row">
+        ${canResume && html`
+          <button class="secondary" disabled=${isPending} onClick=${() => resumeRun(run)}>Resume</button>
+        `}
+        ${isWalk && isOperator.value && html`
+          <button class="secondary" disabled=${isPending || run.state === "queued"}
+            onClick=${() => showOnStage(run)} title="Show it on the stage, to everybody">
+            ${isShown(run) ? "On stage" : "Show"}
+          </button>
+        `}
+        ${repeat && html`<${RepeatLink} address=${repeat} />`}
+      </div>
+      ${isWalk && run.progress.done > 0 && html`<${ReplayLink} id=${run.id}>Replay<//>`}
+      ${!isWalk && html`
+        <a class="to-report" href=${addressOf({ view: "experiments", report: run.id })}>Report</a>
+      `}
+      <${Problem} at=${run.id} />
+    </footer>
+  `;
+}
+
+/** @param {{ address: string }} props */
+export const RepeatLink = ({ address }) => html`
+  <a class="secondary button" href=${address} title="As an experiment: how much of it is chance">Repeat, 12 seeds</a>
+`;

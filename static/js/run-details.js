@@ -1,0 +1,125 @@
+// The runs whose details are shown beside the list: the one that was opened, or those that are selected.
+import { computed } from "@preact/signals";
+import { experimentOf } from "./experiments/form.js";
+import { addressOf, change, page } from "./page-state.js";
+import { isPhone } from "./page.js";
+import { customRobotInWords, presetOf } from "./robots.js";
+import { listedRuns } from "./run-list.js";
+import { selected } from "./run-selection.js";
+import { fieldsOf } from "./run-settings.js";
+import { greedyOf } from "./run-words.js";
+import { followRuns } from "./runs.js";
+import { agentOf } from "./settings.js";
+import { damagedRuns, runs } from "./store.js";
+import { curveOf, followCurves } from "./training.js";
+
+/** @import { AnyRun } from "./runs.js" */
+/** @import { Run } from "./types.js" */
+
+/** Show the details of a run; where there is no room beside the list, over it. @param {string} id */
+export const openDetails = (id) => change({ opened: id, isOverList: isPhone.peek() });
+
+export const closeDetails = () => change({ isOverList: false });
+
+/** The run that was opened, listed or not; null without one. @type {{ value: AnyRun | null }} */
+const opened = computed(() => {
+  const id = page.opened.value ?? "";
+  return runs.value.get(id) ?? damagedRuns.value.get(id) ?? null;
+});
+
+/** Whether the details are of the selection: of several runs, until one beside them is opened. */
+export const isOfSelection = computed(() => {
+  const all = selected.value;
+  return all.length > 1 && (opened.value === null || all.includes(opened.value));
+});
+
+/** The runs whose details are shown: the opened one, else the first; several where they are selected. */
+export const subjects = computed(() => {
+  if (isOfSelection.value) return selected.value;
+  const one = opened.value ?? selected.value[0] ?? listedRuns.value[0];
+  return one ? [one] : [];
+});
+
+// ---- their curves
+
+/** More lines in one chart cannot be told apart. */
+export const MAX_CURVES = 8;
+
+/** @param {AnyRun} run @returns {run is Run} */
+export const isTraining = (run) => !("damaged" in run) && run.kind === "training";
+
+const withCurves = computed(() => subjects.value.filter(isTraining).slice(0, MAX_CURVES));
+
+/** Keep the run that a link opens, and the curves, while the view is open. */
+export function followDetails() {
+  const isOpen = computed(() => page.view.value === "runs");
+  followRuns(computed(() => (isOpen.value && page.opened.value ? [page.opened.value] : [])));
+  followRuns(computed(() => (isOpen.value ? page.selected.value : [])));
+  followCurves(computed(() => (isOpen.value ? withCurves.value : [])));
+}
+
+/**
+ * The point of a training's curve that is the farthest: [step, distance m]; null before its first evaluation.
+ * @param {Run} run
+ */
+export function bestPointOf(run) {
+  const { points } = curveOf(run);
+  const [first, ...others] = points.slice(1);
+  return first ? others.reduce((best, one) => (one.distance_m > best.distance_m ? one : best), first) : null;
+}
+
+/** Greedy's distance, where it is the same for all trainings [m]; else null. @param {Run[]} trainings */
+export function commonGreedy(trainings) {
+  const [first = null, ...others] = trainings.map(greedyOf);
+  return others.every((one) => one === first) ? first : null;
+}
+
+// ---- the same again with several seeds, as an experiment
+
+const SEEDS = "12";
+
+/** @type {(values: unknown[]) => string[]} */
+const each = (values) => [...new Set(values.map(String))];
+
+/**
+ * The address of an experiment's form that has the settings of trainings; null where none is the same: of other
+ * robots and gaits than the named ones, of what happens to the robot, and of practice that was continued or changed.
+ * @param {AnyRun[]} all
+ */
+export function repeatAddress(all) {
+  const trainings = all.filter(isTraining);
+  if (trainings.length === 0 || trainings.length < all.length || !trainings.every(isRepeatable)) return null;
+  const configs = trainings.map(({ config }) => config);
+  const [simulator, ...simulators] = each(configs.map((config) => config.simulator));
+  if (simulators.length) return null;
+  const { defaults } = experimentOf("sweep");
+  const own = configs.flatMap(({ agent, settings }) =>
+    Object.entries(settings).filter(([name, value]) => value !== agentOf(agent).settings[name]?.default));
+  const fields = {
+    seeds: [SEEDS], simulator: [simulator],
+    agents: each(configs.map(({ agent }) => agent)),
+    gaits: each(configs.map(({ gait }) => gait)),
+    robots: each(configs.map(({ robot }) => presetOf(robot))),
+    observations: each(configs.map(({ observation }) => observation)),
+    steps: each(configs.map(({ steps }) => steps)),
+    steps_per_episode: each(configs.map(({ steps_per_episode }) => steps_per_episode)),
+    divisions: each(configs.map(({ divisions }) => divisions)),
+    grid_side_m: each(configs.map(({ grid_side_m }) => grid_side_m)),
+    // Where one training has another value than by default, the others have theirs.
+    ...Object.fromEntries(own.map(([name]) => [name, each(configs.flatMap(({ settings }) => settings[name] ?? []))])),
+  };
+  const set = Object.entries(fields).filter(([name, values]) => String(values) !== String(defaults[name] ?? ""));
+  const experiment = new URLSearchParams([["experiment", "sweep"],
+    ...set.map(([name, values]) => [name, values.join(LISTS_BY_COMMA.includes(name) ? "," : ";")])]);
+  return addressOf({ view: "experiments", experiment });
+}
+
+const LISTS_BY_COMMA = ["agents", "gaits", "robots", "observations"];
+
+/** @param {Run} run */
+function isRepeatable(run) {
+  const { world, tolerance, before, changes } = fieldsOf(run);
+  const { gait, robot } = run.config;
+  const hasNames = typeof gait === "string" && customRobotInWords(robot) === null;
+  return hasNames && [world, tolerance, before, changes].every(({ key }) => key === "");
+}
