@@ -12,9 +12,9 @@ from app.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPract
 from app.jobs.stopping import Stopping
 from app.jobs.turns import Turns
 from app.storage.database.store import RunStore
-from app.storage.errors import Conflict
+from app.storage.errors import Busy, Conflict
 from app.storage.recordings import Recordings
-from app.storage.run import Run
+from app.storage.run import RUNNING, Run
 from app.storage.stored_tables import load_table
 from hexapods.agents import registry
 from hexapods.agents.protocol import Tabular, Valuing
@@ -68,7 +68,7 @@ class Explanations:
             NotFound: if there is no such run.
             InvalidInput: if there is no such step or lane.
             Conflict: if the run has no steps (yet), or its learner cannot be built again.
-            Busy: if it takes longer than a request may.
+            Busy: if it takes longer than a request may, or a running run has not recorded the step.
         """
         run = self._store.get(run_id)
         if isinstance(run.config, RaceConfig):
@@ -78,7 +78,7 @@ class Explanations:
         if lane != 0:
             raise InvalidInput("a training has one lane, 0")
         config, log = run.config, self._log(run)
-        number = _checked_step(step, len(log))
+        number = _checked_step(step, len(log), run)
         # Read after the log, when all changes before its last step are stored.
         run, steps = self._store.get(run_id), _TrainingSteps(log)
 
@@ -109,9 +109,7 @@ class Explanations:
         if not isinstance(run.config, TrainingConfig):
             raise InvalidInput(f"run {run_id} is a {run.kind}; only trainings have a table")
         config, log = run.config, self._log(run)
-        number = len(log) if step is None else step
-        if not 0 <= number <= len(log):
-            raise InvalidInput(f"step must be from 0 to {len(log):,}, not {number}")
+        number = _checked_step(step, len(log), run, first=0)
         # Read after the log, when all changes before its last step are stored.
         run, steps = self._store.get(run_id), _TrainingSteps(log)
         groups, cells = len(config.resolved_gait.groups), len(config.grid)
@@ -154,7 +152,7 @@ class Explanations:
         if not 0 <= lane < len(lanes):
             raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
         recording, own = lanes[lane], config.lanes[lane]
-        number = _checked_step(step, len(recording.steps))
+        number = _checked_step(step, len(recording.steps), run)
         steps = LoggedLane(recording, own.observation == "measured")
 
         def answer() -> dict[str, Any]:
@@ -295,13 +293,21 @@ def _search_of(agent: str, step: LaneStep) -> SearchFindings | None:
     return SearchFindings(registry.compares(agent), step.transitions, step.futures)
 
 
-def _checked_step(step: int | None, count: int) -> int:
-    if count == 0:
+def _checked_step(step: int | None, taken: int, run: Run, first: int = 1) -> int:
+    """Return a step of a run from `first` to the last one `taken`, which is the default.
+
+    Raises:
+        InvalidInput: if the run has no such step.
+        Busy: if a running run will have it: what it took last is recorded a moment later.
+    """
+    if run.state in RUNNING and step is not None and taken < step <= run.config.steps:
+        raise Busy(f"step {step:,} of run {run.id} is not recorded yet; ask again later", 1)
+    if taken < first:
         raise InvalidInput("it has taken no step yet")
     if step is None:
-        return count
-    if not 1 <= step <= count:
-        raise InvalidInput(f"step must be from 1 to {count:,}, not {step}")
+        return taken
+    if not first <= step <= taken:
+        raise InvalidInput(f"step must be from {first} to {taken:,}, not {step}")
     return step
 
 

@@ -307,7 +307,10 @@ const raceReason = computed(() => {
   const until = Math.min(time, known.first_finish_s ?? Infinity);
   const why = reasonOf(rows, known.lanes, until, joinedBySteps(disturbancesOf(race)));
   const work = isTimedOut.value ? workOf(rows[0], known.lanes, until, race.config.steps) : null;
-  return [why, work].filter(Boolean).join(" ") || null;
+  if (!work) return why;
+  // Of 25 words: the time of thinking tells what simulating moves cost.
+  const [first = null] = why?.split(/(?<=\.) /) ?? [];
+  return [first, work].filter(Boolean).join(" ");
 });
 
 /** A share of random steps that is not worth a sentence. */

@@ -13,8 +13,6 @@ from tests.browser.serving import Serving
 pytestmark = pytest.mark.timeout(300)
 
 MAX_REQUESTS = 60
-EXCESS = 3
-"""Requests over that at present: to be cut, never to be raised."""
 MAX_BYTES = 250_000
 
 
@@ -63,5 +61,5 @@ def test_a_first_visit_transfers_little(dashboard: Dashboard, server: Serving) -
     scripts = [path for path in paths if path.endswith(".js")]
     assert "/static/js/main.js" in scripts
     assert len({*scripts}) == len(scripts)
-    assert len(paths) <= MAX_REQUESTS + EXCESS, paths
+    assert len(paths) <= MAX_REQUESTS, paths
     assert traffic.total_bytes <= MAX_BYTES

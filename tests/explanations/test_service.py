@@ -4,6 +4,7 @@ import gc
 import weakref
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,11 @@ import pytest
 from app.explanations import service
 from app.explanations.service import Explanations
 from app.storage.database.store import RunStore
+from app.storage.errors import Busy
 from app.storage.recordings import Recordings
+from app.storage.run import RUNNING
 from hexapods.assembly import rebuild_learner
+from hexapods.domain.errors import InvalidInput
 from hexapods.runs.rebuilding import RebuiltLearner
 from hexapods.runs.recording import LaneSteps
 from hexapods.runs.transition_log import TransitionLog
@@ -79,6 +83,22 @@ def test_an_answer_is_new_where_the_run_was_changed_before(store: RunStore) -> N
 
     assert explanations.explain(run_id, 40, 0) is steps[0]
     assert explanations.explain(run_id, 50, 0) != steps[1]
+
+
+def test_a_running_training_is_asked_again_for_the_step_that_it_records_next(
+    store: RunStore,
+) -> None:
+    config, recordings = replace(config_of("q-learning"), steps=100), Recordings(store)
+    run_id = stored_training(store, recordings, config=config, total=100)
+    explanations = Explanations(store, recordings)
+    for ask in (explanations.explain, partial(explanations.table, count=9)):
+        with pytest.raises(Busy, match="step 81 of run a1 is not recorded yet; ask again later"):
+            ask(run_id, 81, 0)
+        with pytest.raises(InvalidInput, match="step must be from . to 80, not 101"):
+            ask(run_id, 101, 0)
+    store.transition(run_id, RUNNING, "stopped")
+    with pytest.raises(InvalidInput, match="step must be from 1 to 80, not 81"):
+        explanations.explain(run_id, 81, 0)
 
 
 def test_an_answer_is_of_the_steps_that_a_race_took_now(store: RunStore) -> None:

@@ -8,7 +8,7 @@ import { card, closeLesson, openLesson } from "../lesson.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
-import { html, Icon, Loaded, loaded } from "./elements.js";
+import { html, Icon, Loaded, loaded, withStyle } from "./elements.js";
 import { toggleHelp } from "./keyboard.js";
 import { LessonCard } from "./lesson.js";
 import { Panel, ThumbTabs } from "./panel.js";
@@ -82,15 +82,15 @@ const loadHelp = () => import("./help.js").then(({ HelpDialog }) => HelpDialog);
 /** Loaded when it is first opened, and there since then. */
 const Help = () => (helpIsOpen.value || loaded.value.help) && html`<${Loaded} name="help" load=${loadHelp} />`;
 
-const loadDesk = () => import("./desk.js").then(({ Desk }) => Desk);
+const loadDesk = () => withStyle("presenter", import("./desk.js")).then(({ Desk }) => Desk);
 
 // ---- the views that are loaded when they are first opened: most visits do not
 
-/** @type {Record<string, () => Promise<FunctionComponent>>} */
+/** With the style that no other view needs. @type {Record<string, () => Promise<FunctionComponent>>} */
 const LOADERS = {
-  experiments: () => import("./experiments/experiments.js").then(({ Experiments }) => Experiments),
-  runs: () => import("./runs/runs.js").then(({ Runs }) => Runs),
-  compare: () => import("./compare/compare.js").then(({ Compare }) => Compare),
+  experiments: () => withStyle("experiments", import("./experiments/experiments.js")).then((own) => own.Experiments),
+  runs: () => withStyle("runs", import("./runs/runs.js")).then((own) => own.Runs),
+  compare: () => withStyle("runs", import("./compare/compare.js")).then((own) => own.Compare),
 };
 
 /** @param {{ name: string }} props */

@@ -33,7 +33,7 @@ export function Board() {
       ${isAtLeast("try") && html`<${Choices} />`}
       ${rows && isTimedOut.value && html`<${ByEachClock} rows=${rows} />`}
       ${hasChart && (rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`)}
-      ${rows && !page.isPresenting.value && html`
+      ${rows && isToldAll() && html`
         <p class="dim fine">${ruleOf(rows, clockTitle(clock.value))}${
           isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>
       `}
@@ -41,6 +41,9 @@ export function Board() {
     </section>
   `;
 }
+
+/** Whether small print is shown: those who watch a race that is over read its result, and have read it before. */
+const isToldAll = () => !page.isPresenting.value && (isAtLeast("try") || !isTimedOut.value);
 
 // ---- the lanes
 
@@ -67,7 +70,7 @@ function Standings({ rows }) {
       ${rows.map((row) => html`<${Lane} key=${row.lane} row=${row} longest=${longest} />`)}
       ${isDeep && html`<${BestKnown} />`}
     </table>
-    ${!page.isPresenting.value && html`<p class="dim fine">Solid: walking. Hatched: thinking.</p>`}
+    ${isToldAll() && html`<p class="dim fine">Solid: walking. Hatched: thinking.</p>`}
   `;
 }
 
@@ -111,7 +114,10 @@ function Lane({ row, longest }) {
       <tr>
         <td class="rank">${row.rank ?? "–"}</td>
         <th scope="row" class="agent">
-          <div><${LaneName} row=${row} />${!isDeep && html`<span class="dim note">${noteOf(row)}</span>`}</div>
+          <div>
+            <${LaneName} row=${row} />
+            ${!isDeep && isToldAll() && html`<span class="dim note">${noteOf(row)}</span>`}
+          </div>
         </th>
         <td class="big">${metres(row.finished_m ?? row.distance_m)}</td>
         ${isDeep && html`
@@ -362,25 +368,6 @@ function ByEachClock({ rows }) {
         `)}
       </tbody>
     </table>
-  `;
-}
-
-// ---- in place of the actions in a presenter's window
-
-/** By what a race is ranked and timed, and how long it still takes. */
-export function Facts() {
-  const rows = standings.value;
-  if (!rows) return null;
-  const { time_s = 0, time_out_s = null } = scene.value ?? {};
-  const left = time_out_s === null ? null : Math.max(0, time_out_s - time_s);
-  return html`
-    <dl class="facts-of-race">
-      <div><dt>Rule</dt><dd>${ruleOf(rows, clockTitle(clock.value))}</dd></div>
-      <div><dt>Clock</dt><dd>${sentence(clockTitle(clock.value))}. Solid: walking, hatched: thinking.</dd></div>
-      ${left !== null && html`
-        <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>
-      `}
-    </dl>
   `;
 }
 

@@ -263,6 +263,23 @@ export function Loaded({ name, load }) {
     : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`;
 }
 
+/**
+ * Wait for a module and a style sheet, which the page then keeps.
+ * @template Module
+ * @param {string} name of the sheet
+ * @param {Promise<Module>} module
+ */
+export async function withStyle(name, module) {
+  const href = `static/style/${name}.css`;
+  if (!document.querySelector(`link[href="${href}"]`)) {
+    const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href });
+    const isLoaded = new Promise((resolve, reject) => { Object.assign(link, { onload: resolve, onerror: reject }); });
+    document.head.append(link);
+    await isLoaded.catch((error) => { link.remove(); throw error; });
+  }
+  return module;
+}
+
 // ---- a drawn hexapod, forward up, each leg of which is a button
 
 /** Distances from the middle, of 50. */

@@ -1,17 +1,21 @@
 // The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import { headline, leaderColor, moveTold, practiceTitle, reason } from "../headline.js";
-import { phase, shownRun } from "../on-stage.js";
+import { sentence } from "../format.js";
+import { headline, leaderColor, moveTold, practiceTitle, reason, ruleOf } from "../headline.js";
+import { clock, phase, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
+import { isTimedOut, standings } from "../race.js";
 import { replayProblem } from "../replay.js";
 import { isOperator } from "../selectors.js";
+import { scene } from "../store.js";
 import { scale } from "../time.js";
+import { clockTitle } from "../titles.js";
 import {
   canPin, isAtLeast, isPanelHidden, openTab, pinnedTab, tab, tabAbout, tabs, tabTitle, togglePin,
 } from "../workspace.js";
-import { Board, Facts } from "./board.js";
-import { html, Icon, Loaded } from "./elements.js";
+import { Board } from "./board.js";
+import { html, Icon, Loaded, withStyle } from "./elements.js";
 import { Foot } from "./foot.js";
 
 /** @import { FunctionComponent } from "preact" */
@@ -132,7 +136,7 @@ export function ThumbTabs() {
 
 // ---- what the open tab shows
 
-const loadRemote = () => import("./remote.js").then(({ Remote }) => Remote);
+const loadRemote = () => withStyle("presenter", import("./remote.js")).then(({ Remote }) => Remote);
 const loadTrain = () => import("./train-tab.js").then(({ TrainTab }) => TrainTab);
 const loadWorld = () => import("./world-tab.js").then(({ WorldTab }) => WorldTab);
 const loadWhatIf = () => import("./what-if.js").then(({ WhatIf }) => WhatIf);
@@ -194,4 +198,23 @@ function useFade(host) {
     return () => watcher.disconnect();
   }, []);
   return follows;
+}
+
+// ---- in place of the actions in a presenter's window
+
+/** By what a race is ranked and timed, and how long it still takes. */
+function Facts() {
+  const rows = standings.value;
+  if (!rows) return null;
+  const { time_s = 0, time_out_s = null } = scene.value ?? {};
+  const left = time_out_s === null ? null : Math.max(0, time_out_s - time_s);
+  return html`
+    <dl class="facts-of-race">
+      <div><dt>Rule</dt><dd>${ruleOf(rows, clockTitle(clock.value))}</dd></div>
+      <div><dt>Clock</dt><dd>${sentence(clockTitle(clock.value))}. Solid: walking, hatched: thinking.</dd></div>
+      ${left !== null && html`
+        <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>
+      `}
+    </dl>
+  `;
 }

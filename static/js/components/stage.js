@@ -7,6 +7,7 @@ import { metres, sentence, times, whole } from "../format.js";
 import { page } from "../page-state.js";
 import { closeLegs, legPoints, legsAreOpen, legsOf, picked } from "../legs.js";
 import { clickedCell, drawHere, shownTheme } from "../page.js";
+import { isTimedOut } from "../race.js";
 import { closeReplay, drawIn, isBuffering, replayProblem } from "../replay.js";
 import {
   conditionsShown, isDecided, playbackName, resumableOnStage, shownRun,
@@ -251,7 +252,7 @@ function StageLabels() {
   return html`
     <div class="labels" role="group" aria-label="Labels of the picture" ref=${labels}>
       <${SceneChips} />
-      ${scene.value?.action_values && html`
+      ${scene.value?.action_values && (isAtLeast("try") || !isTimedOut.value) && html`
         <p class="chip legend" aria-label=${GRID_COLOURS}>
           worth less<span class="ramp" aria-hidden="true"></span>more<i aria-hidden="true"></i>never tried
         </p>

@@ -3,6 +3,7 @@ import { agentOf } from "../../settings.js";
 import { count } from "../../format.js";
 import { comparedNumber, fineMillimetres, moveInWords, ruleNumber, stateInWords } from "../../steps.js";
 import { percent, shareOf, valueColours } from "../../scale.js";
+import { isAtLeast } from "../../workspace.js";
 import { html } from "../elements.js";
 
 /** @import { Belief, Explanation, FootCells, Move, ValueUpdate } from "../../types.js" */
@@ -10,7 +11,8 @@ import { html } from "../elements.js";
 /** Products are not broken over two lines. @param {string} text */
 const unbroken = (text) => text.replaceAll(" · ", "\u00a0·\u00a0");
 
-const MAX_MOVES = 6;
+/** Moves that are ranked, for those who study and for all others. */
+const MAX_MOVES = { study: 6, other: 4 };
 const SHORTEST_BAR = 0.02;
 
 /**
@@ -109,7 +111,7 @@ function Ranking({ told, caption, rows }) {
   const all = rows.toSorted((a, b) => b.score - a.score);
   /** @param {{ move: Move }} one */
   const isMade = ({ move }) => move[0] === told.action[0] && move[1] === told.action[1];
-  const first = all.slice(0, MAX_MOVES);
+  const first = all.slice(0, isAtLeast("study") ? MAX_MOVES.study : MAX_MOVES.other);
   const shown = first.some(isMade) ? first : [...first.slice(0, -1), ...all.filter(isMade)];
   const [high, low] = [all[0].score, all[all.length - 1].score];
   return html`

@@ -28,7 +28,7 @@ export function Why() {
       <${Navigator} at=${at} />
       <${Trouble} error=${error} again=${again} />
       ${at.step === 0 && html`<p class="dim">It stands on the start line. Its first step comes next.</p>`}
-      ${isFollowing.value && html`<${ActionValues} />`}
+      ${isFollowing.value && isAtLeast("study") && html`<${ActionValues} />`}
       ${told && html`<${ExplainedStep} told=${told} isFull=${isAtLeast("study")} />`}
       ${!told && !error && at.step > 0 && html`<${Waiting} />`}
     </section>
