@@ -94,9 +94,9 @@ def test_a_running_training_is_asked_again_for_the_step_that_it_records_next(
     for ask in (explanations.explain, partial(explanations.table, count=9)):
         with pytest.raises(Busy, match="step 81 of run a1 is not recorded yet; ask again later"):
             ask(run_id, 81, 0)
-        with pytest.raises(InvalidInput, match="step must be from . to 80, not 101"):
+        with pytest.raises(InvalidInput, match=r"step must be from \d to 80, not 101"):
             ask(run_id, 101, 0)
-    store.transition(run_id, RUNNING, "stopped")
+    store.change(run_id, RUNNING, "stopped")
     with pytest.raises(InvalidInput, match="step must be from 1 to 80, not 81"):
         explanations.explain(run_id, 81, 0)
 
