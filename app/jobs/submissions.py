@@ -19,6 +19,7 @@ from hexapods.domain.observation import Observation
 from hexapods.domain.text import MAX_NAME, whole
 from hexapods.domain.world import WORLDS, check_ends
 from hexapods.experiments.config import GRID, ExperimentConfig
+from hexapods.experiments.names import experiment_name
 from hexapods.experiments.plan import Plan
 from hexapods.runs.config import TrainingConfig, WalkingProblem, problem_of
 from hexapods.runs.lane import LaneConfig, check_lane, lane_config, observation_of
@@ -328,13 +329,6 @@ def _check_agent(table: Checkpoint, agent: str, training_id: str) -> None:
         )
 
 
-TITLES = {
-    "table1": "Table 1",
-    "figure4": "Figure 4",
-    "sweep": "Sweep",
-    "league": "League",
-    "recovery": "Recovery",
-}
 MAX_SETTINGS = 2_000
 """All of them are summarised again and again while trials come in, and drawn in one report."""
 
@@ -360,11 +354,10 @@ class ExperimentStart:
         cores = os.cpu_count() or 1
         if workers is not None and workers > cores:
             raise InvalidInput(f"workers must be from 1 to {cores}, the cores of this machine")
-        seeds = "1 seed" if config.seeds == 1 else f"{whole(config.seeds)} seeds"
         experiment = Run(
             id=new_id(),
             kind="experiment",
-            name=self.name or f"{TITLES[config.experiment]}, {seeds}",
+            name=self.name or experiment_name(config),
             config=config,
             workers=workers,
             total=plan.total,

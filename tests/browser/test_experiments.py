@@ -82,7 +82,7 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     assert len(Path(download.value.path()).read_text("utf-8").splitlines()) >= 9
 
     page.get_by_role("link", name="Runs").click()
-    expect(dashboard.runs.filter(has_text="Table 1, 3 seeds")).to_contain_text("finished")
+    expect(dashboard.runs.filter(has_text="Table 1 · 3 seeds")).to_contain_text("finished")
     page.get_by_role("link", name="Report").click()
     dashboard.button("Delete").click()
     dashboard.button("Delete for good?").click()
