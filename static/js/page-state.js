@@ -116,7 +116,7 @@ const FIELDS = {
   /** What was set of the next experiment, by field, as it was typed. */
   experiment: { part: "experiments", ...TEXTS },
   /** Id of the experiment whose report is shown; null for the newest. */
-  report: { part: "experiments", name: "run", initial: null, ...TEXT },
+  report: { part: "experiments", name: "run", initial: null, ...TEXT, isEntry: true },
   /** Filters and order of the list of runs. */
   list: { part: "runs", ...TEXTS },
   /** Ids of the runs that are compared, in their order. */
