@@ -58,7 +58,7 @@ def _told(config: ExperimentConfig) -> str:
         *([_agents(config)] if has_own else []),
         *([_some(worlds, "worlds")] if worlds else []),
     ]
-    return ", ".join(parts)
+    return " · ".join(parts)
 
 
 def _agents(config: ExperimentConfig) -> str:

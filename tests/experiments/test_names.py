@@ -117,7 +117,7 @@ def test_a_world_without_a_name_is_told_by_what_happens_in_it(world: str, name: 
         (
             "recovery",
             {"agents": ("q-learning",), "worlds": ("limp-pair", "ice")},
-            "Recovery: Q-learning, Two limp legs, Ice · 8 seeds",
+            "Recovery: Q-learning · Two limp legs, Ice · 8 seeds",
         ),
     ],
 )

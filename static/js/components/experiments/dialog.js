@@ -11,7 +11,7 @@ import {
 import { canStart, experimentDuration, start, startLabel } from "../../experiments/runs.js";
 import { count, duration, listed, sentence } from "../../format.js";
 import { ignored, page } from "../../page-state.js";
-import { agentOf, limitsOf, titleOf } from "../../settings.js";
+import { agentOf, learns, limitsOf, titleOf } from "../../settings.js";
 import { connection, options, served } from "../../store.js";
 import { agentTitle, fieldTitle, simulatorTitle } from "../../titles.js";
 import { worldTitle } from "../../disturbances.js";
@@ -127,9 +127,10 @@ const Cards = () => html`
     ${presets().map(({ name, title, about }, number) => html`
       <label class="card" key=${name}>
         <input class="sr-only" type="radio" name="experiment" id=${number ? undefined : "experiment-experiment"}
+          aria-labelledby=${`card-${name}`} aria-describedby=${`about-card-${name}`}
           checked=${!wrong.value.experiment && chosenPreset().name === name}
           onChange=${() => choosePreset(name)} />
-        <b>${title}</b><span>${about}</span>
+        <b id=${`card-${name}`}>${title}</b><span id=${`about-card-${name}`}>${about}</span>
       </label>
     `)}
     <${MistakeOf} field="experiment" />
@@ -144,14 +145,16 @@ function Few({ fields }) {
   return html`
     <div class="few-fields">
       ${isOfSetting && html`<${SweptRows} />`}
-      ${fields.includes("agents") && (isOfSetting ? html`<${AgentRow} />` : html`<${AgentsRow} />`)}
+      ${fields.includes("agents") && (isOfSetting
+        ? html`<${AgentRow} />`
+        : html`<${AgentsRow} label=${chosenPreset().name === "learners" ? "Learners" : "Agents"} />`)}
       ${fields.includes("worlds") && html`<${WorldsRow} />`}
       ${fields.includes("steps") && takesField("steps") && html`
         <${Line} field="steps" label="Practice" unit="steps">
           <${ValuesInput} field="steps" setting=${settingBy("steps")} />
         <//>
       `}
-      <${SeedsRow} />
+      <${SeedsRow} isExplained=${isOfSetting} />
       <${SimulatorRow} />
       <p class="dim where-it-walks">${placeSummary()}</p>
     </div>
@@ -215,20 +218,29 @@ const Options = ({ names, chosen }) => names.map((name) => html`
   <option key=${name} value=${name} selected=${name === chosen}>${titleOf(settingBy(name))}</option>
 `);
 
-/** The one agent whose setting is swept. */
+/** @type {[string, (name: string) => boolean][]} */
+const AGENT_GROUPS = [["Learners", learns], ["Others", (name) => !learns(name)]];
+
+/** The one agent whose setting is swept, of those that have one. */
 const AgentRow = () => html`
   <${Line} field="agents" label="Learner">
     <select ...${attributesOf("agents")}
       onChange=${(/** @type {Changed} */ { target }) => chooseAgent(target.value)}>
-      ${agentChoices().map(([name, title]) => html`
-        <option key=${name} value=${name} selected=${name === values.value.agents[0]}>${title}</option>
+      ${AGENT_GROUPS.map(([title, isIn]) => html`
+        <optgroup label=${title}>
+          ${agentChoices().filter(([name]) => isIn(name) && Object.keys(agentOf(name).settings).length > 0)
+            .map(([name, words]) => html`
+              <option key=${name} value=${name} selected=${name === values.value.agents[0]}>${words}</option>
+            `)}
+        </optgroup>
       `)}
     </select>
   <//>
 `;
 
-const AgentsRow = () => html`
-  <${Several} field="agents" label="Learners" noun="a learner"
+/** @param {{ label: string }} props */
+const AgentsRow = ({ label }) => html`
+  <${Several} field="agents" label=${label} noun=${label === "Agents" ? "an agent" : "a learner"}
     choices=${agentChoices()} titleOf=${agentTitle} />
 `;
 
@@ -284,7 +296,8 @@ function Several({ field, label, noun, choices, titleOf: nameOfOne }) {
 /** Most experiments need no more; the number beside the slider takes any that the server does. */
 const SLIDER_SEEDS = 100;
 
-function SeedsRow() {
+/** @param {{ isExplained: boolean }} props */
+function SeedsRow({ isExplained }) {
   const { minimum } = limitsOf("seeds");
   const min = minimum ?? 1;
   const reached = Math.min(Math.max(values.value.seeds, min), SLIDER_SEEDS);
@@ -295,7 +308,7 @@ function SeedsRow() {
         onInput=${(/** @type {Changed} */ { target }) => setField("seeds", Number(target.value))} />
       <${CountInput} field="seeds" />
     <//>
-    <div class="after-line"><${Help} field="seeds" /></div>
+    <div class=${isExplained ? "after-line" : "sr-only"}><${Help} field="seeds" /></div>
   `;
 }
 

@@ -90,7 +90,9 @@ const Waiting = ({ run }) => html`
 /** @param {{ run: Run }} props */
 const ReportHead = ({ run }) => html`
   <div class="report-head">
-    <button class="quiet back-to-list" onClick=${() => (page.report.value = null)}>‹ Experiments</button>
+    <button class="quiet back-to-list" aria-label="Back to the list" onClick=${() => (page.report.value = null)}>
+      <span aria-hidden="true">‹</span> All
+    </button>
     <div class="report-name">
       <h2>${runTitle(run)}</h2>
       <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${stateInWords(run)}</p>
