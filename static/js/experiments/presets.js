@@ -133,12 +133,14 @@ export const forgetPreset = () => (lastChosen.value = "");
 /**
  * Begin a preset. What was set of the fields that it shows stays; the rest is as it begins.
  * @param {string} name
+ * @param {boolean} [showsAll] whether every setting is shown, whichever the preset
  */
-export function choosePreset(name) {
+export function choosePreset(name, showsAll = false) {
   const preset = presets().find((one) => one.name === name) ?? presets()[0];
   const begun = isUntouched() ? {} : chosenPreset().begins(chosenExperiment.value);
   const isOwn = (/** @type {string} */ field) => String(begun[field]) !== String(values.value[field]);
-  const kept = givenFields().filter((field) => isOwn(field) && [...preset.fields, "seed", "name"].includes(field));
+  const isShown = (/** @type {string} */ field) => showsAll || [...preset.fields, "seed", "name"].includes(field);
+  const kept = givenFields().filter((field) => isOwn(field) && isShown(field));
   const keptValues = Object.fromEntries(kept.map((field) => [field, values.value[field]]));
   lastChosen.value = name;
   const { simulator, agents, ...others } = /** @type {Record<string, ExperimentValue>} */ (
@@ -173,9 +175,10 @@ export function sweptField() {
   return found ?? sweepable()[0];
 }
 
-/** Shares of a quantity without a unit that goes from 0 to 1, and factors of any other. */
+/** Shares of a quantity without a unit that goes from 0 to 1, and factors of any other; a length soon is too long. */
 const SHARES = [0.1, 0.3, 0.5, 0.7, 0.9];
-const FACTORS = [0.25, 0.5, 1, 2, 4];
+const FACTORS = [0.25, 0.5, 1, 2];
+const FACTORS_OF_COUNTS = [...FACTORS, 4];
 const DIGITS = 2;
 
 /**
@@ -189,7 +192,7 @@ export function suggestedValues(setting) {
   if (kindOf(setting) !== "number") return setting.choices;
   const isShare = minimum === 0 && maximum === 1 && unit === null && !isWhole;
   const base = typeof usual === "number" ? usual : null;
-  const multiples = base ? FACTORS.map((factor) => base * factor) : [];
+  const multiples = base ? (isWhole ? FACTORS_OF_COUNTS : FACTORS).map((factor) => base * factor) : [];
   const rounded = (isShare ? SHARES : multiples).map((one) =>
     (isWhole ? Math.round(one) : Number(one.toPrecision(DIGITS))));
   const all = [...new Set([...rounded, ...(base === null ? [] : [base])])];

@@ -63,6 +63,9 @@ const VERDICTS = [
  * @param {{ verdict: string }[]} claims
  */
 export function verdictsInWords(claims) {
+  const [{ verdict: only }] = claims.length === 1 ? claims : [{ verdict: "" }];
+  const [, ofOne] = VERDICTS.find(([verdict]) => verdict === only) ?? [];
+  if (ofOne) return `The paper’s claim ${ofOne(1)}.`;
   const counts = VERDICTS.map(([verdict, words]) => {
     const number = claims.filter((one) => one.verdict === verdict).length;
     return number ? `${number} ${words(number)}` : "";

@@ -55,7 +55,7 @@ export function ExperimentDialog() {
         <button class="quiet square" aria-label="Close" onClick=${() => (formIsOpen.value = false)}>✕</button>
       </div>
       <div class="dialog-fields">
-        <${Cards} />
+        <${Cards} isWhole=${isWhole} />
         ${unsayable.value.length > 0 && html`<${Unsayable} />`}
         <${UnknownParts} parts=${ignored.experiments} />
         ${isWhole ? html`<${AllSettings} />` : html`<${Few} fields=${chosenPreset().fields} />`}
@@ -120,7 +120,8 @@ const Mistakes = () => Object.keys(mistakes.value).length > 0 && html`
 /** A field's name as this form shows it. @param {string} field */
 const nameOf = (field) => (field === "seed" ? FIRST_SEED : fieldTitle(field));
 
-const Cards = () => html`
+/** @param {{ isWhole: boolean }} props */
+const Cards = ({ isWhole }) => html`
   <fieldset class="cards" role="radiogroup" aria-invalid=${wrong.value.experiment ? "true" : undefined}
     aria-describedby=${wrong.value.experiment && "wrong-experiment"}>
     <legend class="sr-only">Experiment</legend>
@@ -129,7 +130,7 @@ const Cards = () => html`
         <input class="sr-only" type="radio" name="experiment" id=${number ? undefined : "experiment-experiment"}
           aria-labelledby=${`card-${name}`} aria-describedby=${`about-card-${name}`}
           checked=${!wrong.value.experiment && chosenPreset().name === name}
-          onChange=${() => choosePreset(name)} />
+          onChange=${() => choosePreset(name, isWhole)} />
         <b id=${`card-${name}`}>${title}</b><span id=${`about-card-${name}`}>${about}</span>
       </label>
     `)}

@@ -89,13 +89,13 @@ function Row({ run }) {
     <li>
       <a class="experiment-row" href=${addressOf({ view: "experiments", report: run.id })}
         aria-current=${isChosen ? "true" : undefined} onClick=${choose}>
-        <span class="row-title">
-          <b>${runTitle(run)}</b>
+        <b>${runTitle(run)}</b>
+        <span class="row-state">
           <span class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${stateInWords(run)}</span>
+          <time class="dim" datetime=${run.created_at}>${ago(run.created_at)}</time>
         </span>
         ${isActive(run) && html`<${ProgressBar} label=${runTitle(run)} share=${paceOf(run).share} />`}
         <span class="dim about">${outcome || configInWords(run.config)}</span>
-        <time class="dim" datetime=${run.created_at}>${ago(run.created_at)}</time>
       </a>
     </li>
   `;
