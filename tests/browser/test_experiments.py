@@ -162,7 +162,9 @@ def test_a_preset_shows_few_fields_and_a_link_carries_them(
     dashboard.button("New experiment").click()
     dialog = page.get_by_role("dialog", name="New experiment")
     expect(dialog.get_by_role("radio", name="A setting")).to_be_checked()
-    expect(dialog.get_by_role("status").first).to_contain_text(re.compile(r"151 trials, about .*\."))
+    expect(dialog.get_by_role("status").first).to_contain_text(
+        re.compile(r"151 trials, about .*\.")
+    )
     fits(dashboard)
     dialog.get_by_label("Learner", exact=True).select_option("Sarsa(λ)")
     dialog.get_by_label("Setting", exact=True).select_option("Trace decay λ")
@@ -185,7 +187,9 @@ def test_a_preset_shows_few_fields_and_a_link_carries_them(
     button.click()
     expect(dashboard.experiment).to_contain_text("λ 0.1, 0.9 · 3 seeds")
     expect(dashboard.experiment_state("finished")).to_be_visible()
-    expect(dashboard.experiment.get_by_role("heading", name=re.compile("^The best is"))).to_be_visible()
+    expect(
+        dashboard.experiment.get_by_role("heading", name=re.compile("^The best is"))
+    ).to_be_visible()
     page.get_by_role("button", name="Repeat with…").click()
     expect(dialog.get_by_label("Learner", exact=True)).to_have_value("sarsa-lambda")
     expect(written).to_have_value("0.1, 0.9")
@@ -297,7 +301,10 @@ def tells_of_its_sweep(dashboard: Dashboard) -> None:
     """Rows say what was swept, strips have numbers, and no table is cut within a row."""
     page = dashboard.page
     table = page.get_by_role("region", name="Every setting, with every seed")
-    expect(page.get_by_role("region", name="Experiments")).to_contain_text("α 0.1, 0.3")
+    expect(dashboard.experiment).to_contain_text("α 0.1, 0.3 · 3 seeds")
+    dashboard.button("Back").click()
+    page.get_by_role("link", name=re.compile("^α 0.1, 0.3 · 3 seeds")).click()
+    expect(table).to_be_visible()
     for width in (PHONE["width"], 1440):
         page.set_viewport_size({"width": width, "height": 844})
         expect(table.get_by_role("rowheader")).to_have_text(["α\u00a00.1", "α\u00a00.3"])

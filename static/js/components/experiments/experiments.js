@@ -1,6 +1,6 @@
 // The experiments view: the list on one side, the report on the other; the form is a dialog.
 import { chosenRun, experimentList, experimentRuns, isMissing, paceOf, summaryOf } from "../../experiments/runs.js";
-import { configInWords, outcomeOf, stateInWords } from "../../experiments/words.js";
+import { configInWords, outcomeOf } from "../../experiments/words.js";
 import { ago } from "../../format.js";
 import { addressOf, page } from "../../page-state.js";
 import { isActive, isOperator } from "../../selectors.js";
@@ -11,6 +11,7 @@ import { html, ProgressBar } from "../elements.js";
 import { ExperimentDialog, openForm } from "./dialog.js";
 import { StripKey } from "./report-tools.js";
 import { Report } from "./report.js";
+import { StateOf } from "./state-of.js";
 
 /** @import { Run } from "../../types.js" */
 
@@ -91,7 +92,7 @@ function Row({ run }) {
         aria-current=${isChosen ? "true" : undefined} onClick=${choose}>
         <b>${runTitle(run)}</b>
         <span class="row-state">
-          <span class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${stateInWords(run)}</span>
+          <${StateOf} run=${run} />
           <time class="dim" datetime=${run.created_at}>${ago(run.created_at)}</time>
         </span>
         ${isActive(run) && html`<${ProgressBar} label=${runTitle(run)} share=${paceOf(run).share} />`}

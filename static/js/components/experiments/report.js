@@ -4,7 +4,7 @@ import { pending, runAgain } from "../../actions.js";
 import { setFormOf } from "../../experiments/form.js";
 import { forgetPreset } from "../../experiments/presets.js";
 import { command, deleteExperiment, paceOf, summary, summaryError } from "../../experiments/runs.js";
-import { configInWords, findingIn, stateInWords } from "../../experiments/words.js";
+import { configInWords, findingIn } from "../../experiments/words.js";
 import { downloads, fileAddress, reportAddress } from "../../files.js";
 import { count, duration } from "../../format.js";
 import { page } from "../../page-state.js";
@@ -15,6 +15,7 @@ import { formIsOpen, unsayable } from "./dialog.js";
 import { FigureFour } from "./figure-four.js";
 import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
 import { Seeds } from "./seeds.js";
+import { StateOf } from "./state-of.js";
 import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
 import { Worlds } from "./worlds.js";
@@ -34,7 +35,7 @@ export function Report({ run }) {
   return html`
     <section class="report" aria-label=${`Experiment: ${runTitle(run)}`}>
       <${ReportHead} run=${run} />
-      <div class="report-body" tabindex="0" role="region" aria-label="Report">
+      <div class="report-body" tabindex="0" role="group" aria-label="Report, to be scrolled">
         <${Progress} run=${run} />
         <${Note} run=${run} />
         <${Problem} at=${run.id} />
@@ -90,12 +91,12 @@ const Waiting = ({ run }) => html`
 /** @param {{ run: Run }} props */
 const ReportHead = ({ run }) => html`
   <div class="report-head">
-    <button class="quiet back-to-list" aria-label="Back to the list" onClick=${() => (page.report.value = null)}>
-      <span aria-hidden="true">‹</span> All
+    <button class="quiet back-to-list" onClick=${() => (page.report.value = null)}>
+      <span aria-hidden="true">‹</span> Back
     </button>
     <div class="report-name">
       <h2>${runTitle(run)}</h2>
-      <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${stateInWords(run)}</p>
+      <${StateOf} run=${run} />
     </div>
     <${Actions} run=${run} />
   </div>
