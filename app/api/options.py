@@ -15,7 +15,6 @@ from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
 from app.archive.transfer import MAX_RUNS
 from app.jobs.submissions import MAX_SETTINGS
-from app.storage.run_names import TITLES
 from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
 from hexapods import __version__
@@ -46,6 +45,7 @@ from hexapods.experiments.config import (
     fields_of,
     settings_by_name,
 )
+from hexapods.experiments.names import TITLES
 from hexapods.exports.registry import EXPORTS
 from hexapods.runs import best_known
 from hexapods.runs.clocks import CLOCK_TITLES

@@ -78,7 +78,7 @@ class Explanations:
         if lane != 0:
             raise InvalidInput("a training has one lane, 0")
         config, log = run.config, self._log(run)
-        number = _checked_step(step, len(log), run)
+        number = _checked_step(step, len(log), config.steps, run)
         # Read after the log, when all changes before its last step are stored.
         run, steps = self._store.get(run_id), _TrainingSteps(log)
 
@@ -109,7 +109,7 @@ class Explanations:
         if not isinstance(run.config, TrainingConfig):
             raise InvalidInput(f"run {run_id} is a {run.kind}; only trainings have a table")
         config, log = run.config, self._log(run)
-        number = _checked_step(step, len(log), run, first=0)
+        number = _checked_step(step, len(log), config.steps, run, first=0)
         # Read after the log, when all changes before its last step are stored.
         run, steps = self._store.get(run_id), _TrainingSteps(log)
         groups, cells = len(config.resolved_gait.groups), len(config.grid)
@@ -152,7 +152,7 @@ class Explanations:
         if not 0 <= lane < len(lanes):
             raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
         recording, own = lanes[lane], config.lanes[lane]
-        number = _checked_step(step, len(recording.steps), run)
+        number = _checked_step(step, len(recording.steps), config.steps, run)
         steps = LoggedLane(recording, own.observation == "measured")
 
         def answer() -> dict[str, Any]:
@@ -293,14 +293,14 @@ def _search_of(agent: str, step: LaneStep) -> SearchFindings | None:
     return SearchFindings(registry.compares(agent), step.transitions, step.futures)
 
 
-def _checked_step(step: int | None, taken: int, run: Run, first: int = 1) -> int:
-    """Return a step of a run from `first` to the last one `taken`, which is the default.
+def _checked_step(step: int | None, taken: int, steps: int, run: Run, first: int = 1) -> int:
+    """Return a step of a run of `steps` from `first` to the last one `taken`, the default.
 
     Raises:
         InvalidInput: if the run has no such step.
         Busy: if a running run will have it: what it took last is recorded a moment later.
     """
-    if run.state in RUNNING and step is not None and taken < step <= run.config.steps:
+    if run.state in RUNNING and step is not None and taken < step <= steps:
         raise Busy(f"step {step:,} of run {run.id} is not recorded yet; ask again later", 1)
     if taken < first:
         raise InvalidInput("it has taken no step yet")

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from app.storage.database.store import RunStore
 from app.storage.run import Run
-from app.storage.run_names import branch_name, experiment_name, race_name, training_name
+from app.storage.run_names import branch_name, race_name, training_name
 from app.storage.stored_tables import load_table
 from hexapods.agents.q_table import MAX_VALUES, table_size
 from hexapods.agents.registry import check_problem, learns, needs_practice
@@ -18,6 +18,7 @@ from hexapods.domain.kinematics import check_reach
 from hexapods.domain.observation import Observation
 from hexapods.domain.world import check_ends
 from hexapods.experiments.config import GRID, ExperimentConfig
+from hexapods.experiments.names import experiment_name
 from hexapods.experiments.plan import Plan
 from hexapods.runs.config import TrainingConfig, WalkingProblem, problem_of
 from hexapods.runs.lane import LaneConfig, check_lane, lane_config, observation_of

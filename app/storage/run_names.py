@@ -7,17 +7,9 @@ from hexapods.agents.appearance import name_of, title_of
 from hexapods.domain.text import MAX_NAME, whole
 from hexapods.domain.world import WORLDS
 from hexapods.experiments.config import ExperimentConfig
+from hexapods.experiments.names import TITLES, experiment_name
 from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.race_config import RaceConfig
-
-TITLES = {
-    "table1": "Table 1",
-    "figure4": "Figure 4",
-    "sweep": "Sweep",
-    "league": "League",
-    "recovery": "Recovery",
-}
-"""Titles of experiments by kind."""
 
 
 def training_name(config: TrainingConfig, *, is_continued: bool = False) -> str:
@@ -44,21 +36,16 @@ def branch_name(original: str, step: int) -> str:
     return stem[: MAX_NAME - len(end)] + end
 
 
-def experiment_name(config: ExperimentConfig) -> str:
-    """Return a name like `Sweep, 12 seeds`."""
-    seeds = "1 seed" if config.seeds == 1 else f"{whole(config.seeds)} seeds"
-    return f"{TITLES[config.experiment]}, {seeds}"
-
-
 def is_named(run: Run) -> bool:
-    """Return whether a run has another name than those made of its config, here or by 0.1."""
+    """Return whether a run has another name than those made of its config, here or earlier."""
     config = run.config
     if isinstance(config, TrainingConfig):
         made = training_name(config, is_continued=run.continued_from is not None)
         earlier = f"{whole(config.steps)} steps: {config.resolved_gait.title}"
         return run.name not in (made, earlier)
     if isinstance(config, ExperimentConfig):
-        return run.name != experiment_name(config)
+        seeds = "1 seed" if config.seeds == 1 else f"{whole(config.seeds)} seeds"
+        return run.name not in (experiment_name(config), f"{TITLES[config.experiment]}, {seeds}")
     if config.branch_from is not None:
         return not run.name.endswith(_branch_end(config.branch_from.step))
     earlier = f"Race: {config.resolved_gait.title}"

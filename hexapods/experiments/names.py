@@ -1,10 +1,19 @@
-"""Names of settings and trials in words: the agent, and all in which the settings differ."""
+"""Names of experiments, settings and trials in words: all in which the settings differ."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
 from hexapods.agents.appearance import title_of
+from hexapods.domain.settings import declared_fields
+from hexapods.domain.text import MAX_NAME
+from hexapods.experiments.config import (
+    GRID,
+    ExperimentConfig,
+    default_agents,
+    settings_by_name,
+)
+from hexapods.experiments.formatting import counted
 from hexapods.experiments.labels import (
     OBSERVATION_LABELS,
     gait_name,
@@ -13,9 +22,72 @@ from hexapods.experiments.labels import (
     world_name,
 )
 from hexapods.experiments.plan import Plan
+from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import PLANNING_MODEL_TITLES, PlanningModel
 
 _PLACE = ("gait", "world", "observation", "robot")
+TITLES: Mapping[str, str] = {
+    "table1": "Table 1",
+    "figure4": "Figure 4",
+    "sweep": "Sweep",
+    "league": "League",
+    "recovery": "Recovery",
+}
+"""Title of each experiment."""
+_MAX_VALUES = 6
+_MAX_TITLES = 3
+
+
+def experiment_name(config: ExperimentConfig) -> str:
+    """Return a name by what is varied: `α 0.1, 0.3 · 8 seeds`, `League: Q-learning · 8 seeds`."""
+    seeds = f" · {counted(config.seeds, 'seed')}"
+    told = _told(config)
+    kind = "" if config.experiment == "sweep" and told else TITLES[config.experiment]
+    name = f"{kind}: {told}" if kind and told else kind or told
+    return name[: MAX_NAME - len(seeds)] + seeds
+
+
+def _told(config: ExperimentConfig) -> str:
+    """Return what an experiment varies in words; empty where its title tells it."""
+    if config.experiment == "sweep":
+        agents = [_agents(config)] if len(config.agents) > 1 else []
+        return " × ".join([*agents, *_swept(config)]) or title_of(config.agents[0])
+    has_own = tuple(config.agents) != tuple(default_agents(config.experiment))
+    worlds = [] if tuple(config.worlds) == ("flat",) else [world_name(x) for x in config.worlds]
+    parts = [
+        *([_agents(config)] if has_own else []),
+        *([_some(worlds, "worlds")] if worlds else []),
+    ]
+    return " · ".join(parts)
+
+
+def _agents(config: ExperimentConfig) -> str:
+    return _some([title_of(agent) for agent in config.agents], "agents")
+
+
+def _some(titles: Sequence[str], noun: str) -> str:
+    """Return a few titles, or how many there are."""
+    return ", ".join(titles) if len(titles) <= _MAX_TITLES else f"{len(titles)} {noun}"
+
+
+def _swept(config: ExperimentConfig) -> list[str]:
+    """Return the settings of which a sweep tries several values: `α 0.1, 0.3`."""
+    lists = {**config.settings, **{name: getattr(config, name) for name in GRID}}
+    return [_values_name(name, tried, config) for name, tried in lists.items() if len(tried) > 1]
+
+
+def _values_name(name: str, tried: Sequence[Any], config: ExperimentConfig) -> str:
+    declared = declared_fields(TrainingConfig)
+    about = (declared[name] if name in GRID else settings_by_name(config.agents)[name][0]).about
+    title = about.title
+    if about.symbol:
+        title = title.replace(about.quantity or title, about.symbol)
+    texts = [format(one, "g" if isinstance(one, float) else "") for one in tried]
+    if len(texts) > _MAX_VALUES:
+        values = f"in {len(texts)} values from {texts[0]} to {texts[-1]}"
+    else:
+        values = ", ".join(texts)
+    return " ".join(filter(None, (title, values, about.unit)))
 
 
 def setting_names(

@@ -19,12 +19,12 @@ const QUIET_MS = 600;
 /**
  * Ask how long a start takes, each time it has come to rest as another one.
  * @param {ReadonlySignal<Start | null>} start null while it cannot be, or is surely short
- * @returns {ReadonlySignal<string>} in words; empty while it is short or not known
+ * @returns {ReadonlySignal<number | null | undefined>} [s]; undefined while it is asked, null where it is not known
  */
-export function makeEstimate(start) {
+export function makeDuration(start) {
   const key = computed(() => (connection.value === "live" && start.value ? JSON.stringify(start.value) : ""));
-  /** @type {Signal<{ key: string, seconds: number }>} */
-  const answer = signal({ key: "", seconds: 0 });
+  /** @type {Signal<{ key: string, seconds: number | null }>} */
+  const answer = signal({ key: "", seconds: null });
   let newest = Promise.resolve();
   effect(() => {
     const asked = key.value;
@@ -34,16 +34,28 @@ export function makeEstimate(start) {
       const { path, body } = JSON.parse(asked);
       // Without an answer nothing is told: the start itself says what is wrong.
       const told = await api.patiently(() => api.estimate(path, body), isWanted).catch(() => null);
-      if (told && isWanted()) answer.value = { key: asked, seconds: told.seconds };
+      if (isWanted()) answer.value = { key: asked, seconds: told?.seconds ?? null };
     };
     // One request at a time: each may hold a thread of the server.
     const timer = setTimeout(() => (newest = newest.then(ask)), QUIET_MS);
     return () => clearTimeout(timer);
   });
   return computed(() => {
+    if (!key.value) return null;
     const { key: asked, seconds } = answer.value;
-    return asked === key.value && seconds > LONG_S ? `Takes about ${duration(seconds)} on this machine.` : "";
+    return asked === key.value ? seconds : undefined;
   });
+}
+
+/**
+ * How long a start takes, in words; empty while it is short or not known.
+ * @param {ReadonlySignal<Start | null>} start null while it cannot be, or is surely short
+ * @returns {ReadonlySignal<string>}
+ */
+export function makeEstimate(start) {
+  const seconds = makeDuration(start);
+  return computed(() =>
+    ((seconds.value ?? 0) > LONG_S ? `Takes about ${duration(seconds.value ?? 0)} on this machine.` : ""));
 }
 
 /** Steps below which a start is surely short: of learners together, and of lanes that look ahead. */

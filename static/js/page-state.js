@@ -120,7 +120,7 @@ const FIELDS = {
   /** What was set of the next experiment, by field, as it was typed. */
   experiment: { part: "experiments", ...TEXTS },
   /** Id of the experiment whose report is shown; null for the newest. */
-  report: { part: "experiments", name: "run", initial: null, ...TEXT },
+  report: { part: "experiments", name: "run", initial: null, ...TEXT, isEntry: true },
   /** How the list of runs is grouped; null where the browser's own choice holds. */
   grouping: { part: "runs", name: "group", initial: null, ...oneOf([null, ...GROUPINGS]) },
   /** The columns of the list of runs; null where the browser's own choice holds. */

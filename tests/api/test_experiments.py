@@ -117,7 +117,7 @@ def test_exported_experiment_can_be_imported(swept: dict[str, Any], api: Api) ->
 def test_queued_experiment_has_an_empty_summary_and_no_report(serve: Serve) -> None:
     idle = serve()
     run = idle.start("/experiments", {"experiment": "table1"})
-    assert (run["name"], run["progress"]["total"]) == ("Table 1, 30 seeds", 1008)
+    assert (run["name"], run["progress"]["total"]) == ("Table 1 · 30 seeds", 1008)
     summary = idle.get(f"/experiments/{run['id']}/summary")
     assert summary["trials"] == {"done": 0, "total": 1008, "failed": 0, "set_aside": []}
     assert (summary["experiment"], summary["settings"]) == ("table1", [])

@@ -211,8 +211,8 @@ class Dashboard:
         return self.page.get_by_role("region", name=re.compile("^Experiment: "))
 
     def experiment_state(self, state: str) -> Locator:
-        """The word for the state of the experiment, if it is in that state."""
-        return self.experiment.get_by_text(state, exact=True)
+        """The word for the state of the experiment, if it is in that state, with how far it is."""
+        return self.experiment.get_by_text(re.compile(rf"^{state}\b"))
 
     @property
     def runs(self) -> Locator:

@@ -18,6 +18,7 @@ from tests.conftest import new_page
 pytestmark = pytest.mark.timeout(300)
 
 PHONE: ViewportSize = {"width": 360, "height": 780}
+PRESETS = ("A setting", "Learners", "Worlds", "Table 1", "Figure 4", "League", "Recovery")
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 CORNER = {
     "simulator": "kinematic",
@@ -72,6 +73,7 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     assert dashboard.violations() == []
 
     expect(page).to_have_url(re.compile("run="))
+    dashboard.experiment.get_by_text("Files", exact=True).click()
     report = dashboard.experiment.get_by_role("link", name="Open the report").get_attribute("href")
     assert report is not None
     with urlopen(report) as answer:
@@ -81,14 +83,15 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
         dashboard.experiment.get_by_role("link", name="Every trial (CSV)").click()
     assert len(Path(download.value.path()).read_text("utf-8").splitlines()) >= 9
 
-    # A phone has no room for the views' links.
-    page.evaluate("() => { location.hash = '#runs'; }")
-    expect(dashboard.runs.filter(has_text="Table 1, 3 seeds")).to_contain_text("finished")
-    dashboard.button("Table 1, 3 seeds").click()
+    page.get_by_role("link", name="Runs").click()
+    expect(dashboard.runs.filter(has_text="Table 1 · 3 seeds")).to_contain_text("finished")
+    dashboard.button("Table 1 · 3 seeds").click()
     dashboard.details.get_by_role("link", name="Report").click()
+    page.get_by_label("More about this experiment").click()
     dashboard.button("Delete").click()
     dashboard.button("Delete for good?").click()
-    expect(page.get_by_role("heading", name="One seed misleads")).to_be_visible()
+    expect(page.get_by_role("heading", name="Experiments", exact=True)).to_be_visible()
+    expect(page.get_by_text("None yet.")).to_be_visible()
 
 
 def run_a_seed(dashboard: Dashboard) -> None:
@@ -117,7 +120,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
     # It computes for as long as it is looked at, and leaves the machine to other tests.
     with serving(tmp_path, job_niceness=15) as server:
         visit(dashboard, server, **ENDLESS)
-        expect(page.get_by_text(re.compile(r"Takes about .* on this machine\.$"))).to_be_visible()
+        expect(page.get_by_text(re.compile(r"about .* on this machine\.$"))).to_be_visible()
         dashboard.button("Run Sweep: 5001 trials").click()
         expect(dashboard.experiment).to_contain_text("a second")
         expect(dashboard.experiment).to_be_in_viewport(ratio=1)
@@ -142,6 +145,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
         expect(dashboard.experiment_state("running")).to_be_visible()
         dashboard.button("Stop").click()
         expect(dashboard.experiment).to_contain_text("The report covers the completed trials.")
+        dashboard.experiment.get_by_text("Files", exact=True).click()
         expect(dashboard.experiment.get_by_role("link", name="Open the report")).to_be_visible()
 
 
@@ -151,13 +155,68 @@ def trials_done(dashboard: Dashboard) -> int:
     return done
 
 
-def test_links_carry_the_form_and_mistakes_hold_it_back(
+def test_a_preset_shows_few_fields_and_a_link_carries_them(
     dashboard: Dashboard, shared_server: Serving
 ) -> None:
     page = dashboard.page
     visit(dashboard, shared_server)
     dashboard.button("New experiment").click()
-    page.get_by_role("radio", name="Sweep").check(force=True)
+    dialog = page.get_by_role("dialog", name="New experiment")
+    expect(dialog.get_by_role("radio", name="A setting")).to_be_checked()
+    expect(dialog.get_by_role("status").first).to_contain_text(
+        re.compile(r"151 trials, about .*\.")
+    )
+    fits(dashboard)
+    dialog.get_by_label("Learner", exact=True).select_option("Sarsa(λ)")
+    dialog.get_by_label("Setting", exact=True).select_option("Trace decay λ")
+    written = dialog.get_by_label("Values", exact=True)
+    expect(written).to_have_value("0.1, 0.3, 0.5, 0.7, 0.9")
+    written.fill("0.1, oops")
+    expect(page.get_by_role("alert").filter(has_text="separated by commas")).to_be_visible()
+    button = page.get_by_role("button", name=re.compile("^Run Sweep"))
+    expect(button).to_have_attribute("aria-disabled", "true")
+    written.fill("0.1, 0.9")
+    dialog.get_by_label("Seeds", exact=True).fill("3")
+    expect(button).to_have_text("Run Sweep: 7 trials")
+    assert dashboard.violations() == []
+    link = page.url
+    page.goto("about:blank")
+
+    page.goto(link)
+    expect(button).to_have_text("Run Sweep: 7 trials")
+    expect(written).to_have_value("0.1, 0.9")
+    button.click()
+    expect(dashboard.experiment).to_contain_text("λ 0.1, 0.9 · 3 seeds")
+    expect(dashboard.experiment_state("finished")).to_be_visible()
+    expect(
+        dashboard.experiment.get_by_role("heading", name=re.compile("^The best is"))
+    ).to_be_visible()
+    page.get_by_role("button", name="Repeat with…").click()
+    expect(dialog.get_by_label("Learner", exact=True)).to_have_value("sarsa-lambda")
+    expect(written).to_have_value("0.1, 0.9")
+    page.keyboard.press("Escape")
+    expect(dialog).to_be_hidden()
+
+
+def fits(dashboard: Dashboard) -> None:
+    """Neither the page nor the dialog has to be scrolled in the smallest window of a computer."""
+    page = dashboard.page
+    page.set_viewport_size({"width": 1280, "height": 720})
+    for title in PRESETS:
+        page.get_by_role("radio", name=title, exact=True).check(force=True)
+        assert page.evaluate(
+            """() => [document.documentElement, document.querySelector(".dialog-fields")]
+                .every((one) => one.scrollHeight <= one.clientHeight)"""
+        ), title
+    page.get_by_role("radio", name="A setting", exact=True).check(force=True)
+
+
+def test_all_settings_are_there_and_mistakes_hold_them_back(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    visit(dashboard, shared_server, experiment="sweep")
+    dashboard.button("All settings").click()
     alpha = page.get_by_label("α", exact=True)
     alpha.fill("0.1, 0.3, oops")
     expect(page.get_by_role("alert").filter(has_text="separated by commas")).to_be_visible()
@@ -172,6 +231,7 @@ def test_links_carry_the_form_and_mistakes_hold_it_back(
 
     page.goto(link)
     expect(button).to_have_text("Run Sweep: 273 trials")
+    dashboard.button("All settings").click()
     expect(alpha).to_have_value("0.1, 0.3, 0.6")
 
 
@@ -179,8 +239,8 @@ def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
     dashboard: Dashboard, shared_server: Serving
 ) -> None:
     page = dashboard.page
-    visit(dashboard, shared_server, agents="dyna-q", seeds=2)
-    page.get_by_role("radio", name="League").check(force=True)
+    visit(dashboard, shared_server, experiment="league", agents="dyna-q", seeds=2)
+    dashboard.button("All settings").click()
     for picture in ("Slope", "Ice"):
         page.get_by_role("checkbox", name=picture, exact=True).uncheck(force=True)
     button = page.get_by_role("button", name=re.compile("^Run League"))
@@ -201,7 +261,7 @@ def test_a_league_takes_worlds_by_their_pictures_and_as_a_text(
     expect(button).to_have_text("Run League: 36 trials")
     expect(others).to_have_value("limp:legs=2,5+slope:degrees=4")
     expect(page.get_by_role("checkbox", name="Two limp legs")).to_be_checked()
-    page.get_by_role("radio", name="Recovery").check(force=True)
+    page.get_by_role("radio", name="Recovery", exact=True).check(force=True)
     page.get_by_label("Seeds", exact=True).fill("1")
     page.get_by_role("checkbox", name="Greedy", exact=True).wait_for(state="detached")
     with page.expect_response("**/api/v1/experiments") as answer:
@@ -242,7 +302,10 @@ def tells_of_its_sweep(dashboard: Dashboard) -> None:
     """Rows say what was swept, strips have numbers, and no table is cut within a row."""
     page = dashboard.page
     table = page.get_by_role("region", name="Every setting, with every seed")
-    expect(page.get_by_role("region", name="Experiments")).to_contain_text("α 0.1, 0.3")
+    expect(dashboard.experiment).to_contain_text("α 0.1, 0.3 · 3 seeds")
+    dashboard.button("Back").click()
+    page.get_by_role("link", name=re.compile("^α 0.1, 0.3 · 3 seeds")).click()
+    expect(table).to_be_visible()
     for width in (PHONE["width"], 1440):
         page.set_viewport_size({"width": width, "height": 844})
         expect(table.get_by_role("rowheader")).to_have_text(["α\u00a00.1", "α\u00a00.3"])
@@ -328,7 +391,8 @@ def test_spectators_see_the_report_without_controls(
             expect(operator.experiment).to_be_visible()
             assert operator.complaints == []
 
-        expect(dashboard.experiment.get_by_role("link", name="Open the report")).to_be_visible()
         expect(page.get_by_role("heading", name="Method")).to_be_visible()
-        for action in ("Run", "Pause", "Resume", "Stop", "Delete"):
+        dashboard.experiment.get_by_text("Files", exact=True).click()
+        expect(dashboard.experiment.get_by_role("link", name="Open the report")).to_be_visible()
+        for action in ("Run", "Pause", "Resume", "Stop", "Delete", "Repeat", "New"):
             expect(page.get_by_role("button", name=re.compile(f"^{action}"))).to_have_count(0)

@@ -125,6 +125,7 @@ def test_each_learner_of_a_race_has_its_own_settings(dashboard: Dashboard, serve
 def test_a_sweep_varies_the_settings_of_its_agents(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     page.goto(f"{server.address}#experiments?{SMALL_SWEEP}")
+    dashboard.button("All settings").click()
     decays = page.get_by_label("λ", exact=True)
     expect(page.get_by_label("α", exact=True)).to_be_visible()
     expect(decays).to_have_count(0)

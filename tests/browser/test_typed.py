@@ -88,6 +88,7 @@ def test_wrong_values_of_each_field_stay_and_are_explained(
     assert {"field-steps", "field-seed", "field-alpha", "field-grid_side_m"} <= set(names)
 
     page.goto(f"{shared_server.address}#experiments?experiment=sweep")
+    page.get_by_role("button", name="All settings").click()
     page.get_by_text("Robots and gaits").click()
     fields = page.locator(".experiment-fields input[inputmode]")
     button = page.get_by_role("button", name=re.compile("^Run Sweep"))

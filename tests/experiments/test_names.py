@@ -4,8 +4,10 @@ from typing import Any
 
 import pytest
 
+from hexapods.domain.text import MAX_NAME
+from hexapods.experiments.config import experiment_config
 from hexapods.experiments.labels import world_name
-from hexapods.experiments.names import setting_names, trial_names
+from hexapods.experiments.names import experiment_name, setting_names, trial_names
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.report.page import page
 from hexapods.experiments.summary import summarise
@@ -87,3 +89,46 @@ def test_each_setting_and_trial_has_a_name_of_its_own(
 )
 def test_a_world_without_a_name_is_told_by_what_happens_in_it(world: str, name: str) -> None:
     assert world_name(world) == name
+
+
+@pytest.mark.parametrize(
+    ("experiment", "given", "name"),
+    [
+        ("table1", {"seeds": 30}, "Table 1 · 30 seeds"),
+        ("figure4", {"seeds": 1, "agents": ("sarsa",)}, "Figure 4: Sarsa · 1 seed"),
+        ("sweep", {"alpha": (0.1, 0.3, 0.8)}, "α 0.1, 0.3, 0.8 · 8 seeds"),
+        (
+            "sweep",
+            {"epsilon_end": (0.0, 0.1), "steps": (100, 500)},
+            "Final ε 0, 0.1 × Practice 100, 500 steps · 8 seeds",
+        ),
+        (
+            "sweep",
+            {"agents": ("beam", "q-learning"), "width": (2, 4)},
+            "Beam, Q-learning × Width 2, 4 · 8 seeds",
+        ),
+        (
+            "sweep",
+            {"steps": tuple(range(1, 9))},
+            "Practice in 8 values from 1 to 8 steps · 8 seeds",
+        ),
+        ("sweep", {"agents": ("linear-model",)}, "Linear model · 8 seeds"),
+        ("league", {}, "League: 4 worlds · 8 seeds"),
+        (
+            "recovery",
+            {"agents": ("q-learning",), "worlds": ("limp-pair", "ice")},
+            "Recovery: Q-learning · Two limp legs, Ice · 8 seeds",
+        ),
+    ],
+)
+def test_experiment_is_named_by_what_it_varies(
+    experiment: str, given: dict[str, Any], name: str
+) -> None:
+    assert experiment_name(experiment_config(experiment, {"seeds": 8, **given})) == name
+
+
+def test_long_name_is_cut_before_its_seeds() -> None:
+    worlds = tuple(f"weak:legs=1,2,3:torque_share=0.{n}" for n in (1, 2, 3))
+    name = experiment_name(experiment_config("league", {"worlds": worlds}))
+    assert len(name) == MAX_NAME
+    assert name.endswith(" · 30 seeds")

@@ -61,7 +61,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     before = worker_pids()
     config = sweep(seeds=24, steps=(1000,))
     run = jobs.start(ExperimentStart(config, workers=1))
-    assert (run.name, run.total, run.kind) == ("Sweep, 24 seeds", 25, "experiment")
+    assert (run.name, run.total, run.kind) == ("Q-learning · 24 seeds", 25, "experiment")
 
     wait_for_more_trials(store, run, 0)
     jobs.pause(run.id)

@@ -1,15 +1,15 @@
 // The form of a new experiment. Only values that differ from the experiment's defaults are kept and sent.
-import { computed } from "@preact/signals";
+import { batch, computed } from "@preact/signals";
 import { isSimulated, parseWorld, splitWorlds } from "../disturbances.js";
 import { makeTexts, parseChoice, parseChoices, parseName, parseNumber, parseValues } from "../parse.js";
 import { unknownTo } from "../form.js";
 import { ignored, page } from "../page-state.js";
-import { presetOf } from "../robots.js";
+import { customRobotInWords, presetOf } from "../robots.js";
 import { learns, limitsOf, settingsOf } from "../settings.js";
 import { options, served } from "../store.js";
 
 /** @import { Parsed } from "../parse.js" */
-/** @import { ExperimentKind, ExperimentValue, ExperimentValues, SettingValue } from "../types.js" */
+/** @import { ExperimentKind, ExperimentValue, ExperimentValues, RobotConfig, Run, SettingValue } from "../types.js" */
 
 // ---- the experiments that the server offers
 
@@ -115,7 +115,7 @@ export const defaults = computed(() => {
 });
 
 /** The fields that were set, and that the chosen experiment takes. */
-const givenFields = () => [...new Set(texts.value.keys())].filter(takesField);
+export const givenFields = () => [...new Set(texts.value.keys())].filter(takesField);
 
 /** The values that the experiment would be started with. */
 export const values = computed(() => {
@@ -173,7 +173,8 @@ function mistakeInWorlds() {
 }
 
 /** The declaration of a setting: that of the chosen agents, else the first agent's. @type {(field: string) => any} */
-const settingFor = (field) => agentSettings.value[field] ?? everySetting.value[field] ?? served().settings[field];
+export const settingFor = (field) =>
+  agentSettings.value[field] ?? everySetting.value[field] ?? served().settings[field];
 
 /**
  * A text as the value of a field, or why it is none. A setting of which each agent has its own default may be empty.
@@ -222,6 +223,41 @@ export function enter(field, text) {
   const { value, mistake } = parse(field, text);
   if (mistake === undefined) setField(field, value);
   else keep(field, text);
+}
+
+/**
+ * Set the form anew: these values in their order, for a later one may depend on those before it.
+ * @param {[string, ExperimentValue][]} given
+ */
+export const setForm = (given) => batch(() => {
+  texts.value = new URLSearchParams();
+  for (const [field, value] of given) {
+    if (field === "experiment") chooseExperiment(String(value));
+    else setField(field, value);
+  }
+});
+
+/** Fields on which the defaults of others depend. */
+const FIRST = ["experiment", "simulator", "agents"];
+
+/**
+ * Set the form to the config of an experiment. What the form cannot say, as a robot of one's own, is left at its
+ * default.
+ * @param {Run["config"]} config
+ * @returns {string[]} the fields that were left out
+ */
+export function setFormOf(config) {
+  const { settings = {}, robots = [], ...fields } = config;
+  const named = robots.map((/** @type {RobotConfig} */ one) => (customRobotInWords(one) ? null : presetOf(one)));
+  /** @type {Record<string, any>} */
+  const known = { ...fields, ...settings, robots: named };
+  const { fields: taken } = experimentOf(config.experiment);
+  const isSayable = (/** @type {string} */ field) =>
+    ![known[field]].flat().some((one) => one === null || typeof one === "object");
+  const given = [...new Set([...FIRST, ...taken])].filter((field) => known[field] !== undefined);
+  const order = given.filter((field) => field === "experiment" || taken.includes(field));
+  setForm(order.filter(isSayable).map((field) => [field, known[field]]));
+  return order.filter((field) => !isSayable(field));
 }
 
 /** The request's body. @returns {Record<string, unknown>} */

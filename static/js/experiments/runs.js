@@ -3,7 +3,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { attempt, deleteRun } from "../actions.js";
 import * as api from "../api.js";
 import { askForNewest, getSummary } from "../api.js";
-import { makeEstimate } from "../estimate.js";
+import { makeDuration } from "../estimate.js";
 import { count, duration, whole } from "../format.js";
 import { announcement } from "../headline.js";
 import { page } from "../page-state.js";
@@ -53,6 +53,8 @@ const summaries = signal({});
 /** Run id → the error of its last request. @type {Signal<Record<string, RequestError | null>>} */
 const errors = signal({});
 
+/** The newest known summary of an experiment. @type {(id: string) => Summary | null} */
+export const summaryOf = (id) => summaries.value[id] ?? null;
 export const summary = computed(() => summaries.value[chosenRun.value?.id ?? ""] ?? null);
 export const summaryError = computed(() => errors.value[chosenRun.value?.id ?? ""] ?? null);
 
@@ -135,14 +137,11 @@ export function startLabel() {
 export const canStart = () =>
   isOperator.value && !hasMistakes() && trials.value > 0;
 
-/** Fewer trials are surely done soon. */
-const SHORT_TRIALS = 100;
-
-/** Estimated duration of the form's experiment, in words. */
-export const experimentEstimate = makeEstimate(computed(() =>
-  page.view.value === "experiments" && options.value && canStart() && trials.value > SHORT_TRIALS
+/** How long the form's experiment takes [s]; undefined while the server is asked, null where it is not known. */
+export const experimentDuration = makeDuration(computed(() =>
+  (page.view.value === "experiments" && options.value && canStart()
     ? { path: "experiments", body: requestBody() }
-    : null,
+    : null),
 ));
 
 /** Start an experiment and choose it; its id, or null if it was refused. */

@@ -1,15 +1,17 @@
 // The experiments view: the list on one side, the report on the other; the form is a dialog.
-import { chosenRun, experimentList, experimentRuns, isMissing, paceOf } from "../../experiments/runs.js";
+import { chosenRun, experimentList, experimentRuns, isMissing, paceOf, summaryOf } from "../../experiments/runs.js";
+import { configInWords, outcomeOf } from "../../experiments/words.js";
 import { ago } from "../../format.js";
 import { addressOf, page } from "../../page-state.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { agentOf } from "../../settings.js";
 import { connection, served } from "../../store.js";
-import { describeRun, runTitle } from "../../titles.js";
+import { runTitle } from "../../titles.js";
 import { html, ProgressBar } from "../elements.js";
-import { ExperimentDialog, formIsOpen } from "./experiment-form.js";
+import { ExperimentDialog, openForm } from "./dialog.js";
 import { StripKey } from "./report-tools.js";
 import { Report } from "./report.js";
+import { StateOf } from "./state-of.js";
 
 /** @import { Run } from "../../types.js" */
 
@@ -17,7 +19,7 @@ export function Experiments() {
   const run = chosenRun.value;
   const isOffline = connection.value === "reconnecting";
   return html`
-    <div class=${`experiments ${isOffline ? "cut-off" : ""}`}>
+    <div class=${`experiments ${isOffline ? "cut-off" : ""} ${page.report.value ? "has-report" : ""}`}>
       <${ExperimentList} />
       <div class="answer">
         ${isOffline && html`<${OfflineNote} />`}
@@ -58,13 +60,15 @@ function ExperimentList() {
       <div class="list-head">
         <h2 id="experiment-list">Experiments</h2>
         ${isOperator.value && html`
-          <button class="secondary compact" onClick=${() => (formIsOpen.value = true)}>New experiment</button>
+          <button class="secondary compact" onClick=${openForm}>New experiment</button>
         `}
       </div>
-      ${all.length > 0
-        ? html`<ul>${all.map((run) => html`<${Row} key=${run.id} run=${run} />`)}</ul>`
-        : experimentList.isListed.value && html`<p class="dim">None yet.</p>`}
-      ${experimentList.hasMore.value && html`<${Older} />`}
+      <div class="experiment-rows">
+        ${all.length > 0
+          ? html`<ul>${all.map((run) => html`<${Row} key=${run.id} run=${run} />`)}</ul>`
+          : html`<p class="dim">${experimentList.isListed.value ? "None yet." : "Loading the experiments…"}</p>`}
+        ${experimentList.hasMore.value && html`<${Older} />`}
+      </div>
     </section>
   `;
 }
@@ -76,7 +80,7 @@ const Older = () => html`
 /** @param {{ run: Run }} props */
 function Row({ run }) {
   const isChosen = chosenRun.value?.id === run.id;
-  const pace = paceOf(run);
+  const outcome = outcomeOf(run, summaryOf(run.id));
   /** @param {MouseEvent} event */
   const choose = (event) => {
     event.preventDefault();
@@ -86,16 +90,13 @@ function Row({ run }) {
     <li>
       <a class="experiment-row" href=${addressOf({ view: "experiments", report: run.id })}
         aria-current=${isChosen ? "true" : undefined} onClick=${choose}>
-        <span class="row-title">
-          <b>${runTitle(run)}</b> <time class="dim" datetime=${run.created_at}>${ago(run.created_at)}</time>
-        </span>
-        <span class="dim about">${describeRun(run)}</span>
+        <b>${runTitle(run)}</b>
         <span class="row-state">
-          <span class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</span>
-          <span class="dim num">${run.state === "finished" ? "" : pace.label}</span>
+          <${StateOf} run=${run} />
+          <time class="dim" datetime=${run.created_at}>${ago(run.created_at)}</time>
         </span>
-        ${isActive(run) && html`<${ProgressBar} label=${runTitle(run)} share=${pace.share} />`}
-        ${pace.left && html`<span class="dim num">${pace.left}</span>`}
+        ${isActive(run) && html`<${ProgressBar} label=${runTitle(run)} share=${paceOf(run).share} />`}
+        <span class="dim about">${outcome || configInWords(run.config)}</span>
       </a>
     </li>
   `;
@@ -138,7 +139,7 @@ function Invitation() {
       </svg>
       <${StripKey} signs=${["seed", "greedy", "published"]} color=${color} />
       ${isOperator.value && html`
-        <p><button class="primary" onClick=${() => (formIsOpen.value = true)}>Choose an experiment</button></p>
+        <p><button class="primary" onClick=${openForm}>Choose an experiment</button></p>
       `}
       <p class="dim">${isOperator.value ? OPERATOR_WORDS : SPECTATOR_WORDS}</p>
     </section>

@@ -1,20 +1,27 @@
 // The report of one experiment. It fills while trials end.
-import { useMemo, useState } from "preact/hooks";
-import { pending } from "../../actions.js";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { pending, runAgain } from "../../actions.js";
+import { setFormOf } from "../../experiments/form.js";
+import { forgetPreset } from "../../experiments/presets.js";
 import { command, deleteExperiment, paceOf, summary, summaryError } from "../../experiments/runs.js";
+import { configInWords, findingIn } from "../../experiments/words.js";
 import { downloads, fileAddress, reportAddress } from "../../files.js";
 import { count, duration } from "../../format.js";
+import { page } from "../../page-state.js";
 import { isActive, isOperator } from "../../selectors.js";
-import { describeRun, messageOf, runTitle, simulatorTitle } from "../../titles.js";
+import { messageOf, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Icon, Problem, ProgressBar } from "../elements.js";
+import { formIsOpen, unsayable } from "./dialog.js";
 import { FigureFour } from "./figure-four.js";
 import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
 import { Seeds } from "./seeds.js";
+import { StateOf } from "./state-of.js";
 import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
 import { Worlds } from "./worlds.js";
 
 /** @import { Run, State, Summary, Verb } from "../../types.js" */
+/** @import { ComponentChildren } from "preact" */
 
 const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable, league: Worlds, recovery: Worlds };
 
@@ -24,12 +31,28 @@ export function Report({ run }) {
   // Progress changes several times a second, the summary seldom.
   const findings = useMemo(() => html`<${Findings} known=${known} />`, [known]);
   const hasSeeds = known?.settings?.some(({ n }) => n > 0);
+  const finding = findingIn(known);
   return html`
-    <${ReportHead} run=${run} />
-    ${summaryError.value && html`<p class="problem" role="alert">${messageOf(summaryError.value)}</p>`}
-    ${hasSeeds ? findings : html`<${Waiting} run=${run} />`}
+    <section class="report" aria-label=${`Experiment: ${runTitle(run)}`}>
+      <${ReportHead} run=${run} />
+      <div class="report-body" tabindex="0" role="group" aria-label="Report, to be scrolled">
+        <${Progress} run=${run} />
+        <${Note} run=${run} />
+        <${Problem} at=${run.id} />
+        ${summaryError.value && html`<p class="problem" role="alert">${messageOf(summaryError.value)}</p>`}
+        <div class="gist">
+          ${finding && html`<p class="finding" role="heading" aria-level="3">${soFar(run)}${finding}</p>`}
+          <p class="dim">${configInWords(run.config)}</p>
+          ${run.notes && html`<p class="own-notes">${run.notes}</p>`}
+        </div>
+        ${hasSeeds ? findings : html`<${Waiting} run=${run} />`}
+      </div>
+    </section>
   `;
 }
+
+/** @param {Run} run */
+const soFar = (run) => (run.state === "finished" ? "" : "So far: ");
 
 /** @param {{ known: Summary }} props */
 function Findings({ known }) {
@@ -63,30 +86,31 @@ const Waiting = ({ run }) => html`
   </section>
 `;
 
-// ---- the head: the experiment's state, its actions and its downloads
+// ---- the head: the experiment's name and state, and what can be done with it
 
 /** @param {{ run: Run }} props */
-function ReportHead({ run }) {
+const ReportHead = ({ run }) => html`
+  <div class="report-head">
+    <button class="quiet back-to-list" onClick=${() => (page.report.value = null)}>
+      <span aria-hidden="true">‹</span> Back
+    </button>
+    <div class="report-name">
+      <h2>${runTitle(run)}</h2>
+      <${StateOf} run=${run} />
+    </div>
+    <${Actions} run=${run} />
+  </div>
+`;
+
+/** @param {{ run: Run }} props */
+function Progress({ run }) {
+  if (!isActive(run) && !["interrupted", "stopped"].includes(run.state)) return null;
   const pace = paceOf(run);
-  const isUnderWay = isActive(run) || run.state === "interrupted";
   return html`
-    <section class="panel report-head" aria-label=${`Experiment: ${runTitle(run)}`}>
-      <div class="title-row">
-        <h2>${runTitle(run)}</h2>
-        <p class=${`state ${run.state}`}><span class="dot" aria-hidden="true"></span>${run.state}</p>
-        <${Actions} run=${run} />
-      </div>
-      <p class="dim">${describeRun(run)}</p>
-      ${(isUnderWay || run.state === "stopped") && html`
-        <div class="progress">
-          <p><span class="num">${pace.label}</span><span class="dim num">${pace.left}</span></p>
-          <${ProgressBar} label="Trials that are done" share=${pace.share} />
-        </div>
-      `}
-      <${Note} run=${run} />
-      <${Problem} at=${run.id} />
-      ${!isUnderWay && html`<${Downloads} run=${run} />`}
-    </section>
+    <div class="progress">
+      <p><span class="num">${pace.label}</span><span class="dim num">${pace.left}</span></p>
+      <${ProgressBar} label="Trials that are done" share=${pace.share} />
+    </div>
   `;
 }
 
@@ -112,63 +136,94 @@ function Note({ run }) {
 }
 
 /** @param {{ run: Run }} props */
-function Actions({ run }) {
-  if (!isOperator.value) return null;
-  return html`
-    <div class="report-actions">
+const Actions = ({ run }) => html`
+  <div class="report-actions">
+    ${isOperator.value && html`
       ${run.state === "running" && html`<${CommandButton} run=${run} verb="pause" icon="pause" title="Pause" />`}
       ${run.can_resume && html`<${CommandButton} run=${run} verb="resume" icon="play" title="Resume" />`}
       ${isActive(run) && html`<${CommandButton} run=${run} verb="stop" icon="stop" title="Stop" />`}
-      ${!isActive(run) && html`<${DeleteButton} run=${run} />`}
-    </div>
-  `;
-}
+      <button class="secondary compact" onClick=${() => repeatWith(run)}>Repeat with…</button>
+    `}
+    <${Menu} title="Files"><${Files} run=${run} /><//>
+    ${isOperator.value && html`
+      <${Menu} title="⋯" label="More about this experiment">
+        <button disabled=${pending.value[run.id]} onClick=${() => runAgain(run)}>Run again</button>
+        <a href="#runs">Name, tags and notes, in Runs</a>
+        ${!isActive(run) && html`<${DeleteButton} run=${run} />`}
+      <//>
+    `}
+  </div>
+`;
 
 /** @param {{ run: Run, verb: Verb, icon: string, title: string }} props */
 const CommandButton = ({ run, verb, icon, title }) => html`
-  <button class="secondary compact" disabled=${pending.value[run.id]} onClick=${() => command(run, verb)}>
+  <button class="quiet compact" disabled=${pending.value[run.id]} onClick=${() => command(run, verb)}>
     <${Icon} name=${icon} />${title}
   </button>
 `;
+
+/** Open the form with what this experiment was. @param {Run} run */
+function repeatWith(run) {
+  forgetPreset();
+  unsayable.value = setFormOf(run.config);
+  formIsOpen.value = true;
+}
+
+/**
+ * A menu that closes by what is chosen in it, by Escape, and by a press beside it.
+ * @param {{ title: string, label?: string, children: ComponentChildren }} props
+ */
+function Menu({ title, label, children }) {
+  const menu = useRef(/** @type {HTMLDetailsElement | null} */ (null));
+  useEffect(() => {
+    const close = (/** @type {Event} */ { target }) =>
+      !(target instanceof Node && menu.current?.contains(target)) && menu.current?.removeAttribute("open");
+    const onKey = (/** @type {KeyboardEvent} */ { key }) => {
+      if (key !== "Escape" || !menu.current?.open) return;
+      menu.current.open = false;
+      menu.current.querySelector("summary")?.focus();
+    };
+    addEventListener("pointerdown", close);
+    addEventListener("keydown", onKey);
+    return () => {
+      removeEventListener("pointerdown", close);
+      removeEventListener("keydown", onKey);
+    };
+  }, []);
+  return html`
+    <details class="menu report-menu" ref=${menu}>
+      <summary class=${`quiet ${label ? "square" : ""}`} aria-label=${label}>${title}</summary>
+      <div class="menu-body">${children}</div>
+    </details>
+  `;
+}
 
 /** @param {{ run: Run }} props */
 function DeleteButton({ run }) {
   const [isSure, setSure] = useState(false);
   const onClick = () => (isSure ? deleteExperiment(run) : setSure(true));
   return html`
-    <button class="quiet compact" disabled=${pending.value[run.id]} onBlur=${() => setSure(false)} onClick=${onClick}>
+    <button class="bad" disabled=${pending.value[run.id]} onBlur=${() => setSure(false)} onClick=${onClick}>
       ${isSure ? "Delete for good?" : "Delete"}
     </button>
   `;
 }
 
-/** @param {{ run: Run }} props */
-function Downloads({ run }) {
+/** What can be taken away: the report, the numbers and the figures. @param {{ run: Run }} props */
+function Files({ run }) {
   const files = run.result?.files ?? [];
   const figures = files.filter((name) => /\.(png|svg|pdf)$/.test(name));
   return html`
-    <p class="takeaways">
-      ${files.includes("report.html") && html`<${ReportLink} run=${run} />`}
-      ${downloads(run).map(([title, href]) => html`<a href=${href} download>${title}</a>`)}
-    </p>
+    ${files.includes("report.html") && html`
+      <a href=${reportAddress(run)} target="_blank" rel="noopener">Open the report</a>
+    `}
+    ${downloads(run).map(([title, href]) => html`<a href=${href} download>${title}</a>`)}
     ${figures.length > 0 && html`
-      <details class="more figures">
-        <summary>Figures (${figures.length})</summary>
-        <ul>${figures.map((name) => html`<${Figure} run=${run} name=${name} />`)}</ul>
-      </details>
+      <p class="menu-part dim">Figures</p>
+      ${figures.map((name) => html`<a href=${fileAddress(run, name)} download>${name.split("/").at(-1)}</a>`)}
     `}
   `;
 }
-
-/** @param {{ run: Run }} props */
-const ReportLink = ({ run }) => html`
-  <a class="report-link" href=${reportAddress(run)} target="_blank" rel="noopener">Open the report</a>
-`;
-
-/** @param {{ run: Run, name: string }} props */
-const Figure = ({ run, name }) => html`
-  <li><a href=${fileAddress(run, name)} download>${name.split("/").at(-1)}</a></li>
-`;
 
 // ---- trials without a distance, with the reasons
 

@@ -26,6 +26,7 @@ export function SweepTable({ known }) {
   const rows = shownSettings(known.settings).map((setting) => measured(setting, greedy(setting)));
   const columns = columnsOf(rows, known.parameters);
   const sorted = order === "best" ? [...rows].sort(byDistance) : rows;
+  const hasBest = rows.some(({ best }) => best !== null);
   const high = 1.03 * largest(rows.flatMap(({ points, line, best }) => [line ?? 0, best ?? 0, ...points]), 1e-9);
   const agents = [...new Set(rows.map(({ setting }) => setting.agent))];
   const color = agents.length === 1 ? agentOf(agents[0]).color : "var(--dim)";
@@ -36,13 +37,13 @@ export function SweepTable({ known }) {
         <${Segments} label="Order" choices=${ORDERS} value=${order} onValue=${setOrder} />
         <${UnitSwitch} />
       </div>
-      <${StripKey} signs=${["seed", "typical", "greedy", "best-known"]} color=${color} />
+      <${StripKey} signs=${["seed", "typical", "greedy", ...(hasBest ? ["best-known"] : [])]} color=${color} />
       <div class="scroller" tabindex="0" role="region" aria-label="Every setting">
         <table class="facts-table stacking" role="table">
-          <${Head} columns=${columns} />
+          <${Head} columns=${columns} hasBest=${hasBest} />
           <tbody role="rowgroup">
             ${(isWhole ? sorted : sorted.slice(0, MAX_ROWS)).map((row) => html`
-              <${Row} key=${row.setting.key} row=${row} columns=${columns} high=${high} />
+              <${Row} key=${row.setting.key} row=${row} columns=${columns} high=${high} hasBest=${hasBest} />
             `)}
           </tbody>
         </table>
@@ -52,7 +53,7 @@ export function SweepTable({ known }) {
           <button class="secondary" onClick=${() => setWhole(true)}>Show all ${count(sorted.length, "setting")}</button>
         </div>
       `}
-      <${BestKnownWords} distances=${rows.map(({ setting }) => setting.best_known_m)} />
+      ${hasBest && html`<${BestKnownWords} distances=${rows.map(({ setting }) => setting.best_known_m)} />`}
     </section>
   `;
 }
@@ -97,15 +98,15 @@ function measured(setting, greedy_m) {
   };
 }
 
-/** @param {{ columns: string[] }} props */
-const Head = ({ columns }) => html`
+/** @param {{ columns: string[], hasBest: boolean }} props */
+const Head = ({ columns, hasBest }) => html`
   <thead role="rowgroup">
     <tr role="row">
       <th role="columnheader" scope="col">${columns.map(fieldTitle).join(", ")}</th>
       <th role="columnheader" scope="col" class="wide-cell">${STRIP_TITLE}</th>
       <th role="columnheader" scope="col" title="Interquartile mean, with its 95 % interval">Interquartile mean</th>
       <th role="columnheader" scope="col" title="Get at least half as far as greedy">Share that walks</th>
-      <th role="columnheader" scope="col" title=${served().help.best_known}>Best known</th>
+      ${hasBest && html`<th role="columnheader" scope="col" title=${served().help.best_known}>Best known</th>`}
     </tr>
   </thead>
 `;
@@ -120,8 +121,8 @@ const nameOf = (setting, columns) =>
     .map((field) => (isNamedByValue(field) ? "" : `${fieldTitle(field)}\u00a0`) + valueTitle(field, setting[field]))
     .join(", ");
 
-/** @param {{ row: Measured, columns: string[], high: number }} props */
-function Row({ row, columns, high }) {
+/** @param {{ row: Measured, columns: string[], high: number, hasBest: boolean }} props */
+function Row({ row, columns, high, hasBest }) {
   const { setting, typical, best } = row;
   return html`
     <tr role="row">
@@ -135,7 +136,7 @@ function Row({ row, columns, high }) {
       <td role="cell" data-label="Share that walks" class="num">
         ${setting.walkers ? percentage(setting.walkers.share) : "–"}
       </td>
-      <td role="cell" data-label="Best known" class="num">${shown(best)}</td>
+      ${hasBest && html`<td role="cell" data-label="Best known" class="num">${shown(best)}</td>`}
     </tr>
   `;
 }

@@ -1,59 +1,25 @@
-// The form of a new experiment.
-import { effect, signal } from "@preact/signals";
-import { useEffect, useState } from "preact/hooks";
-import { pending, refusedFields } from "../../actions.js";
+// Every setting of a new experiment, for those who want more than the chosen preset shows.
+import { useState } from "preact/hooks";
 import { splitWorlds } from "../../disturbances.js";
 import {
-  agentSettings, chooseExperiment, chosenExperiment, defaults, enter, experiments, mistakes, offeredAgents, parse,
-  setField, takesField, trials, values, wrong,
+  agentSettings, chosenExperiment, enter, offeredAgents, setField, takesField, values, wrong,
 } from "../../experiments/form.js";
-import { canStart, experimentEstimate, start, startLabel } from "../../experiments/runs.js";
-import { count, listed, sentence, whole } from "../../format.js";
-import { ignored, page } from "../../page-state.js";
+import { listed, sentence, whole } from "../../format.js";
 import { fullTitle, settingOf, shortTitle } from "../../settings.js";
 import { options, served } from "../../store.js";
 import {
-  agentTitle, choicesOf, fieldTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle,
+  agentTitle, choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle,
 } from "../../titles.js";
-import { Dialog, goToField, Held, html, Icon, Mistake, Problem, UnknownParts } from "../elements.js";
-import { helpFor } from "../fields.js";
+import { html } from "../elements.js";
 import { WorldPicture } from "../world.js";
+import {
+  attributesOf, CountInput, Help, joined, MistakeOf, settingBy, TypedInput, ValuesInput,
+} from "./form-fields.js";
 
-/** @import { Changed, ExperimentValue, SettingOption, SettingValue } from "../../types.js" */
+/** @import { Changed, SettingOption } from "../../types.js" */
 /** @import { ComponentChildren } from "preact" */
 
-/** Whether the dialog of a new experiment is open. */
-export const formIsOpen = signal(false);
-
-/** The dialog opens by itself for an address that says what to run: with fields of the form, and no run to be shown. */
-export function ExperimentDialog() {
-  useEffect(() => {
-    const stop = effect(() => {
-      const saysWhat = page.experiment.value.size > 0 || ignored.experiments.value.length > 0;
-      if (saysWhat && page.report.peek() === null) formIsOpen.value = true;
-    });
-    return () => {
-      stop();
-      formIsOpen.value = false;
-    };
-  }, []);
-  return html`
-    <${Dialog} id="experiment-dialog" labelledBy="new-experiment" isOpen=${formIsOpen}>
-      <div class="dialog-head">
-        <h2 id="new-experiment">New experiment</h2>
-        <button class="quiet square" aria-label="Close" onClick=${() => (formIsOpen.value = false)}>✕</button>
-      </div>
-      <p class="cost" role="status">${costInWords()}</p>
-      <${Fields} />
-    <//>
-  `;
-}
-
-/** What the form would start, before anything else: how many trials, and for how long if that is long. */
-function costInWords() {
-  if (!canStart()) return "No trials yet: something below is missing.";
-  return [html`<b>${count(trials.value, "trial")}.</b>`, " ", experimentEstimate.value || "Done soon."];
-}
+export const FIRST_SEED = "First seed";
 
 /**
  * Fields of the grid that the chosen experiment takes: first the practice and the settings of the chosen agents,
@@ -65,9 +31,8 @@ function gridOf(isMain) {
   return isMain ? main : chosenExperiment.value.grid.filter((field) => takesField(field) && !main.includes(field));
 }
 
-const Fields = () => html`
-  <div class="experiment-fields">
-    <${Cards} />
+export const AllSettings = () => html`
+  <div class="experiment-fields all-settings">
     <div class="pair">
       <${CountField} field="seeds" label="Seeds" />
       <${CountField} field="seed" label=${FIRST_SEED} />
@@ -78,55 +43,12 @@ const Fields = () => html`
     ${takesField("worlds") && html`<${Worlds} />`}
     <${Grid} fields=${gridOf(true)}>${takesField("tolerance") && html`<${ToleranceField} />`}<//>
     <${More} />
-    <${StartButton} />
-    <${UnknownParts} parts=${ignored.experiments} />
-    <${Problem} at="experiment" />
   </div>
 `;
 
-const agentChoices = () =>
+/** The agents that the experiment can compare: [name, title]. */
+export const agentChoices = () =>
   choicesOf(served().agents.filter(({ name }) => offeredAgents().includes(name)), agentTitle);
-
-/** Start, and show the report. */
-async function startAndShow() {
-  if (await start() !== null) formIsOpen.value = false;
-}
-
-function StartButton() {
-  const isDisabled = !canStart() || pending.value.experiment;
-  const isHeld = Object.keys(mistakes.value).length > 0;
-  const onClick = () => !isDisabled && startAndShow();
-  return html`
-    <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${onClick}
-      aria-describedby=${isHeld ? "held-experiment" : undefined}>
-      ${pending.value.experiment ? "Starting…" : html`<${Icon} name="play" />${startLabel()}`}
-    </button>
-    ${isHeld && html`
-      <${Held} id="held-experiment" mistakes=${mistakes.value} nameOf=${nameOf}
-        onField=${(/** @type {string} */ field) => goToField(`experiment-${field}`)} />
-    `}
-  `;
-}
-
-/** A field's name as this form shows it. @param {string} field */
-const nameOf = (field) => (field === "seed" ? FIRST_SEED : fieldTitle(field));
-const FIRST_SEED = "First seed";
-
-const Cards = () => html`
-  <fieldset class="cards" role="radiogroup" aria-invalid=${wrong.value.experiment ? "true" : undefined}
-    aria-describedby=${wrong.value.experiment && "wrong-experiment"}>
-    <legend class="sr-only">Experiment</legend>
-    ${experiments.value.map(({ name, title, description }, number) => html`
-      <label class="card" key=${name}>
-        <input class="sr-only" type="radio" name="experiment" id=${number ? undefined : "experiment-experiment"}
-          checked=${!wrong.value.experiment && chosenExperiment.value.name === name}
-          onChange=${() => chooseExperiment(name)} />
-        <b>${title}</b><span>${description}</span>
-      </label>
-    `)}
-    <${MistakeOf} field="experiment" />
-  </fieldset>
-`;
 
 /**
  * Fields that are combined: one value each, or several.
@@ -136,7 +58,7 @@ const Grid = ({ fields, children }) => fields.length > 0 && html`
   <fieldset class="grid-fields">
     <legend class=${fields.length > 1 ? "" : "sr-only"}>Every combination of</legend>
     ${fields.map((field) => html`
-      <${ValuesField} key=${field} field=${field} setting=${agentSettings.value[field] ?? settingOf(field)} />
+      <${ValuesField} key=${field} field=${field} setting=${settingBy(field)} />
     `)}
     ${children}
   </fieldset>
@@ -145,7 +67,7 @@ const Grid = ({ fields, children }) => fields.length > 0 && html`
 /** Gaits, robots, observations and simulator: rarely changed, so one line until opened. */
 const More = () => html`
   <details class="more">
-    <summary>Robots and gaits<span class="dim">${placeSummary()}</span></summary>
+    <summary>Robots and gaits<span class="dim">${summaryOfAll()}</span></summary>
     <div class="where">
       <${CheckList} field="gaits" label="Gaits" choices=${choicesOf(options.value?.gaits, gaitTitle)} />
       <${CheckList} field="robots" label="Robots" choices=${choicesOf(options.value?.robots, robotTitle)} />
@@ -158,15 +80,22 @@ const More = () => html`
   </details>
 `;
 
-function placeSummary() {
-  const { gaits, robots, observations, simulator } = values.value;
+/** Where it walks: gaits, robots and observations; the simulator elsewhere. */
+export function placeSummary() {
+  const { gaits, robots, observations } = values.value;
   const all = options.value?.gaits ?? [];
   return [
     gaits.length === all.length ? `all ${whole(all.length)} gaits` : listed(gaits.map(gaitTitle)),
     listed(robots.map((name) => robotTitle(name).toLowerCase())),
     listed(observations.map(observationTitle)),
-    simulator === chosenExperiment.value.defaults.simulator ? "" : simulatorTitle(simulator),
   ].filter(Boolean).join(" · ");
+}
+
+/** With a simulator that is not the usual one. */
+function summaryOfAll() {
+  const { simulator } = values.value;
+  const isUsual = simulator === chosenExperiment.value.defaults.simulator;
+  return [placeSummary(), isUsual ? "" : simulatorTitle(simulator)].filter(Boolean).join(" · ");
 }
 
 const SimulatorField = () => html`
@@ -198,23 +127,6 @@ const NameField = () => html`
     <${Help} field="name" />
   </div>
 `;
-
-// ---- what is not valid, and why
-
-/** The attributes of a field's control: its id, whether it is marked, and what describes it. @param {string} field */
-const attributesOf = (field) => ({
-  id: `experiment-${field}`,
-  "aria-invalid": wrong.value[field] || refusedFields("experiment").includes(field) ? "true" : undefined,
-  "aria-describedby": wrong.value[field] ? `wrong-${field} about-${field}` : `about-${field}`,
-});
-
-/** @param {{ field: string }} props */
-const MistakeOf = ({ field }) => html`<${Mistake} id=${`wrong-${field}`}>${wrong.value[field]?.mistake}<//>`;
-
-// ---- help: a sentence below each field
-
-/** @param {{ field: string }} props */
-const Help = ({ field }) => html`<p class="sentence" id=${`about-${field}`}>${helpFor(field)}</p>`;
 
 // ---- a choice of several out of a few; with none the start is held
 
@@ -304,48 +216,26 @@ function OtherWorlds({ named, others }) {
 }
 
 const ToleranceField = () => html`
-  <${TypedField} field="tolerance" label=${fullTitle(settingOf("tolerance"))} text=${String(values.value.tolerance)}
-    inputmode="decimal" />
+  <${Labelled} field="tolerance" label=${fullTitle(settingOf("tolerance"))}>
+    <${TypedInput} field="tolerance" text=${String(values.value.tolerance)} inputmode="decimal" />
+  <//>
 `;
 
-// ---- text fields: a whole number, or a list of values; what is typed stays as it is
-
-/** @param {{ field: string, label: string, text: string, inputmode: string, placeholder?: string }} props */
-function TypedField({ field, label, text, inputmode, placeholder = undefined }) {
-  const [draft, setDraft] = useState(/** @type {string | null} */ (null));
-  const isKept = draft !== null && String(parse(field, draft).value) === String(values.value[field]);
-  /** @param {{ target: HTMLInputElement }} event */
-  const onInput = ({ target }) => {
-    setDraft(target.value);
-    enter(field, target.value);
-  };
-  return html`
-    <div class="field">
-      <label for=${`experiment-${field}`}>${label}</label>
-      <input type="text" inputmode=${inputmode} autocomplete="off" ...${attributesOf(field)}
-        value=${wrong.value[field]?.text ?? (isKept ? draft : text)} placeholder=${placeholder} onInput=${onInput} />
-      <${MistakeOf} field=${field} />
-      <${Help} field=${field} />
-    </div>
-  `;
-}
-
-/** One whole number. @param {{ field: string, label: string }} props */
-const CountField = ({ field, label }) => html`
-  <${TypedField} field=${field} label=${label} text=${String(values.value[field])} inputmode="numeric" />
+/** @param {{ field: string, label: string, children: ComponentChildren }} props */
+const Labelled = ({ field, label, children }) => html`
+  <div class="field">
+    <label for=${`experiment-${field}`}>${label}</label>
+    ${children}
+    <${MistakeOf} field=${field} />
+    <${Help} field=${field} />
+  </div>
 `;
 
-/** @param {ExperimentValue} list */
-const joined = (list) => /** @type {SettingValue[]} */ (list).join(", ");
+/** @param {{ field: string, label: string }} props */
+const CountField = ({ field, label }) =>
+  html`<${Labelled} field=${field} label=${label}><${CountInput} field=${field} /><//>`;
 
-/**
- * One value of a setting, or several; none where each agent has its own default.
- * @param {{ field: string, setting: SettingOption }} props
- */
-function ValuesField({ field, setting }) {
-  const isOwn = joined(defaults.value[field]) === "";
-  return html`
-    <${TypedField} field=${field} label=${shortTitle(setting)} text=${joined(values.value[field])}
-      inputmode=${setting.is_number ? "decimal" : "text"} placeholder=${isOwn ? "by default" : undefined} />
-  `;
-}
+/** @param {{ field: string, setting: SettingOption }} props */
+const ValuesField = ({ field, setting }) => html`
+  <${Labelled} field=${field} label=${shortTitle(setting)}><${ValuesInput} field=${field} setting=${setting} /><//>
+`;

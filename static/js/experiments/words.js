@@ -1,0 +1,97 @@
+// An experiment in few words: its state, what is the same in all its trials, and what came of it as the server says.
+import { count, duration, listed, percentage, sentence, whole } from "../format.js";
+import { customRobotInWords, presetOf } from "../robots.js";
+import { served } from "../store.js";
+import { agentTitle, gaitTitle, observationTitle, simulatorTitle } from "../titles.js";
+
+/** @import { RobotConfig, Run, Summary } from "../types.js" */
+
+/**
+ * A state with how far it is: "running, 42 %, 6 min left", "stopped at 60 %".
+ * @param {Run} run
+ */
+export function stateInWords({ state, progress: { done, total }, eta_s }) {
+  const share = percentage(total ? done / total : 0);
+  if (state === "running") return [share, eta_s ? `${duration(eta_s)} left` : ""].filter(Boolean).join(", ");
+  return ["paused", "stopped", "interrupted", "failed"].includes(state) ? `${state} at ${share}` : state;
+}
+
+const MAX_NAMES = 3;
+
+/**
+ * A few names, or how many there are.
+ * @param {string[]} names
+ * @param {string} noun
+ */
+const fewOf = (names, noun) => (names.length > MAX_NAMES ? count(names.length, noun) : listed(names));
+
+/** @param {Run["config"]} config */
+function gaitsIn({ gaits = [] }) {
+  const all = served().gaits;
+  if (all.length > 1 && gaits.length === all.length) return `all ${whole(all.length)} gaits`;
+  return fewOf(gaits.map(gaitTitle), "gait");
+}
+
+/**
+ * What is tried, in a line: "Q-learning, 500 steps of practice, Left-right, opposite, feet measured, 30 seeds".
+ * @param {Run["config"]} config
+ */
+export function configInWords(config) {
+  const { agents = [], steps = [], observations = [], robots = [], seeds, seed, tolerance, simulator } = config;
+  const robotName = (/** @type {RobotConfig} */ one) => customRobotInWords(one) ?? presetOf(one) ?? "own";
+  return sentence([
+    fewOf(agents.map(agentTitle), "agent"),
+    config.experiment === "figure4" ? "" : `${[steps].flat().map(whole).join(", ")} steps of practice`,
+    gaitsIn(config), listed(observations.map(observationTitle)), `${listed(robots.map(robotName))} robot`,
+    `${count(seeds, "seed")}${seed ? ` from seed ${seed}` : ""}`,
+    tolerance ? `built to within ${percentage(tolerance)}` : "", simulatorTitle(simulator),
+  ].filter(Boolean).join(" · "));
+}
+
+// ---- what came of it
+
+/** @type {[string, (number: number) => string][]} */
+const VERDICTS = [
+  ["holds", (number) => (number === 1 ? "holds" : "hold")],
+  ["does not hold", (number) => (number === 1 ? "does not hold" : "do not hold")],
+  ["depends", (number) => (number === 1 ? "depends on the case" : "depend on the case")],
+  ["not established", (number) => (number === 1 ? "is not established" : "are not established")],
+];
+
+/**
+ * How many of the paper's claims hold: "Of the paper’s 9 claims 2 do not hold and 7 are not established."
+ * @param {{ verdict: string }[]} claims
+ */
+export function verdictsInWords(claims) {
+  const [{ verdict: only }] = claims.length === 1 ? claims : [{ verdict: "" }];
+  const [, ofOne] = VERDICTS.find(([verdict]) => verdict === only) ?? [];
+  if (ofOne) return `The paper’s claim ${ofOne(1)}.`;
+  const counts = VERDICTS.map(([verdict, words]) => {
+    const number = claims.filter((one) => one.verdict === verdict).length;
+    return number ? `${number} ${words(number)}` : "";
+  });
+  const told = listed(counts.filter(Boolean));
+  return told && `Of the paper’s ${count(claims.length, "claim")} ${told}.`;
+}
+
+/** How the server begins its sentence on the best of several settings. */
+const BEST = /(?:^|[.] )(The best is .*?[.])(?= [A-Z]|$)/;
+
+/**
+ * What an experiment found, as the server wrote it; empty where it says nothing yet.
+ * @param {Summary | null} known
+ */
+export function findingIn(known) {
+  const [, best = ""] = (known?.story ?? []).map(({ text }) => BEST.exec(text)).find(Boolean) ?? [];
+  return best || verdictsInWords(known?.claims ?? []);
+}
+
+/**
+ * What came of an experiment in its row of the list, whether its report was opened or not.
+ * @param {Run} run
+ * @param {Summary | null} known
+ */
+export function outcomeOf({ result, config }, known) {
+  const stored = config.experiment === "sweep" ? "" : verdictsInWords(result?.claims ?? []);
+  return findingIn(known) || stored;
+}
