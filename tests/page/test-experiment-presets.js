@@ -8,7 +8,9 @@ import {
   chooseAgent, choosePreset, chooseSwept, chosenPreset, forgetPreset, isMoreSet, presets, suggestedValues, sweepable,
   sweptField,
 } from "../../static/js/experiments/presets.js";
-import { configInWords, findingIn, outcomeOf, stateInWords, verdictsInWords } from "../../static/js/experiments/words.js";
+import {
+  configInWords, findingIn, outcomeOf, stateInWords, verdictsInWords,
+} from "../../static/js/experiments/words.js";
 import { page } from "../../static/js/page-state.js";
 import { options } from "../../static/js/store.js";
 import { makeRun, OPTIONS, setting } from "./options.js";
@@ -28,7 +30,8 @@ beforeEach(() => {
 });
 
 test("the presets are the own ones, and the experiments of the server as they are", () => {
-  assert.deepEqual(presets().map(({ name }) => name), ["setting", "learners", "worlds", "table1", "league", "recovery"]);
+  assert.deepEqual(presets().map(({ name }) => name),
+    ["setting", "learners", "worlds", "table1", "league", "recovery"]);
   options.value = { ...OPTIONS, experiments: OPTIONS.experiments.slice(0, 1) };
   assert.deepEqual(presets().map(({ name }) => name), ["table1"]);
 });
@@ -143,6 +146,6 @@ test("a finding is the server’s sentence, else its verdicts, else nothing", ()
   assert.equal(findingIn(known({ story: [], claims: claims.slice(0, 1) })), "The paper’s claim holds.");
   assert.equal(findingIn(known({ story: [], claims: [] })), "");
   assert.equal(findingIn(null), "");
-  const run = makeRun({ kind: "experiment", config: { experiment: "table1" }, result: /** @type {any} */ ({ claims }) });
+  const run = makeRun({ kind: "experiment", config: { experiment: "table1" }, result: { claims } });
   assert.match(outcomeOf(run, null), /^Of the paper’s 4 claims/);
 });
