@@ -38,9 +38,9 @@ def test_an_interrupted_training_goes_on_at_a_click(tmp_path: Path, dashboard: D
         note = dashboard.notes.get_by_text("interrupted at step")
         expect(note).to_be_visible()
         page.goto(f"{server.address}#runs")
-        row = dashboard.runs
-        expect(row.get_by_text("interrupted", exact=True)).to_be_visible()
-        expect(row.get_by_role("button", name="Resume", exact=True)).to_be_visible()
+        expect(dashboard.runs.get_by_text("interrupted", exact=True)).to_be_visible()
+        resume = dashboard.details.get_by_role("button", name="Resume", exact=True)
+        expect(resume).to_be_visible()
         page.goto(f"{server.address}#")
         left_at = done(dashboard)
         dashboard.button("Resume").click()

@@ -59,7 +59,7 @@ def test_a_segment_shows_the_joint_positions_that_were_simulated(parts: StagePar
         assert time_s == pytest.approx((SEGMENT_FRAMES + number) / FRAMES_PER_S)
         state = shown(segment["frames"][: number + 1], arrays)
         for part, links in enumerate(part.links for part in mesh.parts):
-            name = f"{SCENE_ROOT}/robots/{part} batched_positions"
+            name = f"{SCENE_ROOT}/robots/{mesh.part_name(part)} batched_positions"
             drawn = np.frombuffer(state[name], np.float32).reshape(len(LANES), len(links), 3)
             for lane, view in enumerate(replay.frame_at(time_s).lanes):
                 expected = mesh.body_poses(view.qpos).positions[links]
