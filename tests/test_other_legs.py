@@ -227,14 +227,6 @@ def test_a_joint_that_a_robot_does_not_have_cannot_be_stuck() -> None:
         world.check(TwoJoints(), "mujoco")
 
 
-def tripod() -> Gait:
-    """Return the gait of groups (1 3 5) and (2 4 6); legs on the left are mirrored."""
-    pairs = resolve("left-right-origin", Robot().azimuths_deg)
-    mirror = tuple(1 if azimuth < 0 else -1 for azimuth in pairs.azimuths_deg)
-    groups = (1, 3, 5), (2, 4, 6)
-    return Gait("tripod", pairs.forward_deg, pairs.azimuths_deg, groups, mirror)
-
-
 @pytest.mark.parametrize(
     ("build", "tolerance"), [(KinematicSimulator, 1e-3), (MujocoSimulator, 0.05)]
 )
@@ -242,7 +234,7 @@ def test_groups_of_three_walk_by_the_law(
     build: type[KinematicSimulator | MujocoSimulator], tolerance: float
 ) -> None:
     grid = FootGrid()
-    simulator: Simulator[Any] = build(Robot(), tripod(), grid)
+    simulator: Simulator[Any] = build(Robot(), resolve("tripod", Robot().azimuths_deg), grid)
     state, advances_m = simulator.rest(), []
     for _ in range(12):
         legal = legal_actions(observe(simulator, state, "measured"), len(grid))
@@ -254,14 +246,3 @@ def test_groups_of_three_walk_by_the_law(
 
     # Two groups of equal size: 2h / (G + 1) a step.
     assert np.mean(advances_m[6:]) == pytest.approx(grid.side_m / 3, rel=tolerance)
-
-
-def test_groups_must_have_each_leg_once_and_one_size() -> None:
-    gait = tripod()
-    for groups, message in [
-        (((1, 3), (2, 4, 6)), "leave out leg 5"),
-        (((1, 3, 5), (2, 3, 4, 6)), "leg 3 is used 2 times"),
-        (((1, 3, 5, 6), (2, 4)), "as many legs each"),
-    ]:
-        with pytest.raises(InvalidInput, match=message):
-            Gait("mine", 0.0, gait.azimuths_deg, groups, gait.mirror)

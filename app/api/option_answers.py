@@ -20,11 +20,11 @@ class Described(Answer):
 
 
 class GaitOption(Described):
-    """A gait, with the directions of its legs [°] and the pairs of legs that move together."""
+    """A gait, with the directions of the hexapod's legs [°] and the groups that move together."""
 
     forward_deg: float
     azimuths_deg: list[float]
-    pairs: list[tuple[int, int]]
+    pairs: list[list[int]]
 
 
 class RobotOption(Described):

@@ -114,6 +114,12 @@ _GAITS = {
     "front-back-vertical": (
         "One leg leads, three in front and three behind; each leg moves with its mirror image."
     ),
+    "tripod": "Six legs: three of them move together, three stand, as most insects run.",
+    "tetrapod": "Four legs stand, while two or four others move together.",
+    "trot": "Every other leg around the body moves: of four legs those on a diagonal.",
+    "pace": "All legs of one side move together; most bodies tip.",
+    "bound": "The legs in front move together, then all others; most bodies tip.",
+    "one-by-one": "Each leg moves alone, while all others stand: steady, but many states.",
 }
 _ROBOTS = {
     "stiff": "Strong servos on a floor with grip: they hold the body level.",

@@ -14,7 +14,7 @@ from hexapods.assembly import build_simulator
 from hexapods.domain.checks import check_whole
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import UnknownName
-from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.gait import PAPER_GAITS
 from hexapods.domain.robot import robot
 from hexapods.domain.world import WORLDS, named_world
 from hexapods.runs import best_known
@@ -38,8 +38,8 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     )
     parser.add_argument(
         "--gait",
-        default=",".join(NAMED_GAITS),
-        help=f"one or more of {', '.join(NAMED_GAITS)} (default all)",
+        default=",".join(PAPER_GAITS),
+        help=f"one or more of {', '.join(PAPER_GAITS)} (default all)",
     )
     parser.add_argument(
         "--width",
@@ -91,8 +91,8 @@ def _problems(options: argparse.Namespace) -> Iterable[tuple[dict[str, str], Wal
     """Return the walking problems that were asked for, each with its names."""
     gaits = split(options.gait)
     for gait in gaits:
-        if gait not in NAMED_GAITS:
-            raise UnknownName("gait", gait, NAMED_GAITS)
+        if gait not in PAPER_GAITS:
+            raise UnknownName("gait", gait, PAPER_GAITS)
     chosen = [(name, robot(name)) for name in split(options.robot)]
     for robot_name, one in chosen:
         for world in split(options.world):

@@ -86,6 +86,7 @@ class Expert(ABC):
     def __init__(self, problem: Problem, prior: Prior) -> None:
         self._cells_m = problem.cells_m
         self._half_side_m = float(np.abs(problem.cells_m).max()) or 1.0
+        self._shares = problem.shares
         weights, deviations = self._prior(len(problem.groups))
         weights = weights if prior == "kinematic" else np.zeros_like(weights)
         half = self._half_side_m
@@ -136,7 +137,7 @@ class MeasuredExpert(Expert):
     name = "measured"
 
     def _prior(self, groups: int) -> tuple[FloatArray, FloatArray]:
-        weights = np.tile(self._cells_m[:, 1] / self._half_side_m, groups) / groups
+        weights = np.outer(self._shares, self._cells_m[:, 1] / self._half_side_m).ravel() / groups
         return weights, np.full(len(weights), _DEVIATION)
 
     def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:  # noqa: D102
@@ -148,7 +149,7 @@ class MeasuredExpert(Expert):
 
     def feature_name(self, index: int) -> str:  # noqa: D102
         group, cell = divmod(index, len(self._cells_m))
-        return f"pair {group + 1} on cell {cell}"
+        return f"group {group + 1} on cell {cell}"
 
 
 class PlannedExpert(Expert):
@@ -171,10 +172,10 @@ class PlannedExpert(Expert):
         for row, action in enumerate(actions):
             landed[row, action.group] = self._cells_m[action.cell]
         landed /= self._half_side_m
-        return np.column_stack((landed[:, :, 1].mean(1), landed[:, :, 0]))
+        return np.column_stack(((landed[:, :, 1] * self._shares).mean(1), landed[:, :, 0]))
 
     def feature_name(self, index: int) -> str:  # noqa: D102
-        return f"how far pair {index} stands out" if index else "how far forward the feet stand"
+        return f"how far group {index} stands out" if index else "how far forward the feet stand"
 
 
 class Policy(NamedTuple):
@@ -272,7 +273,7 @@ class LinearModel:
         if beta:
             criterion += f", plus {beta:g} standard deviations"
         if policy.successor is not None:
-            criterion += "; the pairs take turns"
+            criterion += "; the groups take turns"
         return ChoiceExplanation(action, "exploited", criterion, scores)
 
     def _choose(self, legal: Sequence[Action]) -> tuple[Action, Sequence[Action], FloatArray]:

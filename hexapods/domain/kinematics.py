@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from hexapods.domain.errors import Unreachable
+from hexapods.domain.feet import Reach
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.legs import FootKinematics, Joint, Legs
@@ -120,38 +121,92 @@ def legs_of(robot: Robot) -> Legs:
     return _coxa_femur_tibia(robot)
 
 
-@lru_cache(maxsize=64)
-def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> None:
-    """Check that every foot offset that can occur is within each leg's reach and joint limits.
+_REACH_SAMPLES = 8
+"""Positions from home to the farthest that can occur in each direction, where reach is limited."""
 
-    A foot's actual forward offset drifts as the body re-centres. With G groups it stays strictly
-    within (G − 1) h of home, since the offsets sum to zero and each was last commanded to within
-    h (half the grid's side). Cached, since every run of an experiment asks it again.
+
+@lru_cache(maxsize=64)
+def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach | None:
+    """Check that each leg reaches its grid; return how far feet may drift from it.
+
+    A foot's actual forward offset drifts as the body re-centres. It stays strictly within
+    (1 − w) / w · h of home, h half the grid's side, w its group's share of all feet: the offsets of
+    the feet sum to zero, and each group was last commanded to within h. Only long series of odd
+    steps lead there, so a robot may walk whose legs reach less. Cached, since every run of an
+    experiment asks it again.
+
+    Returns:
+        None if every offset that can occur is within reach and joint limits; otherwise what is.
 
     Raises:
-        Unreachable: naming the leg and the cell.
+        Unreachable: if a foot does not reach a cell from home, naming the leg and the cell.
     """
-    legs, drift = legs_of(robot), len(gait.groups) - 1
-    kinematics = legs.under(gait)
+    legs = legs_of(robot)
+    kinematics, count = legs.under(gait), len(legs)
+    sizes = np.array(gait.sizes)[list(gait.group_of_leg)]
+    drift = (count - sizes) / sizes
+    reaches_all = True
     for cell, (x, y) in enumerate(grid.cells):
         passages = (
-            ("", y),
-            (" after the body has re-centred", drift * y),
-            (" on the way there", 0.0),
+            ("", np.full(count, y)),
+            (None, drift * y),
+            (" on the way there", np.zeros(count)),
         )
         for why, forward in passages:
             for height in (0.0, robot.step_height_m):
-                offset = np.array([x, forward, height])
-                problem = _reach_problem(
-                    legs, kinematics.joint_angles(np.tile(offset, (len(legs), 1)))
-                )
-                if problem:
+                # Both (x, y) and (−x, y) are cells, so mirrored legs need not be told apart.
+                offsets = np.column_stack((np.full(count, x), forward, np.full(count, height)))
+                problem = _reach_problem(legs, kinematics.joint_angles(offsets))
+                if problem and why is None:
+                    reaches_all = False
+                elif problem:
                     leg, reason = problem
                     raise Unreachable(
                         f"leg {leg} cannot reach cell {cell} ({grid.name(cell)}){why}: "
                         f"{reason}; choose a smaller grid_side_m than {grid.side_m:g}, a "
                         "lower step_height_m, or other link lengths, home radius or body height"
                     )
+    return None if reaches_all else _forward_reach(robot, gait, grid)
+
+
+def _forward_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach:
+    """Return how far the feet of each group reach forward and back, wherever they are sideways.
+
+    Raises:
+        Unreachable: if that is less than the grid, or a foot does not reach a place between.
+    """
+    legs, half = legs_of(robot), grid.half_side_m
+    kinematics = legs.under(gait)
+    widths = np.linspace(-half, half, 2 * _REACH_SAMPLES + 1)
+    heights = np.linspace(0, robot.step_height_m, 4)
+    back: list[float] = []
+    ahead: list[float] = []
+    for group in gait.groups:
+        # From the grid's edge to the farthest that can occur, away from home and towards it.
+        farthest = half * max(1.0, (len(legs) - len(group)) / len(group))
+        outward = np.concatenate(
+            (
+                np.linspace(0, half, _REACH_SAMPLES, endpoint=False),
+                np.linspace(half, farthest, 4 * _REACH_SAMPLES),
+            )
+        )
+        of_group = np.isin(legs.leg_of_joint, np.array(group) - 1)
+        low, high = legs.limits_rad[:, of_group]
+        for sign, found in ((-1, back), (1, ahead)):
+            x, y, z = np.meshgrid(widths, sign * outward, heights, indexing="ij")
+            offsets = np.stack((x, y, z), -1)[..., None, :].repeat(len(legs), -2)
+            angles = kinematics.joint_angles(offsets)[..., of_group]
+            is_possible = ((low <= angles) & (angles <= high)).all(axis=(0, 2, 3))
+            reached = outward[: int(is_possible.argmin())] if not is_possible.all() else outward
+            if len(reached) <= _REACH_SAMPLES:
+                names = " and ".join(map(str, group))
+                raise Unreachable(
+                    f"leg {names} cannot reach everywhere between the cells of its grid: choose a "
+                    f"smaller grid_side_m than {grid.side_m:g}, a lower step_height_m, or other "
+                    "link lengths, home radius or body height"
+                )
+            found.append(sign * float(reached[-1]))
+    return Reach(tuple(back), tuple(ahead))
 
 
 def _reach_problem(legs: Legs, angles: FloatArray) -> tuple[int, str] | None:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import JsonForm, Schema
 
-MIN_LEGS, MAX_LEGS = 4, 12
+MIN_LEGS, MAX_LEGS = 3, 12
 _NO_NUMBERS = ("name", "legs")
 """Fields of a robot that are not a number."""
 
@@ -26,11 +26,15 @@ def ring(legs: int, radius_m: float = 0.10) -> tuple[LegMount, ...]:
     """Return the mounts of a regular ring, leg 1 along body x, numbered anticlockwise.
 
     Raises:
-        InvalidInput: if the number of legs is odd or out of range.
+        InvalidInput: if the number of legs is out of range.
     """
-    if legs % 2 or not MIN_LEGS <= legs <= MAX_LEGS:
-        raise InvalidInput(f"a robot has an even number of legs, {MIN_LEGS} to {MAX_LEGS}")
+    _check_count(legs)
     return tuple(LegMount(360 * i / legs, radius_m) for i in range(legs))
+
+
+def _check_count(legs: int) -> None:
+    if not MIN_LEGS <= legs <= MAX_LEGS:
+        raise InvalidInput(f"a robot has {MIN_LEGS} to {MAX_LEGS} legs, not {legs}")
 
 
 @dataclass(frozen=True)
@@ -89,11 +93,7 @@ class Robot:
         legs: Any = self.legs  # as a user gave them
         if not isinstance(legs, tuple) or not all(isinstance(leg, LegMount) for leg in legs):
             raise InvalidInput(f"robot.legs must be a tuple of LegMount, not {legs!r}")
-        if len(self.legs) % 2 or not MIN_LEGS <= len(self.legs) <= MAX_LEGS:
-            raise InvalidInput(
-                f"a robot has an even number of legs, {MIN_LEGS} to {MAX_LEGS}, not "
-                f"{len(self.legs)}"
-            )
+        _check_count(len(self.legs))
         if self.dt_s > 0.005:
             raise InvalidInput(f"robot.dt_s must be at most 0.005 s, not {self.dt_s}")
         for name in ("swing_s", "shift_s"):
@@ -259,7 +259,7 @@ _LEG: Schema = {
     "additionalProperties": False,
 }
 _COUNTED: Schema = {
-    "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS, "multipleOf": 2},
+    "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS},
     **_numbers({"mount_radius_m": MOUNT_RADIUS}),
 }
 _GIVEN: Schema = {

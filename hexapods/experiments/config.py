@@ -9,7 +9,7 @@ from annotated_types import Ge, Le
 
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import NAMED_GAITS, AnyGait
+from hexapods.domain.gait import PAPER_GAITS, AnyGait
 from hexapods.domain.observation import PAPER_OBSERVATIONS, Observation
 from hexapods.domain.records import Record
 from hexapods.domain.robot import AnyRobot, Robot, robot
@@ -106,7 +106,7 @@ class ExperimentConfig(Record):
     ] = 30
     seed: Seed = 0
     agents: tuple[str, ...] = ("q-learning",)
-    gaits: tuple[AnyGait, ...] = tuple(NAMED_GAITS)
+    gaits: tuple[AnyGait, ...] = tuple(PAPER_GAITS)
     observations: tuple[Observation, ...] = PAPER_OBSERVATIONS
     robots: tuple[AnyRobot, ...] = (Robot(),)
     simulator: SimulatorName = "mujoco"

@@ -577,15 +577,27 @@ export interface ProgressView {
  */
 export interface TrainingConfigView {
   /**
-   * a named gait, or a gait given by its leg pairs.
+   * a named gait, or a gait given by its groups of legs.
    */
   gait:
-    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
     | {
         right_leg: number;
         left_leg: number;
         symmetry?: "origin" | "vertical";
         pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
    * A preset, and by name the parts that differ from it.
@@ -710,15 +722,27 @@ export interface RaceView {
  */
 export interface RaceConfigView {
   /**
-   * a named gait, or a gait given by its leg pairs.
+   * a named gait, or a gait given by its groups of legs.
    */
   gait:
-    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
     | {
         right_leg: number;
         left_leg: number;
         symmetry?: "origin" | "vertical";
         pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
    * A preset, and by name the parts that differ from it.
@@ -928,12 +952,24 @@ export interface ExperimentConfig {
    * every combination is a setting.
    */
   gaits: (
-    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
     | {
         right_leg: number;
         left_leg: number;
         symmetry?: "origin" | "vertical";
         pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       }
   )[];
   /**
@@ -1132,7 +1168,7 @@ export interface GhostLane {
 export interface SceneActionValues {
   agent: string;
   lane: number;
-  pairs: [number, number][];
+  pairs: number[][];
   cell_names: string[];
   cells_m: [number, number][];
   /**
@@ -1557,7 +1593,7 @@ export interface ServoEffort {
   cost_of_transport: number | null;
 }
 /**
- * A gait, with the directions of its legs [°] and the pairs of legs that move together.
+ * A gait, with the directions of the hexapod's legs [°] and the groups that move together.
  */
 export interface GaitOption {
   name: string;
@@ -1565,7 +1601,7 @@ export interface GaitOption {
   description: string;
   forward_deg: number;
   azimuths_deg: number[];
-  pairs: [number, number][];
+  pairs: number[][];
 }
 /**
  * Status and version of the server.
@@ -1750,12 +1786,24 @@ export interface PublishedView {
  */
 export interface QTableView {
   gait:
-    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
     | {
         right_leg: number;
         left_leg: number;
         symmetry?: "origin" | "vertical";
         pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   divisions: number;
   grid_side_m: number;

@@ -7,7 +7,7 @@ import pytest
 
 from hexapods.domain.disturbances import Lost
 from hexapods.domain.errors import InvalidInput, Unreachable
-from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.gait import PAPER_GAITS, resolve
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.types import Cells
@@ -25,7 +25,7 @@ FAR = 0.2
 """Side of a foot grid that no leg can reach all of [m]."""
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
 @pytest.mark.parametrize(("divisions", "cells"), [(2, (0, 3, 1)), (2, (4, 4, 2)), (3, (8, 0, 5))])
 def test_feet_of_a_ghost_stand_in_the_cells_that_are_drawn(
     server: InProcessViser, gait: str, divisions: int, cells: Cells

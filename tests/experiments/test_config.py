@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.gait import PAPER_GAITS, GaitSpec
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import (
@@ -23,7 +23,7 @@ from hexapods.experiments.config import (
 def test_table_1_defaults_to_the_papers_gaits_with_both_observations() -> None:
     config = experiment_config("table1", {})
     assert config.seeds == 30
-    assert config.gaits == tuple(NAMED_GAITS)
+    assert config.gaits == tuple(PAPER_GAITS)
     assert config.observations == ("measured", "commanded")
     assert [one.name for one in config.robots] == ["stiff", "compliant"]
     assert (config.steps, config.blocks) == ((500, 1000), 1)
