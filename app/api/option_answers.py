@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict
 
 from app.api.answers import Answer, Settings
 from hexapods.domain.disturbances import AnyDisturbance
+from hexapods.domain.gait import AnyGait
 from hexapods.domain.robot import AnyRobot
 from hexapods.domain.settings import Value
 from hexapods.runs.config import SimulatorName
@@ -31,10 +32,12 @@ class RobotOption(Described):
     """A robot preset.
 
     Attributes:
+        gait: a gait that suits it.
         built: parts in whose place a disturbance puts another value, as they were built.
     """
 
     robot: AnyRobot
+    gait: AnyGait
     built: dict[str, float]
 
 

@@ -11,9 +11,9 @@ from dataclasses import asdict, dataclass, fields
 from operator import index
 from typing import Annotated, Any, Literal, get_args
 
+from hexapods.domain.body import MAX_LEGS
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import JsonForm, Schema
-from hexapods.domain.robot import MAX_LEGS
 from hexapods.domain.types import FloatArray
 
 Symmetry = Literal["origin", "vertical"]

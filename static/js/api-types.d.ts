@@ -603,19 +603,66 @@ export interface TrainingConfigView {
    * A preset, and by name the parts that differ from it.
    */
   robot: {
-    preset: "stiff" | "compliant" | "slippery";
+    preset:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
     legs?: {
       azimuth_deg: number;
       radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
     }[];
     [k: string]:
       | number
       | "stiff"
       | "compliant"
       | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
       | {
           azimuth_deg: number;
           radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
         }[]
       | undefined;
   };
@@ -748,19 +795,66 @@ export interface RaceConfigView {
    * A preset, and by name the parts that differ from it.
    */
   robot: {
-    preset: "stiff" | "compliant" | "slippery";
+    preset:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
     legs?: {
       azimuth_deg: number;
       radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
     }[];
     [k: string]:
       | number
       | "stiff"
       | "compliant"
       | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
       | {
           azimuth_deg: number;
           radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
         }[]
       | undefined;
   };
@@ -982,19 +1076,66 @@ export interface ExperimentConfig {
    * Items: A preset, and by name the parts that differ from it.
    */
   robots: {
-    preset: "stiff" | "compliant" | "slippery";
+    preset:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
     legs?: {
       azimuth_deg: number;
       radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
     }[];
     [k: string]:
       | number
       | "stiff"
       | "compliant"
       | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
       | {
           azimuth_deg: number;
           radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
         }[]
       | undefined;
   }[];
@@ -1687,22 +1828,92 @@ export interface RobotOption {
    * A preset, and by name the parts that differ from it.
    */
   robot: {
-    preset: "stiff" | "compliant" | "slippery";
+    preset:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
     legs?: {
       azimuth_deg: number;
       radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
     }[];
     [k: string]:
       | number
       | "stiff"
       | "compliant"
       | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
       | {
           azimuth_deg: number;
           radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
         }[]
       | undefined;
   };
+  /**
+   * a gait that suits it.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
   /**
    * parts in whose place a disturbance puts another value, as they were built.
    */

@@ -95,7 +95,7 @@ def test_lost_legs_of_a_ghost_are_missing(parts: StageParts) -> None:
 @pytest.mark.parametrize(
     ("lane", "cells", "words"),
     [
-        (0, (1, 2), "cells must be 3 numbers, one for each pair, not 2"),
+        (0, (1, 2), "cells must be 3 numbers, one for each group of legs, not 2"),
         (0, (1, 2, 9), "each of the cells must be from 0 to 4, not 9"),
         (3, (1, 2, 3), "lane must be from 0 to 2, not 3"),
         (-1, (1, 2, 3), "lane must be from 0 to 2, not -1"),

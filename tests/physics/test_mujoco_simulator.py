@@ -59,7 +59,7 @@ def feet_of(data: Any, legs: int = 6) -> FloatArray:
 
 
 @pytest.mark.parametrize("gait", PAPER_GAITS)
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", ["stiff", "compliant", "slippery"])
 def test_the_home_pose_stands_still(gait: str, preset: str) -> None:
     simulator = build(gait, PRESETS[preset])
     data = data_at(simulator, simulator.rest())
