@@ -103,6 +103,42 @@ export interface BeliefView {
   deviation_after: number | null;
 }
 /**
+ * Groups with which a robot that tips would stand.
+ */
+export interface BetterGroups {
+  /**
+   * the gait with these groups.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
+  /**
+   * its least support margin.
+   */
+  margin_m: number;
+  /**
+   * its number of states.
+   */
+  states: number;
+}
+/**
  * The moment of another race at which a race branches off; until then both are the same.
  */
 export interface Branch {
@@ -1745,6 +1781,27 @@ export interface GaitOption {
   pairs: number[][];
 }
 /**
+ * A group of legs.
+ */
+export interface GroupPreview {
+  /**
+   * their numbers.
+   */
+  legs: number[];
+  /**
+   * how far the centre of mass is inside the polygon of the other feet, while these swing; below 0 the robot tips.
+   */
+  margin_m: number;
+  /**
+   * how far its feet reach from home; null where they reach all that can occur.
+   */
+  back_m: number | null;
+  /**
+   * how far its feet reach from home; null where they reach all that can occur.
+   */
+  ahead_m: number | null;
+}
+/**
  * Status and version of the server.
  */
 export interface HealthView {
@@ -1764,6 +1821,34 @@ export interface Interval95 {
   iqm: number;
   low: number | null;
   high: number | null;
+}
+/**
+ * A leg, with its foot in the robot frame.
+ */
+export interface LegPreview {
+  /**
+   * its number.
+   */
+  leg: number;
+  /**
+   * number of its group, from 0.
+   */
+  group: number;
+  /**
+   * 1 on the right, -1 on the left, 0 on the axis or mirrored otherwise.
+   */
+  side: number;
+  /**
+   * place of its foot at home: right, forward.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  home_m: [number, number];
+  /**
+   * its mass, with the foot.
+   */
+  mass_kg: number;
 }
 /**
  * Machine on which the experiment ran; empty before its start.
@@ -1982,6 +2067,75 @@ export interface SharedBy {
   share: number;
   low: number | null;
   high: number | null;
+}
+/**
+ * What is known of a walking problem beforehand.
+ */
+export interface Preview {
+  /**
+   * leg by leg.
+   */
+  legs: LegPreview[];
+  /**
+   * group by group.
+   */
+  groups: GroupPreview[];
+  /**
+   * least support margin over the groups.
+   */
+  margin_m: number;
+  /**
+   * whether that is below 0: it then tips onto the feet that swing, and drags.
+   */
+  tips: boolean;
+  /**
+   * whether it stands on all of its feet.
+   */
+  stands: boolean;
+  /**
+   * of the whole robot.
+   */
+  mass_kg: number;
+  /**
+   * size of a table: states, legal actions in each, and their product.
+   */
+  states: number;
+  /**
+   * size of a table: states, legal actions in each, and their product.
+   */
+  actions: number;
+  /**
+   * size of a table: states, legal actions in each, and their product.
+   */
+  values: number;
+  /**
+   * whether a learner with a table can start.
+   */
+  table_fits: boolean;
+  /**
+   * advance of the steady walk by the law without slip.
+   */
+  law_m_per_step: number;
+  /**
+   * that of a race of 50 steps.
+   */
+  law_m: number;
+  /**
+   * what a leg cannot reach, in a sentence; null if all can.
+   */
+  out_of_reach: string | null;
+  /**
+   * largest grid side with which it may walk; null if it reaches none.
+   */
+  largest_side_m: number | null;
+  /**
+   * largest grid side with which every action is always possible; likewise.
+   */
+  safe_side_m: number | null;
+  /**
+   * groups to take instead; null if it does not tip, or tips with any.
+   */
+  better: BetterGroups | null;
 }
 /**
  * Value printed in the paper [m], and its quantile among the seeds.
