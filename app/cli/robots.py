@@ -5,7 +5,7 @@ import json
 
 from app.cli.options import CommandParser, read_gait, read_robot
 from app.cli.terminal import show_table
-from hexapods.domain.creatures import CREATURES
+from hexapods.domain.creatures import CREATURES, own_gait
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json
@@ -69,10 +69,7 @@ def show_robot(options: argparse.Namespace) -> int:
         HexapodError: if robot, gait or grid are not valid.
     """
     made = read_robot(options.robot)
-    named = CREATURES.get(made.name.removesuffix(" (modified)"))
-    gait = "one-by-one" if named is None else named.gait
-    if options.gait is not None:
-        gait = read_gait(options.gait)
+    gait = own_gait(made) if options.gait is None else read_gait(options.gait)
     walk = WalkingProblem(
         gait=gait, robot=made, divisions=options.divisions, grid_side_m=options.grid_side_m
     )

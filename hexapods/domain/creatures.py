@@ -249,3 +249,11 @@ CREATURES: dict[str, Creature] = {
 }
 """Robots that are built in, by name."""
 PRESETS: dict[str, Robot] = {name: one.robot for name, one in CREATURES.items()}
+
+
+def own_gait(robot: Robot) -> str | GaitSpec:
+    """Return the gait that suits a robot: its preset's if it has as many legs, or one by one."""
+    preset = CREATURES.get(robot.name.removesuffix(" (modified)"))
+    if preset is None or len(preset.robot.legs) != len(robot.legs):
+        return "one-by-one"
+    return preset.gait
