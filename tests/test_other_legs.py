@@ -16,6 +16,7 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 import hexapods as hx
+from hexapods.domain.creatures import own_gait
 from hexapods.domain.disturbances import Limp, Lost, Stuck
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import Gait, resolve
@@ -24,7 +25,7 @@ from hexapods.domain.kinematic import KinematicSimulator
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.legs import FootKinematics, Joint, Legs
 from hexapods.domain.observation import legal_actions, observe
-from hexapods.domain.robot import Robot, robot
+from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.simulator import Simulator
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
@@ -134,7 +135,8 @@ def _(made: WithTarsi) -> mujoco.MjSpec:
 
 def raced(made: Robot) -> hx.Race:
     """Return a race of greedy alone, with physics and torques."""
-    return hx.race(["greedy"], gait="left-right-origin", robot=made, steps=STEPS)
+    gait = own_gait(made) if made.name in PRESETS else "left-right-origin"
+    return hx.race(["greedy"], gait=gait, robot=made, steps=STEPS)
 
 
 def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatArray]:
@@ -148,6 +150,9 @@ def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatA
     ("made", "joints"),
     [
         pytest.param(robot({"n_legs": 8}), 24, id="eight legs"),
+        pytest.param(robot("starfish"), 15, id="five legs in groups of two and one"),
+        pytest.param(robot("ant"), 18, id="legs of different lengths on a long body"),
+        pytest.param(robot("centipede"), 36, id="twelve legs"),
         pytest.param(WithTarsi(), 23, id="four joints in all legs but one"),
     ],
 )

@@ -101,6 +101,14 @@ _EXPERIMENTS = {
         "Learners practise, then something happens to them, and they learn on: how far they walk "
         "at once, and how soon they walk well again."
     ),
+    "groups": (
+        "Pairs of legs beside two groups of three: fewer groups have fewer states, 25 instead of "
+        "125, and Q-learning comes level with greedy after 250 steps."
+    ),
+    "bodies": (
+        "Learners on robots with other bodies, each in the gait that suits it: how far they walk, "
+        "and how soon."
+    ),
 }
 _GAITS = {
     "left-right-origin": (

@@ -324,6 +324,8 @@ TITLES = {
     "sweep": "Sweep",
     "league": "League",
     "recovery": "Recovery",
+    "groups": "Fewer groups learn faster",
+    "bodies": "Bodies",
 }
 MAX_SETTINGS = 2_000
 """All of them are summarised again and again while trials come in, and drawn in one report."""

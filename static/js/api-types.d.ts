@@ -1063,9 +1063,9 @@ export interface ExperimentView {
  */
 export interface ExperimentConfig {
   /**
-   * `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid; `league`: learners and searchers in several worlds; `recovery`: learners to which something happens in the middle of their practice.
+   * `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid; `league`: learners and searchers in several worlds; `recovery`: learners to which something happens in the middle of their practice; `groups`: gaits that move legs in other groups; `bodies`: learners and creatures, each in the gait that suits it.
    */
-  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
+  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery" | "groups" | "bodies";
   /**
    * How often each setting is tried, each time with other random numbers.
    */
@@ -1079,7 +1079,7 @@ export interface ExperimentConfig {
    */
   agents: string[];
   /**
-   * every combination is a setting.
+   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
    */
   gaits: (
     | (
@@ -1103,11 +1103,11 @@ export interface ExperimentConfig {
       }
   )[];
   /**
-   * every combination is a setting.
+   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
    */
   observations: ("measured" | "commanded" | "planned")[];
   /**
-   * every combination is a setting.
+   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
    *
    * Items: A preset, and by name the parts that differ from it.
    */
@@ -2373,7 +2373,7 @@ export interface SummaryCounts {
  */
 export interface SummaryView {
   format: number;
-  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
+  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery" | "groups" | "bodies";
   config: ExperimentConfig;
   versions: {
     [k: string]: string;

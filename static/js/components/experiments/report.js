@@ -16,7 +16,10 @@ import { Worlds } from "./worlds.js";
 
 /** @import { Run, State, Summary, Verb } from "../../types.js" */
 
-const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable, league: Worlds, recovery: Worlds };
+const FIGURES = {
+  table1: TableOne, figure4: FigureFour, sweep: SweepTable,
+  league: Worlds, recovery: Worlds, groups: Worlds, bodies: Worlds,
+};
 
 /** @param {{ run: Run }} props */
 export function Report({ run }) {
