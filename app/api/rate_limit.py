@@ -16,7 +16,9 @@ from app.settings import PREFIX, Settings
 from hexapods.exports.export_format import Load
 from hexapods.exports.registry import EXPORTS
 
-_STARTS_NOTHING = re.compile(r"/api/v1/(what-if|.*/(estimate|stop|pause|disturbances))")
+_STARTS_NOTHING = re.compile(
+    r"/api/v1/(what-if|robots/preview|.*/(estimate|stop|pause|disturbances))"
+)
 """Every other POST counts, so that a new route is limited unless it is added here."""
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
 _OF_RUN = re.compile(r"/api/v1/runs/[^/]+/([^/]+)")

@@ -32,6 +32,8 @@ TITLES: Mapping[str, str] = {
     "sweep": "Sweep",
     "league": "League",
     "recovery": "Recovery",
+    "groups": "Fewer groups learn faster",
+    "bodies": "Bodies",
 }
 """Title of each experiment."""
 _MAX_VALUES = 6

@@ -116,7 +116,7 @@ export const OPTIONS = {
     ...described(name, `The ${name}`), forward_deg: 0, azimuths_deg: [0, 60, 120, 180, 240, 300],
     pairs: [[1, 4], [2, 5], [3, 6]],
   })),
-  robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" }, built: { friction: 1 } }],
+  robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" }, gait: "tripod", built: { friction: 1 } }],
   agents: [
     {
       ...described("learner", "Learner"), color: "#111111", steps_ahead: null,

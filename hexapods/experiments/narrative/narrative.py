@@ -17,6 +17,8 @@ _NARRATIVES: Mapping[str, Sequence[tuple[str, Paragraph]]] = {
     "sweep": SWEEP_NARRATIVE,
     "league": (),
     "recovery": (),
+    "groups": (),
+    "bodies": (),
 }
 
 

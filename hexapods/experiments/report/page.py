@@ -34,6 +34,8 @@ TITLES: Mapping[str, str] = {
     "sweep": "A sweep",
     "league": "A league of learners and searchers",
     "recovery": "Recovery after a disturbance",
+    "groups": "Fewer groups learn faster",
+    "bodies": "Learners on many bodies",
 }
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """The page's Content-Security-Policy, also set by a `<meta>` element of the page."""
@@ -120,11 +122,12 @@ def _lead(summary: Mapping[str, Any]) -> str:
     """Describe in one line which trials were run."""
     config, trials = summary["config"], summary["trials"]
     gaits = [g if isinstance(g, str) else None for g in config["gaits"]]
-    named = (
-        listed(gait_name(g) for g in gaits if g)
-        if len(gaits) <= 2 and all(gaits)
-        else counted(len(gaits), "gait")
-    )
+    if not gaits:
+        named = "each robot in the gait that suits it"
+    elif len(gaits) <= 2 and all(gaits):
+        named = listed(gait_name(g) for g in gaits if g)
+    else:
+        named = counted(len(gaits), "gait")
     simulator = "MuJoCo" if config["simulator"] == "mujoco" else "the kinematic simulator"
     done = f"{trials['done']:,} of {trials['total']:,} trials"
     return (

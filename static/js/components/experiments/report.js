@@ -23,7 +23,10 @@ import { Worlds } from "./worlds.js";
 /** @import { Run, State, Summary, Verb } from "../../types.js" */
 /** @import { ComponentChildren } from "preact" */
 
-const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable, league: Worlds, recovery: Worlds };
+const FIGURES = {
+  table1: TableOne, figure4: FigureFour, sweep: SweepTable,
+  league: Worlds, recovery: Worlds, groups: Worlds, bodies: Worlds,
+};
 
 /** @param {{ run: Run }} props */
 export function Report({ run }) {
