@@ -33,11 +33,14 @@ class RobotOption(Described):
 
     Attributes:
         gait: a gait that suits it.
+        gaits: names of the gaits that its legs can have.
         built: parts in whose place a disturbance puts another value, as they were built.
     """
 
     robot: AnyRobot
+    n_legs: int
     gait: AnyGait
+    gaits: list[str]
     built: dict[str, float]
 
 

@@ -29,6 +29,7 @@ from hexapods.agents.registry import (
 )
 from hexapods.domain import disturbances
 from hexapods.domain.creatures import CREATURES
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, gait_as_json, resolve
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import MAX_LEGS, Robot, as_mapping
@@ -225,7 +226,9 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
                 "title": one.title,
                 "description": one.description,
                 "robot": as_mapping(one.robot),
+                "n_legs": len(one.robot.azimuths_deg),
                 "gait": gait_as_json(one.gait),
+                "gaits": [name for name in NAMED_GAITS if _divides(name, one.robot)],
                 "built": {part: getattr(one.robot, part) for part in _replaced_parts()},
             }
             for name, one in CREATURES.items()
@@ -260,6 +263,15 @@ def _gait(name: str) -> dict[str, Any]:
         "pairs": gait.groups,
         "description": _GAITS[name],
     }
+
+
+def _divides(gait: str, robot: Robot) -> bool:
+    """Return whether a named gait divides the legs of a robot into groups."""
+    try:
+        resolve(gait, robot.azimuths_deg)
+    except InvalidInput:
+        return False
+    return True
 
 
 def _all_settings(agents: Collection[str]) -> dict[str, DeclaredSetting]:

@@ -2024,6 +2024,7 @@ export interface RobotOption {
         }[]
       | undefined;
   };
+  n_legs: number;
   /**
    * a gait that suits it.
    */
@@ -2047,6 +2048,10 @@ export interface RobotOption {
         pairs?: [number, number][];
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
+  /**
+   * names of the gaits that its legs can have.
+   */
+  gaits: string[];
   /**
    * parts in whose place a disturbance puts another value, as they were built.
    */

@@ -30,6 +30,7 @@ export type {
   NarrativeSection,
   OptionsView as Options,
   PooledView,
+  Preview,
   ReplayMark,
   ReplayView as ReplayPlan,
   RobotOption as Robot,
