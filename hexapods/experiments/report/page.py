@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from hexapods.agents.appearance import title_of
 from hexapods.domain.records import to_json
+from hexapods.domain.text import counted
 from hexapods.experiments.claims.cases import Case, cases_of
 from hexapods.experiments.config import (
     ExperimentConfig,
@@ -21,7 +22,7 @@ from hexapods.experiments.config import (
     experiment_config,
     fields_of,
 )
-from hexapods.experiments.formatting import counted, listed
+from hexapods.experiments.formatting import listed
 from hexapods.experiments.labels import gait_name
 from hexapods.experiments.report import figure_worlds, tables
 from hexapods.experiments.report.drawing import Picture, agent_colours, inline_svg
