@@ -74,6 +74,7 @@ class Preview(Record):
     """What is known of a walking problem beforehand.
 
     Attributes:
+        gait: the gait with its groups leg by leg.
         legs: leg by leg.
         groups: group by group.
         margin_m: least support margin over the groups.
@@ -90,6 +91,7 @@ class Preview(Record):
         better: groups to take instead; null if it does not tip, or tips with any.
     """
 
+    gait: AnyGait
     legs: list[LegPreview]
     groups: list[GroupPreview]
     margin_m: float
@@ -129,7 +131,9 @@ def preview(walk: WalkingProblem) -> Preview:
     largest, safe = _largest_sides_m(robot, gait, grid.divisions)
     states, actions = cells ** len(gait.groups), len(gait.groups) * (cells - 1)
     advance_m = law_m_per_step(gait, grid)
+    spec = gait_spec(walk.gait)
     return Preview(
+        gait=GaitSpec(spec.right_leg, spec.left_leg, groups=gait.groups),
         legs=[
             LegPreview(leg, group, side, home, kg)
             for leg, (group, side, home, kg) in enumerate(

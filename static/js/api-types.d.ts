@@ -2126,6 +2126,29 @@ export interface SharedBy {
  */
 export interface Preview {
   /**
+   * the gait with its groups leg by leg.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
+  /**
    * leg by leg.
    */
   legs: LegPreview[];

@@ -41,5 +41,21 @@ export function objections({ groups, tips, out_of_reach, table_fits, values }) {
   ].filter((one) => typeof one === "string");
 }
 
+/**
+ * Move a leg to the next group; after the last one it begins a group of its own.
+ * @param {Preview} known
+ * @param {number} leg
+ */
+export function moveLeg({ gait, groups }, leg) {
+  const parts = groups.map(({ legs }) => legs.filter((one) => one !== leg));
+  const from = groups.findIndex(({ legs }) => legs.includes(leg));
+  const isAlone = parts[from].length === 0;
+  const to = (from + 1) % (isAlone ? parts.length : parts.length + 1);
+  const moved = [...parts, []].map((legs, number) => (number === to ? [...legs, leg].toSorted((a, b) => a - b) : legs));
+  setField("gait", /** @type {FormValue} */ ({
+    .../** @type {object} */ (gait), groups: moved.filter((legs) => legs.length),
+  }));
+}
+
 /** Take the groups with which it would stand. @param {Preview} known */
 export const takeBetter = ({ better }) => better && setField("gait", /** @type {FormValue} */ (better.gait));

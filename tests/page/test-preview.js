@@ -1,7 +1,11 @@
 // What is told of a robot before it walks.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { inWords, objections } from "../../static/js/preview.js";
+import { form, openForm } from "../../static/js/form.js";
+import { page } from "../../static/js/page-state.js";
+import { inWords, moveLeg, objections } from "../../static/js/preview.js";
+import { options } from "../../static/js/store.js";
+import { OPTIONS } from "./options.js";
 
 /** @type {any} */
 const STANDS = {
@@ -24,4 +28,20 @@ test("what speaks against a robot is said at once: reach, tipping, tables that d
   assert.equal(reach, "Leg 2 does not reach.");
   assert.match(tip, /^It tips while legs 1\+2 and 3\+4 swing/);
   assert.match(table, /^A table of 2.000.000 values is too large/);
+});
+
+test("a leg moves to the next group, and after the last one begins its own", () => {
+  options.value = OPTIONS;
+  page.form.value = new URLSearchParams();
+  openForm();
+  const gait = { right_leg: 1, left_leg: 2 };
+  /** @type {(groups: number[][], leg: number) => unknown} */
+  const moved = (groups, leg) => {
+    moveLeg({ ...STANDS, gait, groups: groups.map((legs) => ({ legs })) }, leg);
+    return /** @type {any} */ (form.value.gait).groups;
+  };
+  assert.deepEqual(moved([[1, 3], [2, 4]], 1), [[3], [1, 2, 4]]);
+  assert.deepEqual(moved([[3], [1, 2, 4]], 1), [[3], [2, 4], [1]]);
+  assert.deepEqual(moved([[3], [2, 4], [1]], 1), [[1, 3], [2, 4]]);
+  assert.deepEqual(moved([[1, 3], [2, 4]], 4), [[1, 3], [2], [4]]);
 });

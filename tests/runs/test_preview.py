@@ -23,6 +23,7 @@ def test_pairs_and_tripod_of_the_hexapod() -> None:
     assert tripod.law_m == pytest.approx(2 / 3)
     assert not pairs.tips
     assert tripod.better is None
+    assert tripod.gait == GaitSpec(1, 2, groups=((1, 3, 5), (2, 4, 6)))
     assert [group.legs for group in tripod.groups] == [[1, 3, 5], [2, 4, 6]]
     assert [leg.side for leg in tripod.legs] == [1, -1, -1, -1, 1, 1]
     assert tripod.mass_kg == pytest.approx(1.2 + 6 * 0.16)

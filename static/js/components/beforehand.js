@@ -1,12 +1,16 @@
 // What is known of the form's robot and gait before anything runs, below their choice.
 import { useEffect } from "preact/hooks";
-import { followPreview, inWords, objections, preview, takeBetter } from "../preview.js";
+import { isReadOnly } from "../form.js";
+import { followPreview, inWords, moveLeg, objections, preview, takeBetter } from "../preview.js";
 import { html } from "./elements.js";
 
 /** @import { Preview } from "../types.js" */
 
-/** `hasPlan`: with a drawing of the robot from above. @param {{ hasPlan: boolean }} props */
-export function Beforehand({ hasPlan }) {
+/**
+ * `hasPlan`: with a drawing of the robot from above. `isEdited`: its legs are buttons that move to another group.
+ * @param {{ hasPlan: boolean, isEdited: boolean }} props
+ */
+export function Beforehand({ hasPlan, isEdited }) {
   useEffect(followPreview, []);
   const { answer, error, again } = preview.value;
   if (error && !again) return html`<p class="mistake" role="alert">${error.message}</p>`;
@@ -14,8 +18,9 @@ export function Beforehand({ hasPlan }) {
   const { better } = answer;
   return html`
     <div class="beforehand" role="group" aria-label="Known before it walks">
-      ${hasPlan && html`<${Plan} known=${answer} />`}
+      ${isEdited ? html`<${Groups} known=${answer} />` : hasPlan && html`<${Plan} known=${answer} />`}
       <div>
+        ${isEdited && html`<p><b>Groups</b> A press on a leg moves it to the next group.</p>`}
         <p class="dim">${inWords(answer)}</p>
         ${objections(answer).map((one) => html`<p class="notice" role="status">${one}</p>`)}
         ${better && html`
@@ -25,6 +30,34 @@ export function Beforehand({ hasPlan }) {
     </div>
   `;
 }
+
+/** @param {{ known: Preview }} props */
+function Groups({ known }) {
+  const { legs } = known;
+  const farthest = Math.max(...legs.flatMap(({ home_m }) => home_m.map(Math.abs)));
+  /** @param {number} share */
+  const place = (share) => `${50 + (REACH * share) / farthest}%`;
+  return html`
+    <div class="group-picker" role="group" aria-label="Groups of legs">
+      <svg viewBox="-50 -50 100 100" aria-hidden="true">
+        ${legs.map(({ leg, group, home_m: [right, forward] }) => html`
+          <path key=${leg} class=${`pair-${(group % 6) + 1}`}
+            d=${`M0 0L${(REACH * right) / farthest} ${(-REACH * forward) / farthest}`} />
+        `)}
+        <ellipse class="body" rx="9" ry="12" />
+        <path class="forward" d="M0 -7 4 1.5 H-4z" />
+      </svg>
+      ${legs.map(({ leg, group, home_m: [right, forward] }) => html`
+        <button key=${leg} class=${`pair-${(group % 6) + 1}`} style=${{ left: place(right), top: place(-forward) }}
+          aria-label=${`Leg ${leg}, in group ${group + 1}: move it to the next`} disabled=${isReadOnly.value}
+          onClick=${() => moveLeg(known, leg)}>${leg}</button>
+      `)}
+    </div>
+  `;
+}
+
+/** Of 50 from the middle to the edge. */
+const REACH = 40;
 
 /** From the middle of the drawing to its edge. */
 const EDGE = 29;

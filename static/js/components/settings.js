@@ -247,7 +247,7 @@ const GaitPicker = () => html`
     ${isAtLeast("study") && html`
       <${Description} field="gait" words=${served().gaits.find(({ name }) => name === form.value.gait)?.description} />
     `}
-    <${Beforehand} hasPlan=${!isDrawn() || typeof form.value.gait !== "string"} />
+    <${Beforehand} hasPlan=${!isDrawn() || typeof form.value.gait !== "string"} isEdited=${isAtLeast("study")} />
   </fieldset>
 `;
 

@@ -1,0 +1,60 @@
+"""Robots with other legs, chosen where a training is set: what is known of them, and their walk."""
+
+import re
+from urllib.parse import urlencode
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving
+
+pytestmark = pytest.mark.timeout(300)
+
+SHORT = urlencode({"steps": 6, "evaluate_every": 0, "race_steps": 3, "simulator": "kinematic"})
+
+
+def beforehand(dashboard: Dashboard) -> Locator:
+    return dashboard.group("Known before it walks")
+
+
+def test_a_creature_brings_its_gait_is_told_beforehand_and_walks(
+    dashboard: Dashboard, server: Serving
+) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?{SHORT}&depth=try&tab=train")
+    robot = page.get_by_label("Robot", exact=True)
+    expect(beforehand(dashboard)).to_contain_text("125 states, 12 moves · stands by")
+
+    robot.select_option("starfish")
+    expect(page.get_by_text("Groups 1+3, 2+5, 4")).to_be_visible()
+    expect(beforehand(dashboard)).to_contain_text("stands by")
+    robot.select_option("spider")
+    expect(page.get_by_role("radio", name="Tetrapod")).to_be_checked()
+    expect(page.get_by_role("radio", name="Tripod")).to_have_count(0)
+    expect(beforehand(dashboard)).to_contain_text("25 states, 8 moves · stands by")
+
+    dashboard.primary.click()
+    expect(dashboard.headline).to_have_text(re.compile(r"wins|level"))
+    race, training = dashboard.get("/api/v1/runs")["items"]
+    assert race["config"]["robot"]["preset"] == "spider"
+    assert training["config"]["gait"] == "tetrapod"
+
+
+def test_what_tips_is_offered_other_groups_and_legs_are_moved_between_them(
+    dashboard: Dashboard, server: Serving
+) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?robot=dog&gait=bound&depth=study&tab=train")
+    known = beforehand(dashboard)
+    expect(known.get_by_text("It tips while legs 1+2 and 3+4 swing")).to_be_visible()
+    assert dashboard.violations() == []
+
+    dashboard.button("Take groups with which it stands").click()
+    expect(page.get_by_text("Groups 1+3, 2+4")).to_be_visible()
+    expect(known).to_contain_text("stands by")
+    page.get_by_role("button", name="Leg 4, in group 2").press("Enter")
+    expect(page.get_by_text("Groups 1+3, 2, 4")).to_be_visible()
+    expect(known).to_contain_text("125 states, 12 moves")
+    page.reload()
+    expect(page.get_by_text("Groups 1+3, 2, 4")).to_be_visible()
