@@ -1038,7 +1038,8 @@ export interface ExperimentConfig {
 /**
  * Result of an experiment; `files` are those of its report.
  *
- * `shared_machine`: whether other runs computed beside it, which slows what is timed.
+ * `shared_machine`: whether other runs computed beside it, which slows what is timed. `finding`:
+ * what came of it, in a sentence; empty where its claims say it, and of 0.1.
  */
 export interface ExperimentResult {
   trials: TrialCounts;
@@ -1051,6 +1052,7 @@ export interface ExperimentResult {
    */
   files: string[];
   shared_machine?: boolean;
+  finding?: string;
 }
 /**
  * Number of trials by outcome.

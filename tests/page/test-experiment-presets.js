@@ -137,15 +137,20 @@ test("an experiment says in a line what is the same in all its trials", () => {
 
 test("a finding is the server’s sentence, else its verdicts, else nothing", () => {
   const known = (/** @type {object} */ parts) => /** @type {Summary} */ (/** @type {unknown} */ (parts));
-  const text = "5 were tried. The best is α 0.1: 79 % (67 to 87) of greedy's distance. The worst is α 0.9: 0.5 %.";
-  assert.equal(findingIn(known({ story: [{ heading: "", text }], claims: [] })),
-    "The best is α 0.1: 79 % (67 to 87) of greedy's distance.");
   const claims = ["holds", "does not hold", "does not hold", "not established"].map((verdict) => ({ verdict }));
+  assert.equal(findingIn(known({ finding: "α 0.1 leads.", claims })), "α 0.1 leads.");
   assert.equal(verdictsInWords(claims),
     "Of the paper’s 4 claims 1 holds, 2 do not hold and 1 is not established.");
-  assert.equal(findingIn(known({ story: [], claims: claims.slice(0, 1) })), "The paper’s claim holds.");
-  assert.equal(findingIn(known({ story: [], claims: [] })), "");
+  assert.equal(findingIn(known({ finding: "", claims })), verdictsInWords(claims));
+  assert.equal(findingIn(known({ finding: "", claims: claims.slice(0, 1) })), "");
   assert.equal(findingIn(null), "");
-  const run = makeRun({ kind: "experiment", config: { experiment: "table1" }, result: { claims } });
-  assert.match(outcomeOf(run, null), /^Of the paper’s 4 claims/);
+});
+
+test("a row tells the finding whether its report was opened or not", () => {
+  const told = (/** @type {object} */ result) =>
+    outcomeOf(makeRun({ kind: "experiment", result: /** @type {any} */ (result) }), null);
+  assert.equal(told({ finding: "α 0.1 leads.", claims: [{ verdict: "holds" }] }), "α 0.1 leads.");
+  assert.equal(told({ finding: "", claims: [{ verdict: "holds" }, { verdict: "depends" }] }),
+    "Of the paper’s 2 claims 1 holds and 1 depends on the case.");
+  assert.equal(outcomeOf(makeRun({ kind: "experiment", result: null }), null), "");
 });
