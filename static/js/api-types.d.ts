@@ -519,6 +519,10 @@ export interface RangesView {
  */
 export interface EstimateView {
   seconds: number;
+  /**
+   * how many of an experiment's trials are computed at once; null of other runs.
+   */
+  workers: number | null;
 }
 /**
  * An evaluation of a training that runs.
@@ -2030,6 +2034,10 @@ export interface SummaryView {
   worlds?: WorldView[];
   claims: ClaimView[];
   story: NarrativeSection[];
+  /**
+   * what came of it, in a sentence; empty where its claims say it.
+   */
+  finding?: string;
 }
 /**
  * Probability that agent `a` walks farther than agent `b`, with its 95 % interval.

@@ -3,7 +3,7 @@ import { computed, effect, untracked } from "@preact/signals";
 
 /** @import { Annotations, Curve, Curves, Disturbance, Explanation, GaitAnalysis, Kind, Options } from "./types.js" */
 /** @import { Page, Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary, Timeline } from "./types.js" */
-/** @import { Trial, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Estimate, Trial, Verb, WhatIfAnswer } from "./types.js" */
 
 // All that a page asks for is below its own address, which tells the stage that it is about.
 const base = () => new URL("api/v1/", document.baseURI);
@@ -228,7 +228,7 @@ const randomKey = () =>
 
 /**
  * How long a run would take that is started by this body.
- * @type {(path: string, body: object) => Promise<{ seconds: number }>}
+ * @type {(path: string, body: object) => Promise<Estimate>}
  */
 export const estimate = (path, body) => call("POST", `${path}/estimate`, body);
 
