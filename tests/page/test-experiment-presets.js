@@ -31,7 +31,7 @@ beforeEach(() => {
 
 test("the presets are the own ones, and the experiments of the server as they are", () => {
   assert.deepEqual(presets().map(({ name }) => name),
-    ["setting", "learners", "worlds", "table1", "league", "recovery"]);
+    ["setting", "learners", "worlds", "table1", "league", "recovery", "empty"]);
   options.value = { ...OPTIONS, experiments: OPTIONS.experiments.slice(0, 1) };
   assert.deepEqual(presets().map(({ name }) => name), ["table1"]);
 });
@@ -40,7 +40,8 @@ test("each preset can be started as it begins, and shows all that it set", () =>
   for (const { name, experiment } of presets()) {
     choosePreset(name);
     assert.equal(chosenPreset().name, name);
-    assert.deepEqual([chosenExperiment.value.name, mistakes.value, isMoreSet()], [experiment, {}, false], name);
+    assert.deepEqual([chosenExperiment.value.name, mistakes.value], [experiment, {}], name);
+    assert.equal(isMoreSet(), name === "empty", name);
     assert.ok(trials.value > 0, name);
   }
 });
@@ -78,6 +79,17 @@ test("what another preset shows too is kept, the rest begins anew", () => {
   assert.deepEqual([values.value.seeds, values.value.agents], [7, ["tracer"]]);
   choosePreset("table1");
   assert.deepEqual(requestBody(), { experiment: "table1", seeds: 7 });
+});
+
+test("the empty preset begins anew, and leads to any other with what was set since", () => {
+  choosePreset("setting");
+  setField("seeds", 7);
+  choosePreset("empty", true);
+  assert.deepEqual(requestBody(), { experiment: "sweep" });
+  setField("seeds", 9);
+  setField("gaits", ["wave"]);
+  choosePreset("league", isMoreSet());
+  assert.deepEqual(requestBody(), { experiment: "league", seeds: 9, gaits: ["wave"] });
 });
 
 test("a link opens the preset that it looks like, and all settings where that shows less", () => {
