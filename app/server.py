@@ -30,6 +30,7 @@ from app.api import (
     problems,
     races,
     replays,
+    robots,
     runs,
     spectators,
     stage,
@@ -179,7 +180,7 @@ def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(archives, trainings, races, experiments, runs, exports, replays, gait),
-        *(stage, spectators, events, options),
+        *(stage, spectators, events, options, robots),
     )
     for module in modules:
         versioned.include_router(module.router)

@@ -20,7 +20,8 @@ GAIT = "left-right-origin"
 WALK = tuple(one.name for one in fields(WalkingProblem))
 """Names of the arguments that describe a walking problem."""
 GaitLike = str | Mapping[str, Any] | GaitSpec
-"""A gait: its name, a mapping with `right_leg`, `left_leg` and `symmetry` or `pairs`, or itself."""
+"""A gait: its name, itself, or a mapping with `right_leg`, `left_leg`, and `symmetry`, `pairs` or
+`groups`."""
 RobotLike = str | Mapping[str, Any] | Robot
 """A robot: a preset's name, a mapping with what differs from a preset, or itself."""
 WorldLike = str | Iterable[Disturbance | Mapping[str, Any] | str] | World

@@ -18,7 +18,7 @@ from gymnasium import spaces
 from hexapods.assembly import build_simulator
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GaitSpec
-from hexapods.domain.observation import Observation, check_observation, legal_actions, observe
+from hexapods.domain.observation import Observation, check_observation, legal_in, observe
 from hexapods.domain.robot import Robot
 from hexapods.domain.robot import robot as read_robot
 from hexapods.domain.simulator import WalkState
@@ -59,7 +59,7 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         """Build the robot and put it at rest.
 
         Args:
-            gait: a name, or a specification of orientation and leg pairs.
+            gait: a name, or a specification of orientation and groups of legs.
             robot: a preset's name, or overrides of one.
             simulator: `mujoco` or `kinematic`.
             divisions: points along a side of the foot grid.
@@ -109,13 +109,13 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
 
     def _legal(self) -> Sequence[Action]:
         cells = observe(self._simulator, self._state, self._observation)
-        return legal_actions(cells, self._cells)
+        return legal_in(self._simulator, self._state, cells)
 
     def _observation_and_info(self) -> tuple[IntArray, dict[str, Any]]:
         """Return the current observation and its `info`."""
         cells = observe(self._simulator, self._state, self._observation)
-        legal = np.ones((len(cells), self._cells), np.int8)
-        legal[np.arange(len(cells)), cells] = 0
+        legal = np.zeros((len(cells), self._cells), np.int8)
+        legal[tuple(np.transpose(self._legal()))] = 1
         info = {"action_mask": legal.ravel(), "distance_m": self._state.distance_m}
         return np.array(cells, np.int64), info
 

@@ -16,6 +16,7 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 import hexapods as hx
+from hexapods.domain.creatures import own_gait
 from hexapods.domain.disturbances import Limp, Lost, Stuck
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import Gait, resolve
@@ -24,7 +25,7 @@ from hexapods.domain.kinematic import KinematicSimulator
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.legs import FootKinematics, Joint, Legs
 from hexapods.domain.observation import legal_actions, observe
-from hexapods.domain.robot import Robot, robot
+from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.simulator import Simulator
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
@@ -134,7 +135,8 @@ def _(made: WithTarsi) -> mujoco.MjSpec:
 
 def raced(made: Robot) -> hx.Race:
     """Return a race of greedy alone, with physics and torques."""
-    return hx.race(["greedy"], gait="left-right-origin", robot=made, steps=STEPS)
+    gait = own_gait(made) if made.name in PRESETS else "left-right-origin"
+    return hx.race(["greedy"], gait=gait, robot=made, steps=STEPS)
 
 
 def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatArray]:
@@ -148,6 +150,9 @@ def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatA
     ("made", "joints"),
     [
         pytest.param(robot({"n_legs": 8}), 24, id="eight legs"),
+        pytest.param(robot("starfish"), 15, id="five legs in groups of two and one"),
+        pytest.param(robot("ant"), 18, id="legs of different lengths on a long body"),
+        pytest.param(robot("centipede"), 36, id="twelve legs"),
         pytest.param(WithTarsi(), 23, id="four joints in all legs but one"),
     ],
 )
@@ -227,14 +232,6 @@ def test_a_joint_that_a_robot_does_not_have_cannot_be_stuck() -> None:
         world.check(TwoJoints(), "mujoco")
 
 
-def tripod() -> Gait:
-    """Return the gait of groups (1 3 5) and (2 4 6); legs on the left are mirrored."""
-    pairs = resolve("left-right-origin", Robot().azimuths_deg)
-    mirror = tuple(1 if azimuth < 0 else -1 for azimuth in pairs.azimuths_deg)
-    groups = (1, 3, 5), (2, 4, 6)
-    return Gait("tripod", pairs.forward_deg, pairs.azimuths_deg, groups, mirror)
-
-
 @pytest.mark.parametrize(
     ("build", "tolerance"), [(KinematicSimulator, 1e-3), (MujocoSimulator, 0.05)]
 )
@@ -242,7 +239,7 @@ def test_groups_of_three_walk_by_the_law(
     build: type[KinematicSimulator | MujocoSimulator], tolerance: float
 ) -> None:
     grid = FootGrid()
-    simulator: Simulator[Any] = build(Robot(), tripod(), grid)
+    simulator: Simulator[Any] = build(Robot(), resolve("tripod", Robot().azimuths_deg), grid)
     state, advances_m = simulator.rest(), []
     for _ in range(12):
         legal = legal_actions(observe(simulator, state, "measured"), len(grid))
@@ -254,14 +251,3 @@ def test_groups_of_three_walk_by_the_law(
 
     # Two groups of equal size: 2h / (G + 1) a step.
     assert np.mean(advances_m[6:]) == pytest.approx(grid.side_m / 3, rel=tolerance)
-
-
-def test_groups_must_have_each_leg_once_and_one_size() -> None:
-    gait = tripod()
-    for groups, message in [
-        (((1, 3), (2, 4, 6)), "leave out leg 5"),
-        (((1, 3, 5), (2, 3, 4, 6)), "leg 3 is used 2 times"),
-        (((1, 3, 5, 6), (2, 4)), "as many legs each"),
-    ]:
-        with pytest.raises(InvalidInput, match=message):
-            Gait("mine", 0.0, gait.azimuths_deg, groups, gait.mirror)

@@ -9,7 +9,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.cookies import SessionCookie
 from app.api.problems import problem
-from app.api.rate_limit import is_what_if, too_many
+from app.api.rate_limit import is_question, too_many
 from app.api.stage_paths import path_of, stage_of
 from app.limits.addresses import client_of
 from app.limits.connections import Connection
@@ -104,7 +104,7 @@ class TokenGuard:
 
 def _is_open_to_spectators(scope: Scope, roles: Roles) -> bool:
     changes = scope["type"] == "http" and scope["method"] not in _READ_METHODS
-    if changes and not is_what_if(scope):
+    if changes and not is_question(scope):
         return False
     path = path_of(scope)
     # The page's files are public; the data they show is not.

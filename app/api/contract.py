@@ -16,7 +16,7 @@ from app.api.auth import PUBLIC_PATHS
 from app.api.cookies import NAME
 from app.api.event_answers import EventBodies
 from app.api.problems import MEDIA_TYPE
-from app.api.rate_limit import WHAT_IF
+from app.api.rate_limit import QUESTIONS
 from app.settings import Settings
 
 Schema = dict[str, Any]
@@ -249,7 +249,7 @@ def _add_security(schema: Schema, settings: Settings) -> None:
     operator: list[Schema] = [{"bearer": []}, {"cookie": []}]
     for method, path, operation in operations(schema):
         needs_token = settings.token is not None and (
-            (method in _WRITE_METHODS and path != WHAT_IF)
+            (method in _WRITE_METHODS and path not in QUESTIONS)
             or (settings.spectators != "public" and path not in PUBLIC_PATHS)
         )
         operation["security"] = operator if needs_token else [*operator, {}]

@@ -87,7 +87,7 @@ class SceneActionValues(Answer):
 
     agent: str
     lane: Count
-    pairs: list[tuple[int, int]]
+    pairs: list[list[int]]
     cell_names: list[str]
     cells_m: list[tuple[float, float]]
     values_m: list[list[float | None]]

@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict
 
 from app.api.answers import Answer, Settings
 from hexapods.domain.disturbances import AnyDisturbance
+from hexapods.domain.gait import AnyGait
 from hexapods.domain.robot import AnyRobot
 from hexapods.domain.settings import Value
 from hexapods.runs.config import SimulatorName
@@ -20,21 +21,26 @@ class Described(Answer):
 
 
 class GaitOption(Described):
-    """A gait, with the directions of its legs [°] and the pairs of legs that move together."""
+    """A gait, with the directions of the hexapod's legs [°] and the groups that move together."""
 
     forward_deg: float
     azimuths_deg: list[float]
-    pairs: list[tuple[int, int]]
+    pairs: list[list[int]]
 
 
 class RobotOption(Described):
     """A robot preset.
 
     Attributes:
+        gait: a gait that suits it.
+        gaits: names of the gaits that its legs can have.
         built: parts in whose place a disturbance puts another value, as they were built.
     """
 
     robot: AnyRobot
+    n_legs: int
+    gait: AnyGait
+    gaits: list[str]
     built: dict[str, float]
 
 

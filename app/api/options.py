@@ -28,9 +28,11 @@ from hexapods.agents.registry import (
     searches,
 )
 from hexapods.domain import disturbances
-from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, resolve
+from hexapods.domain.creatures import CREATURES
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, gait_as_json, resolve
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import MAX_LEGS, PRESETS, Robot, as_mapping
+from hexapods.domain.robot import MAX_LEGS, Robot, as_mapping
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
@@ -101,6 +103,14 @@ _EXPERIMENTS = {
         "Learners practise, then something happens to them, and they learn on: how far they walk "
         "at once, and how soon they walk well again."
     ),
+    "groups": (
+        "Pairs of legs beside two groups of three: fewer groups have fewer states, 25 instead of "
+        "125, and Q-learning comes level with greedy after 250 steps."
+    ),
+    "bodies": (
+        "Learners on robots with other bodies, each in the gait that suits it: how far they walk, "
+        "and how soon."
+    ),
 }
 _GAITS = {
     "left-right-origin": (
@@ -115,11 +125,12 @@ _GAITS = {
     "front-back-vertical": (
         "One leg leads, three in front and three behind; each leg moves with its mirror image."
     ),
-}
-_ROBOTS = {
-    "stiff": "Strong servos on a floor with grip: they hold the body level.",
-    "compliant": "Weak servos: the body sags and pitches under its own weight.",
-    "slippery": "Feet that slide on the floor.",
+    "tripod": "Six legs: three of them move together, three stand, as most insects run.",
+    "tetrapod": "Four legs stand, while two or four others move together.",
+    "trot": "Every other leg around the body moves: of four legs those on a diagonal.",
+    "pace": "All legs of one side move together; most bodies tip.",
+    "bound": "The legs in front move together, then all others; most bodies tip.",
+    "one-by-one": "Each leg moves alone, while all others stand: steady, but many states.",
 }
 _OBSERVATIONS = {
     "measured": "Where the feet are, by the joint angles.",
@@ -212,12 +223,15 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
         "robots": [
             {
                 "name": name,
-                "title": name.capitalize(),
-                "description": _ROBOTS.get(name, ""),
-                "robot": as_mapping(robot),
-                "built": {part: getattr(robot, part) for part in _replaced_parts()},
+                "title": one.title,
+                "description": one.description,
+                "robot": as_mapping(one.robot),
+                "n_legs": len(one.robot.azimuths_deg),
+                "gait": gait_as_json(one.gait),
+                "gaits": [name for name in NAMED_GAITS if _divides(name, one.robot)],
+                "built": {part: getattr(one.robot, part) for part in _replaced_parts()},
             }
-            for name, robot in PRESETS.items()
+            for name, one in CREATURES.items()
         ],
         "agents": _agents(agents),
         "worlds": _worlds(),
@@ -249,6 +263,15 @@ def _gait(name: str) -> dict[str, Any]:
         "pairs": gait.groups,
         "description": _GAITS[name],
     }
+
+
+def _divides(gait: str, robot: Robot) -> bool:
+    """Return whether a named gait divides the legs of a robot into groups."""
+    try:
+        resolve(gait, robot.azimuths_deg)
+    except InvalidInput:
+        return False
+    return True
 
 
 def _all_settings(agents: Collection[str]) -> dict[str, DeclaredSetting]:

@@ -16,12 +16,15 @@ from app.settings import PREFIX, Settings
 from hexapods.exports.export_format import Load
 from hexapods.exports.registry import EXPORTS
 
-_STARTS_NOTHING = re.compile(r"/api/v1/(what-if|.*/(estimate|stop|pause|disturbances))")
+_STARTS_NOTHING = re.compile(
+    r"/api/v1/(what-if|robots/preview|.*/(estimate|stop|pause|disturbances))"
+)
 """Every other POST counts, so that a new route is limited unless it is added here."""
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
 _OF_RUN = re.compile(r"/api/v1/runs/[^/]+/([^/]+)")
 WHAT_IF = "/api/v1/what-if"
-"""Path of what-ifs: its POST changes nothing, so spectators may use it, too."""
+QUESTIONS = frozenset({WHAT_IF, "/api/v1/robots/preview"})
+"""Paths whose POST changes nothing, so that spectators may use it, too."""
 
 
 class RateLimit(HttpMiddleware):
@@ -80,14 +83,15 @@ def what_ifs_used_up(per_minute: int, wait_s: float) -> str:
     )
 
 
-def is_what_if(scope: Scope) -> bool:
-    """Whether a request asks for a what-if."""
-    return (scope["method"], path_of(scope)) == ("POST", WHAT_IF)
+def is_question(scope: Scope) -> bool:
+    """Whether a request with a body asks something, and changes nothing."""
+    return scope["method"] == "POST" and path_of(scope) in QUESTIONS
 
 
 def is_spectators_what_if(scope: Scope) -> bool:
     """Whether a spectator asks for a what-if; to be called inside `TokenGuard`."""
-    return is_what_if(scope) and bool(scope["state"]["role"] == "spectator")
+    is_what_if = (scope["method"], path_of(scope)) == ("POST", WHAT_IF)
+    return is_what_if and bool(scope["state"]["role"] == "spectator")
 
 
 def too_many(detail: str, wait_s: float) -> Response:

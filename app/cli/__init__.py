@@ -1,8 +1,9 @@
 """The `hexapods` command line: each command parses its options and makes one call.
 
 Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `best-known`, `runs` (list,
-show, delete; `run_files` has its verbs that write files), `export`, `imports`, `doctor` (with
-checks in `machine_checks` and `data_checks`), `bench` (with the measurements in `benchmarks`).
+show, delete; `run_files` has its verbs that write files), `robots` (list, show), `export`,
+`imports`, `doctor` (with checks in `machine_checks` and `data_checks`), `bench` (with the
+measurements in `benchmarks`).
 Their module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `stored_runs` (runs of a data folder),
@@ -34,6 +35,7 @@ COMMANDS = {
     "tune": "tune",
     "best-known": "best_known",
     "runs": "runs",
+    "robots": "robots",
     "export": "export",
     "import": "imports",
     "doctor": "doctor",

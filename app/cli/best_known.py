@@ -12,15 +12,18 @@ from app.cli.terminal import progress
 from hexapods import __version__
 from hexapods.assembly import build_simulator
 from hexapods.domain.checks import check_whole
+from hexapods.domain.creatures import own_gait
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import UnknownName
-from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.gait import NAMED_GAITS, PAPER_GAITS
 from hexapods.domain.robot import robot
 from hexapods.domain.world import WORLDS, named_world
 from hexapods.runs import best_known
 from hexapods.runs.config import WalkingProblem
 
 MAX_WIDTH = 4096
+OWN = "own"
+"""In place of a gait: the one that suits each robot."""
 _PHYSICAL = [name for name, one in WORLDS.items() if one.world.one_of(SensorNoise) is None]
 _COMPUTED_BY = "hexapods best-known: a beam search over the whole walk, in MuJoCo"
 
@@ -38,8 +41,9 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     )
     parser.add_argument(
         "--gait",
-        default=",".join(NAMED_GAITS),
-        help=f"one or more of {', '.join(NAMED_GAITS)} (default all)",
+        default=",".join(PAPER_GAITS),
+        help=f"one or more of {', '.join(NAMED_GAITS)}, or own for each robot's own "
+        "(default the paper's four)",
     )
     parser.add_argument(
         "--width",
@@ -91,15 +95,17 @@ def _problems(options: argparse.Namespace) -> Iterable[tuple[dict[str, str], Wal
     """Return the walking problems that were asked for, each with its names."""
     gaits = split(options.gait)
     for gait in gaits:
-        if gait not in NAMED_GAITS:
-            raise UnknownName("gait", gait, NAMED_GAITS)
+        if gait != OWN and gait not in NAMED_GAITS:
+            raise UnknownName("gait", gait, [*NAMED_GAITS, OWN])
     chosen = [(name, robot(name)) for name in split(options.robot)]
     for robot_name, one in chosen:
         for world in split(options.world):
             walks = named_world(world)
             for gait in gaits:
-                names = {"robot": robot_name, "world": world, "gait": gait}
-                yield names, WalkingProblem(gait=gait, robot=one, world=walks)
+                chosen_gait = own_gait(one) if gait == OWN else gait
+                walk = WalkingProblem(gait=chosen_gait, robot=one, world=walks)
+                name = walk.resolved_gait.name
+                yield {"robot": robot_name, "world": world, "gait": name}, walk
 
 
 def _with(row: dict[str, Any], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:

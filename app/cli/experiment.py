@@ -1,4 +1,4 @@
-"""`hexapods experiment`: the paper's experiments, a league or a recovery, over many seeds."""
+"""`hexapods experiment`: the paper's experiments and others, over many seeds."""
 
 import argparse
 

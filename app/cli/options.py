@@ -27,7 +27,8 @@ def add_walk_options(parser: argparse.ArgumentParser) -> None:
         "--gait",
         required=True,
         help=f"gait: {', '.join(NAMED_GAITS)}, or JSON such as "
-        '\'{"right_leg": 1, "left_leg": 2, "symmetry": "origin"}\' (or "pairs": [[1, 4], …])',
+        '\'{"right_leg": 1, "left_leg": 2, "symmetry": "origin"}\' (or "pairs": [[1, 4], …], '
+        'or "groups": [[1, 3, 5], …])',
     )
     parser.add_argument(
         "--robot",

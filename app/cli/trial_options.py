@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from app.cli.options import integer, read_gait, read_robot, split
-from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.gait import NAMED_GAITS, PAPER_GAITS, GaitSpec
 from hexapods.domain.observation import OBSERVATIONS, PAPER_OBSERVATIONS
 from hexapods.domain.robot import PRESETS, Robot
 from hexapods.experiments.cluster import ClusterSpec
@@ -32,7 +32,7 @@ def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots
     parser.add_argument(
         "--gait",
         action="append",
-        help=f"all (default), one or more of {', '.join(NAMED_GAITS)}, or JSON",
+        help=f"all (the paper's four, default), one or more of {', '.join(NAMED_GAITS)}, or JSON",
     )
     parser.add_argument(
         "--observation",
@@ -100,7 +100,7 @@ def _join_values(
 
 def _gaits(text: str) -> Sequence[str | GaitSpec]:
     if text == "all":
-        return list(NAMED_GAITS)
+        return list(PAPER_GAITS)
     return [read_gait(part) for part in _parts(text)]
 
 

@@ -35,11 +35,11 @@ from hexapods.domain.checks import check_whole
 from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.robot import PRESETS
 from hexapods.domain.settings import declared_fields
+from hexapods.domain.text import counted
 from hexapods.domain.world import WORLDS
 from hexapods.experiments.cluster import ClusterSpec, connect
 from hexapods.experiments.config import MAX_SEEDS, REPORT
 from hexapods.experiments.folder import ResultsFolder, open_results
-from hexapods.experiments.formatting import counted
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.tuning.config import Objective, TuningConfig, tuning_config
 from hexapods.experiments.worker import Outcome, Workers

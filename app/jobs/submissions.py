@@ -10,7 +10,6 @@ from app.storage.database.store import RunStore
 from app.storage.run import Run
 from app.storage.run_names import branch_name, race_name, training_name
 from app.storage.stored_tables import load_table
-from hexapods.agents.q_table import MAX_VALUES, table_size
 from hexapods.agents.registry import check_problem, learns, needs_practice
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, TableMismatch
@@ -244,21 +243,12 @@ def check_training(config: TrainingConfig) -> None:
 
 
 def check_walk(walk: WalkingProblem) -> None:
-    """Check that the robot reaches its foot grid, and that a table of it would fit into memory.
+    """Check that the robot reaches its foot grid.
 
     Raises:
         Unreachable: if a leg cannot reach a cell.
-        InvalidInput: if there are too many states.
     """
-    gait, grid = walk.resolved_gait, walk.grid
-    check_reach(walk.robot, gait, grid)
-    groups, cells = len(gait.groups), len(grid)
-    values = table_size(groups, cells)
-    if values > MAX_VALUES:
-        raise InvalidInput(
-            f"{groups} leg pairs on {cells} cells have {values:,} state-action values; the most is "
-            f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
-        )
+    check_reach(walk.robot, walk.resolved_gait, walk.grid)
 
 
 def _lane(lane: LaneStart, walk: WalkingProblem, store: RunStore) -> LaneConfig:

@@ -4,7 +4,8 @@ import re
 
 from app.storage.run import Run
 from hexapods.agents.appearance import name_of, title_of
-from hexapods.domain.text import MAX_NAME, whole
+from hexapods.domain.errors import HexapodError
+from hexapods.domain.text import MAX_NAME, counted, whole
 from hexapods.domain.world import WORLDS
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.names import TITLES, experiment_name
@@ -44,8 +45,12 @@ def is_named(run: Run) -> bool:
         earlier = f"{whole(config.steps)} steps: {config.resolved_gait.title}"
         return run.name not in (made, earlier)
     if isinstance(config, ExperimentConfig):
-        seeds = "1 seed" if config.seeds == 1 else f"{whole(config.seeds)} seeds"
-        return run.name not in (experiment_name(config), f"{TITLES[config.experiment]}, {seeds}")
+        earlier = f"{TITLES[config.experiment]}, {counted(config.seeds, 'seed')}"
+        try:
+            return run.name not in (experiment_name(config), earlier)
+        except HexapodError:
+            # An agent whose settings it varies is not here: whoever added the run, named it.
+            return run.name != earlier
     if config.branch_from is not None:
         return not run.name.endswith(_branch_end(config.branch_from.step))
     earlier = f"Race: {config.resolved_gait.title}"

@@ -1,9 +1,8 @@
 """Policies that neither learn nor look ahead: a metachronal wave made by hand, and a random walk.
 
-A step of this robot swings one pair of legs. So of the gaits of insects (Wilson 1966, "Insect
-walking", Annual Review of Entomology 11) only those are possible in which two legs swing at a time,
-pair after pair: metachronal waves. A tripod gait is not, whatever the pairs are, since it swings
-three legs at once.
+A step of this robot swings one group of legs. So of the gaits of insects (Wilson 1966, "Insect
+walking", Annual Review of Entomology 11) pairs allow those in which two legs swing at a time, pair
+after pair: metachronal waves. With groups of three the wave is the tripod gait.
 """
 
 from collections.abc import Sequence
@@ -32,14 +31,14 @@ _ON_AXIS = 1e-9
 
 
 class Wave:
-    """Metachronal wave: swings pair after pair to the front edge of the foot grid, in turn.
+    """Metachronal wave: swings group after group to the front edge of the foot grid, in turn.
 
     The order is that of the groups' right legs, from back to front.
 
     - With mirrored pairs the wave runs along both sides at once. In the wave gait of insects the
       sides are half a cycle apart, and one leg swings at a time.
     - With opposite pairs it runs from back to front on the right, and so the other way on the left.
-    - With pairs by hand whose left legs follow each other from back to front too, such as (1, 4),
+    - With groups by hand whose left legs follow each other from back to front too, such as (1, 4),
       (5, 3), (6, 2) in a left-right gait, it is the ripple gait with two legs in the air.
 
     Args:
@@ -49,7 +48,7 @@ class Wave:
 
     learns = False
     title = "Wave"
-    description = "Made by hand: puts pair after pair of legs forward, from back to front."
+    description = "Made by hand: puts group after group of legs forward, from back to front."
     color = "#A6761D"
 
     def __init__(self, problem: Problem, *, direction: Direction = "direct") -> None:
@@ -67,7 +66,8 @@ class Wave:
         group = self._order[self._steps % len(self._order)]
         self._steps += 1
         steps = (Action(group, cell) for cell in self._front)
-        return next(step for step in steps if step in legal)
+        # Where reach is short, a group may have to wait for others.
+        return next((step for step in steps if step in legal), legal[0])
 
     def learn(self, transition: Transition) -> None:
         """Do nothing."""

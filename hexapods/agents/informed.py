@@ -135,6 +135,7 @@ class RewardModel:
         self._cells_m = np.array(problem.cells_m)
         self._unit_m = float(np.abs(self._cells_m).max())
         self._groups, self._cells = len(problem.groups), len(self._cells_m)
+        self._shares = problem.shares
         group, cell = np.divmod(np.arange(self._groups * self._cells), self._cells)
         self._actions = np.column_stack([group, cell])
         start = np.zeros((self._groups, 2))
@@ -154,7 +155,7 @@ class RewardModel:
             rewards [m], (n,), and offsets [m], (n, groups, 2).
         """
         landed = self._land(offsets_m, actions)
-        law = landed[:, :, 1].mean(axis=1)
+        law = self._law(landed)
         residual = self._residual.expected(self._features(offsets_m, landed, actions))
         landed[:, :, 1] -= law[:, None]
         return law + residual, landed
@@ -178,7 +179,7 @@ class RewardModel:
         """
         landed = self._land(offsets_m, actions)
         features = self._features(offsets_m, landed, actions)
-        residuals = rewards_m - landed[:, :, 1].mean(axis=1)
+        residuals = rewards_m - self._law(landed)
         # All at once, as each update inverts a matrix; without BLAS, see `BayesianRegression`.
         self._residual.set_evidence(
             self._residual.moments + np.einsum("nd,ne->de", features, features),
@@ -190,6 +191,11 @@ class RewardModel:
         landed = np.broadcast_to(offsets_m, (len(actions), self._groups, 2)).copy()
         landed[np.arange(len(actions)), actions[:, 0]] = self._cells_m[actions[:, 1]]
         return landed
+
+    def _law(self, landed_m: FloatArray) -> FloatArray:
+        """Return the mean forward offset of all feet, by which the body moves [m], (n,)."""
+        mean: FloatArray = (landed_m[:, :, 1] * self._shares).mean(axis=1)
+        return mean
 
     def _features(
         self, offsets_m: FloatArray, landed_m: FloatArray, actions: IntArray

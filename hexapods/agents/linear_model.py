@@ -56,10 +56,11 @@ _TURNS = 2
 """Turns of every group for which a policy decides: six steps of a robot with three groups."""
 _FORGETTING = 0.98
 """Share of the evidence, and of what policies earned, that remains at each further step."""
-_UNTRIED, _UNTRIED_MEASURED = 0.5, 0.25
-"""Reward per step that a policy is expected to earn before it was tried, counted as one step; 0.5
-is the best possible without slip, so that orders are tried early: they cost little where they are
-no better. A policy by measured cells has much to learn at first, and is tried where others fail."""
+_UNTRIED, _UNTRIED_MEASURED = 1.0, 0.5
+"""Reward per step that a policy is expected to earn before it was tried, counted as one step, as a
+share of the best possible without slip, so that orders are tried early: they cost little where they
+are no better. A policy by measured cells has much to learn at first, and is tried where others
+fail."""
 _FAST, _SLOW = 1 / 4, 1 / 40
 """Weights of the newest squared error in the short and the long moving average."""
 _CHANGE_RATIO, _CHANGE_LEAST = 4.0, 4.0
@@ -86,6 +87,7 @@ class Expert(ABC):
     def __init__(self, problem: Problem, prior: Prior) -> None:
         self._cells_m = problem.cells_m
         self._half_side_m = float(np.abs(problem.cells_m).max()) or 1.0
+        self._shares = problem.shares
         weights, deviations = self._prior(len(problem.groups))
         weights = weights if prior == "kinematic" else np.zeros_like(weights)
         half = self._half_side_m
@@ -136,7 +138,7 @@ class MeasuredExpert(Expert):
     name = "measured"
 
     def _prior(self, groups: int) -> tuple[FloatArray, FloatArray]:
-        weights = np.tile(self._cells_m[:, 1] / self._half_side_m, groups) / groups
+        weights = np.outer(self._shares, self._cells_m[:, 1] / self._half_side_m).ravel() / groups
         return weights, np.full(len(weights), _DEVIATION)
 
     def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:  # noqa: D102
@@ -148,7 +150,7 @@ class MeasuredExpert(Expert):
 
     def feature_name(self, index: int) -> str:  # noqa: D102
         group, cell = divmod(index, len(self._cells_m))
-        return f"pair {group + 1} on cell {cell}"
+        return f"group {group + 1} on cell {cell}"
 
 
 class PlannedExpert(Expert):
@@ -171,10 +173,10 @@ class PlannedExpert(Expert):
         for row, action in enumerate(actions):
             landed[row, action.group] = self._cells_m[action.cell]
         landed /= self._half_side_m
-        return np.column_stack((landed[:, :, 1].mean(1), landed[:, :, 0]))
+        return np.column_stack(((landed[:, :, 1] * self._shares).mean(1), landed[:, :, 0]))
 
     def feature_name(self, index: int) -> str:  # noqa: D102
-        return f"how far pair {index} stands out" if index else "how far forward the feet stand"
+        return f"how far group {index} stands out" if index else "how far forward the feet stand"
 
 
 class Policy(NamedTuple):
@@ -184,7 +186,7 @@ class Policy(NamedTuple):
     successor: tuple[int, ...] | None
     """The group that moves after each group; None if any may."""
     untried: float
-    """Reward per step that it is expected to earn before it was tried [h]."""
+    """Reward per step that it is expected to earn before it was tried, as a share of the law's."""
 
     def allowed(self, legal: Sequence[Action], last_group: int) -> Sequence[Action]:
         """Return the legal actions among which it chooses; all if the group in turn has none."""
@@ -196,12 +198,13 @@ class Policy(NamedTuple):
 class LinearModel:
     """Bayesian linear models of the reward by two experts, one for each reading of the state.
 
-    Both learn from every step. One of three policies decides, for six steps at a time: the one
-    whose steps paid most lately. Two follow the plan, and let the groups take turns in one order
-    or the other, which one step's reward does not tell apart; the third follows the measured
-    cells. A policy takes the action with the highest mean plus `optimism` posterior deviations
-    (LinUCB). Where errors of prediction rise suddenly, most of the evidence is forgotten, which
-    makes it explore again. It makes no random choices: ties go to the first action in `legal`.
+    Both learn from every step. One of several policies decides, for two turns of all groups at a
+    time: the one whose steps paid most lately. Two follow the plan, and let the groups take turns
+    in one order or the other, which one step's reward does not tell apart (of two groups there is
+    one order); the last follows the measured cells. A policy takes the action with the highest mean
+    plus `optimism` posterior deviations (LinUCB). Where errors of prediction rise suddenly, most of
+    the evidence is forgotten, which makes it explore again. It makes no random choices: ties go to
+    the first action in `legal`.
 
     Args:
         problem: number of groups, and the cells' displacements.
@@ -240,10 +243,14 @@ class LinearModel:
         forth = tuple((group + 1) % groups for group in range(groups))
         back = tuple((group - 1) % groups for group in range(groups))
         self._policies = (
-            Policy(planned, forth, _UNTRIED),
-            Policy(planned, back, _UNTRIED),
+            *(Policy(planned, order, _UNTRIED) for order in dict.fromkeys((forth, back))),
             Policy(measured, None, _UNTRIED_MEASURED),
         )
+        sizes = [len(group) for group in problem.groups]
+        legs = sum(sizes)
+        squares = sum(size * size for size in sizes) / (legs * legs)
+        self._law_m = 2 * self._half_side_m / (groups * (1 + squares))
+        """Advance per step of the steady walk without slip."""
         self._deciding, self._decided, self._last_group = 0, 0, groups - 1
         self._earned: FloatArray = np.zeros((len(self._policies), 2))
         """Discounted steps that each policy decided, and the rewards [m] in them."""
@@ -272,7 +279,7 @@ class LinearModel:
         if beta:
             criterion += f", plus {beta:g} standard deviations"
         if policy.successor is not None:
-            criterion += "; the pairs take turns"
+            criterion += "; the groups take turns"
         return ChoiceExplanation(action, "exploited", criterion, scores)
 
     def _choose(self, legal: Sequence[Action]) -> tuple[Action, Sequence[Action], FloatArray]:
@@ -369,7 +376,7 @@ class LinearModel:
         Each record is completed by one step with the reward expected before any, or with none.
         """
         steps, rewards = self._earned[: len(policies)].T
-        untried = np.array([policy.untried * self._half_side_m for policy in policies])
+        untried = np.array([policy.untried * self._law_m for policy in policies])
         return int(((rewards + optimistic * untried) / (steps + 1)).argmax())
 
     def _has_changed(self) -> bool:
@@ -432,7 +439,7 @@ class LinearModel:
         Raises:
             ValueError: if it is of another number of groups or cells.
         """
-        own = self.state()
+        own, state = self.state(), _without_twins(state)
         for name, array in own.items():
             if state[name].shape != array.shape:
                 raise ValueError(f"{name} has the shape {state[name].shape}, not {array.shape}")
@@ -470,8 +477,13 @@ class LinearModel:
         for name in ("planned_products", "measured_products", "earned", "errors"):
             if state[name].dtype.kind != "f" or not np.isfinite(state[name]).all():
                 raise ValueError(f"its {name} are no numbers")
-        if state["earned"].shape != (3, 2) or state["errors"].shape != (2, 2):
-            raise ValueError("it has no records of three policies and two experts")
+        policies = len(state["earned"])
+        if (
+            policies not in (2, 3)
+            or state["earned"].shape != (policies, 2)
+            or state["errors"].shape != (2, 2)
+        ):
+            raise ValueError("it has no records of its policies and two experts")
         if (state["earned"][:, 0] < 0).any() or (state["errors"] < 0).any():
             raise ValueError("it has records below zero")
         deciding, decided, last_group = state["deciding"].tolist()
@@ -481,10 +493,23 @@ class LinearModel:
         if (
             not counts
             or decided < 0
-            or deciding not in range(3)
+            or deciding not in range(policies)
             or last_group not in range(len(visits))
         ):
             raise ValueError("its counters are out of range")
+
+
+def _without_twins(state: AgentState) -> AgentState:
+    """Return a state of two groups as it is written now.
+
+    Earlier versions had two policies for its one order, which did the same.
+    """
+    if len(state["visits"]) != 2 or len(state["earned"]) != 3:
+        return state
+    forth, back, measured = state["earned"]
+    deciding, decided, last_group = state["deciding"].tolist()
+    now = np.array([max(0, deciding - 1), decided, last_group], np.int64)
+    return {**state, "earned": np.array([forth + back, measured]), "deciding": now}
 
 
 def _without_illegal(values: FloatArray, observation: Cells) -> FloatArray:

@@ -32,6 +32,7 @@ settings that are too much for a problem, before a run is queued.
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
+import numpy as np
 from numpy.typing import NDArray
 
 from hexapods.agents.q_table import QTable
@@ -62,6 +63,15 @@ class Problem(NamedTuple):
     """Displacement of each cell of the foot grid from home, (cells, 2): x right, y forward."""
     azimuths_deg: tuple[float, ...] = ()
     """Each leg's azimuth relative to forward, anticlockwise; empty if unknown."""
+
+    @property
+    def shares(self) -> FloatArray:
+        """Number of legs of each group, as a share of their mean number, (groups,).
+
+        The mean over all feet is that over groups weighted by these; exactly 1 for equal groups.
+        """
+        sizes = np.array([len(group) for group in self.groups], float)
+        return np.asarray(sizes / sizes.mean())
 
 
 class Transition(NamedTuple):

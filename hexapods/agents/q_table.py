@@ -199,8 +199,9 @@ def check_size(groups: int, cells: int) -> None:
     values = table_size(groups, cells)
     if values > MAX_VALUES:
         raise InvalidInput(
-            f"a table of {groups} leg pairs and {cells} cells has {values:,} values; the most is "
-            f"{MAX_VALUES:,}: choose fewer divisions or fewer legs"
+            f"{groups} groups of legs on {cells} cells have {cells**groups:,} states, and "
+            f"{values:,} values; the most is {MAX_VALUES:,}: choose larger groups, fewer "
+            "divisions, or an agent without a table"
         )
 
 
@@ -215,7 +216,7 @@ def check_arrays(arrays: Mapping[str, NDArray[np.generic]], groups: int, cells: 
     shape, where, q, n = (arrays[name] for name in ("shape", "where", "q", "n"))
     if shape.tolist() != [groups, cells]:
         raise TableMismatch(
-            f"the table's leg pairs and cells are {shape.tolist()}, this problem's "
+            f"the table's groups of legs and cells are {shape.tolist()}, this problem's "
             f"{[groups, cells]}"
         )
     kinds = where.dtype.kind + q.dtype.kind + n.dtype.kind

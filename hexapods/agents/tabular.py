@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
@@ -19,7 +19,7 @@ from hexapods.agents.explanation import (
     in_millimetres,
 )
 from hexapods.agents.protocol import AgentState, Problem, Transition
-from hexapods.agents.q_table import QTable
+from hexapods.agents.q_table import QTable, check_size
 from hexapods.domain.settings import Setting, declare
 from hexapods.domain.types import Action, Cells, FloatArray
 
@@ -111,6 +111,15 @@ class TabularAgent(ABC):
     def __init__(self, rng: np.random.Generator, problem: Problem, *, explore: bool = True) -> None:
         self.table = QTable(len(problem.groups), len(problem.cells_m))
         self._rng, self._explore = rng, explore
+
+    @staticmethod
+    def check_problem(problem: Problem, **_settings: Any) -> None:
+        """Check that the table of a problem would fit into memory.
+
+        Raises:
+            InvalidInput: if it would not; the message names the number of states.
+        """
+        check_size(len(problem.groups), len(problem.cells_m))
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         """Return the action with the highest value in the table."""

@@ -164,7 +164,7 @@ def check_problem(problem: Problem, **settings: Any) -> None:  # noqa: ARG001  #
     if values > MAX_MODEL_VALUES:
         raise InvalidInput(
             f"a learner with a model of the world takes at most {MAX_MODEL_VALUES:,} state-action "
-            f"pairs, and {groups} leg pairs on {cells} cells have {values:,}: choose fewer "
+            f"pairs, and {groups} groups of legs on {cells} cells have {values:,}: choose fewer "
             "divisions or a learner without a model, such as q-learning"
         )
 

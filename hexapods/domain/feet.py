@@ -1,15 +1,19 @@
 """Foot offsets without slip, and the kinematic law of a step.
 
 All feet of a group have the same offset (x, y) from home, some of them mirrored, at (−x, y). A step
-puts one group on its new cell; then the body moves by the mean of all forward offsets, and every
-offset shrinks by it. Lateral offsets cancel by symmetry.
+puts one group on its new cell; then the body moves by the mean of the forward offsets of all feet,
+and every offset shrinks by it. The body does not move sideways.
 """
 
+from collections.abc import Sequence
+from operator import mul, sub
 from typing import NamedTuple
 
 import numpy as np
 
-from hexapods.domain.types import Cells, FloatArray
+from hexapods.domain.gait import Gait
+from hexapods.domain.grid import FootGrid
+from hexapods.domain.types import Action, Cells, FloatArray
 
 
 class Feet(NamedTuple):
@@ -56,14 +60,18 @@ class Feet(NamedTuple):
         lateral, forward = (np.array((self.lateral_m, self.forward_m)) + by_m.T).tolist()
         return Feet(self.commanded, tuple(lateral), tuple(forward))
 
-    def centred(self) -> tuple["Feet", float]:
-        """Return the offsets after the shift phase, and the body's forward displacement [m].
+    def mean_m(self, sizes: Sequence[int]) -> float:
+        """Return the mean forward offset of all feet, from the number of those of each group [m].
 
-        The shift centres the body over the mean of the feet.
+        For pairs and single legs it is the mean over groups to the last bit.
         """
-        mean = sum(self.forward_m) / len(self.forward_m)
-        forward = tuple(y - mean for y in self.forward_m)
-        return Feet(self.commanded, self.lateral_m, forward), mean
+        total: float = sum(map(mul, self.forward_m, sizes))
+        return total / sum(sizes)
+
+    def shifted(self, advance_m: float) -> "Feet":
+        """Return the offsets after the body has moved forward."""
+        forward = tuple(y - advance_m for y in self.forward_m)
+        return Feet(self.commanded, self.lateral_m, forward)
 
     def as_array(self) -> FloatArray:
         """Return the offsets as an array (3, groups), for storage."""
@@ -74,3 +82,50 @@ class Feet(NamedTuple):
         """Build the offsets from an array written by `as_array`, (3, groups)."""
         commanded, lateral, forward = array.tolist()
         return cls(tuple(int(cell) for cell in commanded), tuple(lateral), tuple(forward))
+
+
+class Reach(NamedTuple):
+    """How far the feet of each group may be from home, where not all that can occur is possible."""
+
+    back_m: tuple[float, ...]
+    """Lowest forward offset of each group, below 0 [m]."""
+    ahead_m: tuple[float, ...]
+    """Highest forward offset of each group [m]."""
+
+
+class StepLaw:
+    """The kinematic law of a step, for one gait and foot grid.
+
+    Where a long series of odd steps would lead feet out of reach, an action that ends there is not
+    legal. If there is no other, the body moves only as far as all feet reach.
+    """
+
+    def __init__(self, gait: Gait, grid: FootGrid, reach: Reach | None) -> None:
+        """Create the law; `reach` None if the feet reach all that can occur."""
+        self.reach, self.sizes, self._places = reach, gait.sizes, grid.places_m
+
+    def at_home(self) -> Feet:
+        """Return the offsets with every foot at home."""
+        return Feet.at_home(len(self.sizes))
+
+    def step(self, start: Feet, action: Action) -> tuple[Feet, Feet, float]:
+        """Return the offsets after swing and shift, and the body's forward displacement [m]."""
+        group, cell = action
+        landed = start.landed(group, cell, self._places[cell])
+        advance = landed.mean_m(self.sizes)
+        if self.reach is not None:
+            forward = landed.forward_m
+            least = max(map(sub, forward, self.reach.ahead_m))
+            most = min(map(sub, forward, self.reach.back_m))
+            advance = min(max(advance, least), most)
+        return landed, landed.shifted(advance), advance
+
+    def possible(self, start: Feet, actions: Sequence[Action]) -> Sequence[Action]:
+        """Return the actions after which all feet are within reach; all if there is none."""
+        if self.reach is None:
+            return actions
+        return [action for action in actions if self._stays_within(start, action)] or actions
+
+    def _stays_within(self, start: Feet, action: Action) -> bool:
+        landed, _, advance = self.step(start, action)
+        return advance == landed.mean_m(self.sizes)

@@ -2,27 +2,31 @@
 
 Elsewhere in the field a gait is a pattern of footfalls over time. Here (paper §4, Figure 2) it is
 an orientation of the robot and a symmetry that pairs its legs; the pattern over time is learned.
-A step moves one group of legs. A user's groups are pairs so far; only `GaitSpec` and what checks it
-know that.
+Here the legs are divided into groups of any size, of which a step moves one: the paper's pairs are
+groups of two. The feet of a group go to the same cell, mirrored on the left of the body.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from operator import index
 from typing import Annotated, Any, Literal, get_args
 
+from hexapods.domain.body import MAX_LEGS
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import JsonForm, Schema
-from hexapods.domain.robot import MAX_LEGS
 from hexapods.domain.types import FloatArray
 
 Symmetry = Literal["origin", "vertical"]
+Grouping = Literal["tripod", "tetrapod", "trot", "pace", "bound", "one-by-one"]
+"""A rule that divides the legs of a robot into groups; see `_groups_by`."""
 Pair = tuple[int, int]
 """(leader, partner), legs counted from 1: the leader goes to (x, y), its partner to (−x, y)."""
+Group = tuple[int, ...]
+"""Legs that move together, counted from 1."""
 
 _SAME_DIRECTION_DEG = 1e-6
-_PAIRS = "[[1, 4], [2, 5], [3, 6]]"
-"""An example of pairs, for error messages."""
+_PAIRS, _GROUPS = "[[1, 4], [2, 5], [3, 6]]", "[[1, 3, 5], [2, 4, 6]]"
+"""Examples, for error messages."""
 
 
 @dataclass(frozen=True)
@@ -33,28 +37,38 @@ class GaitSpec:
         right_leg, left_leg: forward is the bisector of the anticlockwise arc from the right to
             the left leg; legs count from 1, anticlockwise seen from above.
         symmetry: how legs are paired by their azimuths: `origin` pairs opposite legs, `vertical`
-            mirror images about the forward axis. Either this or `pairs` is given.
+            mirror images about the forward axis. Either this or `pairs` or `groups` is given.
         pairs: the explicit pairs.
+        groups: explicit groups of any size, or the name of a rule that makes them. Their feet are
+            mirrored by the side of the body on which they stand.
 
     Raises:
-        InvalidInput: if both or neither of symmetry and pairs are given, or a leg is no number.
-        UnknownName: if the symmetry is unknown.
+        InvalidInput: unless one of symmetry, pairs and groups is given, or if a leg is no number.
+        UnknownName: if the symmetry or the rule is unknown.
     """
 
     right_leg: int
     left_leg: int
     symmetry: Symmetry | None = None
     pairs: tuple[Pair, ...] | None = None
+    groups: tuple[Group, ...] | Grouping | None = None
 
     def __post_init__(self) -> None:
-        if (self.symmetry is None) == (self.pairs is None):
-            raise InvalidInput("a gait needs either symmetry (origin or vertical) or pairs")
+        if sum(part is not None for part in (self.symmetry, self.pairs, self.groups)) != 1:
+            raise InvalidInput(
+                "a gait needs one of symmetry (origin or vertical), pairs, and groups of legs"
+            )
         if self.symmetry is not None and self.symmetry not in get_args(Symmetry):
             raise UnknownName("symmetry", self.symmetry, get_args(Symmetry))
         for name in ("right_leg", "left_leg"):
             object.__setattr__(self, name, _leg_number(name, getattr(self, name)))
         if self.pairs is not None:
             object.__setattr__(self, "pairs", _pairs_of_legs(self.pairs))
+        if isinstance(self.groups, str):
+            if self.groups not in get_args(Grouping):
+                raise UnknownName("grouping", self.groups, get_args(Grouping))
+        elif self.groups is not None:
+            object.__setattr__(self, "groups", _groups_of_legs(self.groups))
 
 
 def _leg_number(name: str, leg: object) -> int:
@@ -82,23 +96,41 @@ def _pairs_of_legs(pairs: object) -> tuple[Pair, ...]:
     )
 
 
-NAMED_GAITS: dict[str, GaitSpec] = {
+def _groups_of_legs(groups: object) -> tuple[Group, ...]:
+    try:
+        read = [tuple(group) for group in groups]  # type: ignore[attr-defined]
+    except TypeError as error:
+        raise InvalidInput(f"a gait's groups must look like {_GROUPS}, not {groups!r}") from error
+    return tuple(tuple(_leg_number("a leg of groups", leg) for leg in group) for group in read)
+
+
+PAPER_GAITS: dict[str, GaitSpec] = {
     "left-right-origin": GaitSpec(1, 2, "origin"),
     "left-right-vertical": GaitSpec(1, 2, "vertical"),
     "front-back-origin": GaitSpec(1, 3, "origin"),
     "front-back-vertical": GaitSpec(1, 3, "vertical"),
+}
+"""The four gaits that the paper compares."""
+NAMED_GAITS: dict[str, GaitSpec] = PAPER_GAITS | {
+    name: GaitSpec(1, 2, groups=name) for name in get_args(Grouping)
 }
 GAIT_TITLES: Mapping[str, str] = {
     "left-right-origin": "Left-right, opposite",
     "left-right-vertical": "Left-right, mirrored",
     "front-back-origin": "Front-back, opposite",
     "front-back-vertical": "Front-back, mirrored",
+    "tripod": "Tripod",
+    "tetrapod": "Tetrapod",
+    "trot": "Trot",
+    "pace": "Pace",
+    "bound": "Bound",
+    "one-by-one": "One by one",
 }
 """Display names of the named gaits."""
 
 
 def read_gait(given: Any) -> str | GaitSpec:
-    """Return a gait from user input: a name, or a mapping with its legs, and symmetry or pairs.
+    """Return a gait from user input: its name, or its legs with symmetry, pairs or groups.
 
     Raises:
         UnknownName, InvalidInput: if it is none.
@@ -113,7 +145,7 @@ def read_gait(given: Any) -> str | GaitSpec:
     names = [one.name for one in fields(GaitSpec)]
     if set(given) - {*names} or not {"right_leg", "left_leg"} <= {*given}:
         raise InvalidInput(
-            "a gait needs right_leg and left_leg, and either symmetry or pairs; "
+            "a gait needs right_leg and left_leg, and one of symmetry, pairs and groups; "
             f"not {', '.join(map(str, sorted(given))) or 'nothing'}"
         )
     return GaitSpec(**{name: _whole(part) for name, part in given.items()})
@@ -138,17 +170,26 @@ _LEG: Schema = {"type": "integer", "minimum": 1, "maximum": MAX_LEGS}
 _PAIR: Schema = {"type": "array", "prefixItems": [_LEG, _LEG], "minItems": 2, "maxItems": 2}
 _SENT: Schema = {
     "type": "object",
-    "description": "A gait by its legs, with symmetry or pairs.",
+    "description": "A gait by its legs, with symmetry, pairs or groups.",
     "properties": {
         "right_leg": _LEG,
         "left_leg": _LEG,
         "symmetry": {"type": "string", "enum": list(get_args(Symmetry))},
         "pairs": {"type": "array", "items": _PAIR},
+        "groups": {
+            "anyOf": [
+                {"type": "string", "enum": list(get_args(Grouping))},
+                {"type": "array", "items": {"type": "array", "items": _LEG, "minItems": 1}},
+            ]
+        },
     },
     "required": ["right_leg", "left_leg"],
     "additionalProperties": False,
 }
-_GIVEN: Schema = {**_SENT, "oneOf": [{"required": ["symmetry"]}, {"required": ["pairs"]}]}
+_GIVEN: Schema = {
+    **_SENT,
+    "oneOf": [{"required": [name]} for name in ("symmetry", "pairs", "groups")],
+}
 AnyGait = Annotated[
     str | GaitSpec,
     JsonForm(read_gait, gait_as_json, {"anyOf": [_NAME, _GIVEN]}, {"anyOf": [_NAME, _SENT]}),
@@ -165,11 +206,12 @@ class Gait:
         forward_deg: the forward direction in the body frame, anticlockwise from body x.
         azimuths_deg: each leg's azimuth relative to forward, anticlockwise, in (−180, 180].
         groups: the legs that move together, counted from 1, in the order of the state vector. Each
-            leg is in one group, and all are of one size: the mean over groups is that over feet.
-        mirror: for each leg 1 if its foot goes to (x, y) where its group does, −1 if to (−x, y).
+            leg is in one group.
+        mirror: for each leg 1 if its foot goes to (x, y) where its group does, −1 if to (−x, y), 0
+            if to (0, y).
 
     Raises:
-        InvalidInput: if a leg is in no group or in several, or groups differ in size.
+        InvalidInput: if a leg is in no group or in several, or there are less than two groups.
     """
 
     name: str
@@ -180,8 +222,11 @@ class Gait:
 
     def __post_init__(self) -> None:
         _check_partition(self.groups, len(self.azimuths_deg))
-        if len({len(group) for group in self.groups}) > 1:
-            raise InvalidInput(f"the groups of a gait must have as many legs each: {self.groups}")
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Number of legs of each group."""
+        return tuple(map(len, self.groups))
 
     @property
     def group_of_leg(self) -> tuple[int, ...]:
@@ -195,20 +240,28 @@ class Gait:
         offsets[:, 0] *= self.mirror
         return offsets
 
-    def by_group(self, feet_m: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+    def by_group(
+        self, feet_m: Sequence[Sequence[float]], lateral_m: Sequence[float]
+    ) -> list[tuple[float, float]]:
         """Return each group's offset (x, y), the mean of its feet, from those of all feet [m].
 
         In plain floats, which are faster than arrays for so few numbers.
+
+        Args:
+            feet_m: offset of each foot.
+            lateral_m: planned x of each group, which is taken where all feet stand on the axis:
+                they do not move sideways, so that they tell nothing of it.
         """
         mirror, offsets = self.mirror, []
-        for group in self.groups:
+        for group, planned in zip(self.groups, lateral_m, strict=True):
             x = y = 0.0
+            sides = 0
             for leg in group:
                 foot = feet_m[leg - 1]
                 x += mirror[leg - 1] * foot[0]
                 y += foot[1]
-            size = len(group)
-            offsets.append((x / size, y / size))
+                sides += mirror[leg - 1] != 0
+            offsets.append((x / sides if sides else planned, y / len(group)))
         return offsets
 
     @property
@@ -250,14 +303,20 @@ def resolve(gait: str | GaitSpec, body_azimuths_deg: Sequence[float]) -> Gait:
     right, left = (body_azimuths_deg[leg - 1] for leg in (spec.right_leg, spec.left_leg))
     forward = right + ((left - right) % 360) / 2
     azimuths = tuple(_wrap(a - forward) for a in body_azimuths_deg)
+    if spec.groups is not None:
+        groups = spec.groups
+        if isinstance(groups, str):
+            groups = _groups_by(groups, azimuths)
+        return Gait(_name(gait), _wrap(forward), azimuths, groups, tuple(map(_side, azimuths)))
     if spec.pairs is not None:
-        pairs = spec.pairs
+        pairs: tuple[Group, ...] = spec.pairs
     elif spec.symmetry == "origin":
         pairs = _origin_pairs(azimuths)
     else:
         pairs = _vertical_pairs(azimuths)
-    partners = {partner for _, partner in pairs}
-    mirror = tuple(-1 if leg in partners else 1 for leg in range(1, count + 1))
+    leaders = {leader for leader, *partners in pairs if partners}
+    partners = {partner for _, *partners in pairs for partner in partners}
+    mirror = tuple((leg in leaders) - (leg in partners) for leg in range(1, count + 1))
     return Gait(_name(gait), _wrap(forward), azimuths, pairs, mirror)
 
 
@@ -267,7 +326,11 @@ def _name(gait: str | GaitSpec) -> str:
     for name, spec in NAMED_GAITS.items():
         if spec == gait:
             return name
-    how = gait.symmetry or " ".join(f"{a}+{b}" for a, b in gait.pairs or ())
+    if isinstance(gait.groups, str):
+        how: str = gait.groups
+    else:
+        parts = gait.pairs or gait.groups or ()
+        how = gait.symmetry or " ".join("+".join(map(str, group)) for group in parts)
     return f"right {gait.right_leg}, left {gait.left_leg}, {how}"
 
 
@@ -283,7 +346,7 @@ def _leg_at(azimuth_deg: float, azimuths: Sequence[float], of_leg: int, symmetry
             return leg
     raise InvalidInput(
         f"leg {of_leg} has no partner under {symmetry} symmetry: no other leg stands at "
-        f"{_wrap(azimuth_deg):g}° from forward; give the pairs by hand"
+        f"{_wrap(azimuth_deg):g}° from forward; give the groups by hand"
     )
 
 
@@ -295,10 +358,10 @@ def _origin_pairs(azimuths: Sequence[float]) -> tuple[Pair, ...]:
     return tuple((leg, partner) for leg, partner in partners.items() if leg < partner)
 
 
-def _vertical_pairs(azimuths: Sequence[float]) -> tuple[Pair, ...]:
+def _vertical_pairs(azimuths: Sequence[float]) -> tuple[Group, ...]:
     """Pair mirror images about the forward axis; the right leg leads.
 
-    Pairs are ordered from front to back; a pair on the axis comes last.
+    Pairs are ordered from front to back; a pair on the axis, or a leg alone there, comes last.
     """
     numbered = dict(enumerate(azimuths, start=1))
     right = [leg for leg, a in numbered.items() if -180 < a < 0]
@@ -307,9 +370,98 @@ def _vertical_pairs(azimuths: Sequence[float]) -> tuple[Pair, ...]:
     on_axis = sorted(
         (leg for leg, a in numbered.items() if a in (0, 180)), key=numbered.__getitem__
     )
-    if len(on_axis) == 1:
-        raise InvalidInput(f"leg {on_axis[0]} stands alone on the axis; give the pairs by hand")
-    return (*pairs, *([(on_axis[0], on_axis[1])] if on_axis else []))
+    return (*pairs, *([tuple(on_axis)] if on_axis else []))
+
+
+def _side(azimuth_deg: float) -> int:
+    """Return on which side of the body a leg stands: 1 right, −1 left, 0 on the axis."""
+    from_axis = min(abs(azimuth_deg), 180 - abs(azimuth_deg))
+    if from_axis < _SAME_DIRECTION_DEG:
+        return 0
+    return 1 if azimuth_deg < 0 else -1
+
+
+def _groups_by(grouping: Grouping, azimuths: Sequence[float]) -> tuple[Group, ...]:
+    """Divide legs into groups by a rule; groups are ordered by their lowest leg.
+
+    - `tripod`: of six legs around the body every other one.
+    - `tetrapod`: four legs stand: of eight legs every other one, of six each right leg with the
+      left one behind it, and the last with the first.
+    - `trot`: every other leg around the body, so that diagonal legs move together.
+    - `pace`: the legs of each side.
+    - `bound`: the legs in front, and the others.
+    - `one-by-one`: each leg alone.
+
+    Raises:
+        InvalidInput: if the rule makes no sense for these legs.
+    """
+    legs = sorted(range(1, len(azimuths) + 1), key=lambda leg: azimuths[leg - 1] % 360)
+    groups, problem = _GROUPINGS[grouping](legs, azimuths)
+    if not problem and not all(groups):
+        problem = "one of its two groups would have no leg"
+    if problem:
+        raise InvalidInput(
+            f"{grouping} makes no sense for these legs: {problem}; give the groups by hand, such "
+            f"as {_GROUPS}, or take one-by-one"
+        )
+    return tuple(sorted(tuple(sorted(group)) for group in groups))
+
+
+_Divided = tuple[list[list[int]], str]
+"""Groups of legs, and why they make no sense; nothing if they do."""
+
+
+def _every_other(legs: list[int], azimuths: Sequence[float]) -> _Divided:  # noqa: ARG001
+    odd = f"every other leg moves, but this robot has an odd number, {len(legs)}"
+    return [legs[::2], legs[1::2]], odd if len(legs) % 2 else ""
+
+
+def _tripod(legs: list[int], azimuths: Sequence[float]) -> _Divided:
+    groups, _ = _every_other(legs, azimuths)
+    return groups, "" if len(legs) == 6 else f"it needs six legs, this robot has {len(legs)}"
+
+
+def _tetrapod(legs: list[int], azimuths: Sequence[float]) -> _Divided:
+    left, right = _sides(legs, azimuths)
+    if len(left) == len(right) == 3 and len(legs) == 6:
+        right.reverse()
+        return [[leg, left[(place + 1) % 3]] for place, leg in enumerate(right)], ""
+    groups, _ = _every_other(legs, azimuths)
+    return groups, "" if len(legs) == 8 else "it needs eight legs, or three on each side"
+
+
+def _pace(legs: list[int], azimuths: Sequence[float]) -> _Divided:
+    left, right = _sides(legs, azimuths)
+    on_axis = [leg for leg in legs if leg not in left + right]
+    problem = f"leg {on_axis[0]} stands on the axis, on neither side" if on_axis else ""
+    return [right, left], problem
+
+
+def _bound(legs: list[int], azimuths: Sequence[float]) -> _Divided:
+    front = [leg for leg in legs if abs(azimuths[leg - 1]) < 90 - _SAME_DIRECTION_DEG]
+    return [front, [leg for leg in legs if leg not in front]], ""
+
+
+def _one_by_one(legs: list[int], azimuths: Sequence[float]) -> _Divided:  # noqa: ARG001
+    return [[leg] for leg in legs], ""
+
+
+def _sides(legs: list[int], azimuths: Sequence[float]) -> tuple[list[int], list[int]]:
+    """Return the left legs from front to back, and the right legs from back to front."""
+    sides = {leg: _side(azimuths[leg - 1]) for leg in legs}
+    left, right = ([leg for leg in legs if sides[leg] == side] for side in (-1, 1))
+    return left, right
+
+
+_GROUPINGS: Mapping[Grouping, Callable[[list[int], Sequence[float]], _Divided]] = {
+    "tripod": _tripod,
+    "tetrapod": _tetrapod,
+    "trot": _every_other,
+    "pace": _pace,
+    "bound": _bound,
+    "one-by-one": _one_by_one,
+}
+"""By name what divides legs, which are ordered anticlockwise from straight ahead."""
 
 
 def _check_leg(leg: int, count: int) -> None:
@@ -318,11 +470,16 @@ def _check_leg(leg: int, count: int) -> None:
 
 
 def _check_partition(groups: Sequence[Sequence[int]], count: int) -> None:
+    if not all(groups) or len(groups) < 2:
+        raise InvalidInput(
+            f"a gait has two groups of legs or more, each with a leg, not {len(groups)}: while one "
+            "moves the others carry the body"
+        )
     used = [leg for group in groups for leg in group]
     for leg in used:
         _check_leg(leg, count)
         if used.count(leg) > 1:
-            raise InvalidInput(f"leg {leg} is used {used.count(leg)} times in the pairs, not once")
+            raise InvalidInput(f"leg {leg} is used {used.count(leg)} times in the groups, not once")
     for leg in range(1, count + 1):
         if leg not in used:
-            raise InvalidInput(f"the pairs leave out leg {leg}; each leg belongs to one pair")
+            raise InvalidInput(f"the groups leave out leg {leg}; each leg belongs to one group")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.feet import Feet
+from hexapods.domain.feet import Feet, StepLaw
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import check_reach
@@ -44,18 +44,18 @@ class KinematicSimulator:
             Unreachable: if a cell of the grid is out of a leg's reach.
             InvalidInput: if something happens that this simulator does not know.
         """
-        check_reach(robot, gait, grid)
+        self.law = StepLaw(gait, grid, check_reach(robot, gait, grid))
         world.check(robot, "kinematic")
         self.robot, self.gait, self.grid, self.world = robot, gait, grid, world
         recorded = recorded_substeps(robot)
-        self._motion = StepMotion(robot, gait, grid, recorded)
+        self._motion = StepMotion(robot, gait, self.law, recorded)
         self._times_s = ((recorded + 1) * robot.dt_s).astype(np.float32)
         self._times_s.setflags(write=False)  # all motions have this array
         shift_phase = (recorded - robot.swing_substeps + 1) / robot.shift_substeps
         self._share_of_advance = np.where(shift_phase > 0, ease(shift_phase), 0.0)
 
     def rest(self) -> KinematicState:
-        return KinematicState(self._motion.at_home())
+        return KinematicState(self.law.at_home())
 
     def standing(self, cells: Cells) -> KinematicState:
         """Return the state on the start line with the feet of each group in a cell of the grid.
@@ -66,7 +66,7 @@ class KinematicSimulator:
         groups, last = len(self.gait.groups), len(self.grid) - 1
         if len(cells) != groups:
             raise InvalidInput(
-                f"cells must be {groups} numbers, one for each pair, not {len(cells)}"
+                f"cells must be {groups} numbers, one for each group of legs, not {len(cells)}"
             )
         for cell in cells:
             if not 0 <= cell <= last:

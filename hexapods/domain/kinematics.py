@@ -7,15 +7,16 @@ two-link arm with the knee above. Positive pitch lifts.
 import math
 from collections.abc import Sequence
 from functools import lru_cache, singledispatch
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from hexapods.domain.errors import Unreachable
+from hexapods.domain.feet import Reach
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.legs import FootKinematics, Joint, Legs
-from hexapods.domain.robot import Robot
+from hexapods.domain.robot import LegMount, Robot
 from hexapods.domain.types import FloatArray
 
 JOINT_LIMITS_RAD = {"coxa": (-1.2, 1.2), "femur": (-1.4, 1.9), "tibia": (-2.8, 0.0)}
@@ -24,25 +25,31 @@ JOINT_LIMITS_RAD = {"coxa": (-1.2, 1.2), "femur": (-1.4, 1.9), "tibia": (-2.8, 0
 
 class _CoxaFemurTibia(Legs):
     def __init__(self, robot: Robot) -> None:
-        mass_kg = robot.coxa_kg + robot.femur_kg + robot.tibia_kg + robot.foot_kg
+        links = map(robot.of_legs, ("coxa_kg", "femur_kg", "tibia_kg", "foot_kg"))
         super().__init__(
             [
                 Joint(leg, name, limits)
                 for leg in range(1, len(robot.legs) + 1)
                 for name, limits in JOINT_LIMITS_RAD.items()
             ],
-            [mass_kg] * len(robot.legs),
+            [coxa + femur + tibia + foot for coxa, femur, tibia, foot in zip(*links, strict=True)],
         )
-        self._robot = robot
+        self._robot, self._parts = robot, _parts_of(robot)
 
     def feet_in_body(self, angles: FloatArray) -> FloatArray:
-        robot = self._robot
+        legs = self._robot.legs
         coxa, femur, tibia = np.moveaxis(angles.reshape(len(angles), -1, 3), -1, 0)
-        along, across, height = _foot(robot, coxa, femur, tibia, np)
-        azimuth = np.deg2rad(robot.azimuths_deg)
-        along = along + np.array([leg.radius_m for leg in robot.legs])
-        cos, sin = np.cos(azimuth), np.sin(azimuth)
-        return np.stack([along * cos - across * sin, along * sin + across * cos, height], axis=-1)
+        along, across, height = _foot(_Parts(*np.array(self._parts).T), coxa, femur, tibia, np)
+        radius, z = (np.array([getattr(leg, name) for leg in legs]) for name in ("radius_m", "z_m"))
+        azimuth, yaw = _directions(legs)
+        along = along + radius
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        # The mount is off the line of a leg that does not point away from the torso's centre.
+        off_x, off_y = radius * (np.cos(azimuth) - cos), radius * (np.sin(azimuth) - sin)
+        return np.stack(
+            [along * cos - across * sin + off_x, along * sin + across * cos + off_y, height + z],
+            axis=-1,
+        )
 
     def under(self, gait: Gait) -> FootKinematics:
         return _CoxaFemurTibiaKinematics(self, self._robot, gait)
@@ -52,15 +59,33 @@ class _CoxaFemurTibiaKinematics(FootKinematics):
     def __init__(self, legs: Legs, robot: Robot, gait: Gait) -> None:
         self.legs, self._robot = legs, robot
         azimuth = np.deg2rad(gait.azimuths_deg)
-        mounts = np.array([leg.radius_m for leg in robot.legs])
-        sin, cos = np.sin(azimuth), np.cos(azimuth)
-        self.homes_m = robot.home_radius_m * np.stack([-sin, cos], axis=1)
-        home = robot.home_radius_m - mounts
-        self.frames = np.array([(home, 0 * home), (-sin, -cos), (cos, -sin)])
-        """Affine map from the robot frame to each leg's frame, (3, 2, legs): home's position from
-        the coxa joint [m], the coefficients of x, the coefficients of y; each along the leg, and
-        across."""
-        self._numbers = [frame.ravel().tolist() for frame in np.moveaxis(self.frames, -1, 0)]
+        yaw = azimuth + np.subtract(*_directions(robot.legs)[::-1])
+        sin, cos = np.sin(yaw), np.cos(yaw)
+        radius, home = np.array([leg.radius_m for leg in robot.legs]), np.array(robot.feet_out_m)
+        points_away = robot.span_m if robot.span_m == robot.home_radius_m else radius + home
+        self.homes_m = (
+            points_away * np.stack([-sin, cos])
+            + radius * np.stack([sin - np.sin(azimuth), np.cos(azimuth) - cos])
+        ).T
+        heights = robot.body_height_m + np.array([leg.z_m for leg in robot.legs])
+        self._parts = _parts_of(robot)
+        coxa, femur, tibia = np.array(self._parts).T
+        self.frames = np.array(
+            [
+                (home, 0 * home),
+                (-sin, -cos),
+                (cos, -sin),
+                (coxa, heights),
+                (femur, tibia),
+                (femur * femur + tibia * tibia, 2 * femur * tibia),
+            ]
+        )
+        """Of each leg, (6, 2, legs): an affine map from the robot frame to the leg's frame, which
+        is home's position from the coxa joint [m], the coefficients of x, the coefficients of y,
+        each along the leg and across; then lengths of the coxa and height of its joint, lengths of
+        femur and tibia, the sum of their squares and twice their product."""
+        self._numbers = [frame[:3].ravel().tolist() for frame in np.moveaxis(self.frames, -1, 0)]
+        self._heights_m = heights.tolist()
 
     def mirrored(self, signs: FloatArray) -> FloatArray:
         frames = self.frames.copy()
@@ -70,13 +95,12 @@ class _CoxaFemurTibiaKinematics(FootKinematics):
     def solve(self, places: FloatArray, heights: FloatArray, frames: FloatArray) -> FloatArray:
         # Coordinates are separate contiguous arrays: NumPy's loops over strided arrays are slower,
         # and may differ in the last bit.
-        home, of_x, of_y = frames
+        home, of_x, of_y, (coxa, height), (femur, tibia), (squared, twice) = frames
         feet = home + (of_x * places[0] + of_y * places[1])  # (2, ...): along the leg, across
         squares = feet * feet
-        r = np.sqrt(squares[0] + squares[1]) - self._robot.coxa_m
-        fall = heights - self._robot.body_height_m
-        femur, tibia = self._robot.femur_m, self._robot.tibia_m
-        bend = (r * r + fall * fall - (femur * femur + tibia * tibia)) / (2 * femur * tibia)
+        r = np.sqrt(squares[0] + squares[1]) - coxa
+        fall = heights - height
+        bend = (r * r + fall * fall - squared) / twice
         drop = np.sqrt(1 - bend * bend)
         angles = np.empty((*r.shape, 3))
         angles[..., 0] = np.arctan2(feet[1], feet[0])
@@ -85,29 +109,50 @@ class _CoxaFemurTibiaKinematics(FootKinematics):
         return angles
 
     def foot_offsets(self, angles: Sequence[float]) -> list[tuple[float, float, float]]:
-        robot, offsets = self._robot, []
+        offsets = []
         for leg, (home, _, x_along, x_across, y_along, y_across) in enumerate(self._numbers):
             coxa, femur, tibia = angles[3 * leg : 3 * leg + 3]
-            reach, across, height = _foot(robot, coxa, femur, tibia, math)
+            reach, across, height = _foot(self._parts[leg], coxa, femur, tibia, math)
             along = reach - home
             offsets.append(
                 (
                     x_along * along + x_across * across,
                     y_along * along + y_across * across,
-                    height + robot.body_height_m,
+                    height + self._heights_m[leg],
                 )
             )
         return offsets
 
 
-def _foot(robot: Robot, coxa: Any, femur: Any, tibia: Any, of: Any) -> tuple[Any, Any, Any]:
+class _Parts(NamedTuple):
+    """Lengths of the links of a leg [m], or of all legs, (legs,)."""
+
+    coxa: Any
+    femur: Any
+    tibia: Any
+
+
+def _parts_of(robot: Robot) -> list[_Parts]:
+    links = map(robot.of_legs, ("coxa_m", "femur_m", "tibia_m"))
+    return [_Parts(*lengths_m) for lengths_m in zip(*links, strict=True)]
+
+
+def _directions(legs: Sequence[LegMount]) -> tuple[FloatArray, FloatArray]:
+    """Return the azimuths of the mounts, and the directions of the legs [rad], (legs,)."""
+    azimuths, yaws = (
+        [getattr(leg, name) for leg in legs] for name in ("azimuth_deg", "direction_deg")
+    )
+    return np.deg2rad(azimuths), np.deg2rad(yaws)
+
+
+def _foot(leg: _Parts, coxa: Any, femur: Any, tibia: Any, of: Any) -> tuple[Any, Any, Any]:
     """Return a foot's place from its coxa joint: along the leg, across, and upward [m].
 
     Angles [rad] are floats with the functions of `math`, or arrays with those of `numpy`.
     """
     knee = femur + tibia
-    r = robot.coxa_m + robot.femur_m * of.cos(femur) + robot.tibia_m * of.cos(knee)
-    height = robot.femur_m * of.sin(femur) + robot.tibia_m * of.sin(knee)
+    r = leg.coxa + leg.femur * of.cos(femur) + leg.tibia * of.cos(knee)
+    height = leg.femur * of.sin(femur) + leg.tibia * of.sin(knee)
     return r * of.cos(coxa), r * of.sin(coxa), height
 
 
@@ -120,38 +165,92 @@ def legs_of(robot: Robot) -> Legs:
     return _coxa_femur_tibia(robot)
 
 
-@lru_cache(maxsize=64)
-def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> None:
-    """Check that every foot offset that can occur is within each leg's reach and joint limits.
+_REACH_SAMPLES = 8
+"""Positions from home to the farthest that can occur in each direction, where reach is limited."""
 
-    A foot's actual forward offset drifts as the body re-centres. With G groups it stays strictly
-    within (G − 1) h of home, since the offsets sum to zero and each was last commanded to within
-    h (half the grid's side). Cached, since every run of an experiment asks it again.
+
+@lru_cache(maxsize=64)
+def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach | None:
+    """Check that each leg reaches its grid; return how far feet may drift from it.
+
+    A foot's actual forward offset drifts as the body re-centres. It stays strictly within
+    (1 − w) / w · h of home, h half the grid's side, w its group's share of all feet: the offsets of
+    the feet sum to zero, and each group was last commanded to within h. Only long series of odd
+    steps lead there, so a robot may walk whose legs reach less. Cached, since every run of an
+    experiment asks it again.
+
+    Returns:
+        None if every offset that can occur is within reach and joint limits; otherwise what is.
 
     Raises:
-        Unreachable: naming the leg and the cell.
+        Unreachable: if a foot does not reach a cell from home, naming the leg and the cell.
     """
-    legs, drift = legs_of(robot), len(gait.groups) - 1
-    kinematics = legs.under(gait)
+    legs = legs_of(robot)
+    kinematics, count = legs.under(gait), len(legs)
+    sizes = np.array(gait.sizes)[list(gait.group_of_leg)]
+    drift = (count - sizes) / sizes
+    reaches_all = True
     for cell, (x, y) in enumerate(grid.cells):
         passages = (
-            ("", y),
-            (" after the body has re-centred", drift * y),
-            (" on the way there", 0.0),
+            ("", np.full(count, y)),
+            (None, drift * y),
+            (" on the way there", np.zeros(count)),
         )
         for why, forward in passages:
             for height in (0.0, robot.step_height_m):
-                offset = np.array([x, forward, height])
-                problem = _reach_problem(
-                    legs, kinematics.joint_angles(np.tile(offset, (len(legs), 1)))
-                )
-                if problem:
+                # Both (x, y) and (−x, y) are cells, so mirrored legs need not be told apart.
+                offsets = np.column_stack((np.full(count, x), forward, np.full(count, height)))
+                problem = _reach_problem(legs, kinematics.joint_angles(offsets))
+                if problem and why is None:
+                    reaches_all = False
+                elif problem:
                     leg, reason = problem
                     raise Unreachable(
                         f"leg {leg} cannot reach cell {cell} ({grid.name(cell)}){why}: "
                         f"{reason}; choose a smaller grid_side_m than {grid.side_m:g}, a "
                         "lower step_height_m, or other link lengths, home radius or body height"
                     )
+    return None if reaches_all else _forward_reach(robot, gait, grid)
+
+
+def _forward_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach:
+    """Return how far the feet of each group reach forward and back, wherever they are sideways.
+
+    Raises:
+        Unreachable: if that is less than the grid, or a foot does not reach a place between.
+    """
+    legs, half = legs_of(robot), grid.half_side_m
+    kinematics = legs.under(gait)
+    widths = np.linspace(-half, half, 2 * _REACH_SAMPLES + 1)
+    heights = np.linspace(0, robot.step_height_m, 4)
+    back: list[float] = []
+    ahead: list[float] = []
+    for group in gait.groups:
+        # From the grid's edge to the farthest that can occur, away from home and towards it.
+        farthest = half * max(1.0, (len(legs) - len(group)) / len(group))
+        outward = np.concatenate(
+            (
+                np.linspace(0, half, _REACH_SAMPLES, endpoint=False),
+                np.linspace(half, farthest, 4 * _REACH_SAMPLES),
+            )
+        )
+        of_group = np.isin(legs.leg_of_joint, np.array(group) - 1)
+        low, high = legs.limits_rad[:, of_group]
+        for sign, found in ((-1, back), (1, ahead)):
+            x, y, z = np.meshgrid(widths, sign * outward, heights, indexing="ij")
+            offsets = np.stack((x, y, z), -1)[..., None, :].repeat(len(legs), -2)
+            angles = kinematics.joint_angles(offsets)[..., of_group]
+            is_possible = ((low <= angles) & (angles <= high)).all(axis=(0, 2, 3))
+            reached = outward[: int(is_possible.argmin())] if not is_possible.all() else outward
+            if len(reached) <= _REACH_SAMPLES:
+                names = " and ".join(map(str, group))
+                raise Unreachable(
+                    f"leg {names} cannot reach everywhere between the cells of its grid: choose a "
+                    f"smaller grid_side_m than {grid.side_m:g}, a lower step_height_m, or other "
+                    "link lengths, home radius or body height"
+                )
+            found.append(sign * float(reached[-1]))
+    return Reach(tuple(back), tuple(ahead))
 
 
 def _reach_problem(legs: Legs, angles: FloatArray) -> tuple[int, str] | None:

@@ -9,9 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hexapods.domain.feet import Feet
+from hexapods.domain.feet import Feet, StepLaw
 from hexapods.domain.gait import Gait
-from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.legs import FootKinematics
 from hexapods.domain.robot import Robot
@@ -37,34 +36,25 @@ class StepMotion:
     """Plans steps and their joint targets, for one robot, gait and foot grid."""
 
     def __init__(
-        self, robot: Robot, gait: Gait, grid: FootGrid, substeps: IntArray | None = None
+        self, robot: Robot, gait: Gait, law: StepLaw, substeps: IntArray | None = None
     ) -> None:
         """Compute what all steps have in common.
 
         Args:
             robot: the robot.
             gait: the gait.
-            grid: the foot grid.
+            law: by which the feet move.
             substeps: indices of those whose joint targets are computed, ascending; None for all.
         """
-        self.kinematics = legs_of(robot).under(gait)
-        self._places = grid.places_m
-        self._groups = len(gait.groups)
+        self.kinematics, self._law = legs_of(robot).under(gait), law
         total = robot.swing_substeps + robot.shift_substeps
         wanted = np.arange(total) if substeps is None else substeps
         self._samples = _samples(robot, gait, self.kinematics, wanted)
         self._substeps = len(wanted)
 
-    def at_home(self) -> Feet:
-        """Return the offsets with every foot at home."""
-        return Feet.at_home(self._groups)
-
     def plan(self, start: Feet, action: Action) -> StepPlan:
-        """Plan a step from the feet's offsets, by the kinematic law of `hexapods.domain.feet`."""
-        group, cell = action
-        landed = start.landed(group, cell, self._places[cell])
-        end, advance = landed.centred()
-        return StepPlan(group, start, landed, end, advance)
+        """Plan a step from the feet's offsets, by the kinematic law."""
+        return StepPlan(action.group, start, *self._law.step(start, action))
 
     def joint_targets(self, plans: Sequence[StepPlan]) -> FloatArray:
         """Compute the commands of the position servos over the wanted substeps of each step.
@@ -137,18 +127,22 @@ def _samples(robot: Robot, gait: Gait, kinematics: FootKinematics, substeps: Int
         substeps: indices of the wanted ones.
     """
     count, is_swing = len(kinematics.legs), substeps < robot.swing_substeps
-    all_legs, swinging_legs = np.arange(count), np.array(gait.groups) - 1
-    groups, size = swinging_legs.shape
+    # In the samples of each group there is room for the legs of the largest; a smaller one repeats
+    # some of its own there, which command nothing.
+    all_legs, groups, size = np.arange(count), len(gait.groups), max(gait.sizes)
     swing_times = (substeps[is_swing] + 1) / robot.swing_substeps
     shift_times = (substeps[~is_swing] - robot.swing_substeps + 1) / robot.shift_substeps
     swing, shift = len(swing_times), len(shift_times)
     swing_phase, shift_phase = np.repeat(swing_times, size), np.repeat(shift_times, count)
     zeros = np.zeros(count)
     legs, order = [], []
-    for group in swinging_legs:
-        legs.append(np.concatenate((all_legs, np.tile(group, swing), np.tile(all_legs, shift))))
+    for group in gait.groups:
+        swinging = np.array(group) - 1
+        filled = np.resize(swinging, size)
+        legs.append(np.concatenate((all_legs, np.tile(filled, swing), np.tile(all_legs, shift))))
         in_swing = np.tile(all_legs, (swing, 1))
-        in_swing[:, group] = count + np.arange(size * swing).reshape(swing, size)
+        samples = count + np.arange(size * swing).reshape(swing, size)
+        in_swing[:, swinging] = samples[:, : len(group)]
         in_shift = count + size * swing + np.arange(count * shift)
         order.append(np.concatenate((in_swing.ravel(), in_shift)))
     sample_legs = np.array(legs)

@@ -70,6 +70,14 @@ def measured_offsets(
     return [(x + dx, y + dy) for (x, y), (dx, dy) in zip(offsets, error_m.tolist(), strict=True)]
 
 
+def legal_in(simulator: Simulator[S], state: S, observed: Cells) -> Sequence[Action]:
+    """Return the legal actions in a state, in which an agent observes these cells.
+
+    Those that lead a foot out of reach are not legal.
+    """
+    return simulator.law.possible(state.feet, legal_actions(observed, len(simulator.grid)))
+
+
 @lru_cache(maxsize=1 << 10)
 def legal_actions(cells: Cells, cell_count: int) -> tuple[Action, ...]:
     """Return all legal actions, group by group: every cell but the group's observed one."""

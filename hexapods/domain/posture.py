@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,31 +15,40 @@ _TOUCHING_M = 0.002
 
 
 def has_fallen(robot: Robot, pose: Sequence[float], ground_m: float = 0.0) -> bool:
-    """Whether the torso lies on the ground, by the lowest point of its cylinder.
+    """Whether the torso lies on the ground, by the lowest point of its cylinder or box.
 
     Args:
         robot: the robot.
         pose: torso position [m] and rotation (wxyz), which may be followed by joint angles [rad].
         ground_m: height of the highest bumps of the ground [m].
     """
-    _, _, z, _, x, y, _ = pose[:7]
-    upright = 1 - 2 * (x * x + y * y)  # cosine of the torso's tilt
-    tilt = math.sqrt(max(0.0, 1 - upright * upright))
-    low = z - abs(upright) * robot.torso_half_height_m - tilt * robot.torso_radius_m
-    return low <= ground_m + _TOUCHING_M
+    _, _, z, *rotation = pose[:7]
+    return bool(_lowest(robot, z, rotation, math.sqrt, max) <= ground_m + _TOUCHING_M)
 
 
-TILT = (2, 4, 5)
-"""Of a pose the numbers by which it has fallen: the height, and x and y of its rotation."""
+TILT = (2, 3, 4, 5, 6)
+"""Of a pose the numbers by which it has fallen: the height, and the rotation."""
 
 
 def have_fallen(robot: Robot, tilts: FloatArray, ground_m: float = 0.0) -> NDArray[np.bool_]:
-    """Return whether each of n poses `has_fallen`, by their `TILT`, (n, 3), to the same bit."""
-    z, x, y = tilts.T
-    upright = 1 - 2 * (x * x + y * y)
-    tilt = np.sqrt(np.maximum(0.0, 1 - upright * upright))
-    low = z - abs(upright) * robot.torso_half_height_m - tilt * robot.torso_radius_m
-    return np.asarray(low <= ground_m + _TOUCHING_M)
+    """Return whether each of n poses `has_fallen`, by their `TILT`, (n, 5), to the same bit."""
+    z, *rotation = tilts.T
+    return np.asarray(_lowest(robot, z, rotation, np.sqrt, np.maximum) <= ground_m + _TOUCHING_M)
+
+
+def _lowest(robot: Robot, z: Any, wxyz: Sequence[Any], root: Any, larger: Any) -> Any:
+    """Return the height of the torso's lowest point [m].
+
+    Numbers are floats with the functions `math.sqrt` and `max`, or arrays with those of NumPy.
+    """
+    w, x, y, around = wxyz
+    upright = 1 - 2 * (x * x + y * y)  # cosine of the torso's tilt
+    low = z - abs(upright) * robot.torso_half_height_m
+    if robot.torso_length_m is None:
+        return low - root(larger(0.0, 1 - upright * upright)) * robot.torso_radius_m
+    half_x, half_y = robot.torso_half_sides_m
+    sideways, lengthways = 2 * (x * around - w * y), 2 * (y * around + w * x)
+    return low - abs(sideways) * half_x - abs(lengthways) * half_y
 
 
 def heading_deg(pose: Sequence[float], start: Sequence[float]) -> float:

@@ -1,131 +1,16 @@
-"""Robots: morphology, servos and step timing, with named presets and validated overrides."""
+"""Robots from user input: named presets, and validated overrides of them."""
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, fields, replace
 from typing import Annotated, Any
 
+from hexapods.domain.body import MAX_LEGS, MIN_LEGS, NO_NUMBERS, LegMount, Robot, ring
+from hexapods.domain.creatures import PRESETS
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import JsonForm, Schema
 
-MIN_LEGS, MAX_LEGS = 4, 12
-_NO_NUMBERS = ("name", "legs")
-"""Fields of a robot that are not a number."""
-
-
-@dataclass(frozen=True)
-class LegMount:
-    """Position of a leg's coxa joint on the torso, in polar coordinates of the body frame."""
-
-    azimuth_deg: float
-    """Anticlockwise from body x, seen from above."""
-    radius_m: float = 0.10
-
-
-def ring(legs: int, radius_m: float = 0.10) -> tuple[LegMount, ...]:
-    """Return the mounts of a regular ring, leg 1 along body x, numbered anticlockwise.
-
-    Raises:
-        InvalidInput: if the number of legs is odd or out of range.
-    """
-    if legs % 2 or not MIN_LEGS <= legs <= MAX_LEGS:
-        raise InvalidInput(f"a robot has an even number of legs, {MIN_LEGS} to {MAX_LEGS}")
-    return tuple(LegMount(360 * i / legs, radius_m) for i in range(legs))
-
-
-@dataclass(frozen=True)
-class Robot:
-    """Parameters of a robot. Lengths in m, masses in kg, times in s.
-
-    The defaults are the `stiff` hexapod. All legs have the same dimensions.
-
-    Raises:
-        InvalidInput: if a value is out of range.
-    """
-
-    name: str = "stiff"
-    """Name of the preset; with the suffix `(modified)` if fields differ from it."""
-    legs: tuple[LegMount, ...] = ring(6)
-    torso_radius_m: float = 0.10
-    torso_half_height_m: float = 0.02
-    coxa_m: float = 0.05
-    femur_m: float = 0.08
-    tibia_m: float = 0.13
-    foot_radius_m: float = 0.012
-    torso_kg: float = 1.2
-    coxa_kg: float = 0.06
-    femur_kg: float = 0.06
-    tibia_kg: float = 0.03
-    foot_kg: float = 0.01
-    home_radius_m: float = 0.25
-    """Horizontal distance of a foot at home from the torso's centre."""
-    body_height_m: float = 0.09
-    """Height of the torso's centre above the centres of the feet."""
-    step_height_m: float = 0.03
-    """Height of a foot at the middle of its swing."""
-    swing_s: float = 0.2
-    shift_s: float = 0.12
-    servo_kp: float = 40.0
-    """Position gain [N·m/rad]."""
-    servo_kv: float = 1.0
-    """Velocity gain [N·m·s/rad]."""
-    servo_torque_nm: float = 1.5
-    joint_armature: float = 0.002
-    """Rotor inertia reflected to the joint [kg·m²]."""
-    joint_damping: float = 0.05
-    """[N·m·s/rad]."""
-    friction: float = 1.0
-    """Sliding friction between feet and ground."""
-    dt_s: float = 0.004
-    """Time step of the physics; with 0.008 s results begin to drift."""
-
-    def __post_init__(self) -> None:
-        numbers = {name: value for name, value in vars(self).items() if name not in _NO_NUMBERS}
-        for name, value in numbers.items():
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise InvalidInput(f"robot.{name} must be a number, not {value!r}")
-            if not (math.isfinite(value) and value > 0):
-                raise InvalidInput(f"robot.{name} must be positive and finite, not {value}")
-        legs: Any = self.legs  # as a user gave them
-        if not isinstance(legs, tuple) or not all(isinstance(leg, LegMount) for leg in legs):
-            raise InvalidInput(f"robot.legs must be a tuple of LegMount, not {legs!r}")
-        if len(self.legs) % 2 or not MIN_LEGS <= len(self.legs) <= MAX_LEGS:
-            raise InvalidInput(
-                f"a robot has an even number of legs, {MIN_LEGS} to {MAX_LEGS}, not "
-                f"{len(self.legs)}"
-            )
-        if self.dt_s > 0.005:
-            raise InvalidInput(f"robot.dt_s must be at most 0.005 s, not {self.dt_s}")
-        for name in ("swing_s", "shift_s"):
-            if not 2 * self.dt_s <= getattr(self, name) <= 5:
-                raise InvalidInput(f"robot.{name} must be from two substeps to 5 s")
-
-    @property
-    def azimuths_deg(self) -> tuple[float, ...]:
-        """Each leg's azimuth in the body frame, anticlockwise from body x."""
-        return tuple(leg.azimuth_deg for leg in self.legs)
-
-    @property
-    def swing_substeps(self) -> int:
-        """Physics substeps of the swing phase."""
-        return max(1, round(self.swing_s / self.dt_s))
-
-    @property
-    def shift_substeps(self) -> int:
-        """Physics substeps of the shift phase."""
-        return max(1, round(self.shift_s / self.dt_s))
-
-    @property
-    def step_s(self) -> float:
-        """Duration of one step's motion [s]."""
-        return (self.swing_substeps + self.shift_substeps) * self.dt_s
-
-
-PRESETS: dict[str, Robot] = {
-    "stiff": Robot(),
-    "compliant": Robot(name="compliant", servo_kp=10.0, servo_kv=0.5),
-    "slippery": Robot(name="slippery", friction=0.1),
-}
+__all__ = ["MAX_LEGS", "MIN_LEGS", "PRESETS", "LegMount", "Robot", "ring"]
 
 RANGES: dict[str, tuple[float, float]] = {
     "coxa_m": (0.001, 2.0),
@@ -134,6 +19,8 @@ RANGES: dict[str, tuple[float, float]] = {
     "foot_radius_m": (0.001, 2.0),
     "torso_radius_m": (0.01, 2.0),
     "torso_half_height_m": (0.002, 1.0),
+    "torso_length_m": (0.02, 4.0),
+    "torso_width_m": (0.02, 4.0),
     "home_radius_m": (0.01, 5.0),
     "body_height_m": (0.01, 3.0),
     "step_height_m": (0.001, 1.0),
@@ -153,14 +40,38 @@ RANGES: dict[str, tuple[float, float]] = {
     "dt_s": (0.0005, 0.005),
 }
 MOUNT_RADIUS, AZIMUTH = (0.0, 2.0), (-360.0, 360.0)
+_OWN = (
+    "coxa_m",
+    "femur_m",
+    "tibia_m",
+    "coxa_kg",
+    "femur_kg",
+    "tibia_kg",
+    "foot_kg",
+    "servo_kp",
+    "servo_kv",
+    "servo_torque_nm",
+)
+"""Fields of a robot that a leg may have its own of."""
+LEG_RANGES: dict[str, tuple[float, float]] = {
+    "azimuth_deg": AZIMUTH,
+    "radius_m": MOUNT_RADIUS,
+    "z_m": (-1.0, 1.0),
+    "yaw_deg": AZIMUTH,
+    "foot_out_m": (0.001, 5.0),
+    **{name: RANGES[name] for name in _OWN},
+}
+_PLACE = ("x_m", "y_m")
+"""Fields of a leg in a request that may stand for its azimuth and radius."""
+_COORDINATE = (-MOUNT_RADIUS[1], MOUNT_RADIUS[1])
 
 
 def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
     """Build a robot from user input: a preset's name, or overrides of a preset.
 
     A mapping may have `preset` (default `stiff`), any number of `Robot`'s fields, and its legs
-    either as `n_legs` (a regular ring, with `mount_radius_m`) or as `legs`, a list of
-    `{azimuth_deg, radius_m}`.
+    either as `n_legs` (a regular ring, with `mount_radius_m`) or as `legs`, a list of mappings with
+    the fields of `LegMount`; `x_m` and `y_m` may stand for azimuth and radius.
 
     Raises:
         UnknownName: for an unknown preset or field.
@@ -176,7 +87,7 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
             raise InvalidInput(f"robot.{name} must not be null; leave it out for the preset's")
     base = _preset(given.pop("preset", "stiff"))
     legs = _legs(given, base)
-    numbers = {f.name for f in fields(Robot)}.difference(_NO_NUMBERS)
+    numbers = {f.name for f in fields(Robot)}.difference(NO_NUMBERS)
     for name, number in given.items():
         if name not in numbers:
             valid = ["preset", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]
@@ -194,8 +105,15 @@ def as_mapping(value: Robot) -> dict[str, Any]:
     base, own = asdict(PRESETS[preset]), asdict(value)
     differs = {k: v for k, v in own.items() if k != "name" and v != base[k]}
     if "legs" in differs:
-        differs["legs"] = list(differs["legs"])
+        differs["legs"] = [_leg_as_mapping(leg) for leg in value.legs]
     return {"preset": preset, **differs}
+
+
+def _leg_as_mapping(leg: LegMount) -> dict[str, float]:
+    """Return a leg's place, and what differs from the robot's other legs."""
+    place = {"azimuth_deg": leg.azimuth_deg, "radius_m": leg.radius_m}
+    usual = {one.name: one.default for one in fields(LegMount)}
+    return place | {k: v for k, v in asdict(leg).items() if k not in place and v != usual[k]}
 
 
 def _preset(name: object) -> Robot:
@@ -224,22 +142,50 @@ def _legs(given: dict[str, Any], base: Robot) -> tuple[LegMount, ...]:
 
 
 def _mounts(mounts: object) -> tuple[LegMount, ...]:
-    shape = "robot.legs must be a list of {azimuth_deg, radius_m}"
+    shape = "robot.legs must be a list of {azimuth_deg, radius_m} or {x_m, y_m}"
     if not isinstance(mounts, Sequence) or isinstance(mounts, str):
         raise InvalidInput(shape)
     read = []
-    for mount in mounts:
-        if not isinstance(mount, Mapping) or set(mount) - {"azimuth_deg", "radius_m"}:
-            raise InvalidInput(shape)
-        azimuth = _number("legs.azimuth_deg", mount.get("azimuth_deg"))
-        read.append(LegMount(azimuth, _number("mount_radius_m", mount.get("radius_m", 0.10))))
+    for number, mount in enumerate(mounts, start=1):
+        known = {*LEG_RANGES, *_PLACE}
+        if not isinstance(mount, Mapping) or set(mount) - known:
+            others = ", ".join(
+                name for name in LEG_RANGES if name not in ("azimuth_deg", "radius_m")
+            )
+            raise InvalidInput(f"{shape}, each of which may have {others}")
+        read.append(_mount(number, mount))
     return tuple(read)
 
 
+def _mount(number: int, mount: Mapping[str, Any]) -> LegMount:
+    """Read a leg; its number is for messages."""
+    given = dict(mount)
+    if any(name in given for name in _PLACE):
+        if "azimuth_deg" in given or "radius_m" in given:
+            raise InvalidInput(
+                f"robot.legs: leg {number} has azimuth_deg and radius_m, or x_m and y_m, not both"
+            )
+        x, y = (_limited(f"legs.{name}", given.pop(name, None), _COORDINATE) for name in _PLACE)
+        given |= {"azimuth_deg": math.degrees(math.atan2(y, x)), "radius_m": math.hypot(x, y)}
+    given.setdefault("azimuth_deg", None)
+    return LegMount(
+        **{name: _limited(f"legs.{name}", part, LEG_RANGES[name]) for name, part in given.items()}
+    )
+
+
 def _number(name: str, value: object) -> float:
+    return _limited(name, value, RANGES.get(name, MOUNT_RADIUS))
+
+
+def _limited(name: str, value: object, limits: tuple[float, float]) -> float:
+    """Return a number of the input.
+
+    Raises:
+        InvalidInput: if it is none, or out of its limits.
+    """
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InvalidInput(f"robot.{name} must be a number, not {value!r}")
-    low, high = RANGES.get(name, MOUNT_RADIUS if name == "mount_radius_m" else AZIMUTH)
+    low, high = limits
     if not low <= value <= high:
         raise InvalidInput(f"robot.{name} must be from {low:g} to {high:g}, not {value}")
     return float(value)
@@ -255,11 +201,24 @@ def _numbers(ranges: Mapping[str, tuple[float, float]]) -> Schema:
 _PRESET: Schema = {"type": "string", "enum": list(PRESETS)}
 _LEG: Schema = {
     "type": "object",
-    "properties": _numbers({"azimuth_deg": AZIMUTH, "radius_m": MOUNT_RADIUS}),
+    "properties": _numbers(LEG_RANGES),
     "additionalProperties": False,
 }
+_PLACED: Schema = {
+    "type": "object",
+    "properties": _numbers(LEG_RANGES | dict.fromkeys(_PLACE, _COORDINATE)),
+    "additionalProperties": False,
+    "oneOf": [{"required": ["azimuth_deg"]}, {"required": list(_PLACE)}],
+    "not": {
+        "anyOf": [
+            {"required": [place, polar]}
+            for place in _PLACE
+            for polar in ("azimuth_deg", "radius_m")
+        ]
+    },
+}
 _COUNTED: Schema = {
-    "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS, "multipleOf": 2},
+    "n_legs": {"type": "integer", "minimum": MIN_LEGS, "maximum": MAX_LEGS},
     **_numbers({"mount_radius_m": MOUNT_RADIUS}),
 }
 _GIVEN: Schema = {
@@ -270,7 +229,7 @@ _GIVEN: Schema = {
             "type": "array",
             "minItems": MIN_LEGS,
             "maxItems": MAX_LEGS,
-            "items": {**_LEG, "required": ["azimuth_deg"]},
+            "items": _PLACED,
         },
         **_COUNTED,
         **_numbers(RANGES),

@@ -6,7 +6,7 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.domain.feet import Feet
+from hexapods.domain.feet import Feet, StepLaw
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.robot import Robot
@@ -82,6 +82,7 @@ class Simulator(Protocol[S]):
     gait: Gait
     grid: FootGrid
     world: World
+    law: StepLaw
 
     def rest(self) -> S:
         """Return the state at rest on the start line, with every foot at home."""

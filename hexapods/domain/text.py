@@ -157,6 +157,11 @@ def whole(number: int) -> str:
     return f"{number:,}".replace(",", "\u202f") if abs(number) >= _SMALLEST_GROUPED else f"{number}"
 
 
+def counted(number: int, one: str, many: str | None = None) -> str:
+    """Format a count with its noun: `1 seed`, `30 seeds`."""
+    return f"{number:,} {one if number == 1 else many or one + 's'}"
+
+
 def metres(value: float) -> str:
     """Format a distance to the centimetre, `0.36 m`; never `-0.00 m`, with U+2212 as the minus."""
     return f"{round(value, 2) + 0.0:.2f}\u00a0m".replace("-", "−")

@@ -1,12 +1,13 @@
 """Build tolerance: a robot as it was built, which differs a little from the robot as designed."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.robot import AZIMUTH, RANGES, Robot
+from hexapods.domain.robot import AZIMUTH, RANGES, LegMount, Robot
 
 MAX_TOLERANCE = 0.2
 VARIED = (
@@ -52,11 +53,21 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
         for name, deviation in zip(VARIED, drawn, strict=False)
     }
     apart_deg = _FULL_TURN_DEG / len(robot.legs)
+    factors = {name: 1 + share * deviation for name, deviation in zip(VARIED, drawn, strict=False)}
     legs = tuple(
-        replace(leg, azimuth_deg=_within(leg.azimuth_deg + share * apart_deg * off, AZIMUTH))
+        _as_built(leg, factors, share * apart_deg * off)
         for leg, off in zip(robot.legs, drawn[len(VARIED) :], strict=True)
     )
     return replace(robot, legs=legs, **own)
+
+
+def _as_built(leg: LegMount, factors: Mapping[str, float], off_deg: float) -> LegMount:
+    """Return a leg whose own numbers deviate as the robot's do, mounted at another angle."""
+    angles = {"azimuth_deg": leg.azimuth_deg, "yaw_deg": leg.yaw_deg}
+    turned = {n: _within(at + off_deg, AZIMUTH) for n, at in angles.items() if at is not None}
+    own = {name: getattr(leg, name, None) for name in factors}
+    varied = {n: _within(v * factors[n], RANGES[n]) for n, v in own.items() if v is not None}
+    return replace(leg, **turned, **varied)
 
 
 def _within(value: float, limits: tuple[float, float]) -> float:

@@ -81,7 +81,7 @@ class Ghosts(Temporary):
     ) -> None:
         super().__init__(server, root, x_m)
         self._spec, self._mesh = spec, mesh
-        self._width = 2 * spec.robot.home_radius_m
+        self._width = 2 * spec.robot.span_m
         self._color, self._rest = rgb(spec.lane_specs[0].color), rest_pose(spec)
 
     def draw(self, ghosts: tuple[Ghost, ...]) -> None:

@@ -62,7 +62,7 @@ class PushArrows(Temporary):
 
     def __init__(self, server: viser.ViserServer, root: str, spec: SceneSpec, x_m: float) -> None:
         super().__init__(server, root, x_m)
-        self._radius_m = spec.robot.torso_radius_m
+        self._radius_m = max(spec.robot.torso_half_sides_m)
 
     def draw(self, lane: LaneFrame) -> None:
         """Show the pushes of the step, where the robot is when they are first seen."""

@@ -121,7 +121,7 @@ class _RunScene:
         self.spec = spec
         self._root = server.scene.add_frame(SCENE_ROOT, show_axes=False)
         self._ghost_spec = ghost_spec = spec.ghosts or spec
-        width = max(2 * s.robot.home_radius_m + s.grid.side_m + 0.08 for s in (spec, ghost_spec))
+        width = max(2 * s.robot.span_m + s.grid.side_m + 0.08 for s in (spec, ghost_spec))
         lane_specs = [*spec.lane_specs, *ghost_spec.lane_specs[len(spec.lane_specs) :]]
         # A training has a last lane for the ghosts of its evaluations.
         lanes = len(lane_specs) + (spec.kind == "training")

@@ -9,7 +9,7 @@ from annotated_types import Ge, Le
 
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import NAMED_GAITS, AnyGait
+from hexapods.domain.gait import PAPER_GAITS, AnyGait
 from hexapods.domain.observation import PAPER_OBSERVATIONS, Observation
 from hexapods.domain.records import Record
 from hexapods.domain.robot import AnyRobot, Robot, robot
@@ -34,7 +34,7 @@ from hexapods.runs.config import (
     agent_settings,
 )
 
-ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery"]
+ExperimentName = Literal["table1", "figure4", "sweep", "league", "recovery", "groups", "bodies"]
 EXPERIMENTS: tuple[ExperimentName, ...] = get_args(ExperimentName)
 MAX_SEEDS = 10_000
 MAX_TRIALS = 200_000
@@ -53,8 +53,9 @@ TRIALS_TABLE = "trials.csv"
 GRID = ("steps", "steps_per_episode", "divisions", "grid_side_m")
 """Fields that a sweep varies beside agent, gait, observation, robot and the agents' settings;
 table1 and figure4 keep them at the paper's values."""
-DISTURBED: tuple[ExperimentName, ...] = ("league", "recovery")
-"""Experiments in several worlds, with robots that differ by seed and references that search."""
+DISTURBED: tuple[ExperimentName, ...] = ("league", "recovery", "groups", "bodies")
+"""Experiments with learning curves beside references that search, in worlds or with bodies of any
+kind; robots may differ by seed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,11 +65,13 @@ class ExperimentConfig(Record):
     Attributes:
         experiment: `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid;
             `league`: learners and searchers in several worlds; `recovery`: learners to which
-            something happens in the middle of their practice.
+            something happens in the middle of their practice; `groups`: gaits that move legs in
+            other groups; `bodies`: learners and creatures, each in the gait that suits it.
         seeds: number of seeds for each setting of an agent that learns.
         seed: root seed, from which the seeds of all trials are spawned.
         agents: the learners; in a sweep also look-ahead agents. Table 1 has a fixed list.
-        gaits, observations, robots: every combination is a setting.
+        gaits, observations, robots: every combination is a setting; without gaits, as in
+            `bodies`, each robot has the gait that suits it.
         simulator: simulator of all trials.
         steps, steps_per_episode, divisions, grid_side_m: values of these fields of a training;
             every combination is a setting.
@@ -106,7 +109,7 @@ class ExperimentConfig(Record):
     ] = 30
     seed: Seed = 0
     agents: tuple[str, ...] = ("q-learning",)
-    gaits: tuple[AnyGait, ...] = tuple(NAMED_GAITS)
+    gaits: tuple[AnyGait, ...] = tuple(PAPER_GAITS)
     observations: tuple[Observation, ...] = PAPER_OBSERVATIONS
     robots: tuple[AnyRobot, ...] = (Robot(),)
     simulator: SimulatorName = "mujoco"
@@ -132,7 +135,7 @@ class ExperimentConfig(Record):
                 )
         lists = {name: getattr(self, name) for name in (*_LIST_FIELDS, *GRID)} | dict(self.settings)
         for name, values in lists.items():
-            if not values:
+            if not values and (name, self.experiment) != ("gaits", "bodies"):
                 raise InvalidInput(f"{name} must name at least one")
             if any(value in values[:place] for place, value in enumerate(values)):
                 raise InvalidInput(f"{name} names something twice")
@@ -173,6 +176,23 @@ _DEFAULTS: Mapping[str, Mapping[str, Any]] = {
         "steps": (100,),
         "worlds": ("limp-pair", "stuck-leg"),
     },
+    "groups": {
+        "gaits": ("left-right-origin", "left-right-vertical", "tripod"),
+        "observations": ("measured",),
+        "steps": (250,),
+        "steps_per_episode": (25,),
+    },
+    "bodies": {
+        "agents": ("q-learning", "linear-model"),
+        "gaits": (),
+        "observations": ("measured",),
+        "robots": tuple(
+            robot(name)
+            for name in ("stiff", "ant", "crab", "spider", "starfish", "dog", "centipede")
+        ),
+        "steps": (250,),
+        "steps_per_episode": (25,),
+    },
 }
 _IDEAL_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "league": {"tolerance": 0.0, "worlds": ("flat",)},
@@ -186,6 +206,11 @@ _ACCEPTED_FIELDS: Mapping[str, tuple[str, ...]] = {
     "sweep": (*_COMMON_FIELDS, "agents", *GRID),
     "league": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
     "recovery": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
+    "groups": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
+    "bodies": (
+        *(name for name in _COMMON_FIELDS if name != "gaits"),
+        *("agents", "worlds", "tolerance", "steps"),
+    ),
 }
 
 

@@ -46,8 +46,3 @@ def listed(items: Iterable[str], last: str = "and") -> str:
     """Join items into an enumeration: `a`, `a and b`, `a, b and c`."""
     *head, tail = list(items)
     return f"{', '.join(head)} {last} {tail}" if head else tail
-
-
-def counted(number: int, one: str, many: str | None = None) -> str:
-    """Format a count with its noun: `1 seed`, `30 seeds`."""
-    return f"{number:,} {one if number == 1 else many or one + 's'}"

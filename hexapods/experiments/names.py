@@ -6,14 +6,13 @@ from typing import Any
 
 from hexapods.agents.appearance import title_of
 from hexapods.domain.settings import declared_fields
-from hexapods.domain.text import MAX_NAME
+from hexapods.domain.text import MAX_NAME, counted
 from hexapods.experiments.config import (
     GRID,
     ExperimentConfig,
     default_agents,
     settings_by_name,
 )
-from hexapods.experiments.formatting import counted
 from hexapods.experiments.labels import (
     OBSERVATION_LABELS,
     gait_name,
@@ -32,6 +31,8 @@ TITLES: Mapping[str, str] = {
     "sweep": "Sweep",
     "league": "League",
     "recovery": "Recovery",
+    "groups": "Fewer groups learn faster",
+    "bodies": "Bodies",
 }
 """Title of each experiment."""
 _MAX_VALUES = 6

@@ -11,6 +11,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from hexapods.agents.registry import check_problem, learns
+from hexapods.domain.creatures import own_gait
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.kinematics import check_reach
@@ -235,7 +236,7 @@ class _Scenario(NamedTuple):
 
 def _scenarios(config: ExperimentConfig) -> Iterator[_Scenario]:
     for gait, observation, (label, robot), world, divisions, side_m in product(
-        config.gaits,
+        config.gaits or (None,),
         config.observations,
         _labelled_robots(config),
         config.worlds,
@@ -243,7 +244,7 @@ def _scenarios(config: ExperimentConfig) -> Iterator[_Scenario]:
         config.grid_side_m,
     ):
         walk = WalkingProblem(
-            gait=gait,
+            gait=own_gait(robot) if gait is None else gait,
             robot=robot,
             simulator=config.simulator,
             divisions=divisions,
@@ -311,7 +312,7 @@ def _learner(
     """Return a setting of an agent that practises, as the experiment evaluates it."""
     setting = _setting(place, agent, config.blocks, values)
     training = setting.training
-    if config.experiment == "league":
+    if config.experiment in ("league", "groups", "bodies"):
         points = (*(step for step in LEAGUE_STEPS if step < training.steps), training.steps)
         return replace(setting, trial=replace(setting.trial, evaluations=points))
     if config.experiment == "recovery":

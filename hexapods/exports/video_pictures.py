@@ -66,7 +66,7 @@ class _Scene:
     def __init__(self, shown: ShownPoses, options: VideoOptions) -> None:
         robot = shown.problem.built_robot
         count = len(shown.agents)
-        width = 2 * robot.home_radius_m + _GAP_M
+        width = 2 * robot.span_m + _GAP_M
         self._offsets_m = [(number - (count - 1) / 2) * width for number in range(count)]
         self._options, self._width_m = options, count * width
         self.model = _model(shown, self._width_m, options)

@@ -100,11 +100,19 @@ def _weak(weak: Weak, target: _Target) -> None:
 @_apply.register
 def _stuck(stuck: Stuck, target: _Target) -> None:
     """Let the servo hold the joint with all its torque, even without power: it is jammed."""
-    robot, legs = target.robot, legs_of(target.robot)
+    legs = legs_of(target.robot)
     servo = target.spec.actuator(legs.joints[legs.index(stuck.leg, stuck.joint)].label)
-    servo.gainprm[0] = robot.servo_kp
-    servo.biasprm[1:3] = -robot.servo_kp, -robot.servo_kv
-    servo.forcerange = [-robot.servo_torque_nm, robot.servo_torque_nm]
+    set_servo(servo, target.robot, stuck.leg)
+
+
+def set_servo(servo: mujoco.MjsActuator, robot: Robot, leg: int) -> None:
+    """Give a servo of a leg, counted from 1, the gains and the torque that it was built with."""
+    kp, kv, torque_nm = (
+        robot.of_legs(name)[leg - 1] for name in ("servo_kp", "servo_kv", "servo_torque_nm")
+    )
+    servo.gainprm[0] = kp
+    servo.biasprm[1:3] = -kp, -kv
+    servo.forcerange = [-torque_nm, torque_nm]
 
 
 @_apply.register
@@ -129,7 +137,7 @@ def _rough(rough: Rough, target: _Target) -> None:
     if rough.amplitude_m == 0:
         return
     heights = rough_heights(rough)
-    margin_m = max(_ROUGH_MARGIN_M, 2 * target.robot.home_radius_m)
+    margin_m = max(_ROUGH_MARGIN_M, 2 * target.robot.span_m)
     margin = round(margin_m / ROUGH_CELL_M)
     half = heights.shape[0] // 2
     # Row and column 0 of a period lie at the origin.

@@ -10,7 +10,7 @@ from hexapods.domain.disturbances import Payload
 from hexapods.domain.kinematics import JOINT_LIMITS_RAD
 from hexapods.domain.robot import Robot
 from hexapods.domain.world import UNDISTURBED, World
-from hexapods.physics.conditions import apply_conditions
+from hexapods.physics.conditions import apply_conditions, set_servo
 
 VISIBLE_GROUP = 1
 """The group of the visual geoms."""
@@ -66,12 +66,12 @@ def robot_spec(robot: Robot) -> mujoco.MjSpec:
     torso.pos = [0, 0, robot.body_height_m + robot.foot_radius_m]
     _shape_torso(spec, robot)
     for number, mount in enumerate(robot.legs, start=1):
-        azimuth = np.deg2rad(mount.azimuth_deg)
+        azimuth, yaw = np.deg2rad(mount.azimuth_deg), np.deg2rad(mount.direction_deg)
         frame = torso.add_frame(
-            pos=[mount.radius_m * np.cos(azimuth), mount.radius_m * np.sin(azimuth), 0],
-            quat=[np.cos(azimuth / 2), 0, 0, np.sin(azimuth / 2)],
+            pos=[mount.radius_m * np.cos(azimuth), mount.radius_m * np.sin(azimuth), mount.z_m],
+            quat=[np.cos(yaw / 2), 0, 0, np.sin(yaw / 2)],
         )
-        spec.attach(_leg_spec(robot), prefix=f"leg{number}_", frame=frame)
+        spec.attach(_leg_spec(robot, number), prefix=f"leg{number}_", frame=frame)
     return spec
 
 
@@ -81,34 +81,45 @@ def is_painted(geom_name: str) -> bool:
 
 
 def _shape_torso(spec: mujoco.MjSpec, robot: Robot) -> None:
-    """Scale every geom of the torso file to the robot's radius and half-height."""
+    """Scale every geom of the torso file to the robot's size; cylinders may become boxes."""
     drawn = spec.geom("torso")
-    wide = robot.torso_radius_m / drawn.size[0]
-    high = robot.torso_half_height_m / drawn.size[1]
+    radius, half_height = drawn.size[:2]
+    wide, long = (half / radius for half in robot.torso_half_sides_m)
+    high = robot.torso_half_height_m / half_height
     for geom in spec.body("torso").geoms:
         if geom.type == mujoco.mjtGeom.mjGEOM_ELLIPSOID:
-            geom.size = geom.size * [wide, wide, high]
-        else:
+            geom.size = geom.size * [wide, long, high]
+        elif robot.torso_length_m is None:
             geom.size = geom.size * [wide, high, 1]
-        geom.pos = geom.pos * [wide, wide, high]
+        else:
+            geom.type = mujoco.mjtGeom.mjGEOM_BOX
+            geom.size = geom.size[[0, 0, 1]] * [wide, long, high]
+        geom.pos = geom.pos * [wide, long, high]
     spec.geom("torso").mass = robot.torso_kg
     _set_friction(spec.geom("torso"), robot)
 
 
-def _leg_spec(robot: Robot) -> mujoco.MjSpec:
-    """Build a leg with this robot's lengths, masses, servos and friction."""
+def _leg_spec(robot: Robot, number: int) -> mujoco.MjSpec:
+    """Build a leg, counted from 1, with its lengths, masses, servos and friction."""
+
+    def own(name: str) -> float:
+        return robot.of_legs(name)[number - 1]
+
     spec = mujoco.MjSpec.from_file(str(models_dir() / "leg.xml"))
     ends = {"coxa": "femur", "femur": "tibia", "tibia": "foot"}
     for link, end_name in ends.items():
-        length: float = getattr(robot, f"{link}_m")
+        length = own(f"{link}_m")
         end = spec.body(end_name)
         _stretch(spec.body(link), length / end.pos[0])
         end.pos = [length, 0, 0]
-        spec.geom(link).mass = getattr(robot, f"{link}_kg")
+        spec.geom(link).mass = own(f"{link}_kg")
         _set_friction(spec.geom(link), robot)
-        _set_servo(spec, link, robot)
+        joint, servo = spec.joint(link), spec.actuator(link)
+        joint.armature, joint.range = robot.joint_armature, JOINT_LIMITS_RAD[link]
+        joint.damping = np.array([robot.joint_damping, 0, 0])[: np.size(joint.damping)]
+        set_servo(servo, robot, number)
     foot = spec.geom("foot")
-    foot.mass, foot.size = robot.foot_kg, [robot.foot_radius_m, 0, 0]
+    foot.mass, foot.size = own("foot_kg"), [robot.foot_radius_m, 0, 0]
     _set_friction(foot, robot)
     return spec
 
@@ -123,12 +134,3 @@ def _stretch(body: mujoco.MjsBody, factor: float) -> None:
         geom.pos = geom.pos * [factor, 1, 1]
         if np.isfinite(geom.fromto[0]):
             geom.fromto = geom.fromto * [factor, 1, 1, factor, 1, 1]
-
-
-def _set_servo(spec: mujoco.MjSpec, link: str, robot: Robot) -> None:
-    joint, servo = spec.joint(link), spec.actuator(link)
-    joint.armature, joint.range = robot.joint_armature, JOINT_LIMITS_RAD[link]
-    joint.damping = np.array([robot.joint_damping, 0, 0])[: np.size(joint.damping)]
-    servo.gainprm[0] = robot.servo_kp
-    servo.biasprm[1:3] = -robot.servo_kp, -robot.servo_kv
-    servo.forcerange = [-robot.servo_torque_nm, robot.servo_torque_nm]

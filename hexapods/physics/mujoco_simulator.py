@@ -12,7 +12,7 @@ from mujoco.batch import Batch
 
 from hexapods.domain.disturbances import DeadBand, Delay, Push, Rough, Stuck
 from hexapods.domain.errors import Diverged
-from hexapods.domain.feet import Feet
+from hexapods.domain.feet import Feet, StepLaw
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import check_reach
@@ -93,13 +93,13 @@ class MujocoSimulator:
         *,
         built: Robot | None = None,
     ) -> None:
-        check_reach(robot, gait, grid)
+        self.law = StepLaw(gait, grid, check_reach(robot, gait, grid))
         world.check(robot, "mujoco")
         _silence_mujoco_log()
         self.robot, self.gait, self.grid, self.world = robot, gait, grid, world
         self._built = robot if built is None else built
         self.model = self._model(world.as_of(0))
-        self._motion = StepMotion(robot, gait, grid)
+        self._motion = StepMotion(robot, gait, self.law)
         self._legs = self._motion.kinematics.legs
         self._substeps = robot.swing_substeps + robot.shift_substeps
         self._recorded_substeps = recorded_substeps(robot)
@@ -135,7 +135,7 @@ class MujocoSimulator:
         self._check(batch, [0.0], [0])
         batch.bind("time")[0] = 0
         qpos[:2] = 0
-        return MujocoState(_read_only_copy(batch.state[0]), self._motion.at_home())
+        return MujocoState(_read_only_copy(batch.state[0]), self.law.at_home())
 
     def step(
         self, state: MujocoState, action: Action, record: bool = False, effort: bool = False
@@ -388,7 +388,8 @@ class MujocoSimulator:
 
     def group_offsets(self, state: MujocoState) -> Sequence[tuple[float, float]]:
         angles = state.row[self._joints].tolist()
-        return self.gait.by_group(self._motion.kinematics.foot_offsets(angles))
+        feet_m = self._motion.kinematics.foot_offsets(angles)
+        return self.gait.by_group(feet_m, state.feet.lateral_m)
 
     def pose(self, state: MujocoState) -> FloatArray:
         pose: FloatArray = state.row[1 : 1 + self.model.nq].copy()

@@ -14,7 +14,7 @@ import numpy as np
 
 from hexapods.domain.disturbances import Push, SensorNoise, is_nothing
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.observation import legal_actions, observe
+from hexapods.domain.observation import legal_in, observe
 from hexapods.domain.robot import PRESETS, Robot
 from hexapods.domain.simulator import Simulator
 from hexapods.domain.types import Cells
@@ -64,7 +64,7 @@ def search(simulator: Simulator[Any], width: int = WIDTH, steps: int = RACE_STEP
         branches = [
             (state, action)
             for state in states
-            for action in legal_actions(observe(simulator, state, "measured"), len(simulator.grid))
+            for action in legal_in(simulator, state, observe(simulator, state, "measured"))
         ]
         parents, actions = zip(*branches, strict=True)
         states = _keep(simulator, simulator.expand(parents, actions).states, width)

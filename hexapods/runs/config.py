@@ -128,7 +128,7 @@ class WalkingProblem(Record):
     """Walking problem: a robot, its gait and foot grid, and the simulator.
 
     Attributes:
-        gait: a named gait, or a gait given by its leg pairs.
+        gait: a named gait, or a gait given by its groups of legs.
         robot: geometry and actuators.
         simulator: `mujoco` (physics) or `kinematic` (ideal, no slip).
         divisions: points along each side of the foot grid.

@@ -223,7 +223,7 @@ def gait_figures(walk: RecordedWalk, from_s: float, to_s: float) -> GaitFigures 
         to_s=to_s,
         distance_m=distance,
         speed_m_s=speed,
-        speed_body_lengths_s=speed / (2 * robot.torso_radius_m),
+        speed_body_lengths_s=speed / (2 * robot.torso_half_sides_m[1]),
         duty_factor=sum(duties) / max(1, len(duties)),
         mass_kg=mass,
         legs=legs,

@@ -13,7 +13,8 @@ import numpy as np
 from hexapods.agents.explanation import ChoiceExplanation, Explaining, UpdateExplanation
 from hexapods.agents.protocol import Agent, Transition, Tunable, Valuing
 from hexapods.domain.errors import HexapodError
-from hexapods.domain.feet import Feet
+from hexapods.domain.feet import Feet, StepLaw
+from hexapods.domain.kinematics import check_reach
 from hexapods.domain.observation import Observation, legal_actions
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.runs import seeding
@@ -41,7 +42,9 @@ class LoggedSensors:
             observation: the observation mode.
         """
         self._grid, self._observation = walk.grid, observation
-        self.feet = Feet.at_home(len(walk.resolved_gait.groups))
+        gait = walk.resolved_gait
+        self._law = StepLaw(gait, self._grid, check_reach(walk.robot, gait, self._grid))
+        self.feet = self._law.at_home()
         self.see(self.feet.commanded, self.feet.commanded)
 
     def see(self, observation: Cells, measured: Cells) -> None:
@@ -52,12 +55,11 @@ class LoggedSensors:
 
     def legal(self, observation: Cells) -> Sequence[Action]:
         """Return the legal actions."""
-        return legal_actions(observation, len(self._grid))
+        return self._law.possible(self.feet, legal_actions(observation, len(self._grid)))
 
     def move(self, action: Action) -> None:
         """Carry out an action in the plan."""
-        landed = self.feet.landed(*action, self._grid.places_m[action.cell])
-        self.feet, _ = landed.centred()
+        _, self.feet, _ = self._law.step(self.feet, action)
 
     def __call__(self, how: Observation) -> Cells:
         """Return the observed cells, one per group."""

@@ -11,7 +11,7 @@ from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import IllegalAction
 from hexapods.domain.observation import (
     Observation,
-    legal_actions,
+    legal_in,
     measured_offsets,
     observe,
 )
@@ -178,7 +178,7 @@ class SimulatorExpand:
     def legal(self, state: WalkState) -> Sequence[Action]:
         """Return the legal actions in a state."""
         observed = observe(self._simulator, state, self._observation)
-        return legal_actions(observed, len(self._simulator.grid))
+        return legal_in(self._simulator, state, observed)
 
 
 class Walker:
@@ -213,7 +213,7 @@ class Walker:
         self.state = state
         self._sensors.at(state)
         self.observed: Cells = self._sensors(self.observation)
-        self.legal = legal_actions(self.observed, len(self.simulator.grid))
+        self.legal = legal_in(self.simulator, state, self.observed)
         if self.expand:
             self.expand.at(state, self._sensors, self.legal)
 

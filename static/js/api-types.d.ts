@@ -103,6 +103,42 @@ export interface BeliefView {
   deviation_after: number | null;
 }
 /**
+ * Groups with which a robot that tips would stand.
+ */
+export interface BetterGroups {
+  /**
+   * the gait with these groups.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
+  /**
+   * its least support margin.
+   */
+  margin_m: number;
+  /**
+   * its number of states.
+   */
+  states: number;
+}
+/**
  * The moment of another race at which a race branches off; until then both are the same.
  */
 export interface Branch {
@@ -599,33 +635,92 @@ export interface ProgressView {
  */
 export interface TrainingConfigView {
   /**
-   * a named gait, or a gait given by its leg pairs.
+   * a named gait, or a gait given by its groups of legs.
    */
   gait:
-    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
     | {
         right_leg: number;
         left_leg: number;
         symmetry?: "origin" | "vertical";
         pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
    * A preset, and by name the parts that differ from it.
    */
   robot: {
-    preset: "stiff" | "compliant" | "slippery";
+    preset:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
     legs?: {
       azimuth_deg: number;
       radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
     }[];
     [k: string]:
       | number
       | "stiff"
       | "compliant"
       | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
       | {
           azimuth_deg: number;
           radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
         }[]
       | undefined;
   };
@@ -736,33 +831,92 @@ export interface RaceView {
  */
 export interface RaceConfigView {
   /**
-   * a named gait, or a gait given by its leg pairs.
+   * a named gait, or a gait given by its groups of legs.
    */
   gait:
-    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
     | {
         right_leg: number;
         left_leg: number;
         symmetry?: "origin" | "vertical";
         pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
    * A preset, and by name the parts that differ from it.
    */
   robot: {
-    preset: "stiff" | "compliant" | "slippery";
+    preset:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
     legs?: {
       azimuth_deg: number;
       radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
     }[];
     [k: string]:
       | number
       | "stiff"
       | "compliant"
       | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
       | {
           azimuth_deg: number;
           radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
         }[]
       | undefined;
   };
@@ -939,9 +1093,9 @@ export interface ExperimentView {
  */
 export interface ExperimentConfig {
   /**
-   * `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid; `league`: learners and searchers in several worlds; `recovery`: learners to which something happens in the middle of their practice.
+   * `table1`: the paper's Table 1; `figure4`: its Figure 4; `sweep`: any grid; `league`: learners and searchers in several worlds; `recovery`: learners to which something happens in the middle of their practice; `groups`: gaits that move legs in other groups; `bodies`: learners and creatures, each in the gait that suits it.
    */
-  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
+  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery" | "groups" | "bodies";
   /**
    * How often each setting is tried, each time with other random numbers.
    */
@@ -955,40 +1109,99 @@ export interface ExperimentConfig {
    */
   agents: string[];
   /**
-   * every combination is a setting.
+   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
    */
   gaits: (
-    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
     | {
         right_leg: number;
         left_leg: number;
         symmetry?: "origin" | "vertical";
         pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       }
   )[];
   /**
-   * every combination is a setting.
+   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
    */
   observations: ("measured" | "commanded" | "planned")[];
   /**
-   * every combination is a setting.
+   * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
    *
    * Items: A preset, and by name the parts that differ from it.
    */
   robots: {
-    preset: "stiff" | "compliant" | "slippery";
+    preset:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
     legs?: {
       azimuth_deg: number;
       radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
     }[];
     [k: string]:
       | number
       | "stiff"
       | "compliant"
       | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
       | {
           azimuth_deg: number;
           radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
         }[]
       | undefined;
   }[];
@@ -1186,7 +1399,7 @@ export interface GhostLane {
 export interface SceneActionValues {
   agent: string;
   lane: number;
-  pairs: [number, number][];
+  pairs: number[][];
   cell_names: string[];
   cells_m: [number, number][];
   /**
@@ -1611,7 +1824,7 @@ export interface ServoEffort {
   cost_of_transport: number | null;
 }
 /**
- * A gait, with the directions of its legs [°] and the pairs of legs that move together.
+ * A gait, with the directions of the hexapod's legs [°] and the groups that move together.
  */
 export interface GaitOption {
   name: string;
@@ -1619,7 +1832,28 @@ export interface GaitOption {
   description: string;
   forward_deg: number;
   azimuths_deg: number[];
-  pairs: [number, number][];
+  pairs: number[][];
+}
+/**
+ * A group of legs.
+ */
+export interface GroupPreview {
+  /**
+   * their numbers.
+   */
+  legs: number[];
+  /**
+   * how far the centre of mass is inside the polygon of the other feet, while these swing; below 0 the robot tips.
+   */
+  margin_m: number;
+  /**
+   * how far its feet reach from home; null where they reach all that can occur.
+   */
+  back_m: number | null;
+  /**
+   * how far its feet reach from home; null where they reach all that can occur.
+   */
+  ahead_m: number | null;
 }
 /**
  * Status and version of the server.
@@ -1641,6 +1875,34 @@ export interface Interval95 {
   iqm: number;
   low: number | null;
   high: number | null;
+}
+/**
+ * A leg, with its foot in the robot frame.
+ */
+export interface LegPreview {
+  /**
+   * its number.
+   */
+  leg: number;
+  /**
+   * number of its group, from 0.
+   */
+  group: number;
+  /**
+   * 1 on the right, -1 on the left, 0 on the axis or mirrored otherwise.
+   */
+  side: number;
+  /**
+   * place of its foot at home: right, forward.
+   *
+   * @minItems 2
+   * @maxItems 2
+   */
+  home_m: [number, number];
+  /**
+   * its mass, with the foot.
+   */
+  mass_kg: number;
 }
 /**
  * Machine on which the experiment ran; empty before its start.
@@ -1705,22 +1967,97 @@ export interface RobotOption {
    * A preset, and by name the parts that differ from it.
    */
   robot: {
-    preset: "stiff" | "compliant" | "slippery";
+    preset:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
     legs?: {
       azimuth_deg: number;
       radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
     }[];
     [k: string]:
       | number
       | "stiff"
       | "compliant"
       | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
       | {
           azimuth_deg: number;
           radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
         }[]
       | undefined;
   };
+  n_legs: number;
+  /**
+   * a gait that suits it.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
+  /**
+   * names of the gaits that its legs can have.
+   */
+  gaits: string[];
   /**
    * parts in whose place a disturbance puts another value, as they were built.
    */
@@ -1791,6 +2128,75 @@ export interface SharedBy {
   high: number | null;
 }
 /**
+ * What is known of a walking problem beforehand.
+ */
+export interface Preview {
+  /**
+   * leg by leg.
+   */
+  legs: LegPreview[];
+  /**
+   * group by group.
+   */
+  groups: GroupPreview[];
+  /**
+   * least support margin over the groups.
+   */
+  margin_m: number;
+  /**
+   * whether that is below 0: it then tips onto the feet that swing, and drags.
+   */
+  tips: boolean;
+  /**
+   * whether it stands on all of its feet.
+   */
+  stands: boolean;
+  /**
+   * of the whole robot.
+   */
+  mass_kg: number;
+  /**
+   * size of a table: states, legal actions in each, and their product.
+   */
+  states: number;
+  /**
+   * size of a table: states, legal actions in each, and their product.
+   */
+  actions: number;
+  /**
+   * size of a table: states, legal actions in each, and their product.
+   */
+  values: number;
+  /**
+   * whether a learner with a table can start.
+   */
+  table_fits: boolean;
+  /**
+   * advance of the steady walk by the law without slip.
+   */
+  law_m_per_step: number;
+  /**
+   * that of a race of 50 steps.
+   */
+  law_m: number;
+  /**
+   * what a leg cannot reach, in a sentence; null if all can.
+   */
+  out_of_reach: string | null;
+  /**
+   * largest grid side with which it may walk; null if it reaches none.
+   */
+  largest_side_m: number | null;
+  /**
+   * largest grid side with which every action is always possible; likewise.
+   */
+  safe_side_m: number | null;
+  /**
+   * groups to take instead; null if it does not tip, or tips with any.
+   */
+  better: BetterGroups | null;
+}
+/**
  * Value printed in the paper [m], and its quantile among the seeds.
  */
 export interface PublishedView {
@@ -1804,12 +2210,24 @@ export interface PublishedView {
  */
 export interface QTableView {
   gait:
-    | ("left-right-origin" | "left-right-vertical" | "front-back-origin" | "front-back-vertical")
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
     | {
         right_leg: number;
         left_leg: number;
         symmetry?: "origin" | "vertical";
         pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   divisions: number;
   grid_side_m: number;
@@ -2014,7 +2432,7 @@ export interface SummaryCounts {
  */
 export interface SummaryView {
   format: number;
-  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery";
+  experiment: "table1" | "figure4" | "sweep" | "league" | "recovery" | "groups" | "bodies";
   config: ExperimentConfig;
   versions: {
     [k: string]: string;

@@ -8,7 +8,7 @@ import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from ".
 import { options, role, served } from "./store.js";
 
 /** @import { Parsed } from "./parse.js" */
-/** @import { FormValue, FormValues, SettingValue } from "./types.js" */
+/** @import { FormValue, FormValues, GaitConfig, RobotConfig, SettingValue } from "./types.js" */
 
 /** Empty until the server's options have come; no component shows the form before. */
 const UNKNOWN = /** @type {FormValues} */ ({});
@@ -185,6 +185,18 @@ export function chooseLearner(agent) {
 }
 
 /**
+ * Choose the robot. The gait that suits it is taken, unless another one was chosen that its legs can have.
+ * @param {RobotConfig} robot
+ */
+export function chooseRobot(robot) {
+  const known = typeof robot === "string" ? served().robots.find(({ name }) => name === robot) : null;
+  /** @type {GaitConfig[]} */
+  const gaits = known?.gaits ?? [];
+  const keeps = !known || (texts().peek().has("gait") && gaits.includes(form.value.gait));
+  setFields({ robot, ...(keeps ? {} : { gait: /** @type {FormValue} */ (known.gait) }) });
+}
+
+/**
  * Take what was typed or chosen in a field: its value if the text is valid, else the text as it is.
  * @param {string} field
  * @param {string} text
@@ -253,6 +265,10 @@ function worldFields() {
     ...(disturbances.length ? { disturbances } : {}),
   };
 }
+
+/** The robot, its gait and its foot grid, of which some things are known before anything runs. */
+export const bodyFields = () =>
+  select(form.value, (field) => ["gait", "robot", "divisions", "grid_side_m"].includes(field));
 
 const nameField = () => {
   const name = form.value.name.trim();

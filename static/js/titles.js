@@ -13,7 +13,14 @@ const find = (list, name) => list?.find((one) => one.name === name);
 
 /** @param {GaitConfig} gait */
 export const gaitTitle = (gait) =>
-  typeof gait === "string" ? find(options.value?.gaits, gait)?.title ?? gait : "Custom gait";
+  typeof gait === "string" ? find(options.value?.gaits, gait)?.title ?? gait : ownGaitTitle(gait);
+
+/** A gait by what it is made of: "Groups 1+3, 2+5, 4". @param {Exclude<GaitConfig, string>} gait */
+function ownGaitTitle({ groups, pairs, symmetry }) {
+  const parts = groups ?? pairs;
+  if (Array.isArray(parts)) return `Groups ${parts.map((legs) => legs.join("+")).join(", ")}`;
+  return `Custom gait, ${parts ?? (symmetry === "origin" ? "opposite legs" : "mirrored legs")}`;
+}
 /** @param {RobotConfig} robot */
 export function robotTitle(robot) {
   const custom = customRobotInWords(robot);

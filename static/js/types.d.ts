@@ -31,6 +31,7 @@ export type {
   NarrativeSection,
   OptionsView as Options,
   PooledView,
+  Preview,
   ReplayMark,
   ReplayView as ReplayPlan,
   RobotOption as Robot,

@@ -9,7 +9,7 @@ from hexapods.agents.informed import Informed, RewardModel, shares_of
 from hexapods.agents.protocol import Problem
 from hexapods.assembly import build_walkers
 from hexapods.domain.feet import Feet
-from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.gait import PAPER_GAITS
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.robot import robot
 from hexapods.domain.types import Action
@@ -27,8 +27,9 @@ HOME = np.zeros((3, 2))
 
 def test_beforehand_the_model_is_the_kinematic_law() -> None:
     """Home, pair 2 to the front left: the body moves by a third of half the side."""
-    model, feet = RewardModel(PROBLEM), Feet.at_home(3)
-    after, advance_m = feet.landed(1, 1, GRID.places_m[1]).centred()
+    model, landed = RewardModel(PROBLEM), Feet.at_home(3).landed(1, 1, GRID.places_m[1])
+    advance_m = landed.mean_m((2, 2, 2))
+    after = landed.shifted(advance_m)
 
     rewards, ends = model.predict(HOME, np.array([[1, 1]]))
 
@@ -87,7 +88,7 @@ def test_no_more_than_the_budget_is_simulated(budget: int) -> None:
     assert expand.transitions == 3 * budget or budget > 12
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
 def test_three_transitions_are_as_good_as_all_where_the_law_holds(gait: str) -> None:
     walker, expand = kinematic_walker(lambda expand: Informed(expand, PROBLEM, budget=3), gait)
     for _ in range(50):
@@ -105,7 +106,7 @@ def raced(preset: str, gait: str, *lanes: LaneConfig, threads: int = 1) -> Seque
     return race_result(recorded, config).lanes
 
 
-GAITS = at_length(["left-right-vertical"], [*NAMED_GAITS])
+GAITS = at_length(["left-right-vertical"], [*PAPER_GAITS])
 
 
 @pytest.mark.parametrize("gait", GAITS)

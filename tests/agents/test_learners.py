@@ -74,7 +74,8 @@ def moved(state: Cells, action: Action) -> tuple[Cells, float]:
     """
     lateral, forward = zip(*(GRID.places_m[cell] for cell in state), strict=True)
     feet = Feet(state, lateral, forward).landed(*action, GRID.places_m[action.cell])
-    after, advance_m = feet.centred()
+    advance_m = feet.mean_m((2, 2))
+    after = feet.shifted(advance_m)
     cells = map(GRID.nearest, after.lateral_m, after.forward_m)
     return tuple(cells), advance_m
 

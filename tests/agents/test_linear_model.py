@@ -11,11 +11,13 @@ from hexapods.agents.linear_model import LinearModel
 from hexapods.agents.protocol import Problem, Transition, Tunable, Valuing
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import read_gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.observation import Observation, legal_actions
 from hexapods.domain.robot import PRESETS
 from hexapods.domain.types import Action, Cells
 from hexapods.runs.config import TrainingConfig, training_config
+from hexapods.runs.records import StepTaken
 from hexapods.runs.tables import from_bytes, restore, snapshot, to_bytes
 from hexapods.runs.training import Learner, evaluate, train
 
@@ -228,3 +230,46 @@ def test_a_broken_state_is_refused(name: str, value: Any, complaint: str) -> Non
     LinearModel.check_state(model().state())
     with pytest.raises((InvalidInput, ValueError), match=complaint):
         LinearModel.check_state({**model().state(), name: value})
+
+
+TRIPOD = Problem(((1, 3, 5), (2, 4, 6)), GRID.cells)
+
+
+def test_of_two_groups_there_is_one_order() -> None:
+    agent = LinearModel(TRIPOD, Plan(((0.0, 0.0),) * 2))
+
+    assert agent.state()["earned"].shape == (2, 2)
+
+
+def test_a_state_of_two_groups_from_an_earlier_version_is_loaded() -> None:
+    """It has two policies for the one order, whose records are those of one."""
+    agent = LinearModel(TRIPOD, Plan(((0.0, 0.0),) * 2))
+    agent.act((0, 0), legal_actions((0, 0), 5))
+    now = agent.state()
+    earned = np.array([[2.0, 0.02], [1.0, 0.01], [4.0, 0.03]])
+    earlier = {**now, "earned": earned, "deciding": np.array([2, 12, 1])}
+    LinearModel.check_state(earlier)
+
+    agent.load(earlier)
+
+    assert np.allclose(agent.state()["earned"], [[3.0, 0.03], [4.0, 0.03]])
+    assert agent.state()["deciding"].tolist() == [1, 12, 1]
+    LinearModel.check_state(agent.state())
+
+
+@pytest.mark.parametrize(
+    ("robot", "gait", "expected_m"),
+    [
+        ("dog", "trot", 0.66),
+        ("starfish", {"right_leg": 1, "left_leg": 2, "groups": [[1, 3], [2, 5], [4]]}, 0.48),
+        ("stiff", "one-by-one", 0.26),
+        ("centipede", "one-by-one", 0.14),
+    ],
+)
+def test_it_walks_with_any_number_of_groups(robot: str, gait: Any, expected_m: float) -> None:
+    """By the law without slip, in steps 51 to 100 of its life."""
+    config = practice(gait=read_gait(gait), robot=PRESETS[robot], steps=100)
+    learner = build_learner(config)
+    rewards_m = [one.reward_m for one in train(learner, config) if isinstance(one, StepTaken)]
+
+    assert sum(rewards_m[50:]) > expected_m

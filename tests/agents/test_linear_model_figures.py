@@ -8,7 +8,7 @@ from functools import cache
 import pytest
 
 from hexapods.assembly import build_learner
-from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.gait import PAPER_GAITS
 from hexapods.domain.robot import PRESETS
 from hexapods.runs.config import training_config
 from hexapods.runs.records import StepTaken
@@ -16,7 +16,7 @@ from hexapods.runs.training import evaluate, train
 from tests.figures import look_ahead
 from tests.promises.length import at_length
 
-GAITS = at_length(("left-right-vertical",), tuple(NAMED_GAITS))
+GAITS = at_length(("left-right-vertical",), tuple(PAPER_GAITS))
 PRIORS = at_length(("none",), ("none", "kinematic"))
 UNEVEN = at_length((("slippery", 1.3),), (("compliant", 1.2), ("slippery", 1.3)))
 

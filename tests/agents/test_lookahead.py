@@ -8,7 +8,7 @@ import pytest
 from hexapods.agents.lookahead import Greedy, LookAhead, TwoStep
 from hexapods.agents.protocol import Problem
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.gait import PAPER_GAITS
 from hexapods.domain.grid import FootGrid
 from hexapods.runs.walker import SimulatorExpand, Walker
 from tests.agents.trees import Graph, World
@@ -63,7 +63,7 @@ def test_search_depth_is_constant_over_fifty_steps(depth: int, transitions: int)
     assert expand.transitions == robot.transitions == transitions
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
 def test_greedy_moves_the_pairs_to_the_front_in_turn(gait: str) -> None:
     """Ties go to the first: pair 1 before 2, left before right; then to the rearmost pair."""
     robot, _ = walker(1, gait)
@@ -138,7 +138,7 @@ def test_layers_in_several_batches_give_the_same_decisions(monkeypatch: pytest.M
 
 
 def test_every_pair_moves_at_each_gait_and_depth() -> None:
-    for gait, depth in product(NAMED_GAITS, (1, 2)):
+    for gait, depth in product(PAPER_GAITS, (1, 2)):
         robot, _ = walker(depth, gait)
         moved = set()
         for _ in range(6):

@@ -26,7 +26,7 @@ WRONG_TRAININGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({"agent": "sarsa", "settings": {"trace_decay": 0.5}}, ("trace_decay",)),
     ({"robot": "steel"}, ("steel", "stiff", "compliant", "slippery")),
     ({"robot": {"wings": 2}}, ("wings", "tibia_m")),
-    ({"robot": {"n_legs": 5}}, ("even number of legs",)),
+    ({"robot": {"n_legs": 13}}, ("3 to 12 legs",)),
     ({"robot": {"n_legs": 1e400}}, ("n_legs",)),
     ({"robot": {"tibia_m": NAN}}, ("tibia_m",)),
     ({"robot": {"tibia_m": 0.03}}, ("Leg 1", "cell", "grid_side_m")),

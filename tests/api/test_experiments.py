@@ -204,7 +204,8 @@ def test_experiment_cannot_be_shown_on_stage(serve: Serve) -> None:
 def test_options_describe_every_experiment(api: Api) -> None:
     options = api.get("/options")
     shown = {one["name"]: one for one in options["experiments"]}
-    assert list(shown) == ["table1", "figure4", "sweep", "league", "recovery"]
+    assert list(shown)[:5] == ["table1", "figure4", "sweep", "league", "recovery"]
+    assert list(shown)[5:] == ["groups", "bodies"]
     assert shown["table1"]["defaults"]["robots"] == ["stiff", "compliant"]
     assert shown["table1"]["defaults"]["seeds"] == 30
     assert shown["figure4"]["defaults"]["blocks"] == 8
@@ -245,13 +246,13 @@ def test_what_if_compares_chosen_with_default_settings(api: Api) -> None:
     assert answer["compute_s"] > 0
 
 
-@pytest.mark.parametrize("experiment", ["league", "recovery"])
-def test_league_and_recovery_run_on_the_server(experiment: str, api: Api) -> None:
+@pytest.mark.parametrize("experiment", ["league", "recovery", "groups", "bodies"])
+def test_experiments_with_curves_run_on_the_server(experiment: str, api: Api) -> None:
     body = {
         "experiment": experiment,
         "seeds": 3,
         "simulator": "kinematic",
-        "gaits": "left-right-origin",
+        **({"robots": "dog"} if experiment == "bodies" else {"gaits": "left-right-origin"}),
         "agents": ["q-learning", "linear-model"],
         "worlds": "noise",
         "steps": 30,

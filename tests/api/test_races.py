@@ -275,10 +275,12 @@ def test_full_queue_refuses_starts_with_retry_after(serve: Callable[..., Api]) -
 
 def test_all_options_can_be_started(api: Api) -> None:
     options = api.get("/options")
-    for gait in options["gaits"]:
-        for robot in options["robots"]:
-            body = {**WALK, "gait": gait["name"], "robot": robot["name"], "steps": 1}
-            api.stop(api.start("/trainings", body))
+    walks = [("stiff", gait["name"]) for gait in options["gaits"]]
+    # Not every gait makes sense for every robot; its own does.
+    walks += [(robot["name"], robot["gait"]) for robot in options["robots"]]
+    for robot, gait in walks:
+        body = {**WALK, "gait": gait, "robot": robot, "steps": 1}
+        api.stop(api.start("/trainings", body))
     learns = {agent["name"]: agent["learns"] for agent in options["agents"]}
     assert learns == {name: registry.learns(name) for name in registry.OURS}
     api.stop(api.start("/trainings", options["defaults"]["training"]))
@@ -338,7 +340,7 @@ def test_replay_that_cannot_be_says_why(
     assert past.status_code == 200, "the last moment"
     posture = f"{path}/posture?cells="
     assert api.call("GET", f"{posture}1,2,3&lane=2&time_s=1.5").status_code == 200
-    refused(api.call("GET", f"{posture}1,2"), 422, "3 numbers, one for each pair, not 2")
+    refused(api.call("GET", f"{posture}1,2"), 422, "3 numbers, one for each group of legs, not 2")
     refused(api.call("GET", f"{posture}1,2,5"), 422, "from 0 to 4, not 5")
     refused(api.call("GET", f"{posture}1,,2"), 422, "cells must be a cell of the foot grid for")
     refused(api.call("GET", f"{path}/posture"), 422, "cells is missing; it must be")

@@ -384,7 +384,7 @@ def _shorter(content: Any) -> None:
         (_set("more", 1, "run", "result"), "more: Unexpected"),
         (_set("more", 1, "run", "config"), "more"),
         (_set("wings", 2, "run", "config", "robot"), "femur_m"),
-        (_set("n_legs", 10**9, "run", "config", "robot"), "even number of legs"),
+        (_set("n_legs", 10**9, "run", "config", "robot"), "3 to 12 legs"),
         (_set("grid_side_m", 0.5, "run", "config"), "cannot reach"),
         (_set("steps", 10**9, "run", "config"), "10,000,000"),
         (_set("divisions", 3, "run", "config"), "divisions 2"),

@@ -214,8 +214,11 @@ def test_table_of_a_league_has_the_shares_of_greedy_and_of_the_best_known(tmp_pa
 @pytest.mark.parametrize(
     ("arguments", "names"),
     [
-        (("table1", "--world", "ice"), "--world is for league and recovery"),
-        (("figure4", "--tolerance", "0.03"), "--tolerance is for league and recovery"),
+        (("table1", "--world", "ice"), "--world is for league, recovery, groups and bodies"),
+        (
+            ("figure4", "--tolerance", "0.03"),
+            "is for league, recovery, groups and bodies",
+        ),
         (("league", "--world", "moon"), "limp-pair"),
         (("league", "--tolerance", "0.5"), "from 0 to 0.2"),
         (("league", "--simulator", "kinematic", "--world", "ice"), "the kinematic simulator knows"),

@@ -178,7 +178,7 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
         ((*GAIT, "--robot", "sloth"), "stiff, compliant, slippery"),
         ((*GAIT, "--robot", '{"wings": 2}'), "femur_m"),
         ((*GAIT, "--robot", '{"femur_m": -1}'), "robot.femur_m must be from"),
-        ((*GAIT, "--robot", '{"n_legs": 5}'), "even number of legs"),
+        ((*GAIT, "--robot", '{"n_legs": 13}'), "3 to 12 legs"),
         ((*GAIT, "--robot", "missing.toml"), "missing.toml"),
         ((*GAIT, "--simulator", "matrix"), "mujoco, kinematic"),
         ((*GAIT, "--observation", "guessed"), "measured, commanded"),

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.feet import Feet, StepLaw
+from hexapods.domain.gait import PAPER_GAITS, GaitSpec, resolve
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import JOINT_LIMITS_RAD
 from hexapods.domain.motion import StepMotion, StepPlan, ease, recorded_substeps
@@ -13,17 +14,18 @@ from hexapods.domain.types import Action, FloatArray
 SWING, SHIFT = 50, 30
 FRONT_LEFT, FRONT_RIGHT, BACK_LEFT = 1, 2, 3
 
-every_gait = pytest.mark.parametrize("gait", NAMED_GAITS)
+every_gait = pytest.mark.parametrize("gait", PAPER_GAITS)
 
 
 def motion_of(gait: str, made: Robot | None = None) -> StepMotion:
     made = made or Robot()
-    return StepMotion(made, resolve(gait, made.azimuths_deg), FootGrid())
+    resolved = resolve(gait, made.azimuths_deg)
+    return StepMotion(made, resolved, StepLaw(resolved, FootGrid(), None))
 
 
 def third_step(motion: StepMotion) -> StepPlan:
     """Plan a third step, when feet are off their cells: pair 1 from front left to back left."""
-    feet = motion.plan(motion.at_home(), Action(1, FRONT_LEFT)).end
+    feet = motion.plan(Feet.at_home(3), Action(1, FRONT_LEFT)).end
     feet = motion.plan(feet, Action(0, FRONT_RIGHT)).end
     return motion.plan(feet, Action(1, BACK_LEFT))
 
@@ -88,7 +90,7 @@ def test_the_shift_centres_the_body_over_six_planted_feet(gait: str) -> None:
 @pytest.mark.parametrize("legs", [4, 6, 8, 10])
 def test_joint_targets_of_a_batch_equal_single_ones_to_the_last_bit(legs: int) -> None:
     motion = motion_of("left-right-vertical", robot({"n_legs": legs}))
-    feet = motion.plan(motion.at_home(), Action(1, FRONT_LEFT)).end
+    feet = motion.plan(Feet.at_home(legs // 2), Action(1, FRONT_LEFT)).end
     plans = [motion.plan(feet, Action(p, c)) for p in range(legs // 2) for c in range(5)]
     together = motion.joint_targets(plans)
 
@@ -100,7 +102,7 @@ def test_joint_targets_of_a_batch_equal_single_ones_to_the_last_bit(legs: int) -
 
 def test_commands_stay_within_the_joints_limits_over_many_random_steps() -> None:
     motion, rng = motion_of("left-right-origin"), np.random.default_rng(0)
-    feet, plans = motion.at_home(), []
+    feet, plans = Feet.at_home(3), []
     for _ in range(200):
         plan = motion.plan(feet, Action(int(rng.integers(3)), int(rng.integers(5))))
         feet = plan.end
@@ -125,9 +127,9 @@ def test_commands_start_and_end_each_phase_at_rest() -> None:
 def test_wanted_substeps_have_the_commands_of_all_to_the_last_bit() -> None:
     robot, whole = Robot(shift_s=0.128), motion_of("left-right-origin", Robot(shift_s=0.128))
     gait, wanted = resolve("left-right-origin", robot.azimuths_deg), recorded_substeps(robot)
-    part = StepMotion(robot, gait, FootGrid(), wanted)
+    part = StepMotion(robot, gait, StepLaw(gait, FootGrid(), None), wanted)
     plans = [
-        whole.plan(whole.at_home(), Action(pair, cell)) for pair in (0, 1, 2) for cell in (1, 4)
+        whole.plan(Feet.at_home(3), Action(pair, cell)) for pair in (0, 1, 2) for cell in (1, 4)
     ]
 
     for plan in plans:
@@ -143,3 +145,23 @@ def test_ease_runs_from_0_to_1() -> None:
 def test_recorded_substeps_are_20_ms_apart_and_include_the_last() -> None:
     assert recorded_substeps(Robot()).tolist() == list(range(4, 80, 5))
     assert recorded_substeps(Robot(shift_s=0.128))[-2:].tolist() == [79, 81]
+
+
+def test_groups_of_any_sizes_swing_while_the_others_stand() -> None:
+    """Also in one batch; a foot on the axis does not move sideways."""
+    made = Robot()
+    gait = resolve(GaitSpec(1, 3, groups=((2, 1, 3), (4, 6), (5,))), made.azimuths_deg)
+    motion = StepMotion(made, gait, StepLaw(gait, FootGrid(), None))
+    plans = [motion.plan(Feet.at_home(3), Action(group, FRONT_LEFT)) for group in range(3)]
+    together = motion.joint_targets(plans)
+
+    for plan, targets in zip(plans, together, strict=True):
+        assert (motion.joint_targets([plan])[0] == targets).all()
+        feet = np.array([motion.kinematics.foot_offsets(row.tolist()) for row in targets])
+        lifted = feet[: SWING - 1, :, 2].max(axis=0) > 0.02
+        assert np.flatnonzero(lifted).tolist() == sorted(leg - 1 for leg in gait.groups[plan.group])
+        landed = feet[SWING - 1, lifted]
+        sides = np.array(gait.mirror)[lifted]
+        assert landed[:, 0] == pytest.approx(-0.02 * sides, abs=1e-9)
+        assert landed[:, 1] == pytest.approx(0.02)
+    assert gait.mirror == (1, 0, -1, -1, 0, 1)

@@ -43,6 +43,18 @@ def test_many_poses_are_told_at_once() -> None:
         assert told.tolist() == [has_fallen(Robot(), one, ground_m) for one in poses]
 
 
+@pytest.mark.parametrize(("z", "fallen"), [(0.16, True), (0.18, False)])
+def test_an_elongated_torso_lies_by_its_lowest_corner(z: float, fallen: bool) -> None:
+    """Tilted by 90° about its width it stands on an end, 15 cm below its centre."""
+    long = Robot(torso_length_m=0.3, torso_width_m=0.1)
+    on_its_end, on_its_side = pose(z, tilt_deg=90), [0, 0, z - 0.1, 0.5**0.5, 0, 0.5**0.5, 0]
+
+    assert has_fallen(long, on_its_end, ground_m=0.01) == fallen
+    assert has_fallen(long, on_its_side, ground_m=0.01) == fallen
+    told = have_fallen(long, np.array([on_its_end, on_its_side])[:, TILT], ground_m=0.01)
+    assert told.tolist() == [fallen, fallen]
+
+
 def test_bumps_are_ground_too() -> None:
     assert not has_fallen(Robot(), pose(0.035))
     assert has_fallen(Robot(), pose(0.035), ground_m=0.02)

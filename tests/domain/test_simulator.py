@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.gait import PAPER_GAITS, resolve
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematic import KinematicSimulator
 from hexapods.domain.kinematics import legs_of
@@ -54,7 +54,7 @@ def bits(simulator: Simulator[Any], state: Any) -> dict[str, bytes]:
 
 
 def test_rest_is_on_the_start_line_with_every_foot_at_home(build: Build) -> None:
-    for gait in NAMED_GAITS:
+    for gait in PAPER_GAITS:
         simulator = build(gait)
         rest = simulator.rest()
 
@@ -63,7 +63,7 @@ def test_rest_is_on_the_start_line_with_every_foot_at_home(build: Build) -> None
         assert observe(simulator, rest, "measured") == (0, 0, 0)
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
 def test_the_robot_faces_along_the_track(build: Build, gait: str) -> None:
     """The gait's forward direction is world +y."""
     simulator = build(gait)
@@ -232,7 +232,7 @@ def test_the_number_of_legs_is_a_parameter(build: Build, legs: int) -> None:
 def test_estimate_has_the_feet_where_they_are_measured_and_all_else_as_it_is(
     build: Build,
 ) -> None:
-    for gait in NAMED_GAITS:
+    for gait in PAPER_GAITS:
         simulator = build(gait)
         (*_, state) = walk(simulator, simulator.rest(), 5)
         error_m = np.random.default_rng(0).normal(0, 0.004, (3, 2))

@@ -7,7 +7,7 @@ import pytest
 
 from hexapods.domain.disturbances import Lost
 from hexapods.domain.errors import InvalidInput, Unreachable
-from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.gait import PAPER_GAITS, resolve
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.types import Cells
@@ -25,7 +25,7 @@ FAR = 0.2
 """Side of a foot grid that no leg can reach all of [m]."""
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
 @pytest.mark.parametrize(("divisions", "cells"), [(2, (0, 3, 1)), (2, (4, 4, 2)), (3, (8, 0, 5))])
 def test_feet_of_a_ghost_stand_in_the_cells_that_are_drawn(
     server: InProcessViser, gait: str, divisions: int, cells: Cells
@@ -95,7 +95,7 @@ def test_lost_legs_of_a_ghost_are_missing(parts: StageParts) -> None:
 @pytest.mark.parametrize(
     ("lane", "cells", "words"),
     [
-        (0, (1, 2), "cells must be 3 numbers, one for each pair, not 2"),
+        (0, (1, 2), "cells must be 3 numbers, one for each group of legs, not 2"),
         (0, (1, 2, 9), "each of the cells must be from 0 to 4, not 9"),
         (3, (1, 2, 3), "lane must be from 0 to 2, not 3"),
         (-1, (1, 2, 3), "lane must be from 0 to 2, not -1"),

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.gait import NAMED_GAITS, GaitSpec
+from hexapods.domain.gait import PAPER_GAITS, GaitSpec
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.experiments.config import (
@@ -14,8 +14,10 @@ from hexapods.experiments.config import (
     GRID,
     MAX_SEEDS,
     ExperimentConfig,
+    ExperimentName,
     by_option,
     experiment_config,
+    fields_of,
     settings_by_name,
 )
 
@@ -23,7 +25,7 @@ from hexapods.experiments.config import (
 def test_table_1_defaults_to_the_papers_gaits_with_both_observations() -> None:
     config = experiment_config("table1", {})
     assert config.seeds == 30
-    assert config.gaits == tuple(NAMED_GAITS)
+    assert config.gaits == tuple(PAPER_GAITS)
     assert config.observations == ("measured", "commanded")
     assert [one.name for one in config.robots] == ["stiff", "compliant"]
     assert (config.steps, config.blocks) == ((500, 1000), 1)
@@ -50,6 +52,24 @@ def test_a_sweep_can_vary_every_grid_parameter() -> None:
     shown = by_option(to_json(experiment_config("sweep", grid)))
     assert {name: tuple(shown[name]) for name in grid} == grid
     assert shown["observations"] == ["measured"]
+
+
+def test_groups_compare_pairs_with_a_tripod() -> None:
+    groups = experiment_config("groups", {})
+
+    assert groups.gaits == ("left-right-origin", "left-right-vertical", "tripod")
+    assert (groups.steps, groups.steps_per_episode, groups.seeds) == ((250,), (25,), 30)
+
+
+def test_bodies_have_no_gaits_of_their_own() -> None:
+    bodies = experiment_config("bodies", {})
+
+    assert bodies.gaits == ()
+    assert [one.name for one in bodies.robots][-1] == "centipede"
+    with pytest.raises(UnknownName, match="unknown field of bodies 'gaits'"):
+        experiment_config("bodies", {"gaits": ("tripod",)})
+    with pytest.raises(InvalidInput, match="gaits must name at least one"):
+        experiment_config("groups", {"gaits": ()})
 
 
 def test_league_and_recovery_vary_robots_and_worlds() -> None:
@@ -95,15 +115,18 @@ _OWN: dict[str, Any] = {
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 @pytest.mark.parametrize("given", [{}, _OWN], ids=["defaults", "own"])
-def test_a_config_round_trips_through_json(experiment: str, given: dict[str, Any]) -> None:
-    config = experiment_config(experiment, given)
+def test_a_config_round_trips_through_json(
+    experiment: ExperimentName, given: dict[str, Any]
+) -> None:
+    accepted = fields_of(experiment)
+    config = experiment_config(experiment, {k: v for k, v in given.items() if k in accepted})
     assert from_json(ExperimentConfig, json.loads(json.dumps(to_json(config)))) == config
 
 
 @pytest.mark.parametrize(
     ("experiment", "given", "names"),
     [
-        ("table2", {}, "table1, figure4, sweep, league, recovery"),
+        ("table2", {}, "table1, figure4, sweep, league, recovery, groups, bodies"),
         ("table1", {"seeds": 0}, f"seeds must be a whole number from 1 to {MAX_SEEDS:,}"),
         ("table1", {"seeds": MAX_SEEDS + 1}, f"from 1 to {MAX_SEEDS:,}"),
         ("table1", {"seeds": 2.5}, "a whole number"),

@@ -211,3 +211,15 @@ def test_recovery_begins_after_the_practice() -> None:
     assert learner.training.world.change_steps == (100,)
     assert (learner.training.steps, learner.parameters["steps"]) == (300, 100)
     assert searcher.training.world.change_steps == ()  # its world is so from the start
+
+
+def test_each_body_walks_in_the_gait_that_suits_it() -> None:
+    settings = plan("bodies", seeds=2).settings
+    gaits = {one.robot: one.gait for one in settings}
+
+    assert gaits["stiff"] == "left-right-origin"
+    assert gaits["crab"] == "tetrapod"
+    assert gaits["starfish"] == "right 1, left 2, 1+3 2+5 4"
+    learners = [one for one in settings if one.role == "learner"]
+    assert len(learners) == 2 * len(gaits)
+    assert all(one.trial.evaluations == (25, 50, 100, 150, 250) for one in learners)

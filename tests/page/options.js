@@ -116,7 +116,16 @@ export const OPTIONS = {
     ...described(name, `The ${name}`), forward_deg: 0, azimuths_deg: [0, 60, 120, 180, 240, 300],
     pairs: [[1, 4], [2, 5], [3, 6]],
   })),
-  robots: [{ ...described("stiff", "Stiff"), robot: { preset: "stiff" }, built: { friction: 1 } }],
+  robots: [
+    {
+      ...described("stiff", "Stiff"), robot: { preset: "stiff" }, gait: "tripod", gaits: ["tripod", "wave"],
+      n_legs: 6, built: { friction: 1 },
+    },
+    {
+      ...described("dog", "Dog"), robot: { preset: "dog" }, gaits: ["wave"], n_legs: 4, built: { friction: 1 },
+      gait: { right_leg: 1, left_leg: 2, groups: [[1, 3], [2, 4]] },
+    },
+  ],
   agents: [
     {
       ...described("learner", "Learner"), color: "#111111", steps_ahead: null,

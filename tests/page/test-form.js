@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  chooseLearner, enter, form, isReadOnly, mistakes, openForm, raceBody, setField, setFields, stageTexts, trainingBody,
-  tryOwnSettings, whatIfBody, wrong,
+  chooseLearner, chooseRobot, enter, form, isReadOnly, mistakes, openForm, raceBody, setField, setFields, stageTexts,
+  trainingBody, tryOwnSettings, whatIfBody, wrong,
 } from "../../static/js/form.js";
 import { ignored, page } from "../../static/js/page-state.js";
 import { options, role } from "../../static/js/store.js";
@@ -29,6 +29,19 @@ test("the form begins with the server's defaults and nothing else", () => {
   const greedy = { "greedy.plans_with": null, "greedy.observation": "measured" };
   assert.deepEqual(form.value,
     { ...training, ...settings, world: "flat", disturb: [], race_steps: 50, ...lanes, ...greedy, name: "" });
+});
+
+test("a robot brings the gait that suits it, unless another one was chosen that its legs can have", () => {
+  const [stiff, dog] = OPTIONS.robots;
+  chooseRobot(dog.name);
+  assert.deepEqual([form.value.robot, form.value.gait], ["dog", dog.gait]);
+  chooseRobot(stiff.name);
+  assert.equal(form.value.gait, "tripod", "its legs cannot have the groups of the other");
+  setField("gait", "wave");
+  chooseRobot(dog.name);
+  assert.equal(form.value.gait, "wave");
+  chooseRobot(/** @type {any} */ ({ preset: "dog", friction: 0.3 }));
+  assert.equal(form.value.gait, "wave", "what a robot of one's own can have is told by the server");
 });
 
 test("a link has what was changed, and is clean again when the form is", () => {

@@ -8,14 +8,14 @@ from itertools import product
 import numpy as np
 import pytest
 
-from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.gait import PAPER_GAITS
 from hexapods.domain.robot import robot
 from hexapods.domain.types import FloatArray
 from hexapods.runs.config import training_config
 from tests.figures import in_a_pool, look_ahead, practise
 from tests.promises.length import at_length
 
-GAITS = tuple(NAMED_GAITS)
+GAITS = tuple(PAPER_GAITS)
 EXCEPTIONAL = "left-right-vertical"
 """The gait that lifts both front legs at once."""
 COMPLIANT = {"servo_kp": 10, "servo_kv": 0.5}

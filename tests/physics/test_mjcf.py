@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hexapods.assets import models_dir
-from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.gait import PAPER_GAITS, resolve
 from hexapods.domain.kinematics import JOINT_LIMITS_RAD, legs_of
 from hexapods.domain.robot import Robot, ring, robot
 from hexapods.physics.mjcf import (
@@ -175,7 +175,7 @@ def test_links_masses_and_torso_scale_with_the_robot() -> None:
     assert model.geom("leg5_tibia").size[:2] == pytest.approx((0.006, 0.075))
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
 def test_inverse_kinematics_and_the_model_agree_on_the_feet(gait: str) -> None:
     model, resolved = compile_model(Robot()), resolve(gait, Robot().azimuths_deg)
     offsets = np.random.default_rng(0).uniform(-0.03, 0.03, (6, 3))

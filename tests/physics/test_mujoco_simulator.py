@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hexapods.domain.errors import Diverged
-from hexapods.domain.gait import NAMED_GAITS, resolve
+from hexapods.domain.gait import PAPER_GAITS, resolve
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.observation import legal_actions
@@ -58,8 +58,8 @@ def feet_of(data: Any, legs: int = 6) -> FloatArray:
     return np.array([data.body(f"leg{leg}_foot").xpos for leg in range(1, legs + 1)])
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
+@pytest.mark.parametrize("preset", ["stiff", "compliant", "slippery"])
 def test_the_home_pose_stands_still(gait: str, preset: str) -> None:
     simulator = build(gait, PRESETS[preset])
     data = data_at(simulator, simulator.rest())
@@ -74,7 +74,7 @@ def test_the_home_pose_stands_still(gait: str, preset: str) -> None:
     assert data.time == pytest.approx(2.0)
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
 def test_forward_kinematics_in_the_world_are_those_of_the_model(gait: str) -> None:
     made = robot({"n_legs": 8, "coxa_m": 0.04, "mount_radius_m": 0.12})
     simulator = build(gait, made)

@@ -19,7 +19,7 @@ from tests.promises.raw import Route, every_route, request_lines, send, status_o
 
 TOKEN = "a-token-for-tests"
 READS = {"GET", "HEAD", "WS"}
-WHAT_IF = "/api/v1/what-if"
+WHAT_IF, PREVIEW = "/api/v1/what-if", "/api/v1/robots/preview"
 FOR_ANYONE = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
 """Accessible without the token: the page, which asks for it, and the health checks."""
 STARTED = ("/api/v1/trainings", "/api/v1/races", "/api/v1/experiments")
@@ -29,6 +29,7 @@ VALID_BODIES: dict[str, Any] = {
     "/api/v1/races": {"gait": "left-right-origin", "lanes": [{"agent": "greedy"}]},
     "/api/v1/experiments": {"experiment": "sweep", "simulator": "kinematic", "seeds": 1},
     WHAT_IF: {"gait": "left-right-origin", "steps": 5},
+    PREVIEW: {"gait": "left-right-origin"},
     "/api/v1/stage": {"playing": False, "speed": 4, "clock": "free"},
     "/api/v1/trainings/{run_id}": {"pace": 1},
 }
@@ -36,7 +37,7 @@ VALID_BODIES: dict[str, Any] = {
 
 def role_of(route: Route) -> str:
     """Return the role that a route must require."""
-    if route.method not in READS and route.path != WHAT_IF:
+    if route.method not in READS and route.path not in (WHAT_IF, PREVIEW):
         return "operator"
     return "anyone" if route.path in FOR_ANYONE else "spectator"
 
@@ -157,7 +158,8 @@ def test_a_spectators_page_offers_nothing_that_would_fail(
 
     assert len(pressed) > 3
     changing = [f"{one.method} {one.url}" for one in requests if one.method not in ("GET", "HEAD")]
-    assert set(changing) <= {f"POST {public.server.address.rstrip('/')}{WHAT_IF}"}
+    address = public.server.address.rstrip("/")
+    assert set(changing) <= {f"POST {address}{path}" for path in (WHAT_IF, PREVIEW)}
     verbs = ("Train ", "Race", "Stop", "Pause", "Resume", "Delete", "Show on", "Start", "Go on")
     # A replay that no other page sees may be held by anybody.
     own = {"Races", "Pause replay"}

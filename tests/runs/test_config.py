@@ -44,7 +44,7 @@ def test_the_defaults_are_the_papers() -> None:
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ({"gait": "tripod"}, "unknown gait 'tripod'"),
+        ({"gait": "canter"}, "unknown gait 'canter'"),
         ({"simulator": "gazebo"}, "unknown simulator 'gazebo'; choose one of: mujoco, kinematic"),
         ({"observation": "guessed"}, "unknown observation"),
         ({"divisions": 1}, "divisions must be a whole number from 2 to 8"),

@@ -8,7 +8,7 @@ practices of other lengths, and the same tolerances.
 import numpy as np
 import pytest
 
-from hexapods.domain.gait import NAMED_GAITS
+from hexapods.domain.gait import PAPER_GAITS
 from hexapods.domain.types import FloatArray
 from tests.figures import (
     BLOCK_STEPS,
@@ -42,7 +42,7 @@ def share(values: FloatArray) -> float:
     return 100 * interquartile_mean(values) / GREEDY_H
 
 
-@pytest.mark.parametrize("gait", NAMED_GAITS)
+@pytest.mark.parametrize("gait", PAPER_GAITS)
 @pytest.mark.parametrize("agent", ["greedy", "two-step", "tests.own_agents:ThreeStep"])
 def test_two_step_look_ahead_is_no_better_than_greedy(agent: str, gait: str) -> None:
     distance_m = look_ahead((agent, gait, "kinematic", {}))

@@ -2,13 +2,15 @@
 
 - `cases`: the cases in which each claim is judged (one observation on one robot).
 - `judging`: a claim, a finding in one case, and the verdict over all cases.
-- `table1`, `figure4`, `sweep`: the claims of each experiment; `gaits`: those about the gaits.
+- `table1`, `figure4`, `sweep`, `groups`: the claims of each experiment; `gaits`: those about the
+  gaits.
 - `distance_to_paper`: the case whose distances are closest to the printed numbers.
 """
 
 from collections.abc import Mapping, Sequence
 
 from hexapods.experiments.claims.figure4 import FIGURE4_CLAIMS
+from hexapods.experiments.claims.groups import GROUPS_CLAIMS
 from hexapods.experiments.claims.judging import Claim
 from hexapods.experiments.claims.sweep import SWEEP_CLAIMS
 from hexapods.experiments.claims.table1 import TABLE1_CLAIMS
@@ -19,4 +21,6 @@ CLAIMS_OF: Mapping[str, Sequence[Claim]] = {
     "sweep": SWEEP_CLAIMS,
     "league": (),
     "recovery": (),
+    "groups": GROUPS_CLAIMS,
+    "bodies": (),
 }

@@ -5,11 +5,11 @@ from functools import partial
 from statistics import fmean, median
 from typing import Any
 
-from hexapods.domain.text import metres
+from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
 from hexapods.experiments.claims.gaits import gait_claims
 from hexapods.experiments.claims.judging import CaseFinding, Claim
-from hexapods.experiments.formatting import counted, distance, listed, percent, shares
+from hexapods.experiments.formatting import distance, listed, percent, shares
 from hexapods.experiments.labels import gait_name_with_papers
 from hexapods.experiments.measures import REACHED_SHARE
 from hexapods.experiments.published import GAITS, published

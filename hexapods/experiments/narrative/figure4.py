@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from hexapods.agents.appearance import title_of
-from hexapods.domain.text import metres
+from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
-from hexapods.experiments.formatting import counted, listed, percent
+from hexapods.experiments.formatting import listed, percent
 from hexapods.experiments.labels import gait_name
 from hexapods.experiments.narrative.gaits import ODD_GAIT_HEADING, explain_odd_gait
 

@@ -5,9 +5,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hexapods.agents.appearance import title_of
+from hexapods.domain.text import counted
 from hexapods.experiments.claims.cases import Case, cases_of
 from hexapods.experiments.config import DISTURBED
-from hexapods.experiments.formatting import counted, listed, percent, shares
+from hexapods.experiments.formatting import listed, percent, shares
 from hexapods.experiments.narrative.sweep import combination_name
 
 LEVEL_M = 0.01

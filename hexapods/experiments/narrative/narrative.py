@@ -3,8 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from hexapods.domain.text import counted
 from hexapods.experiments.claims.cases import Case, cases_of
-from hexapods.experiments.formatting import counted, listed
+from hexapods.experiments.formatting import listed
 from hexapods.experiments.narrative.figure4 import FIGURE4_NARRATIVE
 from hexapods.experiments.narrative.sweep import SWEEP_NARRATIVE
 from hexapods.experiments.narrative.table1 import TABLE1_NARRATIVE
@@ -17,6 +18,8 @@ _NARRATIVES: Mapping[str, Sequence[tuple[str, Paragraph]]] = {
     "sweep": SWEEP_NARRATIVE,
     "league": (),
     "recovery": (),
+    "groups": (),
+    "bodies": (),
 }
 
 

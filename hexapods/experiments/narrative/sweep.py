@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from hexapods.agents.appearance import title_of
-from hexapods.domain.text import metres
+from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import Case
-from hexapods.experiments.formatting import counted, percent, shares
+from hexapods.experiments.formatting import percent, shares
 from hexapods.experiments.labels import parameter_text
 from hexapods.experiments.names import setting_names
 

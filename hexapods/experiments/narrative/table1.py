@@ -5,10 +5,10 @@ from statistics import fmean, median
 from typing import Any
 
 from hexapods.domain.observation import PAPER_OBSERVATIONS
-from hexapods.domain.text import metres
+from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
 from hexapods.experiments.claims.distance_to_paper import closeness, compare_closeness
-from hexapods.experiments.formatting import counted, distance, listed, percent, shares
+from hexapods.experiments.formatting import distance, listed, percent, shares
 from hexapods.experiments.labels import gait_name, gait_name_with_papers
 from hexapods.experiments.narrative.gaits import ODD_GAIT_HEADING, explain_odd_gait
 from hexapods.experiments.statistics import Points, improvement

@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from hexapods.agents.appearance import title_of
 from hexapods.domain.records import to_json
+from hexapods.domain.text import counted
 from hexapods.experiments.claims.cases import Case, cases_of
 from hexapods.experiments.config import (
     ExperimentConfig,
@@ -21,7 +22,7 @@ from hexapods.experiments.config import (
     experiment_config,
     fields_of,
 )
-from hexapods.experiments.formatting import counted, listed
+from hexapods.experiments.formatting import listed
 from hexapods.experiments.labels import gait_name
 from hexapods.experiments.report import figure_worlds, tables
 from hexapods.experiments.report.drawing import Picture, agent_colours, inline_svg
@@ -34,6 +35,8 @@ TITLES: Mapping[str, str] = {
     "sweep": "A sweep",
     "league": "A league of learners and searchers",
     "recovery": "Recovery after a disturbance",
+    "groups": "Fewer groups learn faster",
+    "bodies": "Learners on many bodies",
 }
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """The page's Content-Security-Policy, also set by a `<meta>` element of the page."""
@@ -120,11 +123,12 @@ def _lead(summary: Mapping[str, Any]) -> str:
     """Describe in one line which trials were run."""
     config, trials = summary["config"], summary["trials"]
     gaits = [g if isinstance(g, str) else None for g in config["gaits"]]
-    named = (
-        listed(gait_name(g) for g in gaits if g)
-        if len(gaits) <= 2 and all(gaits)
-        else counted(len(gaits), "gait")
-    )
+    if not gaits:
+        named = "each robot in the gait that suits it"
+    elif len(gaits) <= 2 and all(gaits):
+        named = listed(gait_name(g) for g in gaits if g)
+    else:
+        named = counted(len(gaits), "gait")
     simulator = "MuJoCo" if config["simulator"] == "mujoco" else "the kinematic simulator"
     done = f"{trials['done']:,} of {trials['total']:,} trials"
     return (

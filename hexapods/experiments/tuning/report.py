@@ -8,9 +8,9 @@ from io import StringIO
 from typing import Any
 
 from hexapods.agents.appearance import title_of
-from hexapods.domain.text import metres, text_cell
+from hexapods.domain.text import counted, metres, text_cell
 from hexapods.experiments.config import REPORT, SUMMARY, TRIALS_TABLE
-from hexapods.experiments.formatting import counted, number
+from hexapods.experiments.formatting import number
 from hexapods.experiments.labels import gait_name, world_name
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.progress import Progress

@@ -12,7 +12,8 @@ import numpy as np
 from hexapods.agents.appearance import title_of
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import Value
-from hexapods.experiments.formatting import counted, distance, number
+from hexapods.domain.text import counted
+from hexapods.experiments.formatting import distance, number
 from hexapods.experiments.names import trial_names
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.setting_results import SettingResults, group_by_setting

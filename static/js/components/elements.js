@@ -77,11 +77,11 @@ export function pointAt(azimuth_deg, radius) {
  */
 export function HexapodGlyph({ gait, only = null }) {
   const pairs = gait.pairs.map((legs, number) => {
-    const [from, to] = legs.map((leg) => pointAt(gait.azimuths_deg[leg - 1], FOOT));
+    const feet = legs.map((leg) => pointAt(gait.azimuths_deg[leg - 1], FOOT));
     const style = only === null || only === number ? `pair pair-${(number % 6) + 1}` : "pair pair-none";
     return html`
       <g class=${style}>
-        <path class="thread" d=${`M${from} L${to}`} />
+        <path class="thread" d=${`M${feet.join(" L")}z`} />
         ${legs.map((leg) => html`<${Leg} azimuth=${gait.azimuths_deg[leg - 1]} />`)}
       </g>
     `;

@@ -154,7 +154,7 @@ export function Slider({
  * @param {[string, string][]} props.choices
  * @param {FormValue} [props.value]
  * @param {(value: FormValue) => unknown} [props.onValue]
- * @param {string} props.words
+ * @param {string} [props.words] "" leaves the help out
  */
 export function SelectField({
   field, label, choices, value = form.value[field], onValue = (chosen) => setField(field, chosen), words,
@@ -172,7 +172,7 @@ export function SelectField({
         `)}
       </select>
       <${MistakeOf} field=${field} />
-      <${Description} field=${field} words=${words || helpFor(field)} />
+      ${words !== "" && html`<${Description} field=${field} words=${words || helpFor(field)} />`}
     </div>
   `;
 }

@@ -1,7 +1,7 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
 import { tune } from "../live-changes.js";
 import { presentRates, rateInWords } from "../changes.js";
-import { chooseLearner, enter, form, setField, wrong, isReadOnly } from "../form.js";
+import { chooseLearner, chooseRobot, enter, form, setField, wrong, isReadOnly } from "../form.js";
 import { count, listed } from "../format.js";
 import { liveTraining, trainingInView } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
@@ -12,6 +12,7 @@ import {
 import { evaluations, options, served } from "../store.js";
 import { choicesOf, gaitTitle, labelOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { isAtLeast } from "../workspace.js";
+import { Beforehand } from "./beforehand.js";
 import { HexapodGlyph, html } from "./elements.js";
 import {
   attributesOf, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
@@ -37,11 +38,14 @@ export function TrainSettings() {
         <${Learner} />
         <${PracticeSteps} />
         <${LearnerSettings} />
-        ${!isFull && html`
-          <${SelectField} field="world" label="World"
-            choices=${served().worlds.map(({ name, title }) => [name, title])} />
-        `}
       </div>
+      ${!isFull && html`
+        <div class="inline-fields">
+          <${RobotField} words="" />
+          <${SelectField} field="world" label="World" words=""
+            choices=${served().worlds.map(({ name, title }) => [name, title])} />
+        </div>
+      `}
       <${GaitPicker} />
       ${isFull && html`
         <${SeedAndObservation} />
@@ -205,27 +209,45 @@ function Row({ name, setting, ...rest }) {
 
 // ---- the gait, chosen by its drawing
 
+/** How many of them those who try choose from; those who study see all. */
+const FEW_GAITS = 5;
+
+const chosenRobot = () => served().robots.find(({ name }) => name === form.value.robot);
+/** Gaits are drawn with six legs. */
+const isDrawn = () => (chosenRobot()?.n_legs ?? HEXAPOD_LEGS) === HEXAPOD_LEGS;
+const HEXAPOD_LEGS = 6;
+
+/** The gaits that the robot's legs can have. A robot of one's own may have any: the server tells if not. */
+function gaitChoices() {
+  const { gait: chosen } = form.value;
+  const fitting = chosenRobot()?.gaits;
+  const known = served().gaits.filter(({ name }) => !fitting || fitting.includes(name));
+  return known.filter(({ name }, number) => isAtLeast("study") || number < FEW_GAITS || name === chosen);
+}
+
 const GaitPicker = () => html`
   <fieldset role="radiogroup" aria-invalid=${wrong.value.gait ? "true" : undefined}
     aria-describedby=${wrong.value.gait ? "mistake-gait help-gait" : "help-gait"}>
     <legend><h2>Gait</h2></legend>
     <div class="gait-row">
-      ${served().gaits.map((gait, number) => html`
+      ${gaitChoices().map((gait, number) => html`
         <label class="gait" key=${gait.name}>
           <input class="sr-only" type="radio" name="gait" value=${gait.name} id=${number ? undefined : "field-gait"}
             checked=${!wrong.value.gait && gait.name === form.value.gait}
             onChange=${() => setField("gait", gait.name)} />
-          <${HexapodGlyph} gait=${gait} />
+          ${isDrawn() && html`<${HexapodGlyph} gait=${gait} />`}
           <span>${gait.title}</span>
         </label>
       `)}
     </div>
     ${!wrong.value.gait && typeof form.value.gait !== "string" && html`
-      <p class="notice">${gaitTitle(form.value.gait)}, as in the run whose settings these are.</p>
+      <p class="notice">${gaitTitle(form.value.gait)}</p>
     `}
     <${MistakeOf} field="gait" />
-    <${Description} field="gait"
-      words=${served().gaits.find(({ name }) => name === form.value.gait)?.description} />
+    ${isAtLeast("study") && html`
+      <${Description} field="gait" words=${served().gaits.find(({ name }) => name === form.value.gait)?.description} />
+    `}
+    <${Beforehand} hasPlan=${!isDrawn() || typeof form.value.gait !== "string"} />
   </fieldset>
 `;
 
@@ -264,7 +286,7 @@ function robotChosen() {
 
 const RobotGroup = () => html`
   <div class="more-fields">
-    <${SelectField} field="robot" label="Robot" choices=${robotChoices()} />
+    <${RobotField} />
     <${SelectField} field="simulator" label="Simulator"
       choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
     <${Figure} field="divisions" />
@@ -285,6 +307,11 @@ const RaceGroup = () => html`
     <${Lanes} />
     <${Figure} field="race_steps" />
   </div>
+`;
+
+/** @param {{ words?: string }} props */
+const RobotField = ({ words = chosenRobot()?.description }) => html`
+  <${SelectField} field="robot" label="Robot" choices=${robotChoices()} onValue=${chooseRobot} words=${words} />
 `;
 
 /** The presets, and a custom robot that a link or a run has brought. */

@@ -70,6 +70,8 @@ const ABOUT = {
   figure4: "Practice up to 2000 steps",
   league: "Learners and searchers in worlds",
   recovery: "Learners that something happens to",
+  groups: "Two groups of three legs, or three pairs",
+  bodies: "Learners on creatures and kits",
 };
 const SHOWN = ["agents", "worlds", "steps", "seeds", "simulator"];
 

@@ -24,7 +24,10 @@ import { Worlds } from "./worlds.js";
 /** @import { Run, State, Summary, Verb } from "../../types.js" */
 /** @import { ComponentChildren } from "preact" */
 
-const FIGURES = { table1: TableOne, figure4: FigureFour, sweep: SweepTable, league: Worlds, recovery: Worlds };
+const FIGURES = {
+  table1: TableOne, figure4: FigureFour, sweep: SweepTable,
+  league: Worlds, recovery: Worlds, groups: Worlds, bodies: Worlds,
+};
 
 /** Id of the menu from which name, tags and notes are changed. */
 const MORE = "more-of-report";

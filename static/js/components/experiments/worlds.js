@@ -1,4 +1,5 @@
-// A league or a recovery: in each world the learners' curves with the walks of their references, and a table.
+// A league, a recovery, groups or bodies: in each world the learners' curves with the walks of their
+// references, and a table.
 import { useState } from "preact/hooks";
 import { worldTitle } from "../../disturbances.js";
 import {
@@ -21,9 +22,15 @@ const NOMINAL = "nominal";
 
 /** Question of each experiment. */
 /** @type {Record<string, string>} */
-const TITLES = { league: "Distances by agent and world", recovery: "Recovery by agent and disturbance" };
+const TITLES = {
+  league: "Distances by agent and world", recovery: "Recovery by agent and disturbance",
+  groups: "Distances by groups of legs", bodies: "Distances by agent and body",
+};
 /** @type {Record<string, string>} */
-const STEPS_OF = { league: "steps of practice", recovery: "steps after it happened" };
+const STEPS_OF = {
+  league: "steps of practice", recovery: "steps after it happened",
+  groups: "steps of practice", bodies: "steps of practice",
+};
 
 /** @param {{ known: Summary }} props */
 export function Worlds({ known }) {
@@ -266,7 +273,7 @@ function columnsOf({ experiment }, entries) {
     title: experiment === "recovery" ? `After ${last}` : "Distance", words: "In 50 steps, at the last evaluation",
     cell: (one) => distanceOf(one.distance, one),
   };
-  if (experiment === "league") return [distance, ...SHARES, mean, ...until];
+  if (experiment !== "recovery") return [distance, ...SHARES, mean, ...until];
   return [
     { title: "Right after", words: "Once it has happened", cell: (one) => distanceOf(atPlace(one.curve, 0), one) },
     distance, ...SHARES, mean,

@@ -1,0 +1,36 @@
+"""Routes of robots: what is known of one before it walks."""
+
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import create_model
+from starlette.responses import JSONResponse, Response
+
+from app.api.fields import Body, record_fields
+from hexapods.domain.records import to_json
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.preview import Preview, preview
+
+router = APIRouter(prefix="/robots", tags=["robots"])
+
+_OTHER = {"world", "simulator", "tolerance"}
+"""Fields of the walking problem that a preview does not depend on."""
+_PreviewBody: Any = create_model(
+    "PreviewBody", __base__=Body, **record_fields(WalkingProblem, _OTHER)
+)
+
+
+@router.post(
+    "/preview",
+    summary="Tell support, reach, states and speed of a robot before it walks",
+    response_model=Preview,
+)
+def preview_robot(body: _PreviewBody) -> Response:
+    """Return what follows from robot, gait and foot grid; nothing is simulated.
+
+    `margin_m` below 0 means that it tips; `better` then has groups with which it stands. Without
+    slip it advances by `law_m_per_step`: 2 h / (G (1 + Σ w²)), h half the grid's side, G the number
+    of groups, w their shares of the feet.
+    """
+    walk = WalkingProblem(**{name: getattr(body, name) for name in type(body).model_fields})
+    return JSONResponse(to_json(preview(walk)))

@@ -1,0 +1,41 @@
+"""The paper's claim that Q-learning soon comes level with greedy, with other groups of legs."""
+
+from collections.abc import Sequence
+
+from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
+from hexapods.experiments.claims.judging import CaseFinding, Claim
+from hexapods.experiments.formatting import percent, shares
+from hexapods.experiments.labels import gait_name
+from hexapods.experiments.measures import REACHED_SHARE
+from hexapods.experiments.statistics import Interval
+
+HALF = 0.5
+
+
+def _is_level(case: Case) -> CaseFinding | None:
+    """Judge the fewest groups: the gait with the highest share of greedy's distance."""
+    learned = [one for one in case.settings if one["agent"] == PAPERS_AGENT and one["relative"]]
+    if not learned:
+        return None
+    ordered = sorted(learned, key=lambda one: -float(one["relative"]["iqm"]))
+    told = [
+        f"{gait_name(one['gait'])} {shares(one['relative'])}, "
+        f"{percent(one['reaches_greedy']['share'])} of the seeds reach {percent(REACHED_SHARE)}"
+        for one in ordered
+    ]
+    best = ordered[0]
+    return CaseFinding.of(
+        Interval.of(best["reaches_greedy"]).exceeds(HALF),
+        f"After {best['steps']:,} steps, of greedy's distance: {'; '.join(told)}.",
+    )
+
+
+GROUPS_CLAIMS: Sequence[Claim] = (
+    Claim(
+        "level",
+        "“on par with greedy search algorithms often in less than 500 steps” (§4)",
+        "In the gait in which it comes farthest, more than half of the seeds reach "
+        f"{percent(REACHED_SHARE)} of greedy's distance.",
+        _is_level,
+    ),
+)

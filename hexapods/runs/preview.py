@@ -1,0 +1,196 @@
+"""What is known of a walking problem before anything runs: support, reach, states, the law."""
+
+from bisect import bisect_left
+from dataclasses import dataclass
+from functools import lru_cache
+
+from hexapods.agents.q_table import MAX_VALUES, table_size
+from hexapods.domain.body import Robot
+from hexapods.domain.errors import Unreachable
+from hexapods.domain.gait import AnyGait, Gait, GaitSpec, gait_spec
+from hexapods.domain.grid import MAX_SIDE_M, FootGrid
+from hexapods.domain.kinematics import check_reach, legs_of
+from hexapods.domain.records import Record
+from hexapods.domain.support import STANDS_M, Support
+from hexapods.runs.config import RACE_STEPS, WalkingProblem
+
+_SIDE_STEP_M = 0.005
+"""Grids are tried in steps of this size."""
+
+
+@dataclass(frozen=True)
+class LegPreview(Record):
+    """A leg, with its foot in the robot frame.
+
+    Attributes:
+        leg: its number.
+        group: number of its group, from 0.
+        side: 1 on the right, -1 on the left, 0 on the axis or mirrored otherwise.
+        home_m: place of its foot at home: right, forward.
+        mass_kg: its mass, with the foot.
+    """
+
+    leg: int
+    group: int
+    side: int
+    home_m: tuple[float, float]
+    mass_kg: float
+
+
+@dataclass(frozen=True)
+class GroupPreview(Record):
+    """A group of legs.
+
+    Attributes:
+        legs: their numbers.
+        margin_m: how far the centre of mass is inside the polygon of the other feet, while these
+            swing; below 0 the robot tips.
+        back_m, ahead_m: how far its feet reach from home; null where they reach all that can occur.
+    """
+
+    legs: list[int]
+    margin_m: float
+    back_m: float | None
+    ahead_m: float | None
+
+
+@dataclass(frozen=True)
+class BetterGroups(Record):
+    """Groups with which a robot that tips would stand.
+
+    Attributes:
+        gait: the gait with these groups.
+        margin_m: its least support margin.
+        states: its number of states.
+    """
+
+    gait: AnyGait
+    margin_m: float
+    states: int
+
+
+@dataclass(frozen=True)
+class Preview(Record):
+    """What is known of a walking problem beforehand.
+
+    Attributes:
+        legs: leg by leg.
+        groups: group by group.
+        margin_m: least support margin over the groups.
+        tips: whether that is below 0: it then tips onto the feet that swing, and drags.
+        stands: whether it stands on all of its feet.
+        mass_kg: of the whole robot.
+        states, actions, values: size of a table: states, legal actions in each, and their product.
+        table_fits: whether a learner with a table can start.
+        law_m_per_step: advance of the steady walk by the law without slip.
+        law_m: that of a race of 50 steps.
+        out_of_reach: what a leg cannot reach, in a sentence; null if all can.
+        largest_side_m: largest grid side with which it may walk; null if it reaches none.
+        safe_side_m: largest grid side with which every action is always possible; likewise.
+        better: groups to take instead; null if it does not tip, or tips with any.
+    """
+
+    legs: list[LegPreview]
+    groups: list[GroupPreview]
+    margin_m: float
+    tips: bool
+    stands: bool
+    mass_kg: float
+    states: int
+    actions: int
+    values: int
+    table_fits: bool
+    law_m_per_step: float
+    law_m: float
+    out_of_reach: str | None
+    largest_side_m: float | None
+    safe_side_m: float | None
+    better: BetterGroups | None
+
+
+def preview(walk: WalkingProblem) -> Preview:
+    """Return what is known of a walking problem beforehand; nothing is simulated."""
+    robot, gait, grid = walk.robot, walk.resolved_gait, walk.grid
+    legs, support = legs_of(robot), Support(robot, gait)
+    least, cells = support.least_margin_m(gait.groups), len(grid)
+    try:
+        reach, out_of_reach = check_reach(robot, gait, grid), None
+    except Unreachable as error:
+        reach, out_of_reach = None, str(error)
+    groups = [
+        GroupPreview(
+            list(group),
+            support.margin_m(group),
+            None if reach is None else reach.back_m[number],
+            None if reach is None else reach.ahead_m[number],
+        )
+        for number, group in enumerate(gait.groups)
+    ]
+    largest, safe = _largest_sides_m(robot, gait, grid.divisions)
+    states, actions = cells ** len(gait.groups), len(gait.groups) * (cells - 1)
+    advance_m = law_m_per_step(gait, grid)
+    return Preview(
+        legs=[
+            LegPreview(leg, group, side, home, kg)
+            for leg, (group, side, home, kg) in enumerate(
+                zip(gait.group_of_leg, gait.mirror, support.homes_m, legs.masses_kg, strict=True), 1
+            )
+        ],
+        groups=groups,
+        margin_m=least,
+        tips=least < STANDS_M,
+        stands=support.margin_m() >= STANDS_M,
+        mass_kg=robot.torso_kg + sum(legs.masses_kg),
+        states=states,
+        actions=actions,
+        values=states * actions,
+        table_fits=table_size(len(gait.groups), cells) <= MAX_VALUES,
+        law_m_per_step=advance_m,
+        law_m=RACE_STEPS * advance_m,
+        out_of_reach=out_of_reach,
+        largest_side_m=largest,
+        safe_side_m=safe,
+        better=_better(walk, support) if least < STANDS_M else None,
+    )
+
+
+def law_m_per_step(gait: Gait, grid: FootGrid) -> float:
+    """Return the advance of a steady walk without slip: 2 h / (G (1 + Σ w²)) [m].
+
+    The G groups, w their shares of the feet, take turns to the front edge, h ahead of home.
+    """
+    legs = sum(gait.sizes)
+    squares = sum((size / legs) ** 2 for size in gait.sizes)
+    return 2 * grid.half_side_m / (len(gait.sizes) * (1 + squares))
+
+
+@lru_cache(maxsize=64)
+def _largest_sides_m(robot: Robot, gait: Gait, divisions: int) -> tuple[float | None, float | None]:
+    """Return the largest side of a grid that feet reach, and of one that they never leave [m]."""
+
+    def is_unreached(side: int) -> bool:
+        try:
+            check_reach(robot, gait, FootGrid(side * _SIDE_STEP_M, divisions))
+        except Unreachable:
+            return True
+        return False
+
+    def is_left(side: int) -> bool:
+        return check_reach(robot, gait, FootGrid(side * _SIDE_STEP_M, divisions)) is not None
+
+    sides = range(1, round(MAX_SIDE_M / _SIDE_STEP_M) + 1)
+    reached = bisect_left(sides, 1, key=is_unreached)
+    safe = bisect_left(sides[:reached], 1, key=is_left)
+    largest, kept = (round(n * _SIDE_STEP_M, 3) if n else None for n in (reached, safe))
+    return largest, kept
+
+
+def _better(walk: WalkingProblem, support: Support) -> BetterGroups | None:
+    """Return other groups with the same forward direction, with which the robot stands."""
+    spec = gait_spec(walk.gait)
+    groups = support.steadiest_groups()
+    margin = support.least_margin_m(groups)
+    if margin < STANDS_M:
+        return None
+    gait = GaitSpec(spec.right_leg, spec.left_leg, groups=groups)
+    return BetterGroups(gait, margin, len(walk.grid) ** len(groups))

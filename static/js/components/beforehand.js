@@ -1,0 +1,55 @@
+// What is known of the form's robot and gait before anything runs, below their choice.
+import { useEffect } from "preact/hooks";
+import { followPreview, inWords, objections, preview, takeBetter } from "../preview.js";
+import { html } from "./elements.js";
+
+/** @import { Preview } from "../types.js" */
+
+/** `hasPlan`: with a drawing of the robot from above. @param {{ hasPlan: boolean }} props */
+export function Beforehand({ hasPlan }) {
+  useEffect(followPreview, []);
+  const { answer, error, again } = preview.value;
+  if (error && !again) return html`<p class="mistake" role="alert">${error.message}</p>`;
+  if (!answer) return html`<p class="dim">Asking how it would stand…</p>`;
+  const { better } = answer;
+  return html`
+    <div class="beforehand" role="group" aria-label="Known before it walks">
+      ${hasPlan && html`<${Plan} known=${answer} />`}
+      <div>
+        <p class="dim">${inWords(answer)}</p>
+        ${objections(answer).map((one) => html`<p class="notice" role="status">${one}</p>`)}
+        ${better && html`
+          <button class="link" onClick=${() => takeBetter(answer)}>Take groups with which it stands</button>
+        `}
+      </div>
+    </div>
+  `;
+}
+
+/** From the middle of the drawing to its edge. */
+const EDGE = 29;
+const FOOT = 3.2;
+/** Where a leg begins, of the way from the middle to its foot: across and along. */
+const HIP = [0.3, 0.55];
+
+/** The robot from above, forward up, with its feet at home; legs of a group have one colour. */
+/** @param {{ known: Preview }} props */
+function Plan({ known: { legs } }) {
+  const farthest = Math.max(...legs.flatMap(({ home_m }) => home_m.map(Math.abs)));
+  const scale = (EDGE - FOOT - 1) / farthest;
+  return html`
+    <svg class="glyph" viewBox="-29 -29 58 58" aria-hidden="true">
+      ${legs.map(({ leg, group, home_m: [right, forward] }) => {
+        const [x, y] = [scale * right, -scale * forward];
+        return html`
+          <g class=${`pair pair-${(group % 6) + 1}`} key=${leg}>
+            <path class="leg" d=${`M${HIP[0] * x} ${HIP[1] * y}L${x} ${y}`} />
+            <circle class="foot" cx=${x} cy=${y} r=${FOOT} />
+          </g>
+        `;
+      })}
+      <ellipse class="body" rx="8" ry="9" />
+      <path class="forward" d="M0 -5.2 3.6 1.2 H-3.6z" />
+    </svg>
+  `;
+}

@@ -1,0 +1,45 @@
+// What is known of the form's robot, gait and foot grid before anything runs: support, reach, states, speed.
+import { signal } from "@preact/signals";
+import { previewRobot } from "./api.js";
+import { bodyFields, setField, wrong } from "./form.js";
+import { listed, metres, millimetres, whole } from "./format.js";
+import { keepAnswer } from "./steps.js";
+import { connection, options } from "./store.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { Reply } from "./steps.js" */
+/** @import { FormValue, Preview } from "./types.js" */
+
+/** @type {Signal<Reply<Preview>>} */
+export const preview = signal({ answer: null, error: null, again: false });
+
+const BODY_FIELDS = ["gait", "robot", "divisions", "grid_side_m"];
+
+/** Keep the preview of the form, until the function that is returned is called. */
+export const followPreview = () => keepAnswer(
+  () => {
+    const isKnown = connection.value === "live" && options.value && !BODY_FIELDS.some((field) => field in wrong.value);
+    return isKnown ? JSON.stringify(bodyFields()) : "";
+  },
+  (key) => previewRobot(JSON.parse(key)),
+  preview,
+);
+
+/** How it stands and how fast it is by the law, in a line. @param {Preview} known */
+export function inWords({ states, actions, tips, margin_m, law_m }) {
+  const stands = tips ? `tips by ${millimetres(-margin_m)} mm` : `stands by ${millimetres(margin_m)} mm`;
+  return `${whole(states)} states, ${whole(actions)} moves · ${stands} · ${metres(law_m)} in 50 steps by the law`;
+}
+
+/** What speaks against it, as sentences. @param {Preview} known */
+export function objections({ groups, tips, out_of_reach, table_fits, values }) {
+  const tipping = groups.filter(({ margin_m }) => margin_m < 0).map(({ legs }) => legs.join("+"));
+  return [
+    out_of_reach,
+    tips && `It tips while legs ${listed(tipping)} swing: its centre of mass is not between the other feet.`,
+    !table_fits && `A table of ${whole(values)} values is too large: only learners without one can start.`,
+  ].filter((one) => typeof one === "string");
+}
+
+/** Take the groups with which it would stand. @param {Preview} known */
+export const takeBetter = ({ better }) => better && setField("gait", /** @type {FormValue} */ (better.gait));

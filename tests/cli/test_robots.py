@@ -1,0 +1,41 @@
+"""`hexapods robots`, as a user runs it."""
+
+import json
+from pathlib import Path
+
+from hexapods.domain.creatures import CREATURES
+from tests.cli.running import in_process, refusal
+
+
+def test_built_in_robots_are_listed(tmp_path: Path) -> None:
+    listed = in_process("robots", "list", folder=tmp_path).stdout
+    rows = json.loads(in_process("robots", "list", "--json", folder=tmp_path).stdout)
+
+    assert [row["name"] for row in rows] == list(CREATURES)
+    assert rows[-1]["gait"] == "tripod"
+    assert all(name in listed for name in CREATURES)
+
+
+def test_a_robot_that_tips_is_told_so_and_what_would_stand(tmp_path: Path) -> None:
+    shown = in_process("robots", "show", "dog", "--gait", "pace", folder=tmp_path).stdout
+
+    assert "dog, pace: 4 legs" in shown
+    assert "A table has 25 states with 8 actions each, 200 values: it fits into memory." in shown
+    assert "0.67 m in 50" in shown
+    assert "It tips: the least support margin is -173 mm." in shown
+    assert "With the groups [1, 3] [2, 4] it stands: 0 mm, 25 states." in shown
+
+
+def test_a_robot_is_shown_with_the_gait_that_suits_it(tmp_path: Path) -> None:
+    shown = in_process("robots", "show", "starfish", "--json", folder=tmp_path)
+    known = json.loads(shown.stdout)
+
+    assert known["gait"]["groups"] == [[1, 3], [2, 5], [4]]
+    assert known["tips"] is False
+    assert known["states"] == 125
+
+
+def test_a_gait_that_makes_no_sense_is_refused(tmp_path: Path) -> None:
+    told = refusal("robots", "show", "dog", "--gait", "tripod", folder=tmp_path)
+
+    assert "it needs six legs, this robot has 4" in told

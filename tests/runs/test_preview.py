@@ -1,0 +1,88 @@
+"""What is told of a walking problem before anything runs."""
+
+from typing import Any
+
+import pytest
+
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.robot import robot
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.preview import Preview, preview
+
+
+def told(gait: str | GaitSpec, written: Any = "stiff", **given: Any) -> Preview:
+    return preview(WalkingProblem(gait=gait, robot=robot(written), **given))
+
+
+def test_pairs_and_tripod_of_the_hexapod() -> None:
+    pairs, tripod = told("left-right-origin"), told("tripod")
+
+    assert (pairs.states, pairs.actions, pairs.values) == (125, 12, 1500)
+    assert (tripod.states, tripod.actions, tripod.values) == (25, 8, 200)
+    assert pairs.law_m == pytest.approx(0.5)
+    assert tripod.law_m == pytest.approx(2 / 3)
+    assert not pairs.tips
+    assert tripod.better is None
+    assert [group.legs for group in tripod.groups] == [[1, 3, 5], [2, 4, 6]]
+    assert [leg.side for leg in tripod.legs] == [1, -1, -1, -1, 1, 1]
+    assert tripod.mass_kg == pytest.approx(1.2 + 6 * 0.16)
+
+
+@pytest.mark.parametrize(
+    ("written", "gait", "law_m"),
+    [
+        ({"n_legs": 7}, GaitSpec(1, 2, groups=((1, 3, 5, 7), (2, 4, 6))), 0.662),
+        ({"n_legs": 5}, "left-right-vertical", 0.490),
+        ({"n_legs": 5}, GaitSpec(1, 2, groups=((1, 3), (2, 4, 5))), 0.658),
+        ({"n_legs": 6}, "bound", 0.643),
+    ],
+)
+def test_the_law_counts_each_group_by_its_share_of_the_feet(
+    written: dict[str, int], gait: str | GaitSpec, law_m: float
+) -> None:
+    assert told(gait, written).law_m == pytest.approx(law_m, abs=5e-4)
+
+
+def test_a_robot_that_tips_is_offered_other_groups() -> None:
+    pace = told("pace")
+
+    assert pace.tips
+    assert pace.margin_m == pytest.approx(-0.125)
+    assert pace.better is not None
+    assert pace.better.gait == GaitSpec(1, 2, groups=((1, 3, 5), (2, 4, 6)))
+    assert pace.better.margin_m == pytest.approx(0.125)
+    assert pace.better.states == 25
+    assert not told(pace.better.gait).tips
+
+
+def test_where_no_groups_help_none_are_offered() -> None:
+    three = told("one-by-one", {"n_legs": 3})
+
+    assert three.tips
+    assert three.stands
+    assert three.better is None
+
+
+def test_a_table_that_would_not_fit_is_told_with_its_states() -> None:
+    single = told("one-by-one", "centipede")
+
+    assert single.states == 5**12
+    assert not single.table_fits
+
+
+def test_reach_is_told_by_group_where_feet_may_not_go_everywhere() -> None:
+    near, far = told("one-by-one", grid_side_m=0.02), told("one-by-one", grid_side_m=0.06)
+
+    assert near.groups[0].ahead_m is None
+    assert far.groups[0].ahead_m is not None
+    assert far.groups[0].ahead_m > 0.03
+    assert (near.safe_side_m, near.largest_side_m) == (far.safe_side_m, far.largest_side_m)
+    assert near.safe_side_m == 0.035
+    assert near.largest_side_m == 0.125
+
+
+def test_a_grid_out_of_reach_is_told_at_its_leg() -> None:
+    out = told("tripod", grid_side_m=0.3)
+
+    assert out.out_of_reach is not None
+    assert out.out_of_reach.startswith("leg 1 cannot reach cell 1 (front left)")
