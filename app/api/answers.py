@@ -253,9 +253,14 @@ class StageView(Answer):
 
 
 class EstimateView(Answer):
-    """Estimated duration of a run here once it has a core [s]."""
+    """Estimated duration of a run here once it has a core [s].
+
+    Attributes:
+        workers: how many of an experiment's trials are computed at once; null of other runs.
+    """
 
     seconds: Annotated[float, Field(ge=0)]
+    workers: Annotated[int, Field(ge=1)] | None
 
 
 class WhatIfHalf(Answer):

@@ -304,6 +304,7 @@ class SummaryView(Answer):
 
     Attributes:
         parameters: names of what is varied beside place and agent.
+        finding: what came of it, in a sentence; empty where its claims say it.
     """
 
     format: int
@@ -322,3 +323,4 @@ class SummaryView(Answer):
     worlds: list[WorldView] = Field(default_factory=list)
     claims: list[ClaimView]
     story: list[NarrativeSection]
+    finding: str = ""

@@ -166,6 +166,7 @@ def _empty_summary(run: Run) -> dict[str, Any]:
         "trials": {"done": 0, "total": run.total, "failed": 0, "set_aside": []},
         "cost": None,
         **{name: [] for name in lists},
+        "finding": "",
     }
 
 

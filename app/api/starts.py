@@ -121,7 +121,9 @@ def _add_starts(
         services: ServicesDep,
         body: body_type,
     ) -> Response:
-        return JSONResponse({"seconds": round(services.estimates.of(body.start()), 1)})
+        start, estimates = body.start(), services.estimates
+        seconds = round(estimates.of(start), 1)
+        return JSONResponse({"seconds": seconds, "workers": estimates.workers_of(start)})
 
     router.add_api_route(
         f"/{kind}s",

@@ -188,6 +188,7 @@ class _SentProgress(Progress):
             ),
             claims=tuple(ClaimVerdict(id=one["id"], verdict=one["verdict"]) for one in claims),
             files=tuple(self._files),
+            finding=self._summary["finding"],
         )
 
     def _send_due(self) -> None:

@@ -85,7 +85,7 @@ class Estimates:
             Busy: if others wait for that, or the pool is closed.
         """
         if isinstance(start, ExperimentStart):
-            return self._experiment_s(start.config, start.workers or self._cores)
+            return self._experiment_s(start.config) / self._at_once(start)
         if isinstance(start, TrainingStart):
             check_training(start.config)
             parts = [*_practice(start.config)]
@@ -101,25 +101,33 @@ class Estimates:
         at_once = max([*alone, sum(alone) / self._cores], default=0.0)
         return at_once + _seconds(lanes, measured)
 
+    def workers_of(
+        self, start: TrainingStart | RaceStart | BranchStart | ExperimentStart
+    ) -> int | None:
+        """Return how many trials of an experiment are computed at once; None of other runs."""
+        return self._at_once(start) if isinstance(start, ExperimentStart) else None
+
     def close(self) -> None:
         """Shut down the pool."""
         self._pool.close()
 
-    def _experiment_s(self, config: ExperimentConfig, workers: int) -> float:
-        plan = plan_of(config)
-        parts = [*_trials(plan)]
+    def _at_once(self, start: ExperimentStart) -> int:
+        return max(1, min(start.workers or self._cores, plan_of(start.config).total))
+
+    def _experiment_s(self, config: ExperimentConfig) -> float:
+        """Return the computing time of all trials [s]."""
+        parts = [*_trials(plan_of(config))]
         measured = self._measured(_one_per_class_first(one.steps for one in parts))
         by_class: defaultdict[_CostClass, list[float]] = defaultdict(list)
         for steps, step_s in measured.items():
             by_class[_cost_class(steps)].append(step_s)
-        total = sum(
+        return sum(
             one.number
             * measured.get(
                 one.steps, fmean(by_class[_cost_class(one.steps)] or [*measured.values()])
             )
             for one in parts
         )
-        return total / max(1, min(workers, plan.total))
 
     def _measured(self, wanted: Iterable[TimedSteps]) -> Mapping[TimedSteps, float]:
         """Return the time of a step of each kind [s], of the first `MAX_MEASURED` kinds."""

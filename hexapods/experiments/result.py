@@ -32,10 +32,12 @@ class ClaimVerdict:
 class ExperimentResult:
     """Result of an experiment; `files` are those of its report.
 
-    `shared_machine`: whether other runs computed beside it, which slows what is timed.
+    `shared_machine`: whether other runs computed beside it, which slows what is timed. `finding`:
+    what came of it, in a sentence; empty where its claims say it, and of 0.1.
     """
 
     trials: TrialCounts
     claims: Annotated[tuple[ClaimVerdict, ...], MaxLen(1_000)]
     files: Annotated[tuple[Name, ...], MaxLen(128)]
     shared_machine: bool = False
+    finding: Annotated[str, MaxLen(1_000)] = ""

@@ -21,6 +21,7 @@ from hexapods.experiments.measures import (
     summarise_distances,
 )
 from hexapods.experiments.names import trial_names
+from hexapods.experiments.narrative.finding import find
 from hexapods.experiments.narrative.narrative import narrate
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.published import published
@@ -56,8 +57,8 @@ def summarise(
         Plain types, fit for JSON: `trials` (counts), `settings` (one entry per setting), `pooled`
         (one per setting over its gaits), `curves` (settings with several blocks), `versus`
         (pairs of learning agents), `timed` (races timed on this machine), `worlds` (agents in the
-        worlds of a league or recovery), and `claims` and `story` as text. What cannot be computed
-        yet is None, or an empty list.
+        worlds of a league or recovery), and `claims`, `story` and `finding` as text. What cannot be
+        computed yet is None, or empty.
     """
     plan = _plan(config)
     settings = group_by_setting(plan, results)
@@ -81,6 +82,7 @@ def summarise(
     }
     summary["claims"] = judge(summary, CLAIMS_OF[config.experiment])
     summary["story"] = narrate(summary)
+    summary["finding"] = find(summary)
     return summary
 
 

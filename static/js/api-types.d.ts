@@ -555,6 +555,10 @@ export interface RangesView {
  */
 export interface EstimateView {
   seconds: number;
+  /**
+   * how many of an experiment's trials are computed at once; null of other runs.
+   */
+  workers: number | null;
 }
 /**
  * An evaluation of a training that runs.
@@ -1251,7 +1255,8 @@ export interface ExperimentConfig {
 /**
  * Result of an experiment; `files` are those of its report.
  *
- * `shared_machine`: whether other runs computed beside it, which slows what is timed.
+ * `shared_machine`: whether other runs computed beside it, which slows what is timed. `finding`:
+ * what came of it, in a sentence; empty where its claims say it, and of 0.1.
  */
 export interface ExperimentResult {
   trials: TrialCounts;
@@ -1264,6 +1269,7 @@ export interface ExperimentResult {
    */
   files: string[];
   shared_machine?: boolean;
+  finding?: string;
 }
 /**
  * Number of trials by outcome.
@@ -2469,6 +2475,10 @@ export interface SummaryView {
   worlds?: WorldView[];
   claims: ClaimView[];
   story: NarrativeSection[];
+  /**
+   * what came of it, in a sentence; empty where its claims say it.
+   */
+  finding?: string;
 }
 /**
  * Probability that agent `a` walks farther than agent `b`, with its 95 % interval.

@@ -2,8 +2,8 @@
 import { computed, effect, untracked } from "@preact/signals";
 
 /** @import { Annotations, Curve, Curves, Disturbance, Explanation, GaitAnalysis, Kind, Options } from "./types.js" */
-/** @import { Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage, StateTable, Summary } from "./types.js" */
-/** @import { Timeline, Trial, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Estimate, Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage, StateTable } from "./types.js" */
+/** @import { Summary, Timeline, Trial, Verb, WhatIfAnswer } from "./types.js" */
 
 // All that a page asks for is below its own address, which tells the stage that it is about.
 const base = () => new URL("api/v1/", document.baseURI);
@@ -226,7 +226,7 @@ async function start(path, body) {
 const randomKey = () =>
   Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
 
-/** How long a run would take. @type {(path: string, body: object) => Promise<{ seconds: number }>} */
+/** How long a run would take. @type {(path: string, body: object) => Promise<Estimate>} */
 export const estimate = (path, body) => call("POST", `${path}/estimate`, body);
 
 /** What is known of a robot, its gait and its foot grid. @type {(body: object) => Promise<Preview>} */

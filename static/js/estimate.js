@@ -8,6 +8,7 @@ import { learns } from "./settings.js";
 import { connection } from "./store.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
+/** @import { Estimate } from "./types.js" */
 
 /** A start that takes longer is told of. */
 const LONG_S = 20;
@@ -19,12 +20,12 @@ const QUIET_MS = 600;
 /**
  * Ask how long a start takes, each time it has come to rest as another one.
  * @param {ReadonlySignal<Start | null>} start null while it cannot be, or is surely short
- * @returns {ReadonlySignal<number | null | undefined>} [s]; undefined while it is asked, null where it is not known
+ * @returns {ReadonlySignal<Estimate | null | undefined>} undefined while it is asked, null where it is not known
  */
-export function makeDuration(start) {
+export function makeAnswer(start) {
   const key = computed(() => (connection.value === "live" && start.value ? JSON.stringify(start.value) : ""));
-  /** @type {Signal<{ key: string, seconds: number | null }>} */
-  const answer = signal({ key: "", seconds: null });
+  /** @type {Signal<{ key: string, told: Estimate | null }>} */
+  const answer = signal({ key: "", told: null });
   let newest = Promise.resolve();
   effect(() => {
     const asked = key.value;
@@ -34,7 +35,7 @@ export function makeDuration(start) {
       const { path, body } = JSON.parse(asked);
       // Without an answer nothing is told: the start itself says what is wrong.
       const told = await api.patiently(() => api.estimate(path, body), isWanted).catch(() => null);
-      if (isWanted()) answer.value = { key: asked, seconds: told?.seconds ?? null };
+      if (isWanted()) answer.value = { key: asked, told };
     };
     // One request at a time: each may hold a thread of the server.
     const timer = setTimeout(() => (newest = newest.then(ask)), QUIET_MS);
@@ -42,8 +43,8 @@ export function makeDuration(start) {
   });
   return computed(() => {
     if (!key.value) return null;
-    const { key: asked, seconds } = answer.value;
-    return asked === key.value ? seconds : undefined;
+    const { key: asked, told } = answer.value;
+    return asked === key.value ? told : undefined;
   });
 }
 
@@ -53,9 +54,11 @@ export function makeDuration(start) {
  * @returns {ReadonlySignal<string>}
  */
 export function makeEstimate(start) {
-  const seconds = makeDuration(start);
-  return computed(() =>
-    ((seconds.value ?? 0) > LONG_S ? `Takes about ${duration(seconds.value ?? 0)} on this machine.` : ""));
+  const answer = makeAnswer(start);
+  return computed(() => {
+    const seconds = answer.value?.seconds ?? 0;
+    return seconds > LONG_S ? `Takes about ${duration(seconds)} on this machine.` : "";
+  });
 }
 
 /** Steps below which a start is surely short: of learners together, and of lanes that look ahead. */

@@ -15,6 +15,7 @@ export type {
   Described,
   Distances,
   DisturbanceOption as DisturbanceKind,
+  EstimateView as Estimate,
   Evaluation,
   EventBodies,
   ExportOption,

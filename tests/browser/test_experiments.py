@@ -26,6 +26,7 @@ CORNER = {
     "observations": "measured",
 }
 SMALL = {**CORNER, "seeds": 3, "robots": "stiff"}
+FINDING = r"λ\s0\.[19] (leads with|walks farthest:) \d+\s%"
 ENDLESS = {**CORNER, "experiment": "sweep", "seeds": 5000, "steps": 2000}
 
 
@@ -92,6 +93,7 @@ def test_table_1_fills_and_is_taken_away(dashboard: Dashboard, server: Serving) 
     dashboard.button("Delete for good?").click()
     expect(page.get_by_role("heading", name="Experiments", exact=True)).to_be_visible()
     expect(page.get_by_text("None yet.")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollHeight") == PHONE["height"]
 
 
 def run_a_seed(dashboard: Dashboard) -> None:
@@ -120,7 +122,7 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
     # It computes for as long as it is looked at, and leaves the machine to other tests.
     with serving(tmp_path, job_niceness=15) as server:
         visit(dashboard, server, **ENDLESS)
-        expect(page.get_by_text(re.compile(r"about .* on this machine\.$"))).to_be_visible()
+        expect(page.get_by_text(re.compile(r"about .* on \d+ cores?\.$"))).to_be_visible()
         dashboard.button("Run Sweep: 5001 trials").click()
         expect(dashboard.experiment).to_contain_text("a second")
         expect(dashboard.experiment).to_be_in_viewport(ratio=1)
@@ -143,6 +145,10 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
         expect(dashboard.experiment_state("paused")).to_be_visible()
         dashboard.button("Resume").click()
         expect(dashboard.experiment_state("running")).to_be_visible()
+        page.set_viewport_size(PHONE)
+        page.get_by_role("link", name=re.compile("5,000 seeds")).click()
+        expect(dashboard.button("Pause")).to_be_in_viewport(ratio=1)
+        assert dashboard.experiment.evaluate("one => one.scrollWidth <= one.clientWidth")
         dashboard.button("Stop").click()
         expect(dashboard.experiment).to_contain_text("The report covers the completed trials.")
         dashboard.experiment.get_by_text("Files", exact=True).click()
@@ -188,14 +194,32 @@ def test_a_preset_shows_few_fields_and_a_link_carries_them(
     button.click()
     expect(dashboard.experiment).to_contain_text("λ 0.1, 0.9 · 3 seeds")
     expect(dashboard.experiment_state("finished")).to_be_visible()
-    expect(
-        dashboard.experiment.get_by_role("heading", name=re.compile("^The best is"))
-    ).to_be_visible()
+    expect(dashboard.experiment.get_by_role("heading", name=re.compile(FINDING))).to_be_visible()
+    is_renamed(dashboard)
     page.get_by_role("button", name="Repeat with…").click()
     expect(dialog.get_by_label("Learner", exact=True)).to_have_value("sarsa-lambda")
     expect(written).to_have_value("0.1, 0.9")
     page.keyboard.press("Escape")
     expect(dialog).to_be_hidden()
+
+
+def is_renamed(dashboard: Dashboard) -> None:
+    """Its name and notes are changed in the report; its row has the name, and what came of it."""
+    page = dashboard.page
+    more = page.get_by_label("More about this experiment")
+    more.click()
+    dashboard.button("Rename").click()
+    page.keyboard.type("How long is memory?")
+    page.keyboard.press("Enter")
+    row = page.get_by_role("region", name="Experiments").get_by_role("link", name="How long is")
+    expect(row).to_contain_text(re.compile(FINDING))
+    expect(more).to_be_focused()
+    more.click()
+    dashboard.button("Add notes").click()
+    page.keyboard.type("Too few seeds.")
+    page.keyboard.press("Control+Enter")
+    expect(dashboard.experiment.get_by_text("Too few seeds.", exact=True)).to_be_visible()
+    expect(more).to_be_focused()
 
 
 def fits(dashboard: Dashboard) -> None:

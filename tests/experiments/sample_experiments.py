@@ -33,13 +33,20 @@ def around(middle_m: float, spread_m: float = 0.02) -> Callable[[int], float]:
     return lambda number: middle_m + spread_m * float(np.sin(1 + 7 * number))
 
 
+def alpha_of(one: TrialSetting) -> float:
+    """Return the learning rate of a setting whose agent has one."""
+    alpha = one.training.settings["alpha"]
+    assert isinstance(alpha, float)
+    return alpha
+
+
 def sample_results(
     tried: ExperimentConfig, distance_m: Callable[[TrialSetting], Callable[[int], float]]
 ) -> Results:
     """Make up results in which each seed covers the given distance, and greedy half a metre.
 
     Greedy is at 0.36 m at time-out. With several blocks, a learner's distance after n blocks is
-    1 − 0.5ⁿ of its final one.
+    1 − 0.5ⁿ of its final one; in a league or recovery it is the same from the first evaluation on.
     """
     found: Results = {}
     for trial in Plan(tried).trials():
@@ -48,6 +55,7 @@ def sample_results(
             far_m = distance_m(trial.setting)(trial.seed_number)
             blocks = trial.config.blocks
             shares = [1.0] if blocks == 1 else [1 - 0.5**block for block in range(1, blocks + 1)]
+            shares *= len(trial.config.evaluations) or 1
             found[trial.key] = TrialResult(
                 distances_m=tuple(far_m * share for share in shares),
                 finished_distance_m=far_m if blocks == 1 else None,

@@ -31,7 +31,7 @@ beforeEach(() => {
 
 test("the presets are the own ones, and the experiments of the server as they are", () => {
   assert.deepEqual(presets().map(({ name }) => name),
-    ["setting", "learners", "worlds", "table1", "league", "recovery"]);
+    ["setting", "learners", "worlds", "table1", "league", "recovery", "empty"]);
   options.value = { ...OPTIONS, experiments: OPTIONS.experiments.slice(0, 1) };
   assert.deepEqual(presets().map(({ name }) => name), ["table1"]);
 });
@@ -40,7 +40,8 @@ test("each preset can be started as it begins, and shows all that it set", () =>
   for (const { name, experiment } of presets()) {
     choosePreset(name);
     assert.equal(chosenPreset().name, name);
-    assert.deepEqual([chosenExperiment.value.name, mistakes.value, isMoreSet()], [experiment, {}, false], name);
+    assert.deepEqual([chosenExperiment.value.name, mistakes.value], [experiment, {}], name);
+    assert.equal(isMoreSet(), name === "empty", name);
     assert.ok(trials.value > 0, name);
   }
 });
@@ -78,6 +79,17 @@ test("what another preset shows too is kept, the rest begins anew", () => {
   assert.deepEqual([values.value.seeds, values.value.agents], [7, ["tracer"]]);
   choosePreset("table1");
   assert.deepEqual(requestBody(), { experiment: "table1", seeds: 7 });
+});
+
+test("the empty preset begins anew, and leads to any other with what was set since", () => {
+  choosePreset("setting");
+  setField("seeds", 7);
+  choosePreset("empty", true);
+  assert.deepEqual(requestBody(), { experiment: "sweep" });
+  setField("seeds", 9);
+  setField("gaits", ["wave"]);
+  choosePreset("league", isMoreSet());
+  assert.deepEqual(requestBody(), { experiment: "league", seeds: 9, gaits: ["wave"] });
 });
 
 test("a link opens the preset that it looks like, and all settings where that shows less", () => {
@@ -137,15 +149,20 @@ test("an experiment says in a line what is the same in all its trials", () => {
 
 test("a finding is the server’s sentence, else its verdicts, else nothing", () => {
   const known = (/** @type {object} */ parts) => /** @type {Summary} */ (/** @type {unknown} */ (parts));
-  const text = "5 were tried. The best is α 0.1: 79 % (67 to 87) of greedy's distance. The worst is α 0.9: 0.5 %.";
-  assert.equal(findingIn(known({ story: [{ heading: "", text }], claims: [] })),
-    "The best is α 0.1: 79 % (67 to 87) of greedy's distance.");
   const claims = ["holds", "does not hold", "does not hold", "not established"].map((verdict) => ({ verdict }));
+  assert.equal(findingIn(known({ finding: "α 0.1 leads.", claims })), "α 0.1 leads.");
   assert.equal(verdictsInWords(claims),
     "Of the paper’s 4 claims 1 holds, 2 do not hold and 1 is not established.");
-  assert.equal(findingIn(known({ story: [], claims: claims.slice(0, 1) })), "The paper’s claim holds.");
-  assert.equal(findingIn(known({ story: [], claims: [] })), "");
+  assert.equal(findingIn(known({ finding: "", claims })), verdictsInWords(claims));
+  assert.equal(findingIn(known({ finding: "", claims: claims.slice(0, 1) })), "");
   assert.equal(findingIn(null), "");
-  const run = makeRun({ kind: "experiment", config: { experiment: "table1" }, result: { claims } });
-  assert.match(outcomeOf(run, null), /^Of the paper’s 4 claims/);
+});
+
+test("a row tells the finding whether its report was opened or not", () => {
+  const told = (/** @type {object} */ result) =>
+    outcomeOf(makeRun({ kind: "experiment", result: /** @type {any} */ (result) }), null);
+  assert.equal(told({ finding: "α 0.1 leads.", claims: [{ verdict: "holds" }] }), "α 0.1 leads.");
+  assert.equal(told({ finding: "", claims: [{ verdict: "holds" }, { verdict: "depends" }] }),
+    "Of the paper’s 2 claims 1 holds and 1 depends on the case.");
+  assert.equal(outcomeOf(makeRun({ kind: "experiment", result: null }), null), "");
 });

@@ -83,9 +83,11 @@ def test_trials_are_divided_among_the_workers() -> None:
         "sweep", {"seeds": 6, "steps": (100,), "gaits": ("left-right-origin",)}
     )
     greedy_s, learners_s = 50 * 1.0, 6 * (100 + 50) * 0.1
-    assert Estimates(TimedPool(), cores=2).of(ExperimentStart(config)) == pytest.approx(
-        (greedy_s + learners_s) / 2
-    )
+    estimates = Estimates(TimedPool(), cores=2)
+    assert estimates.of(ExperimentStart(config)) == pytest.approx((greedy_s + learners_s) / 2)
+    assert estimates.workers_of(ExperimentStart(config)) == 2
+    assert estimates.workers_of(ExperimentStart(config, workers=1)) == 1
+    assert estimates.workers_of(training(steps=100)) is None
 
 
 def test_trials_that_are_not_timed_count_as_those_of_the_same_agent(

@@ -59,6 +59,11 @@ const OWN = [
   },
 ];
 
+/** Shows every setting, with the defaults of the experiment that varies them. @type {Preset} */
+const EMPTY = {
+  name: "empty", title: "Empty", about: "Choose everything", experiment: "sweep", fields: [], begins: () => ({}),
+};
+
 /** What a served experiment is, in few words, instead of its description. @type {Record<string, string>} */
 const ABOUT = {
   table1: "As in the paper, four gaits",
@@ -70,15 +75,15 @@ const ABOUT = {
 };
 const SHOWN = ["agents", "worlds", "steps", "seeds", "simulator"];
 
-/** The presets that the server can run: the own ones, then its experiments as they are. @returns {Preset[]} */
+/** The presets that the server can run: the own ones, its experiments as they are, and all. @returns {Preset[]} */
 export function presets() {
   const kinds = experiments.value;
-  const own = OWN.filter(({ experiment }) => kinds.some(({ name }) => name === experiment));
+  const isServed = (/** @type {Preset} */ { experiment }) => kinds.some(({ name }) => name === experiment);
   const rest = kinds.filter(({ name }) => name !== "sweep").map(({ name, title, description, fields }) => ({
     name, title, about: ABOUT[name] ?? description, experiment: name,
     fields: SHOWN.filter((field) => fields.includes(field)), begins: () => ({}),
   }));
-  return [...own, ...rest];
+  return [...OWN.filter(isServed), ...rest, ...[EMPTY].filter(isServed)];
 }
 
 // ---- the preset that the form shows
@@ -108,8 +113,10 @@ function shows({ fields, name }) {
     !givenFields().some((field) => isHidden(field) && !swept.includes(field));
 }
 
-/** Whether the form looks like this preset rather than like another one of its experiment. */
-/** @type {Record<string, () => boolean>} */
+/**
+ * Whether the form looks like this preset rather than like another one of its experiment.
+ * @type {Record<string, () => boolean>}
+ */
 const LOOKS_LIKE = {
   learners: () => values.value.agents.length > 1,
   worlds: () => values.value.agents.length <= MAX_FEW,
@@ -123,8 +130,8 @@ export function chosenPreset() {
     ofExperiment.find(({ name }) => !LOOKS_LIKE[name]) ?? ofExperiment[0];
 }
 
-/** Whether more was set than the chosen preset shows; then all is shown. */
-export const isMoreSet = () => !shows(chosenPreset());
+/** Whether more was set than the chosen preset shows, or it shows all by itself; then all is shown. */
+export const isMoreSet = () => chosenPreset().name === EMPTY.name || !shows(chosenPreset());
 
 /** Whether nothing was set yet. */
 export const isUntouched = () => page.experiment.value.size === 0;
@@ -133,7 +140,7 @@ export const isUntouched = () => page.experiment.value.size === 0;
 export const forgetPreset = () => (lastChosen.value = "");
 
 /**
- * Begin a preset. What was set of the fields that it shows stays; the rest is as it begins.
+ * Begin a preset. What was set of the fields that it shows stays; the rest is as it begins: all in the empty one.
  * @param {string} name
  * @param {boolean} [showsAll] whether every setting is shown, whichever the preset
  */
@@ -141,7 +148,8 @@ export function choosePreset(name, showsAll = false) {
   const preset = presets().find((one) => one.name === name) ?? presets()[0];
   const begun = isUntouched() ? {} : chosenPreset().begins(chosenExperiment.value);
   const isOwn = (/** @type {string} */ field) => String(begun[field]) !== String(values.value[field]);
-  const isShown = (/** @type {string} */ field) => showsAll || [...preset.fields, "seed", "name"].includes(field);
+  const keepsAll = showsAll && preset.name !== EMPTY.name;
+  const isShown = (/** @type {string} */ field) => keepsAll || [...preset.fields, "seed", "name"].includes(field);
   const kept = givenFields().filter((field) => isOwn(field) && isShown(field));
   const keptValues = Object.fromEntries(kept.map((field) => [field, values.value[field]]));
   lastChosen.value = name;

@@ -3,7 +3,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { attempt, deleteRun } from "../actions.js";
 import * as api from "../api.js";
 import { askForNewest, getSummary } from "../api.js";
-import { makeDuration } from "../estimate.js";
+import { makeAnswer } from "../estimate.js";
 import { count, duration, whole } from "../format.js";
 import { announcement } from "../headline.js";
 import { page } from "../page-state.js";
@@ -137,8 +137,8 @@ export function startLabel() {
 export const canStart = () =>
   isOperator.value && !hasMistakes() && trials.value > 0;
 
-/** How long the form's experiment takes [s]; undefined while the server is asked, null where it is not known. */
-export const experimentDuration = makeDuration(computed(() =>
+/** How long the form's experiment takes; undefined while the server is asked, null where it is not known. */
+export const experimentEstimate = makeAnswer(computed(() =>
   (page.view.value === "experiments" && options.value && canStart()
     ? { path: "experiments", body: requestBody() }
     : null),

@@ -59,39 +59,29 @@ const VERDICTS = [
 ];
 
 /**
- * How many of the paper's claims hold: "Of the paper’s 9 claims 2 do not hold and 7 are not established."
+ * How many of the paper's claims hold: "Of the paper’s 9 claims 2 do not hold and 7 are not established." Empty of a
+ * single one: without its words the number says nothing.
  * @param {{ verdict: string }[]} claims
  */
 export function verdictsInWords(claims) {
-  const [{ verdict: only }] = claims.length === 1 ? claims : [{ verdict: "" }];
-  const [, ofOne] = VERDICTS.find(([verdict]) => verdict === only) ?? [];
-  if (ofOne) return `The paper’s claim ${ofOne(1)}.`;
+  if (claims.length < 2) return "";
   const counts = VERDICTS.map(([verdict, words]) => {
     const number = claims.filter((one) => one.verdict === verdict).length;
     return number ? `${number} ${words(number)}` : "";
   });
-  const told = listed(counts.filter(Boolean));
-  return told && `Of the paper’s ${count(claims.length, "claim")} ${told}.`;
+  return `Of the paper’s ${count(claims.length, "claim")} ${listed(counts.filter(Boolean))}.`;
 }
-
-/** How the server begins its sentence on the best of several settings. */
-const BEST = /(?:^|[.] )(The best is .*?[.])(?= [A-Z]|$)/;
 
 /**
- * What an experiment found, as the server wrote it; empty where it says nothing yet.
+ * What an experiment found, as the server wrote it, else its verdicts; empty where it says nothing yet.
  * @param {Summary | null} known
  */
-export function findingIn(known) {
-  const [, best = ""] = (known?.story ?? []).map(({ text }) => BEST.exec(text)).find(Boolean) ?? [];
-  return best || verdictsInWords(known?.claims ?? []);
-}
+export const findingIn = (known) => known?.finding || verdictsInWords(known?.claims ?? []);
 
 /**
  * What came of an experiment in its row of the list, whether its report was opened or not.
  * @param {Run} run
  * @param {Summary | null} known
  */
-export function outcomeOf({ result, config }, known) {
-  const stored = config.experiment === "sweep" ? "" : verdictsInWords(result?.claims ?? []);
-  return findingIn(known) || stored;
-}
+export const outcomeOf = ({ result }, known) =>
+  findingIn(known) || result?.finding || verdictsInWords(result?.claims ?? []);

@@ -7,7 +7,7 @@ import pytest
 
 from hexapods.domain.observation import OBSERVATIONS
 from hexapods.experiments.plan import TrialSetting
-from tests.experiments.sample_experiments import ROBOTS, around, summary_of
+from tests.experiments.sample_experiments import ROBOTS, alpha_of, around, summary_of
 
 ODD_GAIT = "left-right-vertical"
 
@@ -20,12 +20,6 @@ def text_under(summary: dict[str, list[dict[str, str]]], heading: str) -> str:
 
 def headings(summary: dict[str, list[dict[str, str]]]) -> Sequence[str]:
     return [one["heading"] for one in summary["story"]]
-
-
-def alpha_of(one: TrialSetting) -> float:
-    alpha = one.training.settings["alpha"]
-    assert isinstance(alpha, float)
-    return alpha
 
 
 def test_the_seeds_spread_and_wrong_winners_are_described() -> None:

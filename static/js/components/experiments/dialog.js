@@ -8,7 +8,7 @@ import {
   choosePreset, chosenPreset, chooseAgent, chooseSwept, isMoreSet, isUntouched, presets, suggestedValues, sweepable,
   sweptField,
 } from "../../experiments/presets.js";
-import { canStart, experimentDuration, start, startLabel } from "../../experiments/runs.js";
+import { canStart, experimentEstimate, start, startLabel } from "../../experiments/runs.js";
 import { count, duration, listed, sentence } from "../../format.js";
 import { ignored, page } from "../../page-state.js";
 import { agentOf, learns, limitsOf, titleOf } from "../../settings.js";
@@ -82,9 +82,12 @@ export function ExperimentDialog() {
 function costInWords() {
   if (!canStart()) return "No trials yet: something above is missing.";
   const number = html`<b>${count(trials.value, "trial")}</b>`;
-  const seconds = experimentDuration.value;
-  if (typeof seconds === "number") return html`${number}, <b>about ${duration(seconds)}</b> on this machine.`;
-  if (seconds === undefined) return html`${number}. Estimating how long…`;
+  const estimate = experimentEstimate.value;
+  if (estimate) {
+    const { seconds, workers } = estimate;
+    return html`${number}, <b>about ${duration(seconds)}</b> on ${count(workers ?? 1, "core")}.`;
+  }
+  if (estimate === undefined) return html`${number}. Estimating how long…`;
   return html`${number}.${connection.value === "live" ? " How long they take is not known." : ""}`;
 }
 

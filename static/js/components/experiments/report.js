@@ -1,5 +1,5 @@
 // The report of one experiment. It fills while trials end.
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useMemo, useState } from "preact/hooks";
 import { pending, runAgain } from "../../actions.js";
 import { setFormOf } from "../../experiments/form.js";
 import { forgetPreset } from "../../experiments/presets.js";
@@ -7,10 +7,11 @@ import { command, deleteExperiment, paceOf, summary, summaryError } from "../../
 import { configInWords, findingIn } from "../../experiments/words.js";
 import { downloads, fileAddress, reportAddress } from "../../files.js";
 import { count, duration } from "../../format.js";
-import { page } from "../../page-state.js";
+import { addressOf, page } from "../../page-state.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { messageOf, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Icon, Problem, ProgressBar } from "../elements.js";
+import { editHere, EditorOf, isEdited } from "../runs/annotations.js";
 import { formIsOpen, unsayable } from "./dialog.js";
 import { FigureFour } from "./figure-four.js";
 import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
@@ -27,6 +28,9 @@ const FIGURES = {
   table1: TableOne, figure4: FigureFour, sweep: SweepTable,
   league: Worlds, recovery: Worlds, groups: Worlds, bodies: Worlds,
 };
+
+/** Id of the menu from which name, tags and notes are changed. */
+const MORE = "more-of-report";
 
 /** @param {{ run: Run }} props */
 export function Report({ run }) {
@@ -46,7 +50,7 @@ export function Report({ run }) {
         <div class="gist">
           ${finding && html`<p class="finding" role="heading" aria-level="3">${soFar(run)}${finding}</p>`}
           <p class="dim">${configInWords(run.config)}</p>
-          ${run.notes && html`<p class="own-notes">${run.notes}</p>`}
+          <${OwnWords} run=${run} />
         </div>
         ${hasSeeds ? findings : html`<${Waiting} run=${run} />`}
       </div>
@@ -54,8 +58,21 @@ export function Report({ run }) {
   `;
 }
 
+/** Its tags and notes. @param {{ run: Run }} props */
+function OwnWords({ run }) {
+  const tags = (run.tags ?? []).join(", ");
+  return html`
+    ${isEdited(run, "tags")
+      ? html`<${EditorOf} run=${run} field="tags" opener=${MORE} />`
+      : tags && html`<p class="dim">Tags: ${tags}</p>`}
+    ${isEdited(run, "notes")
+      ? html`<${EditorOf} run=${run} field="notes" opener=${MORE} />`
+      : run.notes && html`<p class="notes">${run.notes}</p>`}
+  `;
+}
+
 /** @param {Run} run */
-const soFar = (run) => (run.state === "finished" ? "" : "So far: ");
+const soFar = (run) => run.state !== "finished" && html`<span class="so-far">So far: </span>`;
 
 /** @param {{ known: Summary }} props */
 function Findings({ known }) {
@@ -98,9 +115,12 @@ const ReportHead = ({ run }) => html`
       <span aria-hidden="true">‹</span> Back
     </button>
     <div class="report-name">
-      <h2>${runTitle(run)}</h2>
+      ${isEdited(run, "name")
+        ? html`<${EditorOf} run=${run} field="name" opener=${MORE} />`
+        : html`<h2>${runTitle(run)}</h2>`}
       <${StateOf} run=${run} />
     </div>
+    <${Commands} run=${run} />
     <${Actions} run=${run} />
   </div>
 `;
@@ -138,20 +158,29 @@ function Note({ run }) {
   return html`<p class="notice">${NOTES[run.state]} ${run.state === "stopped" && run.error}</p>`;
 }
 
+/** What steers it; on a phone by pictures alone, so that all fit in a line. @param {{ run: Run }} props */
+const Commands = ({ run }) => isOperator.value && html`
+  <div class="report-commands">
+    ${run.state === "running" && html`<${CommandButton} run=${run} verb="pause" icon="pause" title="Pause" />`}
+    ${run.can_resume && html`<${CommandButton} run=${run} verb="resume" icon="play" title="Resume" />`}
+    ${isActive(run) && html`<${CommandButton} run=${run} verb="stop" icon="stop" title="Stop" />`}
+  </div>
+`;
+
 /** @param {{ run: Run }} props */
 const Actions = ({ run }) => html`
   <div class="report-actions">
     ${isOperator.value && html`
-      ${run.state === "running" && html`<${CommandButton} run=${run} verb="pause" icon="pause" title="Pause" />`}
-      ${run.can_resume && html`<${CommandButton} run=${run} verb="resume" icon="play" title="Resume" />`}
-      ${isActive(run) && html`<${CommandButton} run=${run} verb="stop" icon="stop" title="Stop" />`}
       <button class="secondary compact" onClick=${() => repeatWith(run)}>Repeat with…</button>
     `}
     <${Menu} title="Files"><${Files} run=${run} /><//>
     ${isOperator.value && html`
-      <${Menu} title="⋯" label="More about this experiment">
+      <${Menu} title="⋯" id=${MORE} label="More about this experiment">
         <button disabled=${pending.value[run.id]} onClick=${() => runAgain(run)}>Run again</button>
-        <a href="#runs">Name, tags and notes, in Runs</a>
+        <button onClick=${() => editHere(run, "name")}>Rename</button>
+        <button onClick=${() => editHere(run, "tags")}>${run.tags?.length ? "Change its tags" : "Add tags"}</button>
+        <button onClick=${() => editHere(run, "notes")}>${run.notes ? "Change its notes" : "Add notes"}</button>
+        <a href=${addressOf({ view: "runs", opened: run.id, isOverList: true })}>Show in Runs</a>
         ${!isActive(run) && html`<${DeleteButton} run=${run} />`}
       <//>
     `}
@@ -161,7 +190,7 @@ const Actions = ({ run }) => html`
 /** @param {{ run: Run, verb: Verb, icon: string, title: string }} props */
 const CommandButton = ({ run, verb, icon, title }) => html`
   <button class="quiet compact" disabled=${pending.value[run.id]} onClick=${() => command(run, verb)}>
-    <${Icon} name=${icon} />${title}
+    <${Icon} name=${icon} /><span>${title}</span>
   </button>
 `;
 
@@ -172,34 +201,13 @@ function repeatWith(run) {
   formIsOpen.value = true;
 }
 
-/**
- * A menu that closes by what is chosen in it, by Escape, and by a press beside it.
- * @param {{ title: string, label?: string, children: ComponentChildren }} props
- */
-function Menu({ title, label, children }) {
-  const menu = useRef(/** @type {HTMLDetailsElement | null} */ (null));
-  useEffect(() => {
-    const close = (/** @type {Event} */ { target }) =>
-      !(target instanceof Node && menu.current?.contains(target)) && menu.current?.removeAttribute("open");
-    const onKey = (/** @type {KeyboardEvent} */ { key }) => {
-      if (key !== "Escape" || !menu.current?.open) return;
-      menu.current.open = false;
-      menu.current.querySelector("summary")?.focus();
-    };
-    addEventListener("pointerdown", close);
-    addEventListener("keydown", onKey);
-    return () => {
-      removeEventListener("pointerdown", close);
-      removeEventListener("keydown", onKey);
-    };
-  }, []);
-  return html`
-    <details class="menu report-menu" ref=${menu}>
-      <summary class=${`quiet ${label ? "square" : ""}`} aria-label=${label}>${title}</summary>
-      <div class="menu-body">${children}</div>
-    </details>
-  `;
-}
+/** @param {{ title: string, id?: string, label?: string, children: ComponentChildren }} props */
+const Menu = ({ title, id, label, children }) => html`
+  <details class="menu report-menu">
+    <summary id=${id} class=${`quiet ${label ? "square" : ""}`} aria-label=${label}>${title}</summary>
+    <div class="menu-body">${children}</div>
+  </details>
+`;
 
 /** @param {{ run: Run }} props */
 function DeleteButton({ run }) {

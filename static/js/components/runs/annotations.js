@@ -1,4 +1,4 @@
-// What people say of a run: its name, tags and notes, each changed in its place among the run's details.
+// What people say of a run: its name, tags and notes, each changed in its place.
 import { signal } from "@preact/signals";
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
 import { annotate } from "../../actions.js";
@@ -16,18 +16,17 @@ import { html, Icon } from "../elements.js";
 /** Field being changed: the id of a run and the field's name; null if none is. */
 const edited = signal(/** @type {{ id: string, field: string } | null} */ (null));
 
-/**
- * Change a field of a run, among its details.
- * @param {Run} run
- * @param {AnnotatedField} field
- */
+/** Change a field of a run where it stands. @param {Run} run @param {AnnotatedField} field */
+export const editHere = (run, field) => (edited.value = { id: run.id, field });
+
+/** Change a field of a run, among its details. @param {Run} run @param {AnnotatedField} field */
 export function edit(run, field) {
   openDetails(run.id);
-  edited.value = { id: run.id, field };
+  editHere(run, field);
 }
 
 /** @param {Run} run @param {AnnotatedField} field */
-const isEdited = (run, field) => edited.value?.id === run.id && edited.value?.field === field;
+export const isEdited = (run, field) => edited.value?.id === run.id && edited.value?.field === field;
 
 /** @type {Record<AnnotatedField, string>} */
 const VERBS = { name: "Rename", tags: "Change the tags", notes: "Change the notes" };
@@ -40,26 +39,14 @@ const EditButton = ({ run, field }) => isOperator.value && html`
 
 /** `title`: what stands there while it is not changed. @param {{ run: Run, title: string }} props */
 export function Name({ run, title }) {
-  if (isEdited(run, "name")) {
-    /** @param {string} name */
-    const save = (name) => annotate(run, { name });
-    const [, maximum] = served().limits.name;
-    return html`<${Editor} label="Name" field="name" text=${run.name} maximum=${maximum} save=${save} />`;
-  }
+  if (isEdited(run, "name")) return html`<${EditorOf} run=${run} field="name" />`;
   return html`<h2>${title}</h2><${EditButton} run=${run} field="name" />`;
 }
-
-/** @param {string} text */
-const splitTags = (text) => text.split(",").map((tag) => tag.trim()).filter(Boolean);
 
 /** @param {{ run: Run }} props */
 export function Tags({ run }) {
   const tags = run.tags ?? [];
-  if (isEdited(run, "tags")) {
-    /** @param {string} text */
-    const save = (text) => annotate(run, { tags: splitTags(text) });
-    return html`<${Editor} label="Tags, with commas between" field="tags" text=${tags.join(", ")} save=${save} />`;
-  }
+  if (isEdited(run, "tags")) return html`<${EditorOf} run=${run} field="tags" />`;
   if (tags.length === 0) return html`<${Invitation} run=${run} field="tags" words="Add tags" />`;
   /** @param {string} tag */
   const isChosen = (tag) => folded(tag) === folded(filters.value.tag);
@@ -83,14 +70,7 @@ const Invitation = ({ run, field, words }) => isOperator.value && html`
 /** @param {{ run: Run }} props */
 export function Notes({ run }) {
   const notes = run.notes ?? "";
-  if (isEdited(run, "notes")) {
-    /** @param {string} text */
-    const save = (text) => annotate(run, { notes: text });
-    const [, maximum] = served().limits.notes;
-    return html`
-      <${Editor} label="Notes" field="notes" text=${notes} maximum=${maximum} save=${save} isLong />
-    `;
-  }
+  if (isEdited(run, "notes")) return html`<${EditorOf} run=${run} field="notes" />`;
   if (!notes) return html`<${Invitation} run=${run} field="notes" words="Add notes" />`;
   return html`
     <div class="kept-notes">
@@ -100,17 +80,40 @@ export function Notes({ run }) {
   `;
 }
 
+/** @param {string} text */
+const splitTags = (text) => text.split(",").map((tag) => tag.trim()).filter(Boolean);
+
+/**
+ * The editor of a field. `opener`: the id of what has the focus after it.
+ * @param {{ run: Run, field: AnnotatedField, opener?: string }} props
+ */
+export function EditorOf({ run, field, opener = `edit-${field}` }) {
+  const { name, tags = [], notes = "" } = run;
+  const of = {
+    name: { label: "Name", text: name, read: String },
+    tags: { label: "Tags, with commas between", text: tags.join(", "), read: splitTags },
+    notes: { label: "Notes", text: notes ?? "", read: String },
+  }[field];
+  const [, maximum] = field === "tags" ? [] : served().limits[field];
+  /** @param {string} text */
+  const save = (text) => annotate(run, { [field]: of.read(text) });
+  return html`
+    <${Editor} label=${of.label} text=${of.text} maximum=${maximum} save=${save} isLong=${field === "notes"}
+      opener=${opener} />
+  `;
+}
+
 /**
  * A field in the place of what it changes. Enter saves, in notes with Ctrl; Escape leaves all as it was.
  * @param {object} props
  * @param {string} props.label
- * @param {AnnotatedField} props.field
  * @param {string} props.text
  * @param {number | null} [props.maximum]
  * @param {(text: string) => unknown} props.save
- * @param {boolean} [props.isLong]
+ * @param {boolean} props.isLong
+ * @param {string} props.opener
  */
-function Editor({ label, field, text, maximum, save, isLong = false }) {
+function Editor({ label, text, maximum, save, isLong, opener }) {
   const [draft, setDraft] = useState(text);
   const input = useRef(/** @type {any} */ (null));
   // Before anything can be typed, which would be selected too.
@@ -121,7 +124,7 @@ function Editor({ label, field, text, maximum, save, isLong = false }) {
   const close = () => {
     edited.value = null;
     // The field has the focus, and goes.
-    requestAnimationFrame(() => document.getElementById(`edit-${field}`)?.focus());
+    requestAnimationFrame(() => document.getElementById(opener)?.focus());
   };
   /** @param {Event} event */
   const submit = async (event) => {
