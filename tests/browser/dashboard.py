@@ -82,6 +82,7 @@ class Dashboard:
 
     def stand_in_for_stage(self) -> None:
         """Say what the 3D view says once it has a picture, in a page that loads none."""
+        self.page.frame_locator("iframe").locator("html").wait_for(state="attached")
         [_, view] = self.page.frames
         view.evaluate("parent.postMessage({type: 'hexapods:status', status: 'connected'}, '*')")
 

@@ -18,7 +18,10 @@ from tests.conftest import new_page
 pytestmark = pytest.mark.timeout(300)
 
 PHONE: ViewportSize = {"width": 360, "height": 780}
-PRESETS = ("A setting", "Learners", "Worlds", "Table 1", "Figure 4", "League", "Recovery")
+PRESETS = (
+    *("A setting", "Learners", "Worlds", "Table 1", "Figure 4", "League", "Recovery"),
+    *("Fewer groups learn faster", "Bodies"),
+)
 THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 CORNER = {
     "simulator": "kinematic",

@@ -202,7 +202,7 @@ def test_rates_move_while_it_practises_and_it_stops(dashboard: Dashboard, server
     expect(other.page.get_by_role("slider", name="Exploration now ε")).to_have_value("0.25")
     expect(other.group("Settings")).to_contain_text(re.compile(r"with α\s0\.3, pace\smax\."))
     other.unfold("More settings")
-    expect(other.page.get_by_label("Pace")).to_have_value("8")
+    expect(other.page.get_by_label("Pace of practice")).to_have_value("8")
     alpha.fill("0.75")
     expect(page.get_by_role("slider", name="Learning rate α")).to_have_value("0.75")
     assert other.complaints == []
