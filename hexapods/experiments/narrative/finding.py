@@ -1,7 +1,7 @@
 """What came of an experiment in a sentence: the headline of its report, and its line in lists."""
 
 from collections import Counter, defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from hexapods.agents.appearance import title_of
@@ -9,11 +9,18 @@ from hexapods.domain.text import counted
 from hexapods.experiments.claims.cases import Case, cases_of
 from hexapods.experiments.config import DISTURBED
 from hexapods.experiments.formatting import listed, percent, shares
+from hexapods.experiments.labels import OBSERVATION_LABELS, gait_name, robot_name, world_name
 from hexapods.experiments.narrative.sweep import combination_name
 
 LEVEL_M = 0.01
 """Of two who are less apart, neither is farther."""
-_PLACE = ("gait", "world", "robot", "observation")
+_PLACE_NAMES: Mapping[str, Callable[[Any], str]] = {
+    "gait": gait_name,
+    "world": world_name,
+    "robot": robot_name,
+    "observation": lambda name: OBSERVATION_LABELS.get(name, name),
+}
+_PLACE = tuple(_PLACE_NAMES)
 
 
 def find(summary: Mapping[str, Any]) -> str:
@@ -91,8 +98,23 @@ def _distance_m(one: Mapping[str, Any]) -> float:
 
 
 def _walked(agent: str, entries: Sequence[Mapping[str, Any]]) -> str:
-    walked = sorted(one["of_greedy"]["iqm"] for one in entries if one["of_greedy"])
-    if not walked:
+    """Return the shares of greedy's distance, first that of the place where it is highest."""
+    known = [one for one in entries if one["of_greedy"]]
+    if not known:
         return ""
-    ends = dict.fromkeys(percent(one) for one in (walked[0], walked[-1]))
-    return f"{title_of(agent)} walks {' to '.join(ends)} of greedy's distance."
+    *others, best = sorted(known, key=lambda one: float(one["of_greedy"]["iqm"]))
+    varied = [one for one in _PLACE if len({entry[one] for entry in entries}) > 1]
+    share = percent(best["of_greedy"]["iqm"])
+    if len(varied) == 1 and others and share != percent(others[-1]["of_greedy"]["iqm"]):
+        place = _PLACE_NAMES[varied[0]](best[varied[0]])
+        rest = "the other" if len(others) == 1 else "the others"
+        return (
+            f"{title_of(agent)} walks {share} of greedy's distance with {place}, and "
+            f"{_range_of(others)} with {rest}."
+        )
+    return f"{title_of(agent)} walks {_range_of(known)} of greedy's distance."
+
+
+def _range_of(entries: Sequence[Mapping[str, Any]]) -> str:
+    shares_walked = sorted(one["of_greedy"]["iqm"] for one in entries)
+    return " to ".join(dict.fromkeys(percent(one) for one in (shares_walked[0], shares_walked[-1])))

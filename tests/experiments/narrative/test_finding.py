@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from hexapods.experiments.names import TITLES
 from hexapods.experiments.plan import TrialSetting
 from hexapods.experiments.summary import summarise
 from tests.experiments.sample_experiments import alpha_of, around, config, summary_of
@@ -86,8 +87,12 @@ def test_the_only_learner_is_measured_by_greedy() -> None:
         found("league", lambda _: around(0.25, 0.0), **alone)
         == "Q-learning walks 50 % of greedy's distance."
     )
+    noisy = found("league", lambda one: around(0.4 if "/noise/" in one.key else 0.2, 0.0), **alone)
+    assert noisy == (
+        "Q-learning walks 80 % of greedy's distance with Sensor noise, and 40 % with the other."
+    )
 
 
-@pytest.mark.parametrize("experiment", ["table1", "figure4", "sweep", "league", "recovery"])
+@pytest.mark.parametrize("experiment", [*TITLES])
 def test_without_trials_nothing_is_found(experiment: str) -> None:
     assert summarise(config(experiment), {})["finding"] == ""
