@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 CONTENTS = (
     ("Start", ("page", "tutorial", "worlds", "replays", "comparing", "spectators", "exports")),
     ("Experiments", ("experiments", "figures", "python", "operations")),
-    ("How it works", ("learners", "linear-model", "search", "explanations", "gait-analysis")),
+    (
+        "How it works",
+        ("learners", "linear-model", "creatures", "search", "explanations", "gait-analysis"),
+    ),
     ("Inside", ("architecture",)),
 )
 """Pages of the guide by heading: names of files in `docs/`, without their ending."""

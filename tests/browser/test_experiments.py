@@ -152,6 +152,9 @@ def test_what_a_dead_server_left_is_resumed_paused_and_stopped(
         page.get_by_role("link", name=re.compile("5,000 seeds")).click()
         expect(dashboard.button("Pause")).to_be_in_viewport(ratio=1)
         assert dashboard.experiment.evaluate("one => one.scrollWidth <= one.clientWidth")
+        # Stopped before its process has begun, it has no report of what was done before.
+        done = trials_done(dashboard)
+        dashboard.eventually(lambda: trials_done(dashboard) > done, "another trial")
         dashboard.button("Stop").click()
         expect(dashboard.experiment).to_contain_text("The report covers the completed trials.")
         dashboard.experiment.get_by_text("Files", exact=True).click()

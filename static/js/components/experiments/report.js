@@ -140,7 +140,7 @@ function Progress({ run }) {
 /** @type {Partial<Record<State, string>>} */
 const NOTES = {
   paused: "Paused. Finished trials are kept, and no core is used.",
-  stopped: "Stopped. The report covers the completed trials. Resume to run only the rest.",
+  stopped: "Stopped. Resume to run only the rest.",
   interrupted: "The server ended before the experiment did. Finished trials are kept; resume to run only the rest.",
 };
 
@@ -155,7 +155,9 @@ function Note({ run }) {
     `;
   }
   if (!NOTES[run.state]) return null;
-  return html`<p class="notice">${NOTES[run.state]} ${run.state === "stopped" && run.error}</p>`;
+  const isStopped = run.state === "stopped";
+  const covered = isStopped && hasReport(run) ? "The report covers the completed trials." : "";
+  return html`<p class="notice">${NOTES[run.state]} ${covered} ${isStopped && run.error}</p>`;
 }
 
 /** What steers it; on a phone by pictures alone, so that all fit in a line. @param {{ run: Run }} props */
@@ -220,12 +222,15 @@ function DeleteButton({ run }) {
   `;
 }
 
+/** @param {Run} run */
+const hasReport = (run) => Boolean(run.result?.files?.includes("report.html"));
+
 /** What can be taken away: the report, the numbers and the figures. @param {{ run: Run }} props */
 function Files({ run }) {
   const files = run.result?.files ?? [];
   const figures = files.filter((name) => /\.(png|svg|pdf)$/.test(name));
   return html`
-    ${files.includes("report.html") && html`
+    ${hasReport(run) && html`
       <a href=${reportAddress(run)} target="_blank" rel="noopener">Open the report</a>
     `}
     ${downloads(run).map(([title, href]) => html`<a href=${href} download>${title}</a>`)}
