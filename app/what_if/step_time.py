@@ -1,6 +1,6 @@
-"""The time that a step of an agent takes on this machine.
+"""The time that a step or a trial of an agent takes on this machine.
 
-A module of its own for the processes that time steps: what `estimate` imports besides, such as the
+A module of its own for the processes that time them: what `estimate` imports besides, such as the
 database, takes them longer than the steps.
 """
 
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexapods.assembly import build_learner, build_walkers
+from hexapods.experiments.trial import TrialConfig, TrialResult, run_trial
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
@@ -54,6 +55,12 @@ def step_s_of(steps: TimedSteps) -> float:
     durations = np.diff(moments)
     others = np.sort(durations[1:] if len(durations) > 1 else durations)
     return float(others[: max(1, len(others) * 9 // 10)].mean()) if len(others) else 0.0
+
+
+def timed_trial(config: TrialConfig) -> tuple[TrialResult, float]:
+    """Return the result of a trial, and the time of this process that it took [s]."""
+    began_s = time.process_time()
+    return run_trial(config), time.process_time() - began_s
 
 
 def _practised(config: TrainingConfig) -> Iterator[object]:

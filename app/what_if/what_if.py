@@ -12,14 +12,14 @@ from cachetools import LRUCache
 from app.jobs.process_pool import ProcessPool, TookTooLong
 from app.jobs.submissions import check_training
 from app.jobs.turns import Turns
-from app.what_if.step_time import TimedSteps, step_s_of
+from app.what_if.step_time import TimedSteps, step_s_of, timed_trial
 from hexapods.agents.q_table import table_size
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import check_ends
 from hexapods.experiments.plan import trial_seed
-from hexapods.experiments.trial import TrialConfig, TrialResult, run_trial
+from hexapods.experiments.trial import TrialConfig, TrialResult
 from hexapods.runs.config import TrainingConfig, training_config
 
 SEEDS = 30
@@ -40,7 +40,8 @@ class Asker:
     Attributes:
         is_operator: whether it is an operator, whose what-ifs come first and may take longer.
         check: raises once nobody needs the answer any more; called ten times a second.
-        charge: called with the time that was computed [s], also if there is no answer.
+        charge: called with what it cost [s]: the cores' time, shared among them; if there is no
+            answer, the time that passed.
     """
 
     is_operator: bool = True
@@ -130,16 +131,19 @@ class WhatIf:
             # A request that was served meanwhile may have cached the same trials.
             distances = self._cached(trials)
             missing = [one for one in dict.fromkeys(trials) if one not in distances]
-            began_s = time.monotonic()
+            began_s, cost_s = time.monotonic(), None
             try:
                 self._check_time(missing, asker.limit_s, check)
                 left_s = began_s + asker.limit_s - time.monotonic()
-                distances |= self._run_trials(missing, check, left_s)
+                computed, cost_s = self._run_trials(missing, check, left_s)
             except TookTooLong as error:
                 raise _takes_too_long(f"over {asker.limit_s:g} s", asker.limit_s) from error
             finally:
                 compute_s = time.monotonic() - began_s
-                asker.charge(compute_s)
+                # Not the clock on the wall: no asker owes for processes that start, or for a busy
+                # machine.
+                asker.charge(compute_s if cost_s is None else cost_s)
+            distances |= computed
         with self._cache_lock:
             self._cache.update(distances)
         return distances, compute_s
@@ -164,13 +168,14 @@ class WhatIf:
 
     def _run_trials(
         self, missing: Sequence[TrialConfig], check: Callable[[], None], timeout_s: float
-    ) -> dict[TrialConfig, tuple[float, ...]]:
+    ) -> tuple[dict[TrialConfig, tuple[float, ...]], float]:
+        """Return the distances of all seeds of each trial [m], and what they cost (`Asker`) [s]."""
         trials = [(one, seeded) for one in missing for seeded in _with_seeds(one)]
-        results = self._pool.map(run_trial, [seeded for _, seeded in trials], check, timeout_s)
+        results = self._pool.map(timed_trial, [seeded for _, seeded in trials], check, timeout_s)
         distances: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
-        for (one, _), result in zip(trials, results, strict=True):
+        for (one, _), (result, _) in zip(trials, results, strict=True):
             distances[one] += (_distance_m(result),)
-        return distances
+        return distances, sum(cpu_s for _, cpu_s in results) / self._pool.count
 
     def _cached(self, trials: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
         with self._cache_lock:

@@ -175,9 +175,18 @@ def test_only_computing_is_charged(what_if: WhatIf) -> None:
     charged: list[float] = []
     spectator = Asker(is_operator=False, charge=charged.append)
     first = what_if.ask(changed({"alpha": 0.43}), spectator)
-    assert charged == [pytest.approx(first["compute_s"], abs=1e-3)]
+    assert 0 < charged[0] <= first["compute_s"]
     assert what_if.ask(changed({"alpha": 0.43}), spectator)["compute_s"] == 0.0
     assert len(charged) == 1
+
+
+def test_processes_that_start_are_not_charged() -> None:
+    charged: list[float] = []
+    cold = ProcessPool(count=1)
+    answer = WhatIf(cold).ask(SHORT, Asker(is_operator=False, charge=charged.append))
+    cold.close()
+    # It first starts Python and imports the simulator, which takes longer than this anywhere.
+    assert answer["compute_s"] - charged[0] > 0.1
 
 
 def test_nothing_is_computed_for_who_has_left(what_if: WhatIf, pool: ProcessPool) -> None:
