@@ -6,6 +6,8 @@ COPY requirements.lock .
 RUN /venv/bin/pip install --no-cache-dir --require-hashes --requirement requirements.lock
 COPY pyproject.toml README.md LICENSE ./
 COPY app app
+# The pages on words and ideas that the server shows.
+COPY docs/*.md docs/
 COPY hexapods hexapods
 COPY models models
 COPY static static

@@ -1,6 +1,7 @@
 """compose.yaml, by what it says: where this runs there need be no Docker."""
 
 import re
+import tomllib
 from dataclasses import fields
 from importlib import import_module
 from pathlib import Path
@@ -81,3 +82,13 @@ def test_what_is_kept_is_kept_in_named_volumes(services: dict[str, Any]) -> None
     volumes = import_module("yaml").safe_load(FILE.read_text("utf-8"))["volumes"]
     used = {v.partition(":")[0] for service in services.values() for v in service["volumes"]}
     assert used == set(volumes)
+
+
+def test_the_image_has_all_that_the_wheel_is_made_of() -> None:
+    root = FILE.parent
+    project = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))
+    packed = project["tool"]["hatch"]["build"]["targets"]["wheel"]["only-include"]
+    copied = re.findall(r"^COPY ([\w.-]+)", (root / "Dockerfile").read_text("utf-8"), re.MULTILINE)
+    sent = re.findall(r"^!([\w.-]+)", (root / ".dockerignore").read_text("utf-8"), re.MULTILINE)
+    assert set(packed) <= set(copied)
+    assert set(packed) <= set(sent)
