@@ -51,6 +51,9 @@ def test_what_could_not_be_loaded_is_loaded_when_it_is_back(
     assert dashboard.complaints == []
     first.kill()
     expect(dashboard.connection).to_have_text("reconnecting")
+    dashboard.choose_depth("Try")
+    world = dashboard.open_tab("World")
+    expect(world.get_by_role("status")).to_have_text("Waiting for the server to load the world.")
 
     with (
         page.expect_response("**/spectators.js") as loaded,
@@ -58,4 +61,5 @@ def test_what_could_not_be_loaded_is_loaded_when_it_is_back(
     ):
         expect(dashboard.connection).to_contain_text("live")
         assert loaded.value.ok
+        expect(world.get_by_role("radio", name="Payload")).to_be_visible()
     dashboard.complaints.clear()

@@ -258,6 +258,7 @@ export function Loaded({ name, load }) {
   }, [state]);
   const View = loaded.value[name];
   if (View) return html`<${View} />`;
+  if (state === "reconnecting") return html`<p role="status">Waiting for the server to load the ${name}.</p>`;
   return hasFailed
     ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
     : html`<p role="status"><span class="spinner" aria-hidden="true"></span> Loading the ${name}…</p>`;
