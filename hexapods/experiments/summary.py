@@ -78,7 +78,7 @@ def summarise(
         "curves": [_curve(one, config.seed) for one in walked if one.setting.trial.blocks > 1],
         "versus": [] if is_disturbed else _versus(walked, config.seed),
         "timed": [_timed(one) for one in settings if one.setting.role == "timed" and one.succeeded],
-        "worlds": compare_in_worlds(walked, config.seed) if is_disturbed else [],
+        "worlds": compare_in_worlds(walked, config.seed, config.experiment) if is_disturbed else [],
     }
     summary["claims"] = judge(summary, CLAIMS_OF[config.experiment])
     summary["story"] = narrate(summary)

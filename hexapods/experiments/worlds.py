@@ -7,25 +7,34 @@ from typing import Any
 
 import numpy as np
 
+from hexapods.experiments.config import ExperimentName
 from hexapods.experiments.measures import REACHED_SHARE, curve_entry, iqm_entry
 from hexapods.experiments.setting_results import SettingResults, setting_fields
 from hexapods.experiments.statistics import Points, iqm_interval, share_at_least
 from hexapods.runs.lane import LaneConfig, PlanningModel, plans_with
 
-RECOVERY_SHARE = 0.9
-"""In a recovery, in place of `REACHED_SHARE`."""
+EARLIER_SHARE = 0.9
+"""In a recovery and on many bodies, in place of `REACHED_SHARE`."""
 MIN_REFERENCE_M = 0.01
 """A reference that walks less has nothing that one could have a share of."""
 Curves = Sequence[Points]
 """For each evaluation the distance of every seed [m]."""
 
 
-def compare_in_worlds(settings: Sequence[SettingResults], seed: int) -> list[dict[str, Any]]:
+def share_to_reach(experiment: ExperimentName | None) -> float:
+    """Return the share of a reference's distance to which steps are counted; None is a tuning."""
+    return EARLIER_SHARE if experiment in ("recovery", "bodies") else REACHED_SHARE
+
+
+def compare_in_worlds(
+    settings: Sequence[SettingResults], seed: int, experiment: ExperimentName | None = None
+) -> list[dict[str, Any]]:
     """Return an entry for each agent in each world, with the walks of its references.
 
     Args:
         settings: settings with their results so far; those without any are left out.
         seed: seed of the bootstrap's resampling.
+        experiment: see `share_to_reach`.
 
     Returns:
         Plain types, fit for JSON. Of each agent its distance after the last evaluation, its share
@@ -41,7 +50,8 @@ def compare_in_worlds(settings: Sequence[SettingResults], seed: int) -> list[dic
             agent, nominal = one.setting.training.agent, one.setting.trial.plans_with is not None
             name = f"{agent.replace('-', '_')}{'_nominal' if nominal else ''}_m"
             known[name] = iqm_interval((one.total_m,), seed).value
-    return [_entry(one, references[one.conditions], seed) for one in settings if one.total_m]
+    share = share_to_reach(experiment)
+    return [_entry(one, references[one.conditions], seed, share) for one in settings if one.total_m]
 
 
 def _plans_with(one: SettingResults) -> PlanningModel | None:
@@ -50,7 +60,9 @@ def _plans_with(one: SettingResults) -> PlanningModel | None:
     return plans_with(lane, trial.training)
 
 
-def _entry(one: SettingResults, known: Mapping[str, Any], seed: int) -> dict[str, Any]:
+def _entry(
+    one: SettingResults, known: Mapping[str, Any], seed: int, share: float
+) -> dict[str, Any]:
     greedy_m, best_m = known.get("greedy_m"), known["best_known_m"]
     practises = one.setting.role == "learner"
     return {
@@ -65,7 +77,7 @@ def _entry(one: SettingResults, known: Mapping[str, Any], seed: int) -> dict[str
         "distance": iqm_entry([one.total_m], seed),
         "of_greedy": _share_of(one.total_m, greedy_m, seed),
         "of_best_known": _share_of(one.total_m, best_m, seed),
-        **(_practice(one, greedy_m, best_m, seed) if practises else _NO_PRACTICE),
+        **(_practice(one, greedy_m, best_m, seed, share) if practises else _NO_PRACTICE),
     }
 
 
@@ -79,7 +91,7 @@ _NO_PRACTICE: Mapping[str, Any] = {
 
 
 def _practice(
-    one: SettingResults, greedy_m: float | None, best_m: float | None, seed: int
+    one: SettingResults, greedy_m: float | None, best_m: float | None, seed: int, share: float
 ) -> dict[str, Any]:
     """Return what is measured along the practice of a learner."""
     trial, walks = one.setting.trial, one.succeeded
@@ -89,7 +101,6 @@ def _practice(
     distances = [tuple(column) for column in zip(*(w.distances_m for w in walks), strict=True)]
     earned = [tuple(column) for column in zip(*(w.earned_m for w in walks), strict=True)]
     areas = tuple(mean_distance_m(steps, walk.distances_m) for walk in walks)
-    share = RECOVERY_SHARE if is_recovery else REACHED_SHARE
     return {
         "curve": {"steps": steps, **curve_entry(distances, seed)},
         "mean_m": iqm_entry([areas], seed),
