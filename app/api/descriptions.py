@@ -69,7 +69,7 @@ VALID: Mapping[str, str] = {
     "branch_from.step": BRANCH_STEPS,
     "step": "a whole number, the steps that the run has taken at most",
     "lane": "a whole number, the number of a lane of the race, from 0 on",
-    "cells": "a cell of the foot grid for each pair of legs, from 0 on, such as 0,3,1",
+    "cells": "a cell of the foot grid for each group of legs, from 0 on, such as 0,3,1",
     "first": "a whole number, the index of a state, from 0 on",
     "count": "a whole number, 1 or more",
     "world": f"the name of a world: {_one_of(WORLDS)}",

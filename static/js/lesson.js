@@ -19,7 +19,8 @@ import { agentOf, laneTitle } from "./settings.js";
 /** @type {Card[]} */
 const CARDS = [
   {
-    title: "Moves", text: "A step puts one pair of legs in another place. It has to find an order of moves that walks.",
+    title: "Moves",
+    text: "A step puts one group of legs in another place. It has to find an order of moves that walks.",
   },
   {
     title: "Colours on the feet",

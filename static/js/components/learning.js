@@ -121,9 +121,9 @@ function seekToStep({ run, from }) {
   return (/** @type {number} */ step) => seek((Math.max(0, step - from) * duration_s) / run.config.steps);
 }
 
-// ---- the action values: one for each pair of legs and each place on the foot grid
+// ---- the action values: one for each group of legs and each place on the foot grid
 
-const ABOUT = "Millimetres forward that it expects from moving a pair of legs to a place, and from what follows";
+const ABOUT = "Millimetres forward that it expects from moving a group of legs to a place, and from what follows";
 
 export function ActionValues() {
   const known = scene.value?.action_values;
@@ -201,7 +201,7 @@ function NextMove({ known }) {
   const value = values_m[pair][cell] ?? 0;
   const tried = visits?.[pair]?.[cell] ?? 0;
   const { name = agentOf(agent).title, done, halted } = scene.value?.lanes?.[lane] ?? {};
-  const legs = pairs[pair].join(" and ");
+  const legs = new Intl.ListFormat("en").format(pairs[pair].map(String));
   const move = `${name} ${done || halted ? "would" : "will"} move legs ${legs} to ${cellName(known, cell, " mm")}`;
   const times = tried === 1 ? "once" : count(tried, "time");
   return html`

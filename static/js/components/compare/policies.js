@@ -85,7 +85,7 @@ function Answered() {
   const [one, other] = answers.flatMap((answer) => answer?.table ?? []);
   if (!haveSameStates(one, other)) {
     return html`
-      <p class="dim">Their states are not the same: they move other pairs of legs, or have another foot grid.</p>
+      <p class="dim">Their states are not the same: they move other groups of legs, or have another foot grid.</p>
     `;
   }
   return html`<${Differences} tables=${[one, other]} />`;
