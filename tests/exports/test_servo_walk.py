@@ -180,6 +180,13 @@ def test_a_header_says_what_it_is_and_no_name_ends_its_comment(raced: RecordedWa
     assert text.isascii()
 
 
+def test_the_example_of_the_document_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    document = (Path(__file__).parents[2] / "docs" / "servos.md").read_text("utf-8")
+    monkeypatch.chdir(tmp_path)
+    exec(document.partition("```python\n")[2].partition("```")[0], {})
+    assert (tmp_path / "walk.csv").read_text().startswith("time_s,leg1_coxa_us")
+
+
 def test_freenoves_servos_walk_as_its_map_says(parts: StageParts) -> None:
     run = parts.finished_race(("greedy",), steps=3, simulator="mujoco", robot=PRESETS["freenove"])
     walks = recorded_walks(parts.store.find(run.id), parts.recordings)
