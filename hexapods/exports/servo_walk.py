@@ -109,19 +109,14 @@ def servo_walk(
     chosen = walks.lanes[number]
     if not chosen.steps:
         raise InvalidInput(f"lane {number} has no recorded step; choose another one")
-    first = _first_without_gap(chosen)
-    times_s, angles = _recorded(chosen, first, walks.problem.robot.step_s)
+    first, step_s = _first_without_gap(chosen), walks.problem.robot.step_s
+    # Before they are read: the longest races have millions of frames.
+    _frames(step_s * (len(chosen.steps) - first))
+    times_s, angles = _recorded(chosen, first, step_s)
     _check_finite(servo_map, times_s, angles)
     speeds = _speeds(servo_map, times_s, angles)
     slowed = times_slower(speeds) if slow_down else 1.0
-    # A hair less, so that a rounding error adds no frame.
-    count = 1 + max(1, math.ceil(times_s[-1] * slowed / FRAME_S - 1e-6))
-    if count > MAX_FRAMES:
-        raise TooLong(
-            f"the walk would have {count:,} frames of {1000 * FRAME_S:g} ms, at most {MAX_FRAMES:,}"
-            " can be had; choose a run with fewer steps"
-        )
-    sampled_s = np.arange(count) * FRAME_S / slowed
+    sampled_s = np.arange(_frames(times_s[-1] * slowed)) * FRAME_S / slowed
     sampled = np.column_stack([np.interp(sampled_s, times_s, joint) for joint in angles.T])
     pulses = np.column_stack(
         [servo.pulses_us(joint) for servo, joint in zip(servo_map.servos, sampled.T, strict=True)]
@@ -130,6 +125,22 @@ def servo_walk(
     _check_limits(servo_map, rounded)
     steps = chosen.steps[first].step, chosen.steps[-1].step
     return ServoWalk(servo_map, number, chosen.agent, steps, sampled, rounded, speeds, slowed)
+
+
+def _frames(duration_s: float) -> int:
+    """Return the number of frames, of which the last is at the end or after it.
+
+    Raises:
+        TooLong: if there are more than `MAX_FRAMES`.
+    """
+    # A hair less, so that a rounding error adds no frame.
+    count = 1 + max(1, math.ceil(duration_s / FRAME_S - 1e-6))
+    if count > MAX_FRAMES:
+        raise TooLong(
+            f"the walk would have {count:,} frames of {1000 * FRAME_S:g} ms, at most {MAX_FRAMES:,}"
+            " can be had; choose a run with fewer steps"
+        )
+    return count
 
 
 def _first_without_gap(lane: ExportedLane) -> int:
