@@ -32,6 +32,9 @@ from hexapods.domain.world import World
 from hexapods.drawing.robot_mesh import RobotMesh
 from hexapods.exports.mcap_log import mcap_log
 from hexapods.exports.recorded_walks import RecordedWalks
+from hexapods.exports.robot_model import robot_mjcf
+from hexapods.exports.servo_map import Servo, ServoMap
+from hexapods.exports.servo_walk import servo_walk
 from hexapods.exports.trajectory import trajectory_csv
 from hexapods.physics.mjcf import robot_spec
 from hexapods.physics.mujoco_simulator import MujocoSimulator
@@ -187,6 +190,11 @@ def test_other_legs_are_recorded_analysed_drawn_and_exported(made: Robot, joints
     *_, (_, _, _, last) = reader.iter_decoded_messages(topics)
     assert [one.name for one in last.joints] == labels
     assert [one.position for one in last.joints] == motion.qpos[-1, 7:].tolist()
+
+    servos = (Servo(label, 0, number, 1500, 100) for number, label in enumerate(labels))
+    walk = servo_walk(RecordedWalks.of_race(config, [lane]), ServoMap("own", tuple(servos)))
+    assert walk.pulses_us[-1].tolist() == np.rint(1500 + 100 * motion.qpos[-1, 7:]).tolist()
+    assert mujoco.MjModel.from_xml_string(robot_mjcf(made)).nu == joints
 
     drawn = RobotMesh(made).body_poses(lane.rest_qpos).positions
     assert len(drawn) == 2 + joints + len(legs)  # world and torso, links, feet

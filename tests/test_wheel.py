@@ -61,6 +61,7 @@ def test_it_carries_the_page_and_the_models_and_no_tests(wheel: Path) -> None:
         files = [path for path in (CHECKOUT / folder).rglob("*") if path.is_file()]
         expected = {f"hexapods/_{path.relative_to(CHECKOUT).as_posix()}" for path in files}
         assert expected <= packed
+    assert "hexapods/exports/servo_maps/freenove.yaml" in packed
     packages = {name.split("/")[0] for name in packed if ".dist-info/" not in name}
     assert packages == {"app", "hexapods"}
 

@@ -23,7 +23,15 @@ CONTENTS = (
     ("Experiments", ("experiments", "figures", "python", "operations")),
     (
         "How it works",
-        ("learners", "linear-model", "creatures", "search", "explanations", "gait-analysis"),
+        (
+            "learners",
+            "linear-model",
+            "creatures",
+            "servos",
+            "search",
+            "explanations",
+            "gait-analysis",
+        ),
     ),
     ("Inside", ("architecture",)),
 )

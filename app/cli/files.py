@@ -31,3 +31,8 @@ def write_whole(path: str, data: bytes) -> None:
         write_atomically(Path(path).absolute(), data)
     except OSError as error:
         raise InvalidInput(f"cannot write {path}: {error.strerror}") from error
+
+
+def size_text(size: int) -> str:
+    """Return the size of a file for people."""
+    return f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{size / 1e3:.0f} kB"

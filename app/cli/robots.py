@@ -1,11 +1,14 @@
-"""`hexapods robots`: the robots that are built in, and what is known of one before it walks."""
+"""`hexapods robots`: those built in, what is known of one before it walks, and its model."""
 
 import argparse
 import json
+from pathlib import Path
 
+from app.cli.files import check_writable, size_text, write_whole
 from app.cli.options import CommandParser, read_gait, read_robot
 from app.cli.terminal import show_table
 from hexapods.domain.creatures import CREATURES, own_gait
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json
@@ -16,7 +19,9 @@ from hexapods.runs.preview import Preview, preview
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("robots", help="list and examine robots", description=__doc__)
+    parser = commands.add_parser(
+        "robots", help="list, examine and export robots", description=__doc__
+    )
     verbs = parser.add_subparsers(
         dest="verb", required=True, metavar="VERB", parser_class=CommandParser
     )
@@ -27,15 +32,24 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "show", help="tell support, reach, number of states and speed before anything runs"
     )
     showing.add_argument(
-        "robot", metavar="NAME", help=f"{', '.join(PRESETS)}, a TOML file, or JSON"
-    )
-    showing.add_argument(
         "--gait", help=f"gait: {', '.join(NAMED_GAITS)}, or JSON (default: the robot's own)"
     )
     showing.add_argument("--divisions", type=int, default=FootGrid.divisions)
     showing.add_argument("--grid-side-m", type=float, default=FootGrid.side_m)
     showing.add_argument("--json", action="store_true", help="print JSON")
     showing.set_defaults(run=show_robot)
+    exporting = verbs.add_parser(
+        "export", help="write a robot as MJCF, which MuJoCo opens without other files"
+    )
+    exporting.add_argument(
+        "--out", required=True, metavar="FILE.xml", help="file to write, ending with .xml"
+    )
+    exporting.add_argument("--json", action="store_true", help="print JSON")
+    exporting.set_defaults(run=export_robot)
+    for verb in (showing, exporting):
+        verb.add_argument(
+            "robot", metavar="NAME", help=f"{', '.join(PRESETS)}, a TOML file, or JSON"
+        )
 
 
 def list_robots(options: argparse.Namespace) -> int:
@@ -91,6 +105,31 @@ def show_robot(options: argparse.Namespace) -> int:
         title, ("legs", "support margin, mm", "reach back, mm", "reach ahead, mm"), rows, text=(0,)
     )
     print("\n".join(_sentences(known)))
+    return 0
+
+
+def export_robot(options: argparse.Namespace) -> int:
+    """Write a robot as a model for MuJoCo.
+
+    Raises:
+        HexapodError: if the robot is not valid, or the file cannot be written.
+    """
+    from hexapods.exports.robot_model import robot_mjcf  # noqa: PLC0415 - loads MuJoCo
+
+    # MuJoCo chooses how it reads a file by its ending.
+    if Path(options.out).suffix != ".xml":
+        raise InvalidInput(f"the name of the file must end with .xml: {options.out}")
+    made = read_robot(options.robot)
+    check_writable(options.out)
+    data = robot_mjcf(made).encode()
+    write_whole(options.out, data)
+    if options.json:
+        print(json.dumps({"robot": made.name, "file": options.out, "bytes": len(data)}))
+    else:
+        print(
+            f"{made.name} is in {options.out} ({size_text(len(data))}); its keyframe `home` has it "
+            "standing."
+        )
     return 0
 
 

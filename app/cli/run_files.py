@@ -4,7 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
-from app.cli.files import check_writable, write_whole
+from app.cli.files import check_writable, size_text, write_whole
 from app.cli.options import CommandParser, add_settings
 from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
 from app.settings import read_settings
@@ -66,6 +66,5 @@ def _write(given: argparse.Namespace, export: ExportFormat) -> int:
     if given.json:
         print(json.dumps({"id": run.id, "file": given.out, "bytes": len(data)}))
     else:
-        size = f"{len(data) / 1e6:.1f} MB" if len(data) >= 1e6 else f"{len(data) / 1e3:.0f} kB"
-        print(f"{run.kind.capitalize()} {run.id} is in {given.out} ({size}).")
+        print(f"{run.kind.capitalize()} {run.id} is in {given.out} ({size_text(len(data))}).")
     return 0

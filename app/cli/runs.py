@@ -12,7 +12,7 @@ from datetime import datetime
 from typing import cast
 from urllib.parse import quote
 
-from app.cli import run_files
+from app.cli import run_files, servos
 from app.cli.options import CommandParser, integer
 from app.cli.server_client import call_server
 from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
@@ -65,6 +65,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     for verb in (showing, deleting):
         add_run(verb)
     run_files.add_to(verbs)
+    servos.add_to(verbs)
 
 
 def _list(options: argparse.Namespace) -> int:

@@ -9,5 +9,8 @@
 - `video`, `video_pictures`: MP4 and GIF, rendered off screen by MuJoCo.
 - `mcap_log`: joint states and frames for tools of robots.
 - `recording_json`, `recorded_stream`: a race's recording as JSON, and for viser's player.
+- `servo_map`, `servo_map_file`, `servo_walk`, `servo_files`: a walk as pulses of a real robot's
+  servos. It needs a map of them, which no request has, so it is no format of the registry.
+- `robot_model`: a robot as a model for MuJoCo.
 - `extras`: the optional packages that some files need.
 """

@@ -3,8 +3,10 @@
 import json
 from pathlib import Path
 
+import mujoco
+
 from hexapods.domain.creatures import CREATURES
-from tests.cli.running import in_process, refusal
+from tests.cli.running import in_process, output, refusal
 
 
 def test_built_in_robots_are_listed(tmp_path: Path) -> None:
@@ -39,3 +41,27 @@ def test_a_gait_that_makes_no_sense_is_refused(tmp_path: Path) -> None:
     told = refusal("robots", "show", "dog", "--gait", "tripod", folder=tmp_path)
 
     assert "it needs six legs, this robot has 4" in told
+
+
+def test_a_robot_is_exported_as_a_model_for_mujoco(tmp_path: Path) -> None:
+    out = ("--out", "dog.xml")
+    told = output("robots", "export", "dog", *out, folder=tmp_path, run=in_process)
+    assert told == {
+        "robot": "dog",
+        "file": "dog.xml",
+        "bytes": (tmp_path / "dog.xml").stat().st_size,
+    }
+    assert mujoco.MjModel.from_xml_path(str(tmp_path / "dog.xml")).key("home").id == 0
+    assert [*tmp_path.iterdir()] == [tmp_path / "dog.xml"]
+    said = in_process("robots", "export", '{"n_legs": 8}', "--out", "own.xml", folder=tmp_path)
+    assert said.stdout.startswith("stiff (modified) is in own.xml (")
+
+
+def test_a_robot_that_cannot_be_exported_is_refused(tmp_path: Path) -> None:
+    def refused(*arguments: str) -> str:
+        return refusal("robots", "export", *arguments, folder=tmp_path, run=in_process)
+
+    assert "unknown robot 'cat'; choose one of: stiff" in refused("cat", "--out", "cat.xml")
+    assert "must end with .xml: dog.urdf" in refused("dog", "--out", "dog.urdf")
+    assert "cannot write no/dog.xml" in refused("dog", "--out", "no/dog.xml")
+    assert not [*tmp_path.iterdir()]

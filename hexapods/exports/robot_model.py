@@ -1,0 +1,36 @@
+"""Export of a robot as MJCF, the format of MuJoCo's models, in one file."""
+
+import numpy as np
+
+from hexapods.domain.gait import resolve
+from hexapods.domain.kinematics import legs_of
+from hexapods.domain.robot import Robot
+from hexapods.domain.types import FloatArray
+from hexapods.physics.mjcf import robot_spec
+
+HOME_KEY = "home"
+
+
+def robot_mjcf(robot: Robot) -> str:
+    """Return a robot on flat ground as MJCF without other files.
+
+    The keyframe `home` has it standing with every foot at home, and its servos told to stay so.
+    Bodies, joints and actuators have the labels of the joints, such as `leg1_coxa`.
+    """
+    spec = robot_spec(robot)
+    spec.modelname = robot.name
+    standing = home_angles_rad(robot)
+    height_m = robot.body_height_m + robot.foot_radius_m
+    qpos = np.concatenate(([0, 0, height_m, 1, 0, 0, 0], standing))
+    spec.add_key(name=HOME_KEY, qpos=qpos, ctrl=standing)
+    # It is written as it was compiled.
+    spec.compile()
+    return str(spec.to_xml())
+
+
+def home_angles_rad(robot: Robot) -> FloatArray:
+    """Return the angles of the joints with every foot at home, (joints,) [rad]."""
+    # They are the same under any gait, and this one suits any legs.
+    gait = resolve("one-by-one", robot.azimuths_deg)
+    legs = legs_of(robot)
+    return legs.under(gait).joint_angles(np.zeros((len(legs), 3)))
