@@ -260,15 +260,26 @@ class Dashboard:
         width: int = self.page.evaluate("document.documentElement.scrollWidth")
         return width
 
-    def violations(self) -> list[str]:
-        """Return axe's violations on the page, without viser's own page in the frame."""
+    def violations(self, only: str | None = None) -> list[str]:
+        """Return axe's violations on the page, of one rule if named.
+
+        viser's own page in the frame is left out.
+        """
         if not self.page.evaluate("'axe' in window"):
             self.page.evaluate(_AXE.read_text("utf-8"))
         self.page.evaluate(_TRANSITIONS_HAVE_ENDED)
         # All rules are tried; only those that are kept get no list of where they are.
-        options = "{iframes: false, resultTypes: ['violations']}"
-        found = self.page.evaluate(f"axe.run(document, {options})")
+        rules = {} if only is None else {"runOnly": [only]}
+        options = {"iframes": False, "resultTypes": ["violations"], **rules}
+        found = self.page.evaluate("options => axe.run(document, options)", options)
         return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
+
+    def violations_in_both_themes(self) -> list[str]:
+        """Return axe's violations, first of all rules and then of colours in the other theme."""
+        self.page.emulate_media(color_scheme="light")
+        found = self.violations()
+        self.page.emulate_media(color_scheme="dark")
+        return found + [f"dark: {one}" for one in self.violations("color-contrast")]
 
     def small_targets(self, least_px: int) -> list[str]:
         """Return the controls that are smaller than they may be, in all that can be unfolded."""
