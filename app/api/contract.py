@@ -50,6 +50,9 @@ class ProblemDetails(BaseModel):
         default_factory=list, description="the fields that are wrong, if single fields are"
     )
     state: str = Field(default="", description="the run's state, where that is in the way")
+    legs: list[int] = Field(
+        default_factory=list, description="numbers of the legs that cannot be so, if legs are"
+    )
 
 
 _SECONDS: Schema = {"type": "integer", "minimum": 1}

@@ -221,6 +221,8 @@ class OptionsView(Answer):
 
     Attributes:
         limits: [lowest, highest]; `settings` says which of them are not valid themselves.
+        leg_fields: numbers of a leg that the editor of bodies offers.
+        torso_fields: those of the rest of the robot.
         titles: names of fields that are no declared settings.
         exports: files of a recorded walk.
     """
@@ -228,6 +230,8 @@ class OptionsView(Answer):
     version: str
     gaits: list[GaitOption]
     robots: list[RobotOption]
+    leg_fields: dict[str, SettingOption]
+    torso_fields: dict[str, SettingOption]
     agents: list[AgentOption]
     worlds: list[WorldOption]
     disturbances: list[DisturbanceOption]

@@ -9,6 +9,7 @@ from annotated_types import Ge, Le
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
+from app.api.body_fields import leg_fields, torso_fields
 from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.memory_limit import MAX_FILE_BYTES
@@ -32,7 +33,7 @@ from hexapods.domain.creatures import CREATURES
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, gait_as_json, resolve
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import MAX_LEGS, Robot, as_mapping
+from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot, as_mapping
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
@@ -154,6 +155,7 @@ _HELP = {
     "robot": "Which robot walks; it differs in servos and friction.",
     "simulator": "What computes the walking.",
     "lanes": "Which agents race.",
+    "legs": "How many legs a robot may have.",
     "disturbances": "Changes of the robot or the ground, each from a step on.",
     "clock": "What thinking costs in the race; it can change who wins.",
     "name": "What the run is called in the list.",
@@ -233,6 +235,8 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
             }
             for name, one in CREATURES.items()
         ],
+        "leg_fields": {name: _setting(setting) for name, setting in leg_fields().items()},
+        "torso_fields": {name: _setting(setting) for name, setting in torso_fields().items()},
         "agents": _agents(agents),
         "worlds": _worlds(),
         "disturbances": _disturbances(),
@@ -444,6 +448,7 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         **{name: [one.low, one.high] for name, one in settings.items() if one.is_number},
         "what_if_steps": [1, MAX_WHAT_IF_STEPS],
         "lanes": [1, MAX_LANES],
+        "legs": [MIN_LEGS, MAX_LEGS],
         "disturbances": [0, MAX_DISTURBANCES],
         "name": [0, MAX_NAME],
         "tag": [1, MAX_TAG],

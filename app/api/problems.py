@@ -24,7 +24,7 @@ from app.storage.errors import (
     StorageFailed,
     StorageFull,
 )
-from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.errors import HexapodError, ImpossibleLegs, InvalidInput
 
 MEDIA_TYPE = "application/problem+json"
 MAX_DETAIL = 1000
@@ -100,6 +100,8 @@ async def hexapod_error(request: Request, error: Exception) -> Response:
             return problem(status, sentence, headers={"Retry-After": str(seconds)})
         case StorageFailed():
             return problem(status, sentence, headers={"Retry-After": str(_STORAGE_RETRY_S)})
+        case ImpossibleLegs(legs=legs):
+            return problem(status, sentence, legs=list(legs))
     return problem(status, sentence)
 
 

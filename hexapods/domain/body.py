@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import ImpossibleLegs, InvalidInput
 
 MIN_LEGS, MAX_LEGS = 3, 12
 NO_NUMBERS = ("name", "legs")
@@ -143,19 +143,22 @@ class Robot:
         """Check that each foot is away from its coxa joint, and from the other feet.
 
         Raises:
-            InvalidInput: naming the leg.
+            ImpossibleLegs: naming the leg.
         """
         for number, out_m in enumerate(self.feet_out_m, start=1):
             if not out_m > 0:
-                raise InvalidInput(
+                raise ImpossibleLegs(
                     f"the foot of leg {number} would be under its coxa joint or behind it: choose "
-                    "a larger home_radius_m, a smaller radius_m, or its own foot_out_m"
+                    "a larger home_radius_m, a smaller radius_m, or its own foot_out_m",
+                    [number],
                 )
         homes = self.homes_m
         for number, (x, y) in enumerate(homes, start=1):
             for other, (other_x, other_y) in enumerate(homes[: number - 1], start=1):
                 if math.hypot(x - other_x, y - other_y) < self.foot_radius_m:
-                    raise InvalidInput(f"the feet of legs {other} and {number} are in one place")
+                    raise ImpossibleLegs(
+                        f"the feet of legs {other} and {number} are in one place", [other, number]
+                    )
 
     def of_legs(self, name: str) -> tuple[float, ...]:
         """Return a number that legs may have their own of, such as `coxa_m`, leg by leg."""

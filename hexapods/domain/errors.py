@@ -33,7 +33,19 @@ class UnknownName(InvalidInput):
         super().__init__(f"unknown {kind} {name!r}; choose one of: {', '.join(valid)}")
 
 
-class Unreachable(InvalidInput):
+class ImpossibleLegs(InvalidInput):
+    """Legs of a robot cannot be as they were given.
+
+    Attributes:
+        legs: their numbers, from 1.
+    """
+
+    def __init__(self, message: str, legs: Iterable[int]) -> None:
+        super().__init__(message)
+        self.legs = tuple(legs)
+
+
+class Unreachable(ImpossibleLegs):
     """A cell of the foot grid is out of reach of a leg of this robot."""
 
 

@@ -5,7 +5,7 @@ two-link arm with the knee above. Positive pitch lifts.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache, singledispatch
 from typing import Any, NamedTuple
 
@@ -185,11 +185,55 @@ def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach | None:
     Raises:
         Unreachable: if a foot does not reach a cell from home, naming the leg and the cell.
     """
+    reaches_all = True
+    for passage in _passages(robot, gait, grid):
+        problem = next(_reach_problems(legs_of(robot), passage.angles), None)
+        if problem and passage.why is None:
+            reaches_all = False
+        elif problem:
+            leg, reason = problem
+            raise Unreachable(passage.sentence(leg, reason), [leg])
+    return None if reaches_all else _forward_reach(robot, gait, grid)
+
+
+def out_of_reach(robot: Robot, gait: Gait, grid: FootGrid) -> dict[int, str]:
+    """Return what legs cannot reach of their grid, in a sentence by the leg's number."""
+    found: dict[int, str] = {}
+    for passage in _passages(robot, gait, grid):
+        if passage.why is not None:
+            for leg, reason in _reach_problems(legs_of(robot), passage.angles):
+                found.setdefault(leg, passage.sentence(leg, reason))
+    return found
+
+
+class _Passage(NamedTuple):
+    """The feet of all legs on their way to a cell.
+
+    Attributes:
+        grid, cell: the cell, by its number.
+        why: where on the way that is, in words; None for a drift that only odd series lead to.
+        angles: of all joints [rad], NaN where a foot is out of reach.
+    """
+
+    grid: FootGrid
+    cell: int
+    why: str | None
+    angles: FloatArray
+
+    def sentence(self, leg: int, reason: str) -> str:
+        return (
+            f"leg {leg} cannot reach cell {self.cell} ({self.grid.name(self.cell)}){self.why}: "
+            f"{reason}; choose a smaller grid_side_m than {self.grid.side_m:g}, a "
+            "lower step_height_m, or other link lengths, home radius or body height"
+        )
+
+
+def _passages(robot: Robot, gait: Gait, grid: FootGrid) -> Iterator[_Passage]:
+    """Iterate over the places that each foot has to reach, cell by cell."""
     legs = legs_of(robot)
     kinematics, count = legs.under(gait), len(legs)
     sizes = np.array(gait.sizes)[list(gait.group_of_leg)]
     drift = (count - sizes) / sizes
-    reaches_all = True
     for cell, (x, y) in enumerate(grid.cells):
         passages = (
             ("", np.full(count, y)),
@@ -200,17 +244,7 @@ def check_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach | None:
             for height in (0.0, robot.step_height_m):
                 # Both (x, y) and (−x, y) are cells, so mirrored legs need not be told apart.
                 offsets = np.column_stack((np.full(count, x), forward, np.full(count, height)))
-                problem = _reach_problem(legs, kinematics.joint_angles(offsets))
-                if problem and why is None:
-                    reaches_all = False
-                elif problem:
-                    leg, reason = problem
-                    raise Unreachable(
-                        f"leg {leg} cannot reach cell {cell} ({grid.name(cell)}){why}: "
-                        f"{reason}; choose a smaller grid_side_m than {grid.side_m:g}, a "
-                        "lower step_height_m, or other link lengths, home radius or body height"
-                    )
-    return None if reaches_all else _forward_reach(robot, gait, grid)
+                yield _Passage(grid, cell, why, kinematics.joint_angles(offsets))
 
 
 def _forward_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach:
@@ -247,21 +281,27 @@ def _forward_reach(robot: Robot, gait: Gait, grid: FootGrid) -> Reach:
                 raise Unreachable(
                     f"leg {names} cannot reach everywhere between the cells of its grid: choose a "
                     f"smaller grid_side_m than {grid.side_m:g}, a lower step_height_m, or other "
-                    "link lengths, home radius or body height"
+                    "link lengths, home radius or body height",
+                    group,
                 )
             found.append(sign * float(reached[-1]))
     return Reach(tuple(back), tuple(ahead))
 
 
-def _reach_problem(legs: Legs, angles: FloatArray) -> tuple[int, str] | None:
-    """Return the first leg that cannot have these joint angles, (joints,), and why."""
+def _reach_problems(legs: Legs, angles: FloatArray) -> Iterator[tuple[int, str]]:
+    """Iterate over the legs that cannot have these joint angles, (joints,), and why."""
     low, high = legs.limits_rad
     is_possible = (low <= angles) & (angles <= high)
     if is_possible.all():
-        return None
-    first = int(is_possible.argmin())
-    joint = legs.joints[first]
-    if np.isnan(angles[legs.leg_of_joint == joint.leg - 1]).any():
-        return joint.leg, "it is out of the reach of its links"
-    turned = np.rad2deg(angles[first])
-    return joint.leg, f"its {joint.name} would turn to {turned:.0f}°, beyond its limit"
+        return
+    told = 0
+    for index in np.flatnonzero(~is_possible).tolist():
+        joint = legs.joints[index]
+        if joint.leg == told:
+            continue
+        told = joint.leg
+        if np.isnan(angles[legs.leg_of_joint == joint.leg - 1]).any():
+            yield joint.leg, "it is out of the reach of its links"
+        else:
+            turned = np.rad2deg(angles[index])
+            yield joint.leg, f"its {joint.name} would turn to {turned:.0f}°, beyond its limit"

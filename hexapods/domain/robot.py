@@ -64,6 +64,8 @@ LEG_RANGES: dict[str, tuple[float, float]] = {
 _PLACE = ("x_m", "y_m")
 """Fields of a leg in a request that may stand for its azimuth and radius."""
 _COORDINATE = (-MOUNT_RADIUS[1], MOUNT_RADIUS[1])
+PLACED_RANGES = dict.fromkeys(_PLACE, _COORDINATE) | LEG_RANGES
+"""Of a leg in a request: its place in either form, and what is its own."""
 
 
 def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
@@ -116,6 +118,27 @@ def _leg_as_mapping(leg: LegMount) -> dict[str, float]:
     return place | {k: v for k, v in asdict(leg).items() if k not in place and v != usual[k]}
 
 
+def written_out(value: Robot) -> dict[str, float | None]:
+    """Return every number of a robot that is not a leg's own; the torso of a cylinder is no box."""
+    return {name: getattr(value, name) for name in RANGES}
+
+
+def legs_written_out(value: Robot) -> list[dict[str, float]]:
+    """Return every number of each leg, as in a request: also those that are the robot's."""
+    own = {name: value.of_legs(name) for name in _OWN}
+    return [
+        {
+            "x_m": leg.radius_m * math.cos(math.radians(leg.azimuth_deg)),
+            "y_m": leg.radius_m * math.sin(math.radians(leg.azimuth_deg)),
+            "z_m": leg.z_m,
+            "yaw_deg": leg.direction_deg,
+            "foot_out_m": out_m,
+            **{name: values[number] for name, values in own.items()},
+        }
+        for number, (leg, out_m) in enumerate(zip(value.legs, value.feet_out_m, strict=True))
+    ]
+
+
 def _preset(name: object) -> Robot:
     if not isinstance(name, str) or name not in PRESETS:
         raise UnknownName("robot", name, PRESETS)
@@ -147,8 +170,7 @@ def _mounts(mounts: object) -> tuple[LegMount, ...]:
         raise InvalidInput(shape)
     read = []
     for number, mount in enumerate(mounts, start=1):
-        known = {*LEG_RANGES, *_PLACE}
-        if not isinstance(mount, Mapping) or set(mount) - known:
+        if not isinstance(mount, Mapping) or set(mount) - {*PLACED_RANGES}:
             others = ", ".join(
                 name for name in LEG_RANGES if name not in ("azimuth_deg", "radius_m")
             )
@@ -206,7 +228,7 @@ _LEG: Schema = {
 }
 _PLACED: Schema = {
     "type": "object",
-    "properties": _numbers(LEG_RANGES | dict.fromkeys(_PLACE, _COORDINATE)),
+    "properties": _numbers(PLACED_RANGES),
     "additionalProperties": False,
     "oneOf": [{"required": ["azimuth_deg"]}, {"required": list(_PLACE)}],
     "not": {

@@ -9,8 +9,9 @@ from hexapods.domain.body import Robot
 from hexapods.domain.errors import Unreachable
 from hexapods.domain.gait import AnyGait, Gait, GaitSpec, gait_spec
 from hexapods.domain.grid import MAX_SIDE_M, FootGrid
-from hexapods.domain.kinematics import check_reach, legs_of
+from hexapods.domain.kinematics import check_reach, legs_of, out_of_reach
 from hexapods.domain.records import Record
+from hexapods.domain.robot import legs_written_out, written_out
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 
@@ -28,6 +29,8 @@ class LegPreview(Record):
         side: 1 on the right, -1 on the left, 0 on the axis or mirrored otherwise.
         home_m: place of its foot at home: right, forward.
         mass_kg: its mass, with the foot.
+        out_of_reach: what it cannot reach of its grid, in a sentence; null if it reaches all.
+        built: all its numbers, as in a request: its place by `x_m` and `y_m`.
     """
 
     leg: int
@@ -35,6 +38,8 @@ class LegPreview(Record):
     side: int
     home_m: tuple[float, float]
     mass_kg: float
+    out_of_reach: str | None
+    built: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,9 @@ class Preview(Record):
 
     Attributes:
         gait: the gait with its groups leg by leg.
+        forward_deg: its forward direction, anticlockwise from body x.
+        cells_m: cells of the foot grid by their places from home: right, forward.
+        built: all numbers of the robot that legs share; a torso that is no box has null for one.
         legs: leg by leg.
         groups: group by group.
         margin_m: least support margin over the groups.
@@ -92,6 +100,9 @@ class Preview(Record):
     """
 
     gait: AnyGait
+    forward_deg: float
+    cells_m: list[tuple[float, float]]
+    built: dict[str, float | None]
     legs: list[LegPreview]
     groups: list[GroupPreview]
     margin_m: float
@@ -115,10 +126,11 @@ def preview(walk: WalkingProblem) -> Preview:
     robot, gait, grid = walk.robot, walk.resolved_gait, walk.grid
     legs, support = legs_of(robot), Support(robot, gait)
     least, cells = support.least_margin_m(gait.groups), len(grid)
+    reach, unreached = None, dict[int, str]()
     try:
-        reach, out_of_reach = check_reach(robot, gait, grid), None
+        reach = check_reach(robot, gait, grid)
     except Unreachable as error:
-        reach, out_of_reach = None, str(error)
+        unreached = dict.fromkeys(error.legs, str(error)) | out_of_reach(robot, gait, grid)
     groups = [
         GroupPreview(
             list(group),
@@ -134,10 +146,21 @@ def preview(walk: WalkingProblem) -> Preview:
     spec = gait_spec(walk.gait)
     return Preview(
         gait=GaitSpec(spec.right_leg, spec.left_leg, groups=gait.groups),
+        forward_deg=gait.forward_deg,
+        cells_m=list(grid.places_m),
+        built=written_out(robot),
         legs=[
-            LegPreview(leg, group, side, home, kg)
-            for leg, (group, side, home, kg) in enumerate(
-                zip(gait.group_of_leg, gait.mirror, support.homes_m, legs.masses_kg, strict=True), 1
+            LegPreview(leg, group, side, home, kg, unreached.get(leg), built)
+            for leg, (group, side, home, kg, built) in enumerate(
+                zip(
+                    gait.group_of_leg,
+                    gait.mirror,
+                    support.homes_m,
+                    legs.masses_kg,
+                    legs_written_out(robot),
+                    strict=True,
+                ),
+                start=1,
             )
         ],
         groups=groups,
@@ -151,7 +174,7 @@ def preview(walk: WalkingProblem) -> Preview:
         table_fits=table_size(len(gait.groups), cells) <= MAX_VALUES,
         law_m_per_step=advance_m,
         law_m=RACE_STEPS * advance_m,
-        out_of_reach=out_of_reach,
+        out_of_reach=next(iter(unreached.values()), None),
         largest_side_m=largest,
         safe_side_m=safe,
         better=_better(walk, support) if least < STANDS_M else None,

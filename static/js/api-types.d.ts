@@ -1903,6 +1903,16 @@ export interface LegPreview {
    * its mass, with the foot.
    */
   mass_kg: number;
+  /**
+   * what it cannot reach of its grid, in a sentence; null if it reaches all.
+   */
+  out_of_reach: string | null;
+  /**
+   * all its numbers, as in a request: its place by `x_m` and `y_m`.
+   */
+  built: {
+    [k: string]: number;
+  };
 }
 /**
  * Machine on which the experiment ran; empty before its start.
@@ -1925,6 +1935,18 @@ export interface OptionsView {
   version: string;
   gaits: GaitOption[];
   robots: RobotOption[];
+  /**
+   * numbers of a leg that the editor of bodies offers.
+   */
+  leg_fields: {
+    [k: string]: SettingOption;
+  };
+  /**
+   * those of the rest of the robot.
+   */
+  torso_fields: {
+    [k: string]: SettingOption;
+  };
   agents: AgentOption[];
   worlds: WorldOption[];
   disturbances: DisturbanceOption[];
@@ -2154,6 +2176,20 @@ export interface Preview {
         pairs?: [number, number][];
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
+  /**
+   * its forward direction, anticlockwise from body x.
+   */
+  forward_deg: number;
+  /**
+   * cells of the foot grid by their places from home: right, forward.
+   */
+  cells_m: [number, number][];
+  /**
+   * all numbers of the robot that legs share; a torso that is no box has null for one.
+   */
+  built: {
+    [k: string]: number | null;
+  };
   /**
    * leg by leg.
    */

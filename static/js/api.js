@@ -13,7 +13,7 @@ export const addressOf = (path) => new URL(path, base()).href;
 
 /** A run, or enough of one to address it. @typedef {{ kind: Kind | null, id: string }} RunKey */
 /** An entry of a problem document. @typedef {{ field?: string, loc?: string[], pointer?: string }} FieldError */
-/** @typedef {{ title?: string, detail?: string, errors?: FieldError[] }} ProblemDocument */
+/** @typedef {{ title?: string, detail?: string, errors?: FieldError[], legs?: number[] }} ProblemDocument */
 
 /**
  * A failed request. `message` is a sentence in which fields have the names of the API (`messageOf` gives those of the
@@ -24,11 +24,13 @@ export class RequestError extends Error {
    * @param {string} message
    * @param {number} status HTTP status; 0 where no answer came
    * @param {string[]} fields
+   * @param {number[]} legs of a robot that cannot be so
    */
-  constructor(message, status = 0, fields = []) {
+  constructor(message, status = 0, fields = [], legs = []) {
     super(message);
     this.status = status;
     this.fields = fields;
+    this.legs = legs;
   }
 }
 
@@ -134,9 +136,8 @@ const fieldOf = (error) => {
  */
 export const refusal = (status, problem) =>
   new RequestError(
-    problem.detail || problem.title || `The server answered ${status}.`,
-    status,
-    (problem.errors ?? []).map(fieldOf).filter(Boolean),
+    problem.detail || problem.title || `The server answered ${status}.`, status,
+    (problem.errors ?? []).map(fieldOf).filter(Boolean), problem.legs,
   );
 
 /** @param {string} text */
@@ -223,8 +224,7 @@ async function start(path, body) {
 }
 
 // Not randomUUID, which pages have only over https and on loopback.
-const randomKey = () =>
-  Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
+const randomKey = () => Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
 
 /** How long a run would take. @type {(path: string, body: object) => Promise<Estimate>} */
 export const estimate = (path, body) => call("POST", `${path}/estimate`, body);

@@ -237,6 +237,9 @@ export const openForm = () => batch(() => {
   leaveOutDefaults();
 });
 
+/** Whether the editor of the robot's body is open. */
+export const bodyIsOpen = signal(false);
+
 /** Let a spectator change the form. */
 export const tryOwnSettings = () => {
   page.form.value = new URLSearchParams([["agent", form.value.agent], ...stageTexts.value]);

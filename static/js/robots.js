@@ -86,7 +86,9 @@ const PRESET_LEGS = 6;
  */
 function bodyAzimuths(robot) {
   const { legs, n_legs = PRESET_LEGS } = /** @type {any} */ (typeof robot === "object" ? robot : {});
-  if (Array.isArray(legs)) return legs.map(({ azimuth_deg }) => azimuth_deg);
+  if (Array.isArray(legs)) {
+    return legs.map(({ azimuth_deg, x_m, y_m }) => azimuth_deg ?? (Math.atan2(y_m, x_m) * 180) / Math.PI);
+  }
   return Array.from({ length: n_legs }, (_, leg) => (360 * leg) / n_legs);
 }
 

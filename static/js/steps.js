@@ -94,8 +94,9 @@ export const tableMoment = computed(() => {
  * @param {() => string} key "" where there is nothing to ask for
  * @param {(key: string) => Promise<Answer>} ask
  * @param {Signal<Reply<Answer>>} reply
+ * @param {() => number} [pause_ms] after an answer
  */
-export const keepAnswer = (key, ask, reply) => askForNewest({
+export const keepAnswer = (key, ask, reply, pause_ms = pauseOfStage) => askForNewest({
   key,
   ask: async (of) => {
     try {
@@ -108,8 +109,10 @@ export const keepAnswer = (key, ask, reply) => askForNewest({
     }
   },
   forget: () => (reply.value = { answer: null, error: null, again: false }),
-  pause_ms: () => (isPlaying.value && isFollowing.value ? EVERY_MS : 0),
+  pause_ms,
 });
+
+const pauseOfStage = () => (isPlaying.value && isFollowing.value ? EVERY_MS : 0);
 
 /** Keep the explanation and the table of the moment, until the function that is returned is called. */
 export function followMoment() {

@@ -104,8 +104,16 @@ export type Page<Item> = Omit<Api.RunPage, "items"> & { items: Item[] };
 
 /** The name of a preset, or an object with a preset and what differs from it. */
 export type RobotConfig = string | { preset?: string; name?: string; [part: string]: unknown };
+/** A gait by the legs between which forward is, and one of the others: groups are legs, or the name of a rule. */
+export interface GaitParts {
+  right_leg: number;
+  left_leg: number;
+  symmetry?: string;
+  pairs?: number[][];
+  groups?: number[][] | string;
+}
 /** The name of a gait, or its parts. */
-export type GaitConfig = string | Partial<Api.GaitParts>;
+export type GaitConfig = string | Partial<GaitParts>;
 
 // ---- events of elements, as their handlers read them
 

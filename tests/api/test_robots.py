@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from hexapods.domain.robot import PLACED_RANGES, RANGES
 from tests.api.calls import Api, refused
 
 
@@ -31,6 +32,40 @@ def test_a_body_of_ones_own_that_tips_is_offered_other_groups(api: Api) -> None:
     assert known["tips"] is True
     assert known["better"]["gait"]["groups"] == [[1, 3], [2, 4]]
     assert known["better"]["margin_m"] >= -1e-6
+
+
+def test_the_body_is_written_out_with_its_grid(api: Api) -> None:
+    known = told(api, {"gait": "trot", "robot": "dog"})
+
+    front = known["legs"][0]["built"]
+    assert (front["x_m"], front["y_m"]) == pytest.approx((0.06, 0.11))
+    assert (front["yaw_deg"], front["foot_out_m"], front["femur_m"]) == (20, 0.12, 0.08)
+    assert known["built"]["torso_length_m"] == 0.26
+    assert known["forward_deg"] == pytest.approx(90)
+    assert [0.02, 0.02] in known["cells_m"]
+    assert told(api, {"gait": "tripod"})["built"]["torso_length_m"] is None
+
+
+def test_legs_that_cannot_be_so_are_named(api: Api) -> None:
+    places = [(0.1, 0.1), (-0.1, 0.1), (-0.1, 0.1), (0.1, -0.1)]
+    legs = [{"x_m": x, "y_m": y, "foot_out_m": 0.1} for x, y in places]
+    body = {"gait": "one-by-one", "robot": {"legs": legs}}
+    answer = api.call("POST", "/robots/preview", json=body)
+
+    refused(answer, 422, "feet of legs 2 and 3")
+    assert answer.json()["legs"] == [2, 3]
+
+
+def test_fields_of_the_editor_have_the_limits_of_requests(api: Api) -> None:
+    options = api.call("GET", "/options").json()
+
+    assert options["limits"]["legs"] == [3, 12]
+    for name, field in options["leg_fields"].items():
+        assert (field["minimum"], field["maximum"]) == PLACED_RANGES[name]
+        assert field["minimum"] <= field["default"] <= field["maximum"]
+    for name, field in options["torso_fields"].items():
+        assert (field["minimum"], field["maximum"]) == RANGES[name]
+        assert field["minimum"] <= field["default"] <= field["maximum"]
 
 
 def test_what_makes_no_sense_is_refused(api: Api) -> None:

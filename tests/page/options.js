@@ -126,6 +126,18 @@ export const OPTIONS = {
       gait: { right_leg: 1, left_leg: 2, groups: [[1, 3], [2, 4]] },
     },
   ],
+  leg_fields: {
+    x_m: setting("To the right", { minimum: -2, maximum: 2, unit: "m", default: 0.1 }),
+    y_m: setting("Ahead", { minimum: -2, maximum: 2, unit: "m", default: 0 }),
+    yaw_deg: setting("Points to", { minimum: -360, maximum: 360, unit: "°", default: 0 }),
+    foot_out_m: setting("Foot from joint", { minimum: 0.001, maximum: 5, unit: "m", default: 0.15 }),
+    femur_m: setting("Femur", { minimum: 0.001, maximum: 2, unit: "m", default: 0.08 }),
+  },
+  torso_fields: {
+    torso_radius_m: setting("Radius", { minimum: 0.01, maximum: 2, unit: "m", default: 0.1 }),
+    torso_length_m: setting("Length", { minimum: 0.02, maximum: 4, unit: "m", default: 0.2 }),
+    torso_width_m: setting("Width", { minimum: 0.02, maximum: 4, unit: "m", default: 0.2 }),
+  },
   agents: [
     {
       ...described("learner", "Learner"), color: "#111111", steps_ahead: null,
@@ -195,8 +207,8 @@ export const OPTIONS = {
     pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
     ...TRACER, ...LEARNER,
   },
-  limits: { seeds: [1, null], seed: [0, null], what_if_steps: [1, 2000], lanes: [1, 6], name: [0, 20], tag: [1, 9],
-    tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120],
+  limits: { seeds: [1, null], seed: [0, null], what_if_steps: [1, 2000], lanes: [1, 6], legs: [3, 12], name: [0, 20],
+    tag: [1, 9], tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120],
     import_bytes: [1, 2 ** 20] },
   help: { alpha: "Learning rate." },
   titles: { gait: "Gait", agent: "Learner", lanes: "Lanes", name: "Name", robot: "Robot", world: "World" },

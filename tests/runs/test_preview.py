@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from hexapods.domain.gait import GaitSpec
-from hexapods.domain.robot import robot
+from hexapods.domain.robot import PRESETS, robot
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
 
@@ -87,3 +87,27 @@ def test_a_grid_out_of_reach_is_told_at_its_leg() -> None:
 
     assert out.out_of_reach is not None
     assert out.out_of_reach.startswith("leg 1 cannot reach cell 1 (front left)")
+    assert out.legs[0].out_of_reach == out.out_of_reach
+    assert out.legs[3].out_of_reach is not None
+    assert out.legs[3].out_of_reach.startswith("leg 4 cannot reach cell")
+
+
+def test_only_the_leg_that_does_not_reach_is_told() -> None:
+    legs = [{"azimuth_deg": 60.0 * n, "radius_m": 0.1} for n in range(6)]
+    short = told("tripod", {"legs": [*legs[:2], {**legs[2], "tibia_m": 0.02}, *legs[3:]]})
+
+    assert [leg.leg for leg in short.legs if leg.out_of_reach] == [3]
+    assert short.out_of_reach == short.legs[2].out_of_reach
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_a_body_written_out_is_the_same_robot(name: str) -> None:
+    known = told("one-by-one", name)
+    numbers = {part: value for part, value in known.built.items() if value is not None}
+    again = told("one-by-one", {**numbers, "legs": [leg.built for leg in known.legs]})
+
+    assert again.forward_deg == pytest.approx(known.forward_deg)
+    assert again.mass_kg == pytest.approx(known.mass_kg)
+    for one, other in zip(again.legs, known.legs, strict=True):
+        assert one.home_m == pytest.approx(other.home_m)
+        assert one.built == pytest.approx(other.built)

@@ -2,6 +2,7 @@
 import { announcement } from "../headline.js";
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import { bodyIsOpen } from "../form.js";
 import { page } from "../page-state.js";
 import { clickedCell, helpIsOpen, isPhone, nextTheme, present, share, theme, toastMessage } from "../page.js";
 import { card, closeLesson, openLesson } from "../lesson.js";
@@ -22,6 +23,7 @@ export const App = () => html`
   <${Header} />
   <main id="main" tabindex="-1"><${Main} /></main>
   <${Help} />
+  <${BodyEditor} />
   <${Toast} />
   <p class="sr-only" role="status">${announcement}</p>
 `;
@@ -81,6 +83,12 @@ const loadHelp = () => import("./help.js").then(({ HelpDialog }) => HelpDialog);
 
 /** Loaded when it is first opened, and there since then. */
 const Help = () => (helpIsOpen.value || loaded.value.help) && html`<${Loaded} name="help" load=${loadHelp} />`;
+
+const loadBodyEditor = () => withStyle("body-editor", import("./body-editor.js")).then((own) => own.BodyEditor);
+
+const BodyEditor = () => (bodyIsOpen.value || loaded.value["editor of the body"]) && html`
+  <${Loaded} name="editor of the body" load=${loadBodyEditor} />
+`;
 
 const loadDesk = () => withStyle("presenter", import("./desk.js")).then(({ Desk }) => Desk);
 

@@ -40,10 +40,11 @@ const PATHS = {
   panel: "M2.5 3h11v10h-11zM9.5 3v10",
   columns: "M2.5 3h11v10h-11zM6.2 3v10M9.8 3v10",
   back: "M10 3 5 8l5 5",
+  undo: "M5.5 3 2.5 6l3 3M2.5 6h6.5a4 4 0 0 1 0 8H6",
 };
 const OUTLINED = new Set([
   "link", "replay", "light", "dark", "auto", "flag", "edit", "import", "present", "pin", "panel", "columns",
-  "back",
+  "back", "undo",
 ]);
 const SIZE = 16;
 
@@ -173,12 +174,15 @@ export function Dialog({ isOpen, id, labelledBy, style = "", children }) {
     if (!isOpen.value) dialog.current?.close();
     else if (!dialog.current?.open) dialog.current?.showModal();
   }), []);
+  // A pointer that went down inside, as on a slider, may come up beside it.
+  const wentDown = useRef(/** @type {EventTarget | null} */ (null));
   const close = () => (isOpen.value = false);
   const onClose = () => !dialog.current?.open && close();
   /** @param {MouseEvent} event */
-  const onBackdrop = (event) => event.target === dialog.current && close();
+  const onBackdrop = ({ target }) => target === dialog.current && wentDown.current === target && close();
   return html`
     <dialog class=${`dialog ${style}`} id=${id} ref=${dialog} onClose=${onClose} onClick=${onBackdrop}
+      onPointerDown=${(/** @type {PointerEvent} */ { target }) => (wentDown.current = target)}
       aria-labelledby=${labelledBy}>
       <div class="dialog-body">${children}</div>
     </dialog>

@@ -85,24 +85,45 @@ export function NumberField({
     if (parsed.mistake === undefined) onValue(parsed.value);
     else if (isOfForm) enter(field, typed);
   };
+  return html`
+    <${NumberInput} attributes=${attributesOf(field, mistake)} setting=${setting} value=${value} text=${text}
+      isWrong=${mistake !== null} step=${step} label=${label} isDisabled=${isDisabled} onText=${take} />
+    <${MistakeOf} field=${field} mistake=${mistake} />
+  `;
+}
+
+/**
+ * The text field of a number, with the text that it shows; what is typed, or stepped to, is told as a text.
+ * @param {object} props
+ * @param {object} props.attributes
+ * @param {SettingOption} props.setting
+ * @param {FormValue} props.value
+ * @param {string} props.text
+ * @param {boolean} props.isWrong
+ * @param {number} props.step
+ * @param {string} [props.label]
+ * @param {boolean} [props.isDisabled]
+ * @param {(text: string) => unknown} props.onText
+ */
+export function NumberInput({
+  attributes, setting, value, text, isWrong, step, label, isDisabled = false, onText,
+}) {
   /** @param {KeyboardEvent} event */
   const onKeyDown = (event) => {
     const direction = DIRECTIONS[event.key];
     if (!direction || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
-    if (mistake || typeof value !== "number") return;
+    if (isWrong || typeof value !== "number") return;
     const next = String(Number((value + direction * step).toPrecision(SUM_DIGITS)));
-    if (parseSetting(next, setting).mistake === undefined) take(next);
+    if (parseSetting(next, setting).mistake === undefined) onText(next);
   };
   return html`
     <span class="number">
       <input type="text" role="spinbutton" inputmode=${setting.is_whole ? "numeric" : "decimal"} autocomplete="off"
-        ...${attributesOf(field, mistake)} value=${text} disabled=${isDisabled} aria-label=${label}
-        aria-valuetext=${text || "empty"}
+        ...${attributes} value=${text} disabled=${isDisabled} aria-label=${label} aria-valuetext=${text || "empty"}
         aria-valuenow=${value} aria-valuemin=${setting.minimum} aria-valuemax=${setting.maximum}
-        onInput=${(/** @type {Changed} */ { target }) => take(target.value)} onKeyDown=${onKeyDown} />
+        onInput=${(/** @type {Changed} */ { target }) => onText(target.value)} onKeyDown=${onKeyDown} />
     </span>
-    <${MistakeOf} field=${field} mistake=${mistake} />
   `;
 }
 

@@ -4,6 +4,7 @@ import { presentRates, rateInWords } from "../changes.js";
 import { chooseLearner, chooseRobot, enter, form, setField, wrong, isReadOnly } from "../form.js";
 import { count, listed } from "../format.js";
 import { liveTraining, trainingInView } from "../on-stage.js";
+import { numberOfLegs } from "../robots.js";
 import { isOperator } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,
@@ -13,6 +14,7 @@ import { evaluations, options, served } from "../store.js";
 import { choicesOf, gaitTitle, labelOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 import { isAtLeast } from "../workspace.js";
 import { Beforehand } from "./beforehand.js";
+import { EditBody } from "./edit-body.js";
 import { HexapodGlyph, html } from "./elements.js";
 import {
   attributesOf, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
@@ -46,6 +48,7 @@ export function TrainSettings() {
             choices=${served().worlds.map(({ name, title }) => [name, title])} />
         </div>
       `}
+      ${isFull && html`<${EditBody} />`}
       <${GaitPicker} />
       ${isFull && html`
         <${SeedAndObservation} />
@@ -214,7 +217,7 @@ const FEW_GAITS = 5;
 
 const chosenRobot = () => served().robots.find(({ name }) => name === form.value.robot);
 /** Gaits are drawn with six legs. */
-const isDrawn = () => (chosenRobot()?.n_legs ?? HEXAPOD_LEGS) === HEXAPOD_LEGS;
+const isDrawn = () => (chosenRobot()?.n_legs ?? numberOfLegs(form.value.robot)) === HEXAPOD_LEGS;
 const HEXAPOD_LEGS = 6;
 
 /** The gaits that the robot's legs can have. A robot of one's own may have any: the server tells if not. */
@@ -286,7 +289,7 @@ function robotChosen() {
 
 const RobotGroup = () => html`
   <div class="more-fields">
-    <${RobotField} />
+    <div class="field"><${RobotField} /><${EditBody} isNamed=${false} /></div>
     <${SelectField} field="simulator" label="Simulator"
       choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
     <${Figure} field="divisions" />

@@ -1,0 +1,133 @@
+// The editor of the robot's body: a plan from above, the numbers of its legs and its torso, and what is known of it.
+import { useEffect } from "preact/hooks";
+import {
+  addOne, body, cancel, canUndo, canUse, chooseLeg, chosenLeg, consequences, followBody, followerOf, goToMistake,
+  isMirrored, isRefused, mistakes, noFewerLegs, noMoreLegs, objectionsAt, openingError, part, placeInWords,
+  removeChosen, takeBetter, told, undo, useBody,
+} from "../body-editor.js";
+import { reachInWords } from "../body-words.js";
+import { bodyIsOpen } from "../form.js";
+import { count } from "../format.js";
+import { inWords } from "../preview.js";
+import { BodyFields } from "./body-fields.js";
+import { BodyPlan } from "./body-plan.js";
+import { Dialog, Held, html, Icon } from "./elements.js";
+
+const TEXT = "input[type=text]";
+
+export function BodyEditor() {
+  useEffect(followBody, []);
+  /** A text that is typed has its own undo. @param {KeyboardEvent & { target: Element }} event */
+  const onKeyDown = (event) => {
+    const isUndo = event.key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey) && !event.shiftKey;
+    if (!isUndo || event.target.matches(TEXT)) return;
+    event.preventDefault();
+    undo();
+  };
+  return html`
+    <${Dialog} id="body-editor" labelledBy="edit-body" isOpen=${bodyIsOpen}>
+      <div class="body-head">
+        <h2 id="edit-body">Edit the body</h2>
+        <button class="quiet square" aria-label="Close" onClick=${cancel}>✕</button>
+      </div>
+      ${body.value
+        ? html`<div class="body-main" onKeyDown=${onKeyDown}><${PlanSide} /><${FieldSide} /></div>`
+        : html`<div class="body-main"><${Opening} /></div>`}
+      <div class="body-foot">
+        <${Mistakes} />
+        <div class="body-actions">
+          <button class="quiet" aria-disabled=${canUndo.value ? undefined : "true"} onClick=${undo}
+            title="Undo the last change (Ctrl Z)"><${Icon} name="undo" />Undo</button>
+          <span class="space"></span>
+          <button class="quiet" onClick=${cancel}>Cancel</button>
+          <button class="primary" aria-disabled=${canUse.value ? undefined : "true"} onClick=${useBody}
+            aria-describedby=${Object.keys(mistakes.value).length ? "held-body" : undefined}>Use this body</button>
+        </div>
+      </div>
+    <//>
+  `;
+}
+
+const Opening = () => (openingError.value
+  ? html`<p class="mistake" role="alert">This robot cannot be edited: ${openingError.value}</p>`
+  : html`<p class="dim" role="status">Asking how the robot is built…</p>`);
+
+const Mistakes = () => Object.keys(mistakes.value).length > 0 && html`
+  <${Held} id="held-body" mistakes=${mistakes.value} nameOf=${placeInWords} onField=${goToMistake} />
+`;
+
+const PlanSide = () => html`
+  <div class="body-plan-side">
+    <${BodyPlan} />
+    <div class="body-legs">
+      <label class="check">
+        <input type="checkbox" checked=${isMirrored.value}
+          onChange=${() => (isMirrored.value = !isMirrored.value)} />Mirrored
+      </label>
+      <span class="space"></span>
+      <${LegButton} words="Add a leg" why=${noMoreLegs.value} onClick=${addOne} />
+      <${LegButton} words=${`Remove ${goingLegs()}`} why=${noFewerLegs.value} onClick=${removeChosen} />
+    </div>
+    <p class="sentence">
+      Drag a number.${" "}
+      <span class="wide-only">
+        Or choose it: arrow keys move it, Page Up and Page Down turn it, with Shift by less.
+      </span>
+    </p>
+  </div>
+`;
+
+/** The chosen leg and the one that goes with it, in words. */
+function goingLegs() {
+  const [leg, follower] = [chosenLeg.value, followerOf(chosenLeg.value)];
+  if (follower === null || follower === leg) return `leg ${leg}`;
+  return `legs ${Math.min(leg, follower)} and ${Math.max(leg, follower)}`;
+}
+
+/** @param {{ words: string, why: string, onClick: () => void }} props */
+const LegButton = ({ words, why, onClick }) => html`
+  <button class="secondary compact" aria-disabled=${why ? "true" : undefined} title=${why || undefined}
+    onClick=${onClick}>${words}</button>
+`;
+
+const FieldSide = () => html`
+  <div class="body-field-side">
+    <${BodyFields} />
+    <${Known} />
+  </div>
+`;
+
+/** What is known of the body beforehand, and what the editor changes besides. */
+function Known() {
+  const answer = told.value;
+  return html`
+    <div class="body-known" role="group" aria-label="Known before it walks">
+      <p role="status">
+        ${answer && !isRefused.value
+          ? html`<b>${count(answer.known.legs.length, "leg")}:</b> ${inWords(answer.known)}`
+          : "Not known."}
+      </p>
+      ${objectionsAt.value.filter(({ legs }) => !isSaidAtFields(legs)).map(({ legs, words }) => html`
+        <${Objection} key=${words} legs=${legs} words=${words} />
+      `)}
+      ${answer?.known.better && !isRefused.value && html`
+        <button class="link" onClick=${takeBetter}>Take groups with which it stands</button>
+      `}
+      ${answer && !isRefused.value && html`<p class="dim">${reachInWords(answer.known)}</p>`}
+      ${consequences.value.map((words) => html`<p key=${words} class="dim">${words}</p>`)}
+    </div>
+  `;
+}
+
+/** Whether what is wrong with legs is said where the chosen one's numbers are. @param {number[]} legs */
+const isSaidAtFields = (legs) => part.value === "leg" && legs.includes(chosenLeg.value);
+
+/** @param {{ legs: number[], words: string }} props */
+const Objection = ({ legs, words }) => html`
+  <div class=${`notice ${legs.length ? "bad" : ""}`} role="status">
+    <p>${words}</p>
+    ${legs.length > 0 && html`
+      <button class="link" onClick=${() => chooseLeg(legs[0])}>Show leg ${legs[0]}</button>
+    `}
+  </div>
+`;
