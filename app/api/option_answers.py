@@ -32,13 +32,14 @@ class RobotOption(Described):
     """A robot preset.
 
     Attributes:
+        azimuths_deg: directions of its legs in its own frame, anticlockwise.
         gait: a gait that suits it.
         gaits: names of the gaits that its legs can have.
         built: parts in whose place a disturbance puts another value, as they were built.
     """
 
     robot: AnyRobot
-    n_legs: int
+    azimuths_deg: list[float]
     gait: AnyGait
     gaits: list[str]
     built: dict[str, float]

@@ -228,7 +228,7 @@ def catalogue(agents: Collection[str]) -> dict[str, Any]:
                 "title": one.title,
                 "description": one.description,
                 "robot": as_mapping(one.robot),
-                "n_legs": len(one.robot.azimuths_deg),
+                "azimuths_deg": [*one.robot.azimuths_deg],
                 "gait": gait_as_json(one.gait),
                 "gaits": [name for name in NAMED_GAITS if _divides(name, one.robot)],
                 "built": {part: getattr(one.robot, part) for part in _replaced_parts()},

@@ -2052,7 +2052,10 @@ export interface RobotOption {
         }[]
       | undefined;
   };
-  n_legs: number;
+  /**
+   * directions of its legs in its own frame, anticlockwise.
+   */
+  azimuths_deg: number[];
   /**
    * a gait that suits it.
    */

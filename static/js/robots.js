@@ -77,32 +77,32 @@ export function customRobotInWords(robot) {
 
 // ---- where its legs are
 
-const PRESET_LEGS = 6;
-
 /**
- * The legs' directions in the robot's own frame [°], anticlockwise.
+ * The legs' directions in the robot's own frame [°], anticlockwise. The first preset is the default robot.
  * @param {RobotConfig | undefined} robot
+ * @param {Robot[]} presets
  * @returns {number[]}
  */
-function bodyAzimuths(robot) {
-  const { legs, n_legs = PRESET_LEGS } = /** @type {any} */ (typeof robot === "object" ? robot : {});
+function bodyAzimuths(robot, presets) {
+  const { legs, n_legs } = /** @type {any} */ (typeof robot === "object" ? robot : {});
   if (Array.isArray(legs)) {
     return legs.map(({ azimuth_deg, x_m, y_m }) => azimuth_deg ?? (Math.atan2(y_m, x_m) * 180) / Math.PI);
   }
-  return Array.from({ length: n_legs }, (_, leg) => (360 * leg) / n_legs);
+  if (n_legs) return Array.from({ length: n_legs }, (_, leg) => (360 * leg) / n_legs);
+  return (presets.find(({ name }) => name === presetOf(robot)) ?? presets[0]).azimuths_deg;
 }
 
-/** @param {RobotConfig | undefined} robot */
-export const numberOfLegs = (robot) => bodyAzimuths(robot).length;
+/** @type {(robot: RobotConfig | undefined, presets: Robot[]) => number} */
+export const numberOfLegs = (robot, presets) => bodyAzimuths(robot, presets).length;
 
 /**
  * The legs' directions from forward [°], anticlockwise, in the order of their numbers.
  * @param {RobotConfig | undefined} robot
  * @param {GaitConfig} gait a name, or a gait with the legs on the right and on the left of forward
- * @param {Gait[]} gaits those of the server, for the robot with six legs
+ * @param {{ gaits: Gait[], robots: Robot[] }} options of the server; its gaits are for the robot with six legs
  */
-export function azimuthsOf(robot, gait, gaits) {
-  const azimuths = bodyAzimuths(robot);
+export function azimuthsOf(robot, gait, { gaits, robots }) {
+  const azimuths = bodyAzimuths(robot, robots);
   const named = gaits.find(({ name }) => name === gait);
   const { right_leg = 1, left_leg = 2 } = /** @type {any} */ (named ? legsBeside(named) : gait);
   const [right, left] = [azimuths[right_leg - 1] ?? 0, azimuths[left_leg - 1] ?? 0];

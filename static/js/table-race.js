@@ -13,13 +13,16 @@ import { agentTitle, gaitTitle, robotTitle, simulatorTitle } from "./titles.js";
 
 /** @import { DamagedRun, LaneConfig, Run } from "./types.js" */
 
+/** @type {(run: Run) => number} */
+const legsOf = ({ config }) => numberOfLegs(config.robot, served().robots);
+
 /**
  * Settings that the tables of a race must share: [name, the value, it in words].
  * @type {[string, (run: Run) => unknown, (run: Run) => string][]}
  */
 const SHARED = [
   ["gait", ({ config }) => config.gait, ({ config }) => gaitTitle(config.gait)],
-  ["number of legs", ({ config }) => numberOfLegs(config.robot), ({ config }) => String(numberOfLegs(config.robot))],
+  ["number of legs", legsOf, (run) => String(legsOf(run))],
   ["divisions of the foot grid", ({ config }) => config.divisions, ({ config }) => String(config.divisions)],
   ["side of the foot grid", ({ config }) => config.grid_side_m, ({ config }) => `${config.grid_side_m} m`],
 ];

@@ -58,3 +58,8 @@ def test_what_tips_is_offered_other_groups_and_legs_are_moved_between_them(
     expect(known).to_contain_text("125 states, 12 moves")
     page.reload()
     expect(page.get_by_text("Groups 1+3, 2, 4")).to_be_visible()
+
+    world = dashboard.open_tab("World")
+    world.get_by_label("Add a disturbance").select_option("Two limp legs")
+    limp = world.get_by_role("group", name="Limp legs")
+    expect(limp.get_by_role("button", name=re.compile(r"^Leg \d"))).to_have_count(4)

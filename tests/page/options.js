@@ -119,10 +119,11 @@ export const OPTIONS = {
   robots: [
     {
       ...described("stiff", "Stiff"), robot: { preset: "stiff" }, gait: "tripod", gaits: ["tripod", "wave"],
-      n_legs: 6, built: { friction: 1 },
+      azimuths_deg: [0, 60, 120, 180, 240, 300], built: { friction: 1 },
     },
     {
-      ...described("dog", "Dog"), robot: { preset: "dog" }, gaits: ["wave"], n_legs: 4, built: { friction: 1 },
+      ...described("dog", "Dog"), robot: { preset: "dog" }, gaits: ["wave"],
+      azimuths_deg: [-60, 60, 120, -120], built: { friction: 1 },
       gait: { right_leg: 1, left_leg: 2, groups: [[1, 3], [2, 4]] },
     },
   ],

@@ -183,10 +183,12 @@ test("a field of a text is changed in its place", () => {
 });
 
 test("legs are drawn from forward, of any robot", () => {
-  const { gaits } = OPTIONS;
-  const named = { ...gaits[0], azimuths_deg: [-30, 30, 90, 150, -150, -90] };
-  assert.deepEqual(azimuthsOf("stiff", "tripod", [named]), [-30, 30, 90, 150, 210, 270]);
-  assert.deepEqual(azimuthsOf({ n_legs: 4 }, { right_leg: 1, left_leg: 2 }, gaits), [-45, 45, 135, 225]);
+  const named = { ...OPTIONS.gaits[0], azimuths_deg: [-30, 30, 90, 150, -150, -90] };
+  assert.deepEqual(azimuthsOf("stiff", "tripod", { ...OPTIONS, gaits: [named] }), [-30, 30, 90, 150, 210, 270]);
+  assert.deepEqual(azimuthsOf({ n_legs: 4 }, { right_leg: 1, left_leg: 2 }, OPTIONS), [-45, 45, 135, 225]);
   const legs = [{ azimuth_deg: 0, radius_m: 0.1 }, { azimuth_deg: 180, radius_m: 0.1 }];
-  assert.deepEqual(azimuthsOf({ legs }, { right_leg: 1, left_leg: 2 }, gaits), [-90, 90]);
+  assert.deepEqual(azimuthsOf({ legs }, { right_leg: 1, left_leg: 2 }, OPTIONS), [-90, 90]);
+  // Those of a creature by its name.
+  assert.deepEqual(azimuthsOf("dog", { right_leg: 1, left_leg: 2 }, OPTIONS), [-60, 60, 120, -120]);
+  assert.equal(azimuthsOf({ preset: "dog" }, "tripod", { ...OPTIONS, gaits: [named] }).length, 4);
 });

@@ -3,6 +3,7 @@
 import os
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -180,13 +181,12 @@ def test_only_computing_is_charged(what_if: WhatIf) -> None:
     assert len(charged) == 1
 
 
-def test_processes_that_start_are_not_charged() -> None:
+def test_waiting_is_not_charged(what_if: WhatIf) -> None:
     charged: list[float] = []
-    cold = ProcessPool(count=1)
-    answer = WhatIf(cold).ask(SHORT, Asker(is_operator=False, charge=charged.append))
-    cold.close()
-    # It first starts Python and imports the simulator, which takes longer than this anywhere.
-    assert answer["compute_s"] - charged[0] > 0.1
+    slow = Asker(is_operator=False, check=lambda: time.sleep(2), charge=charged.append)
+    answer = what_if.ask(changed({"alpha": 0.435}), slow)
+    # As on a machine that does something else: the trials take a fraction of a second.
+    assert charged[0] < 2 < answer["compute_s"]
 
 
 def test_nothing_is_computed_for_who_has_left(what_if: WhatIf, pool: ProcessPool) -> None:

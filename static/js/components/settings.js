@@ -217,7 +217,7 @@ const FEW_GAITS = 5;
 
 const chosenRobot = () => served().robots.find(({ name }) => name === form.value.robot);
 /** Gaits are drawn with six legs. */
-const isDrawn = () => (chosenRobot()?.n_legs ?? numberOfLegs(form.value.robot)) === HEXAPOD_LEGS;
+const isDrawn = () => numberOfLegs(form.value.robot, served().robots) === HEXAPOD_LEGS;
 const HEXAPOD_LEGS = 6;
 
 /** The gaits that the robot's legs can have. A robot of one's own may have any: the server tells if not. */

@@ -282,7 +282,7 @@ function WorldControls({ id, config, conditions, onDisturb, sentenceOf, children
   const now = conditionsInWords(conditions);
   return html`
     <div class="break">
-      <${LegPicker} azimuths=${azimuthsOf(robot, gait, served().gaits)} states=${legStates(conditions)}
+      <${LegPicker} azimuths=${azimuthsOf(robot, gait, served())} states=${legStates(conditions)}
         isDisabled=${Boolean(reason)} describedBy=${`${id}-words`}
         onLeg=${(/** @type {number} */ leg) => onDisturb(meant(leg))}
         verbOf=${(/** @type {number} */ leg) => (meant(leg).kind === "repair" ? "Repair" : "Break")} />

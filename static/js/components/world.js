@@ -143,7 +143,7 @@ function DisturbanceRow({ text, number, onText, onRemove }) {
       ${kind && html`
         <div class="disturbance-fields">
           ${kind.fields.legs && html`
-            <${LegPicker} azimuths=${azimuthsOf(robot, gait, served().gaits)} onLeg=${toggle}
+            <${LegPicker} azimuths=${azimuthsOf(robot, gait, served())} onLeg=${toggle}
               states=${new Map(legs.map((leg) => [leg, words]))}
               verbOf=${(/** @type {number} */ leg) => (legs.includes(leg) ? "Leave out" : "Add")} />
           `}
