@@ -136,10 +136,7 @@ def test_a_race_goes_on_from_its_middle(dashboard: Dashboard, shared_server: Ser
     dashboard = Dashboard(with_3d.page.context.new_page(), has_3d=False)
     page = dashboard.page
     dashboard.open(shared_server.link(lanes="greedy,informed", depth="study", tab="board"))
-    with page.expect_response(lambda answer: answer.request.method == "POST") as started:
-        dashboard.primary.click()
-    assert started.value.status == 202
-    show_its_end(dashboard)
+    race_to_its_end(dashboard)
     board = dashboard.scoreboard
     expect(board.get_by_role("row", name=re.compile(r"Best known 0\.51\sm$"))).to_be_visible()
     chart = page.get_by_role("img", name=re.compile(r"^The race after"))
@@ -231,6 +228,14 @@ def picks_a_leg(dashboard: Dashboard) -> None:
     # The same foot, by the pointer.
     page.mouse.click(place["x"] + place["width"] / 2, place["y"] + place["height"] / 2)
     expect(menu).to_contain_text(re.compile(r"Acts from \d+\.\d\ss, as a new race"))
+
+
+def race_to_its_end(dashboard: Dashboard) -> None:
+    """Start a race, wait until it is simulated, and skip its show."""
+    with dashboard.page.expect_response(lambda one: one.request.method == "POST") as started:
+        dashboard.primary.click()
+    assert started.value.status == 202
+    show_its_end(dashboard)
 
 
 def show_its_end(dashboard: Dashboard) -> None:
