@@ -424,4 +424,6 @@ def test_an_attempt_to_connect_is_not_given_up_for_the_next_one(
     }"""
     with new_page(flat_browser) as page:
         page.goto(served.page)
-        assert page.evaluate(script) == ["set_server", "retry"]
+        # The page itself may say meanwhile which stage it follows.
+        attempts = [one for one in page.evaluate(script) if one != "send"]
+        assert attempts == ["set_server", "retry"]
