@@ -14,9 +14,11 @@ import { rates, runs, setEntry } from "./store.js";
 const TUNE_MS = 120;
 /** Changes that are not yet sent. @type {Rates | null} */
 let unsent = null;
+/** The newest request: two on their way at once could overtake each other, and an older value would stay. */
+let lastTuned = Promise.resolve();
 
 /**
- * Change settings of the live training from its next step on; requests are sent at most every 120 ms.
+ * Change settings of the live training from its next step on; requests are sent one by one, at most every 120 ms.
  * @param {Rates} changes
  */
 export function tune(changes) {
@@ -28,14 +30,17 @@ export function tune(changes) {
     return;
   }
   unsent = { ...changes };
-  setTimeout(() => {
+  lastTuned = lastTuned.then(async () => {
+    await new Promise((resolve) => {
+      setTimeout(resolve, TUNE_MS);
+    });
     const sent = unsent ?? {};
     unsent = null;
-    api.tuneTraining(run.id, sent).then(
+    await api.tuneTraining(run.id, sent).then(
       () => setEntry(problems, "tune", null),
       (error) => refuseTuning(run, sent, error),
     );
-  }, TUNE_MS);
+  });
 }
 
 /** @type {(run: Run, sent: Rates, error: RequestError) => void} */
