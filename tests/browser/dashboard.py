@@ -9,6 +9,8 @@ from typing import Any
 from playwright.sync_api import ConsoleMessage, FloatRect, FrameLocator, Locator, Page, expect
 
 PATIENCE_MS = 60_000
+_RULES_OF_COLORS = ("color-contrast", "link-in-text-block")
+"""Those of axe's rules for which another theme is another page."""
 """A race in software WebGL beside the browser that shows it, on two cores, takes its time."""
 
 expect.set_options(timeout=PATIENCE_MS)
@@ -260,8 +262,8 @@ class Dashboard:
         width: int = self.page.evaluate("document.documentElement.scrollWidth")
         return width
 
-    def violations(self, only: str | None = None) -> list[str]:
-        """Return axe's violations on the page, of one rule if named.
+    def violations(self, *only: str) -> list[str]:
+        """Return axe's violations on the page, of these rules if any are named.
 
         viser's own page in the frame is left out.
         """
@@ -269,7 +271,7 @@ class Dashboard:
             self.page.evaluate(_AXE.read_text("utf-8"))
         self.page.evaluate(_TRANSITIONS_HAVE_ENDED)
         # All rules are tried; only those that are kept get no list of where they are.
-        rules = {} if only is None else {"runOnly": [only]}
+        rules = {"runOnly": list(only)} if only else {}
         options = {"iframes": False, "resultTypes": ["violations"], **rules}
         found = self.page.evaluate("options => axe.run(document, options)", options)
         return [f"{v['id']}: {n['html']}" for v in found["violations"] for n in v["nodes"]]
@@ -279,7 +281,7 @@ class Dashboard:
         self.page.emulate_media(color_scheme="light")
         found = self.violations()
         self.page.emulate_media(color_scheme="dark")
-        return found + [f"dark: {one}" for one in self.violations("color-contrast")]
+        return found + [f"dark: {one}" for one in self.violations(*_RULES_OF_COLORS)]
 
     def small_targets(self, least_px: int) -> list[str]:
         """Return the controls that are smaller than they may be, in all that can be unfolded."""

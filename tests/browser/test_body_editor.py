@@ -1,7 +1,7 @@
 """The editor of the robot's body: by pointer, keys and fields, on a desk and on a phone."""
 
 import re
-from typing import Any, Literal
+from typing import Any
 from urllib.parse import parse_qs, urlencode, urlsplit
 
 import pytest
@@ -16,7 +16,6 @@ pytestmark = pytest.mark.timeout(300)
 SHORT = {"steps": 6, "evaluate_every": 0, "simulator": "kinematic"}
 NARROW: ViewportSize = {"width": 360, "height": 780}
 THUMB_PX = 40
-THEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 
 
 def opened(dashboard: Dashboard) -> Locator:
@@ -97,9 +96,7 @@ def is_told_and_accessible(dashboard: Dashboard, editor: Locator) -> None:
         "Leg 1 of group 1: 0.06 m right, 0.11 m ahead, points to 20°"
     )
     expect(known(editor)).to_contain_text("4 legs: 25 states, 8 moves · stands by 0 mm")
-    for theme in THEMES:
-        dashboard.page.emulate_media(color_scheme=theme)
-        assert dashboard.violations() == []
+    assert dashboard.violations_in_both_themes() == []
 
 
 def move_legs(page: Page, editor: Locator) -> float:

@@ -18,7 +18,7 @@ from tests.promises.length import at_length
 from tests.served import BODY, Served
 from tests.storage.stores import opened
 
-KILLS = at_length(1, 50)
+KILLS = at_length(2, 50)
 LOST_S = 5.0
 
 

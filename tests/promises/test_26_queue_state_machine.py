@@ -37,7 +37,7 @@ from tests.served import BODY, ENDLESS, Served
 from tests.storage.stores import opened
 from tests.timeouts import LONG_S
 
-VERBS = at_length(150, 100_000)
+VERBS = at_length(250, 100_000)
 RUNS = 10
 STARTS = at_length(0.02, 0.2)
 """Share of starts, each of which takes a process."""

@@ -27,7 +27,7 @@ from tests.served import BODY, Served
 from tests.storage.stores import opened
 from tests.timeouts import LONG_S
 
-MOMENTS = at_length(2, 20)
+MOMENTS = at_length(3, 20)
 LONGEST_S = at_length(1.0, 60.0)
 PACED = {**BODY, "steps": 300, "pace": 20, "evaluate_every": 50, "seed": 30}
 FAILED_S = at_length(LONG_S, 5.0)

@@ -21,7 +21,7 @@ from tests.browser.serving import Serving
 from tests.promises.length import at_length
 from tests.timeouts import LONG_S
 
-SEQUENCES = at_length(2, 200)
+SEQUENCES = at_length(3, 200)
 EVENTS = at_length(5, 6)
 WEIGHTS = {"race": 4, "train": 2, "stop": 4, "show": 3, "end": 3, "delete": 1, "kill": 1}
 BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
