@@ -30,10 +30,10 @@ export function tune(changes) {
     return;
   }
   unsent = { ...changes };
-  lastTuned = lastTuned.then(async () => {
-    await new Promise((resolve) => {
-      setTimeout(resolve, TUNE_MS);
-    });
+  const others = new Promise((resolve) => {
+    setTimeout(resolve, TUNE_MS);
+  });
+  lastTuned = Promise.all([lastTuned, others]).then(async () => {
     const sent = unsent ?? {};
     unsent = null;
     await api.tuneTraining(run.id, sent).then(

@@ -120,3 +120,25 @@ test("a change that reaches a training after its end is refused in words, with w
   practiseAtPaceOfPicture();
   assert.deepEqual([form.value.pace, problems.value.tune], [4, null]);
 });
+
+test("a change of a training waits for the answer to the one before, which it could overtake", async (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const run = makeRun({ id: "a", state: "running", progress: { done: 312, total: 500 } });
+  applyEvent("snapshot", { role: "operator", runs: [run], stage: STAGE, scene: SCENE });
+  const passes = async () => {
+    context.mock.timers.tick(1000);
+    for (let n = 0; n < 20; n += 1) await setImmediate();
+  };
+  tune({ alpha: 0.5 });
+  await passes();
+  tune({ alpha: 0.6 });
+  tune({ alpha: 0.7 });
+  await passes();
+  assert.equal(sent.length, 1);
+  answers.shift()?.(run);
+  await passes();
+  assert.equal(sent.length, 2);
+  assert.match(JSON.stringify(sent), /0\.5.*0\.7/);
+  answers.shift()?.(run);
+  await passes();
+});
