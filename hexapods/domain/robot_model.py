@@ -1,0 +1,231 @@
+"""The model of a robot that was read from a file: its links, joints and feet, in plain numbers.
+
+The body frame is that of every robot here: x right, y forward, z up, its origin at the torso's
+centre. Links are a tree below the torso, whose joints are only those of legs: what else could move
+in the file, such as an arm or a wheel, was fixed when it was read. Nothing here is text that
+another program parses, so that a model from a stranger's archive is as harmless as its numbers.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from hexapods.domain.body import MAX_LEGS, MIN_LEGS
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.records import Record
+
+GeomKind = Literal["sphere", "capsule", "cylinder", "ellipsoid", "box"]
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+MIN_JOINTS, MAX_JOINTS = 2, 6
+"""Joints of a leg."""
+MAX_LINKS = 200
+MAX_GEOMS = 1000
+"""Of all links together."""
+MAX_TRIANGLES = 60_000
+"""Of all meshes together."""
+_UNIT = 1e-6
+"""How far the length of an axis or a quaternion may be from 1."""
+
+
+@dataclass(frozen=True)
+class ModelGeom(Record):
+    """A simple shape on a link, which touches the ground.
+
+    Attributes:
+        kind: as MuJoCo calls it.
+        size_m: as in MuJoCo: a radius; a radius and half a length along z; or half sides. What
+            the kind does not need is 0.
+        at_m: its centre in the frame of its link.
+        wxyz: its rotation in the frame of its link.
+    """
+
+    kind: GeomKind
+    size_m: Vector
+    at_m: Vector
+    wxyz: Quaternion
+
+
+@dataclass(frozen=True)
+class ModelMesh(Record):
+    """What is drawn of a link.
+
+    Attributes:
+        vertices: coordinates in the frame of the link [m], float32, little-endian, (n, 3), in
+            base64.
+        faces: the vertices of each triangle, uint32, little-endian, (m, 3), in base64.
+        triangles: m.
+    """
+
+    vertices: str
+    faces: str
+    triangles: int
+
+
+@dataclass(frozen=True)
+class ModelJoint(Record):
+    """A hinge by which a link turns against its parent, and the servo that turns it.
+
+    Attributes:
+        name: no other joint of its leg has it; the links of all legs have names of one kind, such
+            as `hip` or `knee`, where the file has.
+        axis: unit vector in the frame of the link.
+        anchor_m: a point of the axis in the frame of the link.
+        limits_rad: lowest and highest angle.
+        home_rad: the angle with which the robot stands.
+        servo_kp: position gain [N·m/rad].
+        servo_kv: velocity gain [N·m·s/rad].
+        servo_torque_nm: the largest torque.
+        armature: rotor inertia reflected to the joint [kg·m²].
+        damping: [N·m·s/rad].
+    """
+
+    name: str
+    axis: Vector
+    anchor_m: Vector
+    limits_rad: tuple[float, float]
+    home_rad: float
+    servo_kp: float
+    servo_kv: float
+    servo_torque_nm: float
+    armature: float
+    damping: float
+
+
+@dataclass(frozen=True)
+class ModelLink(Record):
+    """A rigid body. With all joints at the angle 0 its frame is as `at_m` and `wxyz` say.
+
+    Attributes:
+        name: its name in the file, or a number.
+        parent: index of its parent among the links, which comes before it; −1 for the torso.
+        leg: number of its leg, from 1; 0 for the torso and what is fixed to it.
+        at_m: origin of its frame in that of its parent; of the torso (0, 0, 0).
+        wxyz: rotation of its frame against that of its parent.
+        mass_kg: its mass; at least 1e-6.
+        center_m: its centre of mass in its frame.
+        inertia: about the centre of mass along the axes of its frame [kg·m²]: xx, yy, zz, xy, xz,
+            yz.
+        joint: by which it turns; None if it is fixed to its parent.
+        geoms: what touches the ground.
+        mesh: what is drawn; None to draw its geoms.
+    """
+
+    name: str
+    parent: int
+    leg: int
+    at_m: Vector
+    wxyz: Quaternion
+    mass_kg: float
+    center_m: Vector
+    inertia: tuple[float, float, float, float, float, float]
+    joint: ModelJoint | None = None
+    geoms: tuple[ModelGeom, ...] = ()
+    mesh: ModelMesh | None = None
+
+
+@dataclass(frozen=True)
+class ModelFoot(Record):
+    """The foot of a leg: a sphere.
+
+    Attributes:
+        link: index of the link that has it.
+        at_m: its centre in the frame of the link.
+        radius_m: its radius.
+    """
+
+    link: int
+    at_m: Vector
+    radius_m: float
+
+
+@dataclass(frozen=True)
+class RobotModel(Record):
+    """A robot from a file.
+
+    Legs are numbered anticlockwise from the front right one, seen from above, as everywhere; the
+    links of a leg are in a row, from the torso outward.
+
+    Attributes:
+        links: the torso, then leg by leg.
+        feet: leg by leg.
+
+    Raises:
+        InvalidInput: if they are not a robot with 3 to 12 legs of 2 to 6 joints each.
+    """
+
+    links: tuple[ModelLink, ...]
+    feet: tuple[ModelFoot, ...]
+
+    def __post_init__(self) -> None:
+        for problem in self._problems():
+            raise InvalidInput(f"the model of the robot is damaged: {problem}")
+
+    def joints_of(self, leg: int) -> list[ModelJoint]:
+        """Return the joints of a leg, counted from 1, from the torso to the foot."""
+        return [link.joint for link in self.links if link.leg == leg and link.joint is not None]
+
+    def _problems(self) -> Iterator[str]:
+        legs = len(self.feet)
+        if not 0 < len(self.links) <= MAX_LINKS:
+            yield f"it must have 1 to {MAX_LINKS} links, not {len(self.links)}"
+        if not MIN_LEGS <= legs <= MAX_LEGS:
+            yield f"it must have {MIN_LEGS} to {MAX_LEGS} legs, not {legs}"
+        if sum(len(link.geoms) for link in self.links) > MAX_GEOMS:
+            yield f"it must have at most {MAX_GEOMS} geoms"
+        if sum(link.mesh.triangles for link in self.links if link.mesh) > MAX_TRIANGLES:
+            yield f"its meshes must have at most {MAX_TRIANGLES} triangles"
+        for number, link in enumerate(self.links):
+            for problem in self._problems_of(number, link, legs):
+                yield f"link {number} ({link.name}) {problem}"
+        if [link.leg for link in self.links] != sorted(link.leg for link in self.links):
+            yield "its links must be leg by leg, after the torso"
+        for leg, foot in enumerate(self.feet, start=1):
+            if not (0 < foot.link < len(self.links) and self.links[foot.link].leg == leg):
+                yield f"the foot of leg {leg} is on no link of it"
+            if not (_are_finite(foot.at_m) and 0.001 <= foot.radius_m <= 2):
+                yield f"the foot of leg {leg} must have a radius of 0.001 to 2 m"
+            names = [joint.name for joint in self.joints_of(leg)]
+            if not MIN_JOINTS <= len(names) <= MAX_JOINTS or len(set(names)) < len(names):
+                yield f"leg {leg} must have {MIN_JOINTS} to {MAX_JOINTS} joints with own names"
+
+    def _problems_of(self, number: int, link: ModelLink, legs: int) -> Iterator[str]:
+        if not (-1 if number == 0 else 0) <= link.parent < number:
+            yield "has no parent before it"
+        elif number == 0 and (link.joint or link.leg):
+            yield "must be the torso, without a joint"
+        elif number and self.links[link.parent].leg not in (0, link.leg):
+            yield "has a parent in another leg"
+        if not 0 <= link.leg <= legs or (link.joint is not None and link.leg == 0):
+            yield "is of no leg"
+        if not (1e-6 <= link.mass_kg <= 1000 and _are_finite((*link.center_m, *link.inertia))):
+            yield "must have a mass of 1e-6 to 1000 kg"
+        if not (_are_finite(link.at_m) and _is_unit(link.wxyz)):
+            yield "has no place"
+        if link.joint is not None:
+            yield from _problems_of_joint(link.joint)
+        for geom in link.geoms:
+            if not (_are_finite((*geom.at_m, *geom.size_m)) and _is_unit(geom.wxyz)):
+                yield "has a geom without a place"
+            if min(geom.size_m) < 0 or not 0 < max(geom.size_m) <= 10:
+                yield "has a geom without a size, or larger than 10 m"
+
+
+def _problems_of_joint(joint: ModelJoint) -> Iterator[str]:
+    low, high = joint.limits_rad
+    if not (-7 <= low < high <= 7 and low <= joint.home_rad <= high):
+        yield f"has a joint {joint.name} that is not at home within its limits"
+    if not (_is_unit(joint.axis) and _are_finite(joint.anchor_m)):
+        yield f"has a joint {joint.name} without an axis"
+    numbers = joint.servo_kp, joint.servo_kv, joint.servo_torque_nm, joint.armature
+    if not (_are_finite((*numbers, joint.damping)) and min(numbers) > 0 <= joint.damping):
+        yield f"has a joint {joint.name} whose servo has no strength"
+
+
+def _are_finite(numbers: tuple[float, ...]) -> bool:
+    return all(math.isfinite(one) and abs(one) <= 1e6 for one in numbers)
+
+
+def _is_unit(numbers: tuple[float, ...]) -> bool:
+    return _are_finite(numbers) and abs(math.hypot(*numbers) - 1) <= _UNIT
