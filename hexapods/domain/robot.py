@@ -121,8 +121,11 @@ def as_mapping(value: Robot) -> dict[str, Any]:
 
 
 def _differing(value: Robot, from_base: Robot) -> dict[str, Any]:
-    base, own = asdict(from_base), asdict(value)
-    differs = {k: v for k, v in own.items() if k not in ("name", "id") and v != base[k]}
+    differs = {
+        one.name: getattr(value, one.name)
+        for one in fields(value)
+        if one.compare and getattr(value, one.name) != getattr(from_base, one.name)
+    }
     if "legs" in differs:
         differs["legs"] = [_leg_as_mapping(leg) for leg in value.legs]
     return differs
@@ -146,13 +149,14 @@ def read_document(data: bytes, name: str | None = None) -> Robot:
         DamagedFile: if it is none.
         InvalidInput: if its robot is not valid.
     """
-    made = _of_document(data)
+    made = parse_document(data)
     robot_documents.add(data)
     return replace(made, name=_name_of(robot_documents.id_of(data), name))
 
 
-@lru_cache(maxsize=64)
-def _of_document(data: bytes) -> Robot:
+@lru_cache(maxsize=32)
+def parse_document(data: bytes) -> Robot:
+    """Return the robot of a document, without a name; errors as of `read_document`."""
     content = robot_documents.decode(data)
     given = content.pop("robot", None)
     if content or not isinstance(given, dict) or not {*given} <= {*RANGES, "legs"}:
@@ -175,7 +179,7 @@ def _stored(given: dict[str, Any]) -> Robot:
 
 
 def _by_id(robot_id: str, name: str | None) -> Robot:
-    made = _of_document(robot_documents.find(robot_id, name))
+    made = parse_document(robot_documents.find(robot_id, name))
     return replace(made, name=_name_of(robot_id, name))
 
 

@@ -26,6 +26,9 @@ _lock = threading.RLock()
 _added: dict[str, bytes] = {}
 _about: dict[str, "About"] = {}
 _folders: list[Path] = []
+_read: dict[str, bytes] = {}
+"""Documents from folders, the last ones that were read."""
+_MAX_READ = 16
 
 
 class About(NamedTuple):
@@ -112,15 +115,20 @@ def forget(robot_ids: Collection[str]) -> None:
     """Drop documents from memory, and what is known beside them."""
     with _lock:
         for robot_id in list(robot_ids):
-            _added.pop(robot_id, None)
-            _about.pop(robot_id, None)
+            for kept in (_added, _read, _about):
+                kept.pop(robot_id, None)
 
 
 def use_folder(folder: Path) -> None:
     """Read documents from this folder, and from the folders in it, when they are asked for."""
     with _lock:
-        if folder not in _folders:
-            _folders.append(folder)
+        _folders.append(folder)
+
+
+def leave_folder(folder: Path) -> None:
+    """Read documents from this folder no longer; to be called once for each `use_folder`."""
+    with _lock:
+        _folders.remove(folder)
 
 
 def tell(robot_id: str, about: About) -> None:
@@ -137,7 +145,7 @@ def about(robot_id: str) -> About | None:
 def known() -> Known:
     """Return what another process needs to find the documents that this one finds in folders."""
     with _lock:
-        return Known(tuple(_folders), dict(_about))
+        return Known(tuple(dict.fromkeys(_folders)), dict(_about))
 
 
 def learn(what: Known) -> None:
@@ -159,19 +167,28 @@ def find(robot_id: str, name: str | None = None) -> bytes:
         InvalidInput: if it is not stored here.
         DamagedFile: if it is not what was stored.
     """
-    if (data := _added.get(robot_id)) is not None:
+    if (data := _added.get(robot_id) or _read.get(robot_id)) is not None:
         return data
+    for path in _paths(robot_id):
+        try:
+            data = path.read_bytes()
+        except OSError:  # it is not there, or not any more
+            continue
+        if id_of(data) != robot_id:
+            raise DamagedFile(f"the file of robot {robot_id} is damaged")
+        with _lock:
+            if len(_read) >= _MAX_READ:
+                _read.pop(next(iter(_read)))
+            _read[robot_id] = data
+        return data
+    raise InvalidInput(_not_here(robot_id, name))
+
+
+def _paths(robot_id: str) -> Iterator[Path]:
     if is_id(robot_id):
         for folder in tuple(_folders):
-            for path in (folder / f"{robot_id}{ENDING}", *folder.glob(f"*/{robot_id}{ENDING}")):
-                try:
-                    data = path.read_bytes()
-                except OSError:  # it is not there, or not any more
-                    continue
-                if id_of(data) != robot_id:
-                    raise DamagedFile(f"the file of robot {robot_id} is damaged")
-                return data
-    raise InvalidInput(_not_here(robot_id, name))
+            yield folder / f"{robot_id}{ENDING}"
+            yield from folder.glob(f"*/{robot_id}{ENDING}")
 
 
 def _not_here(robot_id: str, name: str | None) -> str:

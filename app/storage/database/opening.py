@@ -69,9 +69,8 @@ def open_store(
                     ArtifactFiles(files, disk_space),
                     Robots(database, robots, disk_space),
                 )
-                store.robots.open()
                 _recover(store)
-                with ownership.watched():
+                with store.robots.known(), ownership.watched():
                     yield store
 
 

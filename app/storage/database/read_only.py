@@ -38,7 +38,7 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         disk_space, name = DiskSpace(settings.data), database_id or "none"
         files = ArtifactFiles(settings.data / ARTIFACTS_FOLDER / name, disk_space)
         robots = Robots(database, settings.data / ROBOTS_FOLDER / name, disk_space)
-        robots.open()
+        stack.enter_context(robots.known())
         yield RunStore(database, files, robots)
 
 

@@ -48,11 +48,18 @@ class Robots:
         self._database, self._folder, self._disk_space = database, folder, disk_space
         # Of changes: a robot must not be deleted between its document's writing and its row's.
         self.lock = threading.RLock()
+        self._told: set[str] = set()
 
-    def open(self) -> None:
-        """Let this process find the robots by their ids and know their names."""
+    @contextmanager
+    def known(self) -> Iterator[None]:
+        """Let this process find the robots by their ids, and know their names."""
         robot_documents.use_folder(self._folder)
-        _tell(self.stored(hidden=True))
+        try:
+            self._tell(self.stored(hidden=True))
+            yield
+        finally:
+            robot_documents.leave_folder(self._folder)
+            robot_documents.forget(self._told)
 
     def stored(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
         """Return the robots in the order in which they were stored.
@@ -153,7 +160,7 @@ class Robots:
                 for robot_id in new:
                     self._remove_files(robot_id)
                 raise
-            _tell(robot for robot, _ in new.values())
+            self._tell(robot for robot, _ in new.values())
 
     def _write_files(self, robot_id: str, document: bytes, upload: bytes | None = None) -> None:
         files = {ENDING: document} | ({} if upload is None else {UPLOAD_ENDING: upload})
@@ -211,7 +218,7 @@ class Robots:
             values = {name: value for name, value in _encode(changed).items() if name in fields}
             statement = update(ROBOTS).where(ROBOTS.c.id == robot_id).values(values)
             self._database.write(lambda connection: connection.execute(statement))
-            _tell([changed])
+            self._tell([changed])
             return changed
 
     def delete(self, robot_id: str) -> None:
@@ -256,6 +263,12 @@ class Robots:
                 path.unlink()
         return len(orphans)
 
+    def _tell(self, robots: Iterable[StoredRobot]) -> None:
+        for robot in robots:
+            robot.tell()
+            self._told.add(robot.id)
+        forget_configs()  # which have their names
+
     def _names(self, robot_id: str | None = None) -> list[str]:
         """Return the names of all robots, or of all others."""
         return [one.name for one in self.stored(hidden=True) if one.id != robot_id]
@@ -264,12 +277,6 @@ class Robots:
         if not robot_documents.is_id(robot_id):
             raise NotFound(f"there is no robot {robot_id!r}")
         return self._folder / f"{robot_id}{ending}"
-
-
-def _tell(robots: Iterable[StoredRobot]) -> None:
-    for robot in robots:
-        robot.tell()
-    forget_configs()  # which have their names
 
 
 def _name_taken(name: str) -> Conflict:

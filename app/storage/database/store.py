@@ -112,12 +112,11 @@ class RunStore:
         """
         if not runs:
             return
-        rows = [encode_run(run) for run in runs]
 
         def work(connection: Connection) -> None:
             for run in runs:
                 self.robots.check(connection, robots_of(run.config))
-            connection.execute(insert(RUNS), rows)
+            connection.execute(insert(RUNS), [encode_run(run) for run in runs])
             self.keys.insert(connection, key, [runs[-1].id])
 
         self.database.write(work)
