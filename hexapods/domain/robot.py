@@ -64,6 +64,8 @@ LEG_RANGES: dict[str, tuple[float, float]] = {
     "foot_out_m": (0.001, 5.0),
     **{name: RANGES[name] for name in _OWN},
 }
+_BOX = {"torso_length_m", "torso_width_m"}
+"""Fields that a robot with a round torso does not have."""
 _MODIFIED = " (modified)"
 _PLACE = ("x_m", "y_m")
 """Fields of a leg in a request that may stand for its azimuth and radius."""
@@ -159,8 +161,9 @@ def parse_document(data: bytes) -> Robot:
     """Return the robot of a document, without a name; errors as of `read_document`."""
     content = robot_documents.decode(data)
     given = content.pop("robot", None)
-    if content or not isinstance(given, dict) or not {*given} <= {*RANGES, "legs"}:
-        raise DamagedFile("the document of a robot is damaged: it does not hold a robot")
+    # All of it, so that no other document holds the same robot.
+    if content or not isinstance(given, dict) or {*given} | _BOX != {*RANGES, "legs"}:
+        raise DamagedFile("the document of a robot is damaged: it must have its legs and numbers")
     return replace(_changed(Robot(), given), id=robot_documents.id_of(data))
 
 

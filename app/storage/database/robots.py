@@ -1,5 +1,6 @@
 """Stored robots: rows of the `robots` table, and documents and uploads in files beside it."""
 
+import itertools
 import logging
 import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -27,6 +28,7 @@ from hexapods.files import is_disk_full, write_atomically
 ROBOTS_FOLDER = "robots"
 UPLOAD_ENDING = ".upload"
 """Of the files that robots were read from."""
+_versions = itertools.count()
 _logger = logging.getLogger(__name__)
 
 
@@ -35,6 +37,9 @@ class Robots:
 
     A document is written before its row, and deleted after it: a crash leaves at most a file
     without a row, which the next start deletes.
+
+    Attributes:
+        version: of the list of robots; another one after each change.
     """
 
     def __init__(self, database: Database, folder: Path, disk_space: DiskSpace) -> None:
@@ -49,6 +54,7 @@ class Robots:
         # Of changes: a robot must not be deleted between its document's writing and its row's.
         self.lock = threading.RLock()
         self._told: set[str] = set()
+        self.version = next(_versions)
 
     @contextmanager
     def known(self) -> Iterator[None]:
@@ -71,6 +77,18 @@ class Robots:
         rows = self._database.read(lambda connection: fetch_rows(connection, query))
         robots = filter(None, map(_decode, rows))
         return [one for one in robots if hidden or not one.hidden]
+
+    def readable(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
+        """Return those of `stored` whose documents can be read; others are logged."""
+        found = []
+        for one in self.stored(hidden=hidden):
+            try:
+                one.robot  # noqa: B018 - reads the document
+            except HexapodError as error:
+                _logger.warning("robot %s (%s) is left out: %s", one.id, one.name, error)
+            else:
+                found.append(one)
+        return found
 
     def get(self, robot_id: str) -> StoredRobot:
         """Return a stored robot.
@@ -244,6 +262,7 @@ class Robots:
             self._database.write(work)
             self._remove_files(robot_id)
             robot_documents.forget([robot_id])
+            self._changed()
 
     def delete_orphans(self) -> int:
         """Delete files without a row, and unfinished ones; only safe before the first write.
@@ -267,7 +286,11 @@ class Robots:
         for robot in robots:
             robot.tell()
             self._told.add(robot.id)
-        forget_configs()  # which have their names
+        self._changed()
+
+    def _changed(self) -> None:
+        self.version = next(_versions)
+        forget_configs()  # which have the robots' names
 
     def _names(self, robot_id: str | None = None) -> list[str]:
         """Return the names of all robots, or of all others."""

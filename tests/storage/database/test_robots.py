@@ -79,7 +79,7 @@ def test_it_is_deleted_unless_a_run_uses_it(store: RunStore, tmp_path: Path) -> 
     rex, fido = add(store, body(), "Rex"), add(store, body(0.08), "Fido")
     run = training("a", rex.robot)
     store.create(run)
-    with pytest.raises(Conflict, match="a run uses Rex.*hide it instead"):
+    with pytest.raises(Conflict, match=r"a run uses Rex.*hide it instead"):
         store.robots.delete(rex.id)
     store.robots.delete(fido.id)
     with pytest.raises(NotFound):
