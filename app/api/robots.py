@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query
 from pydantic import ConfigDict, Field, create_model
+from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import JSONResponse, Response
 
 from app.api.contract import ATTACHMENT, LOCATION, answers
@@ -34,13 +35,16 @@ _OTHER = {"world", "simulator", "tolerance"}
 _PreviewBody: Any = create_model(
     "PreviewBody", __base__=Body, **record_fields(WalkingProblem, _OTHER)
 )
-RobotPath = Annotated[
-    str,
-    Path(
-        pattern=f"^[0-9a-f]{{{robot_documents.ID_DIGITS}}}$",
-        description="id of a stored robot",
-    ),
-]
+
+
+class _RobotId(StringConvertor):
+    """Matches ids in paths, and nothing that another route has in their place."""
+
+    regex = f"[0-9a-f]{{{robot_documents.ID_DIGITS}}}"
+
+
+register_url_convertor("robot", _RobotId())
+RobotPath = Annotated[str, Path(description="id of a stored robot")]
 
 
 class RobotBody(Body):
@@ -104,14 +108,14 @@ def list_robots(
     )
 
 
-@router.get("/{robot_id}", summary="Get a stored robot", response_model=WholeRobotView)
+@router.get("/{robot_id:robot}", summary="Get a stored robot", response_model=WholeRobotView)
 def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
     """Return a stored robot with all its numbers, and what is known of it before it walks."""
     return JSONResponse(whole_view(services.store.robots.get(robot_id)))
 
 
 @router.patch(
-    "/{robot_id}",
+    "/{robot_id:robot}",
     summary="Rename or hide a stored robot, or give it another gait",
     response_model=StoredRobotView,
 )
@@ -127,7 +131,9 @@ def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBo
     return JSONResponse(robot_view(changed))
 
 
-@router.delete("/{robot_id}", status_code=204, summary="Delete a stored robot", name="del_robot")
+@router.delete(
+    "/{robot_id:robot}", status_code=204, summary="Delete a stored robot", name="del_robot"
+)
 def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
     """Delete a robot that no run uses; one that runs use can be hidden."""
     services.store.robots.delete(robot_id)
@@ -135,7 +141,7 @@ def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
 
 
 @router.get(
-    "/{robot_id}/file",
+    "/{robot_id:robot}/file",
     summary="Download a stored robot",
     response_class=Response,
     responses=answers(200, {"application/json": {"type": "object"}}, headers=ATTACHMENT),

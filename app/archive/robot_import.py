@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 from app.storage.database.store import RunStore
@@ -9,8 +10,9 @@ from app.storage.stored_robot import StoredRobot, distinct_name
 from hexapods.domain import robot_documents
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.errors import DamagedFile, InvalidInput
-from hexapods.domain.gait import GaitSpec, read_gait
+from hexapods.domain.gait import GaitSpec, gait_spec, read_gait, resolve
 from hexapods.domain.robot import Robot, document_of, parse_document, robot
+from hexapods.domain.support import STANDS_M, Support
 from hexapods.domain.text import check_name
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import preview
@@ -18,6 +20,9 @@ from hexapods.runs.preview import preview
 MEMBERS = ("robot", "gait", "name")
 """Of the JSON by which a body is stored."""
 _UNNAMED = "Robot"
+_NAMED = ("tripod", "tetrapod", "trot")
+"""Gaits that are tried for a robot of which none is known, with their few groups."""
+_FALLBACK = "one-by-one"
 
 
 def import_robot(store: RunStore, data: bytes, name: str | None = None) -> tuple[StoredRobot, bool]:
@@ -46,7 +51,8 @@ def import_robot(store: RunStore, data: bytes, name: str | None = None) -> tuple
         made = robot(_member(content, "robot"))
         document = document_of(made)
         parse_document(document)  # which refuses numbers out of their limits
-    gait = read_gait(content["gait"]) if content.get("gait") is not None else own_gait(made)
+    given_gait = content.get("gait")
+    gait = suiting_gait(made) if given_gait is None else read_gait(given_gait)
     check_stands(made, gait)
     given = name if name is not None else content.get("name")
     about = StoredRobot(
@@ -55,6 +61,20 @@ def import_robot(store: RunStore, data: bytes, name: str | None = None) -> tuple
         gait=gait,
     )
     return store.robots.add(document, about)
+
+
+def suiting_gait(made: Robot) -> str | GaitSpec:
+    """Return its preset's gait, a named one with which it stands, or the fewest groups that do."""
+    if (own := own_gait(made)) != _FALLBACK:
+        return own
+    for name in _NAMED:
+        with suppress(InvalidInput):  # it does not divide these legs
+            gait = resolve(name, made.azimuths_deg)
+            if Support(made, gait).least_margin_m(gait.groups) >= STANDS_M:
+                return name
+    spec = gait_spec(_FALLBACK)
+    groups = Support(made, resolve(spec, made.azimuths_deg)).steadiest_groups()
+    return GaitSpec(spec.right_leg, spec.left_leg, groups=groups)
 
 
 def check_stands(made: Robot, gait: str | GaitSpec) -> None:

@@ -1,6 +1,7 @@
 """OpenAPI document: it describes every route and response, and real responses match it."""
 
 import asyncio
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -66,7 +67,7 @@ def resolved(described: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any
 
 def test_every_route_is_described(app: FastAPI, described: dict[str, Any]) -> None:
     routes = {
-        (method.lower(), context.path.replace(":path", ""))
+        (method.lower(), re.sub(":(path|robot)", "", context.path))
         for context in iter_route_contexts(app.routes)
         if context.path and context.path not in PAGES
         for method in set(context.methods or ()) - {"HEAD"}

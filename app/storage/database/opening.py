@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 
-from app.settings import Settings
+from app.settings import ROBOTS_FOLDER, Settings
 from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
-from app.storage.database.robots import ROBOTS_FOLDER, Robots
+from app.storage.database.robots import Robots
 from app.storage.database.sqlite_file import SUFFIXES, check_file, create_file
 from app.storage.database.store import RunStore
 from app.storage.disk_space import RESERVE_FILE, DiskSpace

@@ -9,12 +9,12 @@ from urllib.parse import quote
 from sqlalchemy import Connection, Engine, create_engine, event, select
 from sqlalchemy.pool import NullPool, StaticPool
 
-from app.settings import Settings
+from app.settings import ROBOTS_FOLDER, Settings
 from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import BUSY_S, Database, decode_leniently, postgresql_engine
 from app.storage.database.migration import check_current
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
-from app.storage.database.robots import ROBOTS_FOLDER, Robots
+from app.storage.database.robots import Robots
 from app.storage.database.schema import ABOUT, METADATA
 from app.storage.database.sqlite_file import check_file
 from app.storage.database.store import RunStore

@@ -25,7 +25,6 @@ from hexapods.domain.robot import Robot
 from hexapods.domain.robot_documents import ENDING
 from hexapods.files import is_disk_full, write_atomically
 
-ROBOTS_FOLDER = "robots"
 UPLOAD_ENDING = ".upload"
 """Of the files that robots were read from."""
 _versions = itertools.count()

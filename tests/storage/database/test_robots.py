@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.storage.database.robots import ROBOTS_FOLDER
+from app.settings import ROBOTS_FOLDER
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.run import Run
