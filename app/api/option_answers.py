@@ -34,6 +34,8 @@ class RobotOption(Described):
     Attributes:
         id: of a stored robot; null for one that is built in.
         hidden: whether it is left out where a robot is chosen.
+        body: of a stored robot: by value, for links that are opened where it is not stored; null
+            for one that is built in or from a file.
         joints: names of the joints of each leg, from the torso to the foot.
         azimuths_deg: directions of its legs in its own frame, anticlockwise.
         gait: a gait that suits it.
@@ -43,6 +45,7 @@ class RobotOption(Described):
 
     id: str | None
     hidden: bool
+    body: AnyRobot | None
     robot: AnyRobot
     joints: list[list[str]]
     azimuths_deg: list[float]

@@ -36,7 +36,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json, resolve
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot, as_mapping
+from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot, as_mapping, by_value
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS, counted
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
@@ -289,6 +289,7 @@ def _stored(stored: StoredRobot) -> dict[str, Any]:
         "description": f"{counted(len(made.legs), 'leg')}; {origin}.",
         **_robot(made, own_gait(made)),
         "hidden": stored.hidden,
+        "body": by_value(made),
     }
 
 
@@ -297,6 +298,7 @@ def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
     return {
         "id": made.id,
         "hidden": False,
+        "body": None,
         "robot": as_mapping(made),
         "joints": [
             [joint.name for joint in legs.of_leg(number)] for number in range(1, len(legs) + 1)

@@ -75,7 +75,7 @@ PLACED_RANGES = dict.fromkeys(_PLACE, _COORDINATE) | LEG_RANGES
 
 
 def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
-    """Build a robot from user input: a preset's name, or overrides of a preset or stored robot.
+    """Build a robot from user input: a preset's name, a stored robot's id, or overrides of either.
 
     A mapping may have `preset` (default `stiff`), or the `id` of a stored robot and its `name`,
     which is ignored where the robot has one; any number of `Robot`'s fields; and its legs either
@@ -89,7 +89,7 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
     if isinstance(value, Robot):
         return value
     if not isinstance(value, Mapping):
-        return _preset(value)
+        return _by_id(str(value), None) if robot_documents.is_id(value) else _preset(value)
     given = dict(value)
     if "id" in given:
         return _changed(_stored(given), given)
@@ -131,6 +131,12 @@ def _differing(value: Robot, from_base: Robot) -> dict[str, Any]:
     if "legs" in differs:
         differs["legs"] = [_leg_as_mapping(leg) for leg in value.legs]
     return differs
+
+
+def by_value(value: Robot) -> dict[str, Any]:
+    """Return a robot as overrides of a preset, whatever it was made from, fit for JSON."""
+    base = PRESETS["stiff"]
+    return {"preset": base.name, **_differing(value, base)}
 
 
 def document_of(value: Robot) -> bytes:
@@ -360,11 +366,10 @@ _SENT: Schema = {
         "name": _NAME,
         "legs": {"type": "array", "items": {**_LEG, "required": ["azimuth_deg", "radius_m"]}},
     },
-    "oneOf": [{"required": ["preset"]}, {"required": ["id", "name"]}],
     "additionalProperties": {"type": "number"},
 }
 AnyRobot = Annotated[
     Robot,
-    JsonForm(robot, as_mapping, {"anyOf": [_PRESET, _GIVEN, _STORED]}, _SENT),
+    JsonForm(robot, as_mapping, {"anyOf": [_PRESET, _ID, _GIVEN, _STORED]}, _SENT),
 ]
-"""A robot: in requests a preset's name too."""
+"""A robot: in requests a preset's name or a stored robot's id, too."""

@@ -13,7 +13,14 @@ import pytest
 from hexapods.domain import robot_documents
 from hexapods.domain.creatures import CREATURES, PRESETS, own_gait
 from hexapods.domain.errors import DamagedFile, InvalidInput
-from hexapods.domain.robot import Robot, as_mapping, document_of, read_document, robot
+from hexapods.domain.robot import (
+    Robot,
+    as_mapping,
+    by_value,
+    document_of,
+    read_document,
+    robot,
+)
 from hexapods.domain.robot_documents import About
 from hexapods.domain.tolerance import build_tolerance
 from hexapods.processes import Child, SetUp
@@ -181,3 +188,14 @@ def test_its_gait_is_told_unless_it_does_not_divide_its_legs(stored: Robot) -> N
     robot_documents.tell(ID, About("Rex", "trot"))
     assert own_gait(stored) == "trot"
     assert own_gait(robot({"id": ID, "n_legs": 5})) == "one-by-one"
+
+
+def test_an_id_alone_is_the_robot_too(stored: Robot) -> None:
+    assert robot(ID) == stored
+    with pytest.raises(InvalidInput, match="no stored robot"):
+        robot("0" * 16)
+
+
+@pytest.mark.parametrize("made", [*PRESETS.values(), robot(BODY)], ids=lambda one: one.name)
+def test_a_robot_by_value_needs_no_other(made: Robot) -> None:
+    assert robot(by_value(made)) == made
