@@ -1929,6 +1929,10 @@ export interface LegPreview {
   built: {
     [k: string]: number;
   };
+  /**
+   * its joints and its foot while the robot stands, from the torso outward: right, forward, up from the torso's centre; null if it cannot stand.
+   */
+  links_m: [number, number, number][] | null;
 }
 /**
  * Machine on which the experiment ran; empty before its start.
