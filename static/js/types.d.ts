@@ -35,6 +35,7 @@ export type {
   ReplayMark,
   ReplayView as ReplayPlan,
   RobotOption as Robot,
+  StoredRobotView as StoredRobot,
   SceneActionValues as ActionValues,
   SceneLane,
   SceneView as Scene,
