@@ -26,7 +26,7 @@ from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.masses import Mass, find_masses
 from hexapods.imports.notes import Notes, quoted
 from hexapods.imports.posed import Posed, resting_pose
-from hexapods.imports.servos import Servo, angle_limits, find_servos, limits_around
+from hexapods.imports.servos import Servo, angle_limits, find_servos, guessed_torque, limits_around
 from hexapods.imports.shapes import Shape, drop_touching, link_shapes, torso_shapes
 from hexapods.imports.skeleton import FoundLeg, find_skeleton
 from hexapods.imports.stance import Angles, Legged, find_stance, reaches_grid
@@ -137,15 +137,8 @@ class _Builder:
         mass_kg = sum(mass.kg for mass in masses.values())
         if not 0.001 <= mass_kg <= 10_000:
             raise InvalidInput(f"it weighs {mass_kg:.3g} kg; a robot has from 0.001 to 10,000 kg")
-        servos = find_servos(
-            self._compiled,
-            self._joints,
-            mass_kg,
-            legged.length_m,
-            len(self._chains),
-            self._choices,
-            self._notes,
-        )
+        guess_nm = guessed_torque(mass_kg, legged.length_m, len(self._chains))
+        servos = find_servos(self._compiled, self._joints, guess_nm, self._choices, self._notes)
         origins: dict[int | None, FloatArray] = {None: np.zeros(3)}
         origins |= {joint: self._posed.anchor(joint) for joint in self._joints}
         meshes = find_meshes(self._posed, origins, self._notes)
@@ -198,7 +191,8 @@ class _Builder:
         mounts = self._posed.mounts()
         half = (mounts.max(axis=0) - mounts.min(axis=0)) / 2
         thick = 0.1 * float(np.mean([chain.length_m for chain in self._chains]))
-        return np.maximum(half, thick)
+        span: FloatArray = np.maximum(half, thick)
+        return span
 
     def _legged(self) -> Legged:
         model = self._compiled.model
@@ -213,7 +207,10 @@ class _Builder:
         return Legged(
             self._chains,
             [leg.foot.radius_m for leg in self._posed.legs],
-            [[self._compiled.joint_name(joint) for joint in leg.joints] for leg in self._posed.legs],
+            [
+                [self._compiled.joint_name(joint) for joint in leg.joints]
+                for leg in self._posed.legs
+            ],
             min(lowest),
             {name: angles(qpos) for name, qpos in self._keyframes.items()},
             angles(model.qpos0),
@@ -257,7 +254,7 @@ class _Builder:
         meshes: Mapping[int | None, ModelMesh],
         home: Angles,
     ) -> RobotModel:
-        torso = _link(names[None], -1, 0, np.zeros(3), np.zeros(3), masses[None])
+        torso = _link(names[None], -1, 0, masses[None], at=np.zeros(3), parent_at=np.zeros(3))
         shapes = tuple(shape.as_geom(np.zeros(3)) for shape in self._torso)
         links = [_with(torso, None, shapes, meshes.get(None))]
         feet = []
@@ -271,7 +268,8 @@ class _Builder:
             all_shapes = self._shapes_of(leg, chain, home[number - 1])
             for place, joint in enumerate(leg.joints):
                 at = chain.anchors[place]
-                link = _link(names[joint], parent, number, at, parent_at, masses[joint])
+                mass = masses[joint]
+                link = _link(names[joint], parent, number, mass, at=at, parent_at=parent_at)
                 home_rad = float(home[number - 1][place])
                 turned = self._joint(
                     joint, kinds[number - 1][place], chain.axes[place], home_rad, servos[joint]
@@ -341,7 +339,7 @@ def _turned(axis: FloatArray, angle: float) -> FloatArray:
 
 
 def _link(
-    name: str, parent: int, leg: int, at: FloatArray, parent_at: FloatArray, mass: Mass
+    name: str, parent: int, leg: int, mass: Mass, *, at: FloatArray, parent_at: FloatArray
 ) -> ModelLink:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = (mass.inertia + 0.0).tolist()
     return ModelLink(

@@ -76,9 +76,7 @@ def compile_document(document: Document, assets: Mapping[str, bytes], notes: Not
         # Then the convex hulls of meshes are not computed.
         geom.contype = geom.conaffinity = 0
     has_inertial = {body.name: bool(body.explicitinertial) for body in spec.bodies}
-    collides_by_name = {
-        geom.name: does for geom, does in zip(spec.geoms, collides, strict=True)
-    }
+    collides_by_name = {geom.name: does for geom, does in zip(spec.geoms, collides, strict=True)}
     model = _compile(spec, document, notes)
     return Compiled(
         model,
@@ -173,13 +171,14 @@ def _refused(error: ValueError, document: Document) -> DamagedFile:
     text = str(error)
     found, named = _LINE.search(text), _ELEMENT_NAME.search(text)
     line = document.original_line(int(found[1])) if found else None
-    why = re.sub(r"^(XML )?Error: ?", "", text.split("\nElement")[0]).strip().rstrip(".")
+    why = (
+        re.sub(r"^(XML )?Error: ?", "", text.split("\nElement", maxsplit=1)[0]).strip().rstrip(".")
+    )
     place = f" in line {line}" if line else ""
     name = f" ({quoted(named[1])})" if named and named[1] else ""
-    return DamagedFile(f"MuJoCo refuses the file{place}{name}: {quoted_why(why)}")
+    return DamagedFile(f"MuJoCo refuses the file{place}{name}: {_in_one_line(why)}")
 
 
-def quoted_why(why: str) -> str:
-    """Return MuJoCo's words in one line, cut where they are very long."""
+def _in_one_line(why: str) -> str:
     line = " ".join(why.split())
     return line if len(line) <= 200 else f"{line[:199]}…"

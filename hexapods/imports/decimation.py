@@ -37,9 +37,7 @@ def cluster(vertices: FloatArray, faces: IntArray, most: int) -> tuple[FloatArra
         cells *= _COARSER
 
 
-def _merge(
-    vertices: FloatArray, faces: IntArray, cells: IntArray
-) -> tuple[FloatArray, IntArray]:
+def _merge(vertices: FloatArray, faces: IntArray, cells: IntArray) -> tuple[FloatArray, IntArray]:
     """Merge vertices in the same cell to their mean, and drop triangles that collapse."""
     _, place = np.unique(_keys(cells, _MOST_CELLS + 2), return_inverse=True)
     counts = np.bincount(place)

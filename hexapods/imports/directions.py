@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.gait import GaitSpec, gait_as_json, resolve
+from hexapods.domain.gait import GaitSpec, resolve
 from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
 from hexapods.imports.choices import Choices
@@ -15,10 +15,10 @@ from hexapods.imports.notes import Notes
 
 _AXES = {"x": 0.0, "y": 90.0, "-x": 180.0, "-y": -90.0}
 _SHORT = {
-    "front": frozenset("fl fr lf rf".split()),
-    "hind": frozenset("hl hr lh rh bl br lb rb rl rr lr".split()),
-    "left": frozenset("l fl lf hl lh bl lb rl lr ml lm".split()),
-    "right": frozenset("r fr rf hr rh br rb rr mr rm".split()),
+    "front": frozenset(["fl", "fr", "lf", "rf"]),
+    "hind": frozenset(["hl", "hr", "lh", "rh", "bl", "br", "lb", "rb", "rl", "rr", "lr"]),
+    "left": frozenset(["l", "fl", "lf", "hl", "lh", "bl", "lb", "rl", "lr", "ml", "lm"]),
+    "right": frozenset(["r", "fr", "rf", "hr", "rh", "br", "rb", "rr", "mr", "rm"]),
 }
 _LONG = {
     "front": ("front", "fore"),
@@ -151,12 +151,11 @@ def find_gait(places: FloatArray, choices: Choices, notes: Notes) -> str | GaitS
     if choices.gait is not None:
         resolve(choices.gait, azimuths)
         return choices.gait
-    count = len(places)
-    name = {4: "trot", 6: "tripod", 8: "tetrapod"}.get(count)
-    spec: str | GaitSpec | None = name
-    if name is None or not _leads_ahead(name, azimuths):
+    name = {4: "trot", 6: "tripod", 8: "tetrapod"}.get(len(places))
+    if name is not None and _leads_ahead(name, azimuths):
+        spec: str | GaitSpec = name
+    else:
         spec = _by_hand(name, azimuths)
-    assert spec is not None
     gait = resolve(spec, azimuths)
     groups = "; ".join(" ".join(map(str, group)) for group in gait.groups)
     notes.guess(
@@ -201,8 +200,3 @@ def _by_hand(name: str | None, azimuths: Sequence[float]) -> GaitSpec:
         # Neighbours of one group would leave a side without a leg that stands.
         groups = (odd[:-1], even, odd[-1:])
     return GaitSpec(right, left, groups=groups)
-
-
-def gait_in_words(gait: str | GaitSpec) -> str:
-    """Return a gait as text."""
-    return gait if isinstance(gait, str) else str(gait_as_json(gait))

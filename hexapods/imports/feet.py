@@ -67,7 +67,7 @@ def find_foot(
         body = int(model.jnt_bodyid[wheel])
         if body in bodies:
             return _wheel(compiled, body, wheel)
-    balls = [foot for foot in _round_ends(compiled, bodies)]
+    balls = list(_round_ends(compiled, bodies))
     colliding = [foot for foot, collides in balls if collides]
     for feet in (colliding, [foot for foot, _ in balls]):
         named = [foot for foot in feet if _is_called_foot(compiled, foot)]
@@ -92,26 +92,34 @@ def chosen_foot(
     model = compiled.model
     geom = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, name)
     if geom >= 0 and int(model.geom_bodyid[geom]) in bodies:
-        body = int(model.geom_bodyid[geom])
-        ends = [foot for foot, _ in _round_ends(compiled, [body], [geom])]
-        from_m = _above(compiled, data, body, hinges)
-        if ends:
-            return max(ends, key=lambda foot: float(np.linalg.norm(foot.in_world(data) - from_m)))
-        return _tip(compiled, data, [body], from_m, [geom])
+        return _foot_of_geom(compiled, data, geom, hinges)
     site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, name)
     if site >= 0 and int(model.site_bodyid[site]) in bodies:
-        body = int(model.site_bodyid[site])
-        at_m = np.array(model.site_pos[site])
+        body, at_m = int(model.site_bodyid[site]), np.array(model.site_pos[site])
         return Foot(body, at_m, _radius(compiled, data, body, at_m, hinges), name, True)
     body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
-    if body < 0 or body not in bodies:
-        return None
-    if not any(model.geom_bodyid == body):
+    return _foot_of_body(compiled, data, body, hinges) if body in bodies else None
+
+
+def _foot_of_geom(
+    compiled: Compiled, data: mujoco.MjData, geom: int, hinges: Collection[int]
+) -> Foot:
+    body = int(compiled.model.geom_bodyid[geom])
+    ends = [foot for foot, _ in _round_ends(compiled, [body], [geom])]
+    from_m = _above(compiled, data, body, hinges)
+    if ends:
+        return max(ends, key=lambda foot: float(np.linalg.norm(foot.in_world(data) - from_m)))
+    return _tip(compiled, data, [body], from_m, [geom])
+
+
+def _foot_of_body(
+    compiled: Compiled, data: mujoco.MjData, body: int, hinges: Collection[int]
+) -> Foot:
+    name = compiled.body_name(body)
+    joint = _joint_above(compiled, body, hinges)
+    if joint is None or not any(compiled.model.geom_bodyid == body):
         at_m = np.zeros(3)
         return Foot(body, at_m, _radius(compiled, data, body, at_m, hinges), name, True)
-    joint = _joint_above(compiled, body, hinges)
-    if joint is None:
-        return Foot(body, np.zeros(3), _LEAST_RADIUS_M, name, True)
     found = find_foot(compiled, data, [body], joint)
     return Foot(body, found.at_m, found.radius_m, name, found.is_guessed)
 
@@ -190,7 +198,8 @@ def _wheel(compiled: Compiled, body: int, joint: int) -> Foot:
 def _points(model: mujoco.MjModel, geom: int) -> FloatArray:
     """Return points on a geom in the frame of its body, (n, 3)."""
     vertices, _ = triangles_of(model, geom)
-    return vertices @ _rotation(model.geom_quat[geom]).T + model.geom_pos[geom]
+    points: FloatArray = vertices @ _rotation(model.geom_quat[geom]).T + model.geom_pos[geom]
+    return points
 
 
 def _is_outermost(

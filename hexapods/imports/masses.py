@@ -35,7 +35,10 @@ class Mass:
 
 
 def find_masses(
-    posed: Posed, links: Mapping[int | None, str], ends: Mapping[int | None, FloatArray], notes: Notes
+    posed: Posed,
+    links: Mapping[int | None, str],
+    ends: Mapping[int | None, FloatArray],
+    notes: Notes,
 ) -> dict[int | None, Mass]:
     """Return the mass of each link.
 

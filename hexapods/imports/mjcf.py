@@ -39,42 +39,44 @@ _KEPT: dict[str, frozenset[str]] = {
     "keyframe": frozenset({"key"}),
 }
 """Which children stay, by tag; of others none."""
-_ACTUATOR = frozenset(
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_ACTUATOR = _words(
     "name class joint gear ctrlrange forcerange ctrllimited forcelimited kp gaintype biastype "
-    "gainprm biasprm".split()
+    "gainprm biasprm"
 )
-_TURNED = frozenset("quat axisangle xyaxes zaxis euler".split())
+_TURNED = _words("quat axisangle xyaxes zaxis euler")
 _PLACED = frozenset({"name", "class", "pos", *_TURNED})
 _ATTRIBUTES: dict[str, frozenset[str]] = {
     "mujoco": frozenset({"model"}),
-    "compiler": frozenset(
+    "compiler": _words(
         "autolimits boundmass boundinertia settotalmass balanceinertia angle fitaabb eulerseq "
-        "coordinate inertiafromgeom inertiagrouprange".split()
+        "coordinate inertiafromgeom inertiagrouprange"
     ),
     "default": frozenset({"class"}),
     "body": _PLACED | {"childclass"},
     "frame": _PLACED | {"childclass"},
     "inertial": _TURNED | {"pos", "mass", "diaginertia", "fullinertia"},
-    "joint": frozenset(
+    "joint": _words(
         "name class type pos axis limited range ref damping armature frictionloss "
-        "actuatorfrclimited actuatorfrcrange".split()
+        "actuatorfrclimited actuatorfrcrange"
     ),
     "freejoint": frozenset({"name"}),
     "geom": _PLACED
-    | frozenset(
-        "type size fromto contype conaffinity group mass density shellinertia mesh fitscale".split()
-    ),
+    | _words("type size fromto contype conaffinity group mass density shellinertia mesh fitscale"),
     "site": _PLACED | {"type", "size", "fromto"},
-    "mesh": frozenset(
-        "name class file vertex face scale refpos refquat inertia smoothnormal".split()
-    ),
+    "mesh": _words("name class file vertex face scale refpos refquat inertia smoothnormal"),
     "key": frozenset({"name", "qpos"}),
     **dict.fromkeys(_ACTUATORS, _ACTUATOR),
 }
-_TEXTS = frozenset(
+_TEXTS = _words(
     "name class childclass model mesh joint file type angle eulerseq coordinate autolimits limited "
     "actuatorfrclimited balanceinertia fitaabb inertiafromgeom shellinertia inertia smoothnormal "
-    "ctrllimited forcelimited gaintype biastype".split()
+    "ctrllimited forcelimited gaintype biastype"
 )
 """Attributes that are no numbers."""
 
@@ -93,7 +95,7 @@ def clean_mjcf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
     folder, strips = _mesh_folder(root)
     _keep_known(root)
     _check_counts(root)
-    _resolve_meshes(root, folder, strips, meshes, notes)
+    _resolve_meshes(root, folder, strips, meshes)
     compiler = Element("compiler", root.line, {"usethread": "false"})
     root.children.insert(0, compiler)
 
@@ -174,11 +176,9 @@ def _check_counts(root: Element) -> None:
             raise DamagedFile(f"it has {count:,} elements <{tag}>; a robot has at most {most:,}")
 
 
-def _resolve_meshes(
-    root: Element, folder: str, strips: bool, meshes: MeshFiles, notes: Notes
-) -> None:
+def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles) -> None:
     """Give meshes their names in the assets; remove those that are missing, and their geoms."""
-    lost: set[str] = set()
+    lost: set[str | None] = set()
     for asset in root.all("asset"):
         kept = []
         for mesh in asset:
@@ -202,4 +202,3 @@ def _resolve_meshes(
 def _remove_geoms(root: Element, lost: set[str | None]) -> None:
     for parent in [root, *root.all()]:
         parent.keep(lambda one: one.tag != "geom" or one.attributes.get("mesh") not in lost)
-

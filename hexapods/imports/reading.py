@@ -76,9 +76,7 @@ def _document(upload: Upload, choices: Choices, notes: Notes) -> tuple[str, Elem
     return _best_document(upload, paths, notes)
 
 
-def _best_document(
-    upload: Upload, paths: Sequence[str], notes: Notes
-) -> tuple[str, Element]:
+def _best_document(upload: Upload, paths: Sequence[str], notes: Notes) -> tuple[str, Element]:
     """Return the robot with the most joints among the documents of a zip."""
     robots: list[tuple[tuple[int, int, int, str], str, Element]] = []
     problems: list[str] = []

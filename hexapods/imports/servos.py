@@ -54,28 +54,26 @@ def limits_around(home_rad: float) -> tuple[float, float]:
     return max(home_rad - _GUESSED_RAD, -_WIDEST_RAD), min(home_rad + _GUESSED_RAD, _WIDEST_RAD)
 
 
+def guessed_torque(mass_kg: float, leg_length_m: float, legs: int) -> float:
+    """Return a torque limit that suits a robot: half of its legs carry it [N·m].
+
+    Their forces have a share of the leg as their arm.
+    """
+    return _ARM_SHARE * mass_kg * _GRAVITY * leg_length_m / max(legs / 2, 1)
+
+
 def find_servos(
-    compiled: Compiled,
-    joints: Sequence[int],
-    mass_kg: float,
-    leg_length_m: float,
-    legs: int,
-    choices: Choices,
-    notes: Notes,
+    compiled: Compiled, joints: Sequence[int], guess_nm: float, choices: Choices, notes: Notes
 ) -> dict[int, Servo]:
     """Return the servo of each joint.
 
     Args:
         compiled: the model.
         joints: ids of all joints of legs.
-        mass_kg: of the robot.
-        leg_length_m: mean length of a leg.
-        legs: number of legs.
+        guess_nm: torque limit where the file gives none that is likely.
         choices: what a person decided.
         notes: gets what is guessed and repaired.
     """
-    # Half of the legs carry the robot, by forces that have a share of the leg as their arm.
-    guess_nm = _ARM_SHARE * mass_kg * _GRAVITY * leg_length_m / max(legs / 2, 1)
     given = {joint: _torque(compiled.model, joint) for joint in joints}
     without = [joint for joint, torque in given.items() if not _is_likely(torque, guess_nm)]
     if choices.servo_torque_nm is None and without:

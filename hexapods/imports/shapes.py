@@ -32,7 +32,7 @@ class Shape:
         """Return its lowest height after a motion of its link: rotation, about a point, and to."""
         center = moved + turn @ (self.at_m - origin)
         along = np.abs((turn @ self.rotation)[2])
-        x, y, z = self.size_m
+        x, y, _z = self.size_m
         drop = {
             "sphere": x,
             "capsule": x + y * along[2],

@@ -21,8 +21,8 @@ from hexapods.imports.compiling import Compiled
 from hexapods.imports.feet import Foot, chosen_foot, find_foot
 from hexapods.imports.notes import Notes, listed, quoted
 
-_NO_LEG = frozenset(
-    "arm gripper finger fingers head neck tail wrist camera lidar hand jaw antenna ear".split()
+_NO_LEG = re.compile(
+    r"\b(arm|gripper|fingers?|head|neck|tail|wrist|camera|lidar|hand|jaw|antenna|ear)\b"
 )
 """Words in names of what is no leg."""
 _WHEEL = re.compile(r"wheel", re.IGNORECASE)
@@ -107,7 +107,7 @@ class _Finder:
         if self._choices.feet is not None:
             legs = [self._chosen(name, root, bodies, hinges) for name in self._choices.feet]
         else:
-            legs = self._found(ends, bodies, hinges, wheels)
+            legs = self._found(ends, hinges, wheels)
         legs = self._without_shared(legs)
         used = {joint for leg in legs for joint in leg.joints}
         self._tell_of_base(root)
@@ -119,7 +119,7 @@ class _Finder:
             if joint not in used
         )
         self._tell_of_locked(locked, wheels)
-        feet = self._possible_feet(ends, bodies, hinges, wheels)
+        feet = self._possible_feet(ends, hinges, wheels)
         return Skeleton(root, bodies, tuple(legs), locked, feet)
 
     def _root(self) -> int:
@@ -183,8 +183,9 @@ class _Finder:
         return found
 
     def _wheels(self, hinges: Sequence[int], bodies: Sequence[int], root: int) -> set[int]:
-        """Return the last joints of chains that turn without end, and are called wheels or need
-        not turn for a leg.
+        """Return the last joints of chains that turn without end and are wheels.
+
+        They are called so, or the leg has enough joints without them, which have limits.
         """
         wheels = set()
         for body in self._ends(bodies, hinges, root):
@@ -193,16 +194,13 @@ class _Finder:
             names = self._compiled.joint_name(joint), self._compiled.body_name(body)
             has_others = any(self._model.jnt_limited[other] for other in chain[:-1])
             is_spare = len(chain) > _ENOUGH_JOINTS and has_others
-            if not self._model.jnt_limited[joint] and (
-                is_spare or any(map(_WHEEL.search, names))
-            ):
+            if not self._model.jnt_limited[joint] and (is_spare or any(map(_WHEEL.search, names))):
                 wheels.add(joint)
         return wheels
 
     def _found(
         self,
         ends: Mapping[int, Sequence[int]],
-        bodies: Sequence[int],
         hinges: Sequence[int],
         wheels: set[int],
     ) -> list[FoundLeg]:
@@ -225,9 +223,7 @@ class _Finder:
                 legs.append(leg)
         if legs:
             lowest, longest = self._bottom(legs[0]), max(map(self._length, legs))
-            legs = [
-                leg for leg in legs if self._bottom(leg) <= lowest + _SAME_HEIGHT * longest
-            ]
+            legs = [leg for leg in legs if self._bottom(leg) <= lowest + _SAME_HEIGHT * longest]
         if not MIN_LEGS <= len(legs) <= MAX_LEGS:
             seen = [quoted(leg.foot.name) for leg in legs]
             raise InvalidInput(
@@ -241,12 +237,10 @@ class _Finder:
         return legs
 
     def _is_no_leg(self, leg: FoundLeg) -> bool:
-        words = set()
-        for joint in leg.joints:
-            body = int(self._model.jnt_bodyid[joint])
-            for name in (self._compiled.joint_name(joint), self._compiled.body_name(body)):
-                words.update(re.split(r"[^a-z]+", name.lower()))
-        return bool(words & _NO_LEG)
+        bodies = [int(self._model.jnt_bodyid[joint]) for joint in leg.joints]
+        names = [self._compiled.joint_name(joint) for joint in leg.joints]
+        names += [self._compiled.body_name(body) for body in bodies]
+        return any(_NO_LEG.search(re.sub(r"[^a-z]+", " ", name.lower())) for name in names)
 
     def _bottom(self, leg: FoundLeg) -> float:
         return float(leg.foot.in_world(self._data)[2] - leg.foot.radius_m)
@@ -295,7 +289,6 @@ class _Finder:
     def _possible_feet(
         self,
         ends: Mapping[int, Sequence[int]],
-        bodies: Sequence[int],
         hinges: Sequence[int],
         wheels: set[int],
     ) -> tuple[str, ...]:
@@ -303,9 +296,7 @@ class _Finder:
         for body, chain in ends.items():
             if len(chain) >= MIN_JOINTS:
                 rigid = self._rigid(body, hinges)
-                found.append(
-                    find_foot(self._compiled, self._data, rigid, chain[-1], wheels).name
-                )
+                found.append(find_foot(self._compiled, self._data, rigid, chain[-1], wheels).name)
         return tuple(sorted(set(found)))
 
     def _tell_of_base(self, root: int) -> None:

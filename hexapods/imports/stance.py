@@ -216,7 +216,7 @@ def _best(
     """Return the angles of least cost: many at random, then nearer and nearer to the best."""
     low, high = np.clip(chain.limits, -_WITHOUT_LIMIT_RAD, _WITHOUT_LIMIT_RAD)
     angles = rng.uniform(low, high, (_SAMPLES, len(low)))
-    best = angles[int(_costs(chain, angles, like, torso_bottom_m).argmin())]
+    best: FloatArray = angles[int(_costs(chain, angles, like, torso_bottom_m).argmin())]
     spread = 0.25
     for _ in range(_ROUNDS):
         near = best + rng.normal(0, spread, (_NEAR, len(low)))
@@ -234,8 +234,8 @@ def _costs(
 ) -> FloatArray:
     """Return how bad a leg stands at some angles, (k,).
 
-    Good is: the foot well below the torso and out as the leg points at the angles 0, every direction
-    easily reached, far from the limits, small angles, and as the first leg stands.
+    Good is: the foot well below the torso and out as the leg points at the angles 0, every
+    direction easily reached, far from the limits, small angles, and as the first leg stands.
     """
     length_m, mount = chain.length_m, chain.anchors[0]
     feet = (chain.feet(angles) - mount) / length_m

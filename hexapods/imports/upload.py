@@ -131,7 +131,7 @@ class Upload:
         else:
             together = posixpath.join(posixpath.dirname(beside), plain)
             path = posixpath.normpath(together)
-            if path.startswith("/") or path == ".." or path.startswith("../") or ":" in plain[:3]:
+            if path.startswith(("/", "../")) or path == ".." or ":" in plain[:3]:
                 raise DamagedFile(
                     f"{quoted(wanted)} leads out of the zip; a mesh is named by its path beside "
                     "the document"
@@ -192,7 +192,9 @@ def _checked(infos: Sequence[zipfile.ZipInfo], size: int) -> dict[str, zipfile.Z
             that leads out of the zip.
     """
     if len(infos) > MAX_MEMBERS:
-        raise DamagedFile(f"the zip has {len(infos):,} members; a robot has at most {MAX_MEMBERS:,}")
+        raise DamagedFile(
+            f"the zip has {len(infos):,} members; a robot has at most {MAX_MEMBERS:,}"
+        )
     total = sum(one.file_size for one in infos)
     if total > MAX_UNPACKED_BYTES:
         raise DamagedFile(

@@ -1,5 +1,7 @@
 """Keeps of a URDF document what describes a body, and checks that its links are one tree."""
 
+from collections.abc import Sequence
+
 from hexapods.domain.errors import DamagedFile
 from hexapods.imports.mesh_files import MeshFiles
 from hexapods.imports.mjcf import MAX_BODIES, MAX_GEOMS, check_numbers
@@ -20,7 +22,7 @@ _ATTRIBUTES: dict[str, frozenset[str]] = {
     "link": frozenset({"name"}),
     "origin": frozenset({"xyz", "rpy"}),
     "mass": frozenset({"value"}),
-    "inertia": frozenset("ixx iyy izz ixy ixz iyz".split()),
+    "inertia": frozenset(["ixx", "iyy", "izz", "ixy", "ixz", "iyz"]),
     "box": frozenset({"size"}),
     "cylinder": frozenset({"radius", "length"}),
     "capsule": frozenset({"radius", "length"}),
@@ -102,28 +104,16 @@ def _check_tree(root: Element) -> None:
     shapes = sum(1 for _ in root.all("geometry"))
     if shapes > MAX_GEOMS:
         raise DamagedFile(f"it has {shapes:,} shapes; a robot has at most {MAX_GEOMS:,}")
-    for kind, elements in (("link", links), ("joint", joints)):
-        seen: set[str] = set()
-        for one in elements:
-            name = one.attributes.get("name", "")
-            if not name or name in seen:
-                raise DamagedFile(f"{one.place}: each {kind} needs a name of its own")
-            seen.add(name)
-    names = {link.attributes["name"] for link in links}
+    names = _own_names(links)
+    _own_names(joints)
     parent_of: dict[str, str] = {}
     for joint in joints:
         if joint.attributes.get("type") not in _JOINT_TYPES:
             raise DamagedFile(f"{joint.place}: its type must be one of {', '.join(_JOINT_TYPES)}")
-        ends = []
-        for tag in ("parent", "child"):
-            element = joint.first(tag)
-            link = "" if element is None else element.attributes.get("link", "")
-            if link not in names:
-                raise DamagedFile(f"{joint.place}: its {tag} is no link: {quoted(link)!r}")
-            ends.append(link)
-        if ends[1] in parent_of:
-            raise DamagedFile(f"{joint.place}: link {quoted(ends[1])} has two parents")
-        parent_of[ends[1]] = ends[0]
+        parent, child = (_end_of(joint, tag, names) for tag in ("parent", "child"))
+        if child in parent_of:
+            raise DamagedFile(f"{joint.place}: link {quoted(child)} has two parents")
+        parent_of[child] = parent
     roots = [name for name in names if name not in parent_of]
     if len(roots) != 1:
         raise DamagedFile(
@@ -131,6 +121,24 @@ def _check_tree(root: Element) -> None:
             + (f": {listed(sorted(roots))}" if roots else "")
         )
     _check_connected(names, parent_of)
+
+
+def _own_names(elements: Sequence[Element]) -> set[str]:
+    names: set[str] = set()
+    for one in elements:
+        name = one.attributes.get("name", "")
+        if not name or name in names:
+            raise DamagedFile(f"{one.place}: each {one.tag} needs a name of its own")
+        names.add(name)
+    return names
+
+
+def _end_of(joint: Element, tag: str, names: set[str]) -> str:
+    element = joint.first(tag)
+    link = "" if element is None else element.attributes.get("link", "")
+    if link not in names:
+        raise DamagedFile(f"{joint.place}: its {tag} is no link: {quoted(link)!r}")
+    return link
 
 
 def _check_connected(names: set[str], parent_of: dict[str, str]) -> None:
