@@ -42,11 +42,13 @@ class Limits:
     """What reading a file may take.
 
     Attributes:
-        seconds: of the processor, and on the clock.
+        seconds: of the processor.
+        clock_seconds: on the clock, of which a busy machine gives a process only a part.
         memory_bytes: beyond what the interpreter has with its modules.
     """
 
     seconds: float = 5.0
+    clock_seconds: float = 15.0
     memory_bytes: int = 512 << 20
 
 
@@ -104,7 +106,7 @@ def _ask(head: dict[str, Any], data: bytes, limits: Limits) -> bytes:
             child.pipe.recv_bytes(len(_READY))
             child.pipe.send_bytes(json.dumps(head).encode())
             child.pipe.send_bytes(data)
-        _wait(child, limits.seconds, limits, "reading it")
+        _wait(child, limits.clock_seconds, limits, "reading it")
         return child.pipe.recv_bytes(_MAX_ANSWER_BYTES)
     except (EOFError, OSError):
         child.kill()
@@ -128,7 +130,7 @@ def _wait(child: Child, seconds: float, limits: Limits, what: str) -> None:
         if time.monotonic() > deadline_s:
             raise DamagedFile(f"{what} takes longer than {seconds:g} s: simplify its meshes")
         if child.memory_bytes() - at_start > limits.memory_bytes:
-            raise DamagedFile(_too_much_memory(limits))
+            raise DamagedFile(_too_much_memory(limits.memory_bytes))
     if not child.pipe.poll():
         raise EOFError
 
@@ -142,8 +144,8 @@ def _why_it_ended(code: int | None, limits: Limits) -> str:
     )
 
 
-def _too_much_memory(limits: Limits) -> str:
-    return f"reading it takes more than {limits.memory_bytes >> 20} MB: simplify its meshes"
+def _too_much_memory(most_bytes: int) -> str:
+    return f"reading it takes more than {most_bytes >> 20} MB: simplify its meshes"
 
 
 def _imported(answer: bytes) -> ImportedRobot:
@@ -184,7 +186,7 @@ def _answer_once(pipe: Connection) -> None:
 
         answer = json.dumps(_told(read, head["memory_bytes"])).encode()
     except MemoryError:
-        answer = json.dumps({"error": _too_much_memory(Limits(0, head["memory_bytes"]))}).encode()
+        answer = json.dumps({"error": _too_much_memory(head["memory_bytes"])}).encode()
     pipe.send_bytes(answer)
 
 
@@ -197,7 +199,7 @@ def _told(read: Callable[[], dict[str, Any]], memory_bytes: int) -> dict[str, An
     except HexapodError as error:
         return {"error": str(error)}
     except MemoryError:
-        return {"error": _too_much_memory(Limits(0, memory_bytes)), "is_damaged": True}
+        return {"error": _too_much_memory(memory_bytes), "is_damaged": True}
     except RecursionError:
         return {"error": "it is nested too deeply", "is_damaged": True}
     except Exception as error:  # of a file that nobody thought of; the limits hold all the same

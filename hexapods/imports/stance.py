@@ -23,6 +23,15 @@ _SAMPLES, _ROUNDS, _NEAR = 3000, 6, 400
 _HOMES = ("home", "stand", "standing", "init", "default")
 """Usual names of keyframes in which a robot stands, the best first."""
 _WITHOUT_LIMIT_RAD = np.pi
+_SPRAWLING = 0.35
+"""A leg points outward if its foot is farther from the mount at the angles 0, of its length."""
+_SPRAWLED = ((0.45, 0.6), (0.55, 0.6), (0.35, 0.7), (0.6, 0.7), (0.3, 0.6))
+"""Postures of such legs: how far the foot is below its mount and out, of the leg's length."""
+_UPRIGHT = (0.75, 0.68, 0.6, 0.5, 0.85)
+"""Postures of other legs: how far the foot is below its mount."""
+_POSTURES = len(_UPRIGHT)
+_LEAST_UNDER = 0.15
+"""How far a foot is at least below the torso, of the leg's length."""
 _FOLLOWING_JOINTS = 3
 """With so many a leg follows a grid."""
 Angles = list[FloatArray]
@@ -194,61 +203,85 @@ def _changed(legged: Legged, angles: Angles, chosen: Mapping[str, float]) -> Ang
 
 
 def search(legged: Legged) -> Angles:
-    """Return a stance with bent knees, in which legs that mirror each other do so."""
+    """Return a stance with bent knees, in which legs that mirror each other do so.
+
+    Of several postures the first from which all feet reach their boxes, or most.
+    """
+    fewest, found = len(legged.chains) + 1, list[FloatArray]()
+    for lower in range(_POSTURES):
+        angles = _posture(legged, lower)
+        unreached = sum(_unreached(chain, one) for chain, one in _pairs(legged, angles))
+        if unreached < fewest:
+            fewest, found = unreached, angles
+        if not unreached:
+            break
+    return found
+
+
+def _posture(legged: Legged, number: int) -> Angles:
     rng = np.random.default_rng(0)
     first: FloatArray | None = None
     found = []
     for chain in legged.chains:
         is_alike = first is not None and len(first) == len(chain.axes)
-        like = first if is_alike else None
-        best = _best(chain, like, legged.torso_bottom_m, rng)
+        wanted = _wanted(chain, legged.torso_bottom_m, number)
+        best = _best(chain, wanted, first if is_alike else None, rng)
         first = best if first is None else first
         found.append(best)
     return found
 
 
+def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
+    """Return where a foot is to be from its mount, as shares of the leg's length, (3,).
+
+    Well below, and out as the leg points at the angles 0.
+
+    Args:
+        chain: the leg.
+        torso_bottom_m: lowest point of the torso.
+        number: of the posture; each is a bit lower than the one before, or wider.
+    """
+    mount = chain.anchors[0]
+    straight = (chain.foot - mount) / chain.length_m
+    least = (mount[2] - torso_bottom_m) / chain.length_m + _LEAST_UNDER
+    out = float(np.linalg.norm(straight[:2]))
+    if out > _SPRAWLING:
+        down, wide = _SPRAWLED[number]
+        at = wide * straight[:2] / out
+    else:
+        down = _UPRIGHT[number]
+        # Beside the mount, where hips are offset to the side.
+        at = np.array([0.7 * straight[0], 0.0])
+    return np.array([*at, -max(down, least)])
+
+
 def _best(
-    chain: Chain,
-    like: FloatArray | None,
-    torso_bottom_m: float,
-    rng: np.random.Generator,
+    chain: Chain, wanted: FloatArray, like: FloatArray | None, rng: np.random.Generator
 ) -> FloatArray:
     """Return the angles of least cost: many at random, then nearer and nearer to the best."""
     low, high = np.clip(chain.limits, -_WITHOUT_LIMIT_RAD, _WITHOUT_LIMIT_RAD)
     angles = rng.uniform(low, high, (_SAMPLES, len(low)))
-    best: FloatArray = angles[int(_costs(chain, angles, like, torso_bottom_m).argmin())]
+    best: FloatArray = angles[int(_costs(chain, angles, wanted, like).argmin())]
     spread = 0.25
     for _ in range(_ROUNDS):
         near = best + rng.normal(0, spread, (_NEAR, len(low)))
         near = np.concatenate([best[None], np.clip(near, low, high)])
-        best = near[int(_costs(chain, near, like, torso_bottom_m).argmin())]
+        best = near[int(_costs(chain, near, wanted, like).argmin())]
         spread *= 0.4
     return best
 
 
 def _costs(
-    chain: Chain,
-    angles: FloatArray,
-    like: FloatArray | None,
-    torso_bottom_m: float,
+    chain: Chain, angles: FloatArray, wanted: FloatArray, like: FloatArray | None
 ) -> FloatArray:
     """Return how bad a leg stands at some angles, (k,).
 
-    Good is: the foot well below the torso and out as the leg points at the angles 0, every
-    direction easily reached, far from the limits, small angles, and as the first leg stands.
+    Good is: the foot where it is wanted, every direction easily reached, far from the limits,
+    small angles, and as the first leg stands.
     """
-    length_m, mount = chain.length_m, chain.anchors[0]
-    feet = (chain.feet(angles) - mount) / length_m
-    at_rest = (chain.foot - mount) / length_m
-    out = at_rest[:2] if np.linalg.norm(at_rest[:2]) > 0.35 else np.zeros(2)
-    sprawls = np.linalg.norm(out) > 0
-    down, wide = (0.45, 0.6) if sprawls else (0.75, 0.0)
-    target = wide * out / max(float(np.linalg.norm(out)), 1e-9)
-    if not sprawls:
-        # Beside the mount, where hips are offset to the side.
-        target = np.array([0.7 * at_rest[0], 0.0])
-    down = max(down, (mount[2] - torso_bottom_m) / length_m + 0.15)
-    costs: FloatArray = 3 * (feet[:, 2] + down) ** 2 + 3 * ((feet[:, :2] - target) ** 2).sum(axis=1)
+    length_m = chain.length_m
+    feet = (chain.feet(angles) - chain.anchors[0]) / length_m
+    costs: FloatArray = 3 * ((feet - wanted) ** 2).sum(axis=1)
     if angles.shape[1] >= _FOLLOWING_JOINTS:
         least = np.linalg.svd(chain.jacobians(angles) / length_m, compute_uv=False)[:, 2]
         costs += 4 * np.maximum(0, 0.25 - least) ** 2
