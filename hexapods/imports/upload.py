@@ -13,7 +13,6 @@ import zlib
 from collections.abc import Sequence
 
 from hexapods.domain.errors import DamagedFile
-from hexapods.domain.text import counted
 from hexapods.imports.notes import listed, quoted
 
 MAX_UPLOAD_BYTES = 64 << 20
@@ -165,11 +164,10 @@ def _open(data: bytes) -> zipfile.ZipFile:
     if at < 0 or at + _END.size > len(data):
         raise DamagedFile("the zip was cut short: it has no directory")
     _, _, _, _, count, size, start, _ = _END.unpack_from(data, at)
-    if count > MAX_MEMBERS or size > _MAX_DIRECTORY_BYTES or start + size > at:
-        raise DamagedFile(
-            f"the zip has {counted(count, 'member')}, or its directory is damaged; a zip with a "
-            f"robot has at most {MAX_MEMBERS:,}"
-        )
+    if count > MAX_MEMBERS:
+        raise DamagedFile(f"the zip has {count:,} members; a robot has at most {MAX_MEMBERS:,}")
+    if size > _MAX_DIRECTORY_BYTES or start + size > at:
+        raise DamagedFile("the zip is damaged: its end does not say where its directory is")
     try:
         return zipfile.ZipFile(io.BytesIO(data))
     except (

@@ -21,7 +21,9 @@ def rotation(quaternion: tuple[float, ...]) -> FloatArray:
     return matrix.reshape(3, 3)
 
 
-def posed(model: RobotModel, angles: dict[tuple[int, str], float]) -> list[tuple[FloatArray, FloatArray]]:
+def posed(
+    model: RobotModel, angles: dict[tuple[int, str], float]
+) -> list[tuple[FloatArray, FloatArray]]:
     """Return rotation and origin of each link in the body frame.
 
     Args:

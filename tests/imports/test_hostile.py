@@ -13,17 +13,29 @@ NESTED = '<replicate count="60">' * 3 + '<geom size="0.01"/>' + "</replicate>" *
     [
         ('<include file="/etc/passwd"/>', "it includes another file"),
         (f"<worldbody>{NESTED}</worldbody>", "copies by <replicate> are not made"),
-        ('<worldbody><body><composite type="cable" count="9 1 1"/></body></worldbody>', "<composite>"),
+        (
+            '<worldbody><body><composite type="cable" count="9 1 1"/></body></worldbody>',
+            "<composite>",
+        ),
         ('<worldbody><flexcomp name="a" type="grid" count="9 9 9"/></worldbody>', "<flexcomp>"),
         ('<deformable><flex name="a" dim="2"/></deformable>', "<flex>"),
         ('<extension><plugin plugin="mujoco.elasticity.cable"/></extension>', "plugins are not"),
         ('<asset><model name="a" file="/etc/passwd"/></asset>', "other files are not attached"),
-        ('<worldbody><body name="long"><joint axis="0 0 nan"/></body></worldbody>', "finite numbers"),
+        (
+            '<worldbody><body name="long"><joint axis="0 0 nan"/></body></worldbody>',
+            "finite numbers",
+        ),
         ('<worldbody><body name="b" pos="1 x 2"/></worldbody>', "pos must be numbers, not 'x'"),
         ("<worldbody>" + "<body><geom size='1'/></body>" * 301 + "</worldbody>", "elements <body>"),
-        ("<worldbody><body>" + '<geom size="1"/>' * 2001 + "</body></worldbody>", "elements <geom>"),
+        (
+            "<worldbody><body>" + '<geom size="1"/>' * 2001 + "</body></worldbody>",
+            "elements <geom>",
+        ),
         ('<asset><mesh name="m" builtin="sphere" params="9"/></asset>', "MuJoCo refuses the file"),
-        ('<asset><mesh name="m" vertex="0 0 0 1"/></asset>', "MuJoCo refuses the file in line 36 (m)"),
+        (
+            '<asset><mesh name="m" vertex="0 0 0 1"/></asset>',
+            "MuJoCo refuses the file in line 36 (m)",
+        ),
         ('<worldbody><body><geom type="cube" size="1"/></body></worldbody>', "MuJoCo refuses"),
         ('<worldbody><body name="trunk"/></worldbody>', "MuJoCo refuses the file"),
     ],

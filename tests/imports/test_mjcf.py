@@ -63,7 +63,9 @@ def test_angles_count_from_where_the_file_does() -> None:
 def test_the_feet_are_on_the_sides_that_they_are_on_in_the_file() -> None:
     robot = read(dog(keyframes={"home": HOME}))
     home = {
-        (leg, joint.name): joint.home_rad for leg in range(1, 5) for joint in robot.model.joints_of(leg)
+        (leg, joint.name): joint.home_rad
+        for leg in range(1, 5)
+        for joint in robot.model.joints_of(leg)
     }
 
     feet, _ = feet_and_center(robot, home)
@@ -88,7 +90,8 @@ def test_motors_become_servos_with_their_torque() -> None:
 
 
 @pytest.mark.parametrize(
-    "actuators", ["", '<motor joint="{joint}"/>', '<position joint="{joint}" forcerange="-1000 1000"/>']
+    "actuators",
+    ["", '<motor joint="{joint}"/>', '<position joint="{joint}" forcerange="-1000 1000"/>'],
 )
 def test_without_a_torque_limit_one_is_guessed(actuators: str) -> None:
     robot = read(dog(actuators=actuators))
@@ -167,7 +170,9 @@ def test_uneven_feet_are_levelled() -> None:
 
     robot = read(dog(keyframes={"home": uneven}))
     home = {
-        (leg, joint.name): joint.home_rad for leg in range(1, 5) for joint in robot.model.joints_of(leg)
+        (leg, joint.name): joint.home_rad
+        for leg in range(1, 5)
+        for joint in robot.model.joints_of(leg)
     }
 
     assert told(robot.repairs, "mm uneven; now level")
@@ -300,9 +305,7 @@ class TestChoices:
             read(dog(keyframes={"home": HOME}), choices=choices)
 
 
-@pytest.mark.parametrize(
-    ("count", "groups"), [(3, 3), (5, 3), (6, 2), (7, 3), (8, 2), (12, 2)]
-)
+@pytest.mark.parametrize(("count", "groups"), [(3, 3), (5, 3), (6, 2), (7, 3), (8, 2), (12, 2)])
 def test_any_number_of_legs_gets_groups_that_go_forward(count: int, groups: int) -> None:
     angles = [2 * np.pi * (number + 0.5) / count for number in range(count)]
     mounts = {f"L{n}": (0.3 * np.cos(a), 0.3 * np.sin(a)) for n, a in enumerate(angles)}

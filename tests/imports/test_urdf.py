@@ -126,7 +126,9 @@ def test_joints_that_turn_without_end_get_limits() -> None:
 
 def test_meshes_of_a_package_are_drawn_where_they_are() -> None:
     files = {
-        "bug/urdf/bug.urdf": bug(torso=MESH.format(file="package://bug_description/meshes/hull.stl")),
+        "bug/urdf/bug.urdf": bug(
+            torso=MESH.format(file="package://bug_description/meshes/hull.stl")
+        ),
         "bug/meshes/hull.stl": stl(box_triangles(BOX)),
         "other/hull.stl": stl(box_triangles((9, 9, 9))),
     }
@@ -142,7 +144,10 @@ def test_meshes_of_a_package_are_drawn_where_they_are() -> None:
 
 
 def test_text_meshes_are_read() -> None:
-    files = {"bug.urdf": bug(torso=MESH.format(file="hull.stl")), "hull.stl": text_stl(box_triangles(BOX))}
+    files = {
+        "bug.urdf": bug(torso=MESH.format(file="hull.stl")),
+        "hull.stl": text_stl(box_triangles(BOX)),
+    }
 
     vertices, _ = decoded(read(zipped(files)).model.links[0].mesh)
 
@@ -213,7 +218,10 @@ def test_of_several_documents_the_robot_is_found_or_chosen() -> None:
     ("text", "said"),
     [
         ("<robot/>", "the URDF has no <link>"),
-        ('<robot xmlns:xacro="http://x"><xacro:include filename="a"/></robot>', "is xacro, which is"),
+        (
+            '<robot xmlns:xacro="http://x"><xacro:include filename="a"/></robot>',
+            "is xacro, which is",
+        ),
         ('<robot><link name="${prefix}base"/></robot>', "is xacro, which is not expanded"),
         ('<robot><link name="a"/><link name="a"/></robot>', "each link needs a name of its own"),
         ('<robot><link name="a"/><link name="b"/></robot>', "2 have no parent: a, b"),
