@@ -179,6 +179,12 @@ class ViewersEvent(Answer):
     count: Count
 
 
+class RobotsEvent(Answer):
+    """Stored robots have changed; `GET /options` has them. `count` leaves hidden ones out."""
+
+    count: Count
+
+
 class EventBodies(Answer):
     """Data of each server-sent event, by the event's name."""
 
@@ -192,3 +198,4 @@ class EventBodies(Answer):
     scene: SceneView
     summary: SummaryEvent
     viewers: ViewersEvent
+    robots: RobotsEvent

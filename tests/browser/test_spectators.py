@@ -41,6 +41,7 @@ def test_a_spectator_reads_the_settings_tries_others_and_replays(
         race = finished(api, "races", RACE)
         hold(api, race, 5.0)
         read_settings_on_stage(dashboard, server)
+        begin_a_replay_with_space(dashboard)
         replay_explain_and_download(dashboard, race["id"])
         try_settings_until_refused(dashboard)
 
@@ -51,6 +52,16 @@ def test_a_spectator_reads_the_settings_tries_others_and_replays(
         expect(alpha_of(dashboard)).to_have_value("0.7")
         expect(dashboard.page).not_to_have_url(re.compile("alpha"))
         assert {race["id"]} == {one["id"] for one in api.get("races").json()["items"]}
+
+
+def begin_a_replay_with_space(dashboard: Dashboard) -> None:
+    """The key of the play button does what the button does: the stage is not the spectator's."""
+    page = dashboard.page
+    page.evaluate("document.activeElement.blur()")
+    page.keyboard.press("Space")
+    expect(page).to_have_url(re.compile(r"[?&]run="))
+    dashboard.button("Live").click()
+    expect(page).not_to_have_url(re.compile(r"[?&]run="))
 
 
 def alpha_of(dashboard: Dashboard) -> Locator:

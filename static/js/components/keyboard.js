@@ -5,7 +5,8 @@ import { helpIsOpen, leavePresenter, present, shortcuts } from "../page.js";
 import { stepReplay } from "../replay.js";
 import { closeLegs, legsAreOpen, openLegs } from "../legs.js";
 import { turnCode, turnPage } from "../presentation.js";
-import { scale, seekTo, seekToMark } from "../time.js";
+import { isOperator } from "../selectors.js";
+import { scale, seekTo, seekToMark, toggleTime } from "../time.js";
 import { isAtLeast, nextDepth, openTab, toggleHidden } from "../workspace.js";
 
 const TEXT = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable]";
@@ -15,7 +16,8 @@ const MOVED_BY_KEYS = "input[type=range], [role=slider], [role=tab], [role=grid]
 
 /** Keys of the view of the race. @type {Record<string, () => unknown>} */
 const RACE_KEYS = {
-  " ": togglePause,
+  // A spectator has no stage to hold: as the play button, it begins a replay of the page's own.
+  " ": () => (isOperator.value ? togglePause : toggleTime)(),
   "r": runPrimaryAction,
   "0": () => (page.camera.value = "free"),
   ",": () => page.run.value !== null && stepReplay(-1),

@@ -1,5 +1,5 @@
 // The tab of the world: what can be disturbed now, what has happened, and the world of the next run.
-import { heldRace, liveTraining } from "../on-stage.js";
+import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
 import { html } from "./elements.js";
 import { WorldSettings } from "./settings.js";
@@ -23,12 +23,17 @@ export function WorldTab() {
   `;
 }
 
-const FromNow = () => html`
-  <section aria-label="From the moment shown">
-    <h3>From the moment shown${shownMoment()}</h3>
-    ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
-  </section>
-`;
+function FromNow() {
+  // At the end of a race nothing is left to walk from there.
+  const isFromPicture = liveTraining.value !== null || stepShown.value !== null;
+  const title = isFromPicture ? "From the moment shown" : "From the middle of the race";
+  return html`
+    <section aria-label=${title}>
+      <h3>${title}${isFromPicture && shownMoment()}</h3>
+      ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
+    </section>
+  `;
+}
 
 const shownMoment = () => (scale.value ? `, ${positionInWords(scale.value, scale.value.picture)}` : "");
 
