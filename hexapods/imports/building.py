@@ -31,8 +31,6 @@ from hexapods.imports.shapes import Shape, drop_touching, link_shapes, torso_sha
 from hexapods.imports.skeleton import FoundLeg, find_skeleton
 from hexapods.imports.stance import Angles, Legged, find_stance, reaches_grid
 
-GRID_SHARE = 0.13
-"""Side of a foot grid that suits a robot, as a share of the length of its legs."""
 _UNLIMITED = (-np.pi, np.pi)
 _LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
 _SAME_PLACE_M = 1e-3
@@ -162,7 +160,6 @@ class _Builder:
             forward_deg=self._posed.turn_deg,
             mass_kg=mass_kg,
             body_height_m=-float(np.mean(foot_heights)),
-            grid_side_m=float(f"{GRID_SHARE * legged.length_m:.2g}"),
             reaches_grid=reaches,
             guesses=tuple(self._notes.guesses),
             repairs=tuple(self._notes.repairs),

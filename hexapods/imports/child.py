@@ -11,6 +11,7 @@ import signal
 import sys
 import tempfile
 import time
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -174,6 +175,7 @@ def _answer_once(pipe: Connection) -> None:
     from hexapods.imports.reading import read_in_this_process  # noqa: PLC0415
 
     silence_mujoco()
+    warnings.simplefilter("ignore")  # of NumPy and MuJoCo, on files that are refused or mended
     pipe.send_bytes(_READY)
     head = json.loads(pipe.recv_bytes())
     _limit(head)

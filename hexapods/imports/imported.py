@@ -40,8 +40,8 @@ class ImportedRobot(Record):
             file.
         mass_kg: its mass.
         body_height_m: height of the torso's centre above the centres of the feet.
-        grid_side_m: side of a foot grid that suits its size.
-        reaches_grid: whether each foot at home reaches the whole of such a grid.
+        reaches_grid: whether each foot at home reaches the corners of a box around it, which is
+            about as large as a foot grid that suits the robot.
         guesses: what was found out and may be otherwise, a sentence each.
         repairs: what was changed, a sentence each.
     """
@@ -57,7 +57,6 @@ class ImportedRobot(Record):
     forward_deg: float
     mass_kg: float
     body_height_m: float
-    grid_side_m: float
     reaches_grid: bool
     guesses: tuple[str, ...]
     repairs: tuple[str, ...]

@@ -1,16 +1,18 @@
 """Damages files at random, as disks, networks and editors do, and as who means harm does."""
 
+import io
 import re
+import zipfile
 from collections.abc import Callable
 
 import numpy as np
 
 from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
 
-_WORDS = (
-    "nan inf -0 0 -1 1e308 -1e308 1e-308 1e9 99999999999 true false x '' mesh plane free ball hinge "
-    "slide FL_hip_joint trunk ../../etc/passwd package://a/b.stl"
-).split()
+_NUMBERS = ("nan", "inf", "-0", "0", "-1", "1e308", "-1e308", "1e-308", "1e9", "99999999999")
+_NAMES = ("FL_hip_joint", "trunk", "../../etc/passwd", "package://a/b.stl", "x", "")
+_KINDS = ("true", "false", "mesh", "plane", "free", "ball", "hinge", "slide")
+_WORDS = (*_NUMBERS, *_NAMES, *_KINDS)
 _ATTRIBUTE = re.compile(rb'([\w:]+)="([^"]*)"')
 _NUMBER = re.compile(rb"-?\d+\.?\d*(?:e-?\d+)?")
 _ELEMENT = re.compile(rb"<(\w+)[^<>]*/>")
@@ -134,9 +136,6 @@ def damaged(count: int, rng: np.random.Generator) -> list[tuple[str, bytes]]:
 
 def _inside(data: bytes, rng: np.random.Generator) -> bytes:
     """Damage a member of a zip, so that the zip itself stays whole."""
-    import io
-    import zipfile
-
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         members = {name: archive.read(name) for name in archive.namelist()}
     name = list(members)[int(rng.integers(len(members)))]

@@ -106,7 +106,8 @@ def bug(
     inertial: str = INERTIAL,
     torso_inertial: str = INERTIAL.replace("0.1", "1.5"),
     torso: str = '<collision><geometry><box size="0.2 0.1 0.04"/></geometry></collision>',
-    femur: str = '<collision><geometry><cylinder radius="0.01" length="0.06"/></geometry></collision>',
+    femur: str = '<collision><geometry><cylinder radius="0.01" length="0.06"/></geometry>'
+    "</collision>",
     tip: str = '<collision><origin xyz="0.12 0 0"/><geometry><sphere radius="0.008"/></geometry>'
     "</collision>",
     limit: str = '<limit lower="-1.6" upper="1.6" effort="{effort}" velocity="5"/>',
@@ -135,9 +136,17 @@ def bug(
             link(f"coxa_{leg}", inertial),
             link(f"femur_{leg}", inertial, femur),
             link(f"tibia_{leg}", inertial, tip),
-            joint(f"j_coxa_{leg}", kind, "base_link", f"coxa_{leg}", (x, y, 0), yaw, "0 0 1"),
-            joint(f"j_femur_{leg}", kind, f"coxa_{leg}", f"femur_{leg}", (0.05, 0, 0), 0, "0 1 0"),
-            joint(f"j_tibia_{leg}", kind, f"femur_{leg}", f"tibia_{leg}", (0.08, 0, 0), 0, "0 1 0"),
+            joint(
+                f"j_coxa_{leg}",
+                kind,
+                "base_link",
+                f"coxa_{leg}",
+                at=(x, y, 0),
+                yaw=yaw,
+                axis="0 0 1",
+            ),
+            joint(f"j_femur_{leg}", kind, f"coxa_{leg}", f"femur_{leg}", at=(0.05, 0, 0)),
+            joint(f"j_tibia_{leg}", kind, f"femur_{leg}", f"tibia_{leg}", at=(0.08, 0, 0)),
         ]
     text = "".join(parts).replace("<!--limit-->", limit.format(effort=effort))
     return f'<?xml version="1.0"?>\n<robot name="bug">{text}{more}</robot>'
@@ -148,10 +157,12 @@ def joint(
     kind: str,
     parent: str,
     child: str,
+    *,
     at: tuple[float, float, float],
-    yaw: float,
-    axis: str,
+    yaw: float = 0,
+    axis: str = "0 1 0",
 ) -> str:
+    """Return a joint of a URDF; its limit is filled in later."""
     x, y, z = at
     return (
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'

@@ -51,7 +51,8 @@ def test_the_parent_imports_no_parser_of_robots(temporary: Path) -> None:
         "from hexapods.imports.child import read_robot_file\n"
         "if __name__ == '__main__':\n"
         "    robot = read_robot_file(open(sys.argv[1], 'rb').read())\n"
-        "    print(len(robot.legs), 'mujoco' in sys.modules, 'hexapods.imports.xml' in sys.modules)\n"
+        "    parsers = ('mujoco', 'hexapods.imports.xml', 'xml.parsers.expat')\n"
+        "    print(len(robot.legs), *(name in sys.modules for name in parsers))\n"
     )
     file, program = temporary / "bug.urdf", temporary / "program.py"
     file.write_text(bug())
@@ -62,7 +63,7 @@ def test_the_parent_imports_no_parser_of_robots(temporary: Path) -> None:
         [sys.executable, program, file], capture_output=True, text=True, check=True, env=paths
     )
 
-    assert done.stdout.split() == ["6", "False", "False"]
+    assert done.stdout.split() == ["6", "False", "False", "False"]
 
 
 def test_its_sentence_comes_back() -> None:
@@ -110,17 +111,19 @@ def test_a_child_that_is_killed_is_told() -> None:
     mesh = stl(box_triangles((1, 1, 1), cells=100))
     torso = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
 
-    with pytest.raises(DamagedFile, match="breaks down|longer than"):
+    with pytest.raises(DamagedFile, match=r"breaks down|longer than"):
         read_robot_file(zipped({"bug.urdf": bug(torso=torso), "a.stl": mesh}))
 
     killer.join()
     assert children() == []
 
 
-@pytest.mark.parametrize("name", ["$(touch owned).xml", "; rm -rf ~", "../../robot\0.xml", "‮lmx"])
+@pytest.mark.parametrize(
+    "name", ["$(touch owned).xml", "; rm -rf ~", "../../robot\0.xml", "\u202elmx"]
+)
 def test_names_are_only_text(name: str, temporary: Path) -> None:
     robot = read_robot_file(dog().replace('model="dog"', "").encode(), name)
 
     assert "\0" not in robot.name
-    assert "‮" not in robot.name
+    assert "\u202e" not in robot.name
     assert list(temporary.iterdir()) == []

@@ -56,8 +56,8 @@ def test_the_line_is_that_of_the_file() -> None:
 @pytest.mark.parametrize(
     "part",
     [
-        '<asset><texture name="t" file="/etc/passwd" type="2d"/><material name="m" texture="t"/></asset>',
-        '<asset><texture name="t" builtin="flat" width="100000" height="100000" type="2d"/></asset>',
+        '<asset><texture name="t" file="/etc/passwd"/><material name="m" texture="t"/></asset>',
+        '<asset><texture name="t" builtin="flat" width="100000" height="100000"/></asset>',
         '<asset><hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/></asset>',
         '<size memory="900G" nuserdata="1000000000"/>',
         '<custom><numeric name="a" size="1000000000"/></custom>',

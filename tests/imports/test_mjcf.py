@@ -18,7 +18,7 @@ def test_a_quadruped_is_read_with_its_legs_numbered_from_the_front_right() -> No
     robot = read(dog(keyframes={"home": HOME}))
 
     assert [leg.foot for leg in robot.legs] == ["FR", "FL", "RL", "RR"]
-    assert [leg.joints[0] for leg in robot.legs][0] == "FR_hip_joint"
+    assert robot.legs[0].joints[0] == "FR_hip_joint"
     assert [joint.name for joint in robot.model.joints_of(1)] == ["hip", "thigh", "calf"]
     assert (robot.name, robot.file_format, robot.gait) == ("dog", "mjcf", "trot")
     assert robot.mass_kg == pytest.approx(5 + 4 * 0.85)

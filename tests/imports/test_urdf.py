@@ -58,9 +58,8 @@ def test_it_moves_as_in_mujoco() -> None:
     # MuJoCo fuses the base with the world unless told otherwise.
     told_so = '<mujoco><compiler fusestatic="false"/></mujoco>'
     text = bug(
-        tip=""
-        '<collision name="tip"><origin xyz="0.12 0 0"/><geometry><sphere radius="0.008"/></geometry>'
-        "</collision>"
+        tip='<collision name="tip"><origin xyz="0.12 0 0"/><geometry><sphere radius="0.008"/>'
+        "</geometry></collision>"
     )
     robot = read(text)
     named = text.replace("</robot>", f"{told_so}</robot>")
@@ -210,7 +209,7 @@ def test_of_several_documents_the_robot_is_found_or_chosen() -> None:
     assert (found.file, len(found.legs)) == ("bug.urdf", 6)
     assert told(found.guesses, "the robot is bug.urdf, not: scene.xml, small.urdf")
     assert (chosen.file, len(chosen.legs)) == ("small.urdf", 4)
-    with pytest.raises(InvalidInput, match="the zip has no 'big.urdf'"):
+    with pytest.raises(InvalidInput, match=r"the zip has no 'big\.urdf'"):
         read(zipped(files), choices=Choices(file="big.urdf"))
 
 
