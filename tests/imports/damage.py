@@ -69,13 +69,9 @@ def swap_attributes(data: bytes, rng: np.random.Generator) -> bytes:
         return data
     first, second = sorted(rng.choice(len(found), 2, replace=False).tolist())
     one, other = found[first], found[second]
-    return (
-        data[: one.start(2)]
-        + other[2]
-        + data[one.end(2) : other.start(2)]
-        + one[2]
-        + data[other.end(2) :]
-    )
+    between = data[one.end(2) : other.start(2)]
+    swapped: bytes = data[: one.start(2)] + other[2] + between + one[2] + data[other.end(2) :]
+    return swapped
 
 
 def delete_elements(data: bytes, rng: np.random.Generator) -> bytes:
