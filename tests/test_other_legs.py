@@ -66,6 +66,13 @@ class _LegsWithTarsi(Legs):
     def feet_in_body(self, angles: FloatArray) -> FloatArray:
         return self._three.feet_in_body(angles[:, self.others])
 
+    def links_in_body(self, angles: Sequence[float]) -> list[FloatArray]:
+        links = self._three.links_in_body([angles[number] for number in self.others])
+        share = TARSUS_M / Robot().tibia_m
+        return [links[0]] + [
+            np.insert(leg, 3, leg[3] + share * (leg[2] - leg[3]), axis=0) for leg in links[1:]
+        ]
+
     def under(self, gait: Gait) -> FootKinematics:
         return _KinematicsWithTarsi(self, self._three.under(gait))
 

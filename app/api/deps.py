@@ -148,6 +148,8 @@ async def _start_request(
     return StartRequest(f"{request.url.path}?{request.url.query}", body, idempotency_key)
 
 
+BodyDep = Annotated[bytes, Depends(_body)]
+"""The body of a request, as it was sent."""
 ServicesDep = Annotated[Services, Depends(_services)]
 StageDep = Annotated[SharedStage, Depends(_stage)]
 """The stage that the request's path is about."""

@@ -184,6 +184,12 @@ class RoomEvent(RoomState):
     """A room has changed; sent on its own stage alone."""
 
 
+class RobotsEvent(Answer):
+    """Stored robots have changed; `GET /options` has them. `count` leaves hidden ones out."""
+
+    count: Count
+
+
 class EventBodies(Answer):
     """Data of each server-sent event, by the event's name."""
 
@@ -197,4 +203,5 @@ class EventBodies(Answer):
     scene: SceneView
     summary: SummaryEvent
     viewers: ViewersEvent
+    robots: RobotsEvent
     room: RoomEvent

@@ -51,6 +51,29 @@ class _CoxaFemurTibia(Legs):
             axis=-1,
         )
 
+    def links_in_body(self, angles: Sequence[float]) -> list[FloatArray]:
+        azimuths, yaws = (each.tolist() for each in _directions(self._robot.legs))
+        links = []
+        for number, leg in enumerate(self._robot.legs):
+            coxa, femur, tibia = angles[3 * number : 3 * number + 3]
+            part, to = self._parts[number], yaws[number] + coxa
+            knee = part.coxa + part.femur * math.cos(femur), part.femur * math.sin(femur)
+            foot = (
+                knee[0] + part.tibia * math.cos(femur + tibia),
+                knee[1] + part.tibia * math.sin(femur + tibia),
+            )
+            at = np.array(
+                [
+                    leg.radius_m * math.cos(azimuths[number]),
+                    leg.radius_m * math.sin(azimuths[number]),
+                    leg.z_m,
+                ]
+            )
+            along = np.array([math.cos(to), math.sin(to), 0])
+            profile = np.array([(0.0, 0.0), (part.coxa, 0.0), knee, foot])
+            links.append(at + profile[:, :1] * along + profile[:, 1:] * np.array([0, 0, 1]))
+        return links
+
     def under(self, gait: Gait) -> FootKinematics:
         return _CoxaFemurTibiaKinematics(self, self._robot, gait)
 

@@ -94,6 +94,17 @@ class Legs(ABC):
         """
 
     @abstractmethod
+    def links_in_body(self, angles: Sequence[float]) -> list[FloatArray]:
+        """Return where the joints and the foot of each leg are in the body frame, outward.
+
+        Args:
+            angles: of all joints [rad], of one pose.
+
+        Returns:
+            For each leg (its joints + 1, 3) [m].
+        """
+
+    @abstractmethod
     def under(self, gait: Gait) -> "FootKinematics":
         """Return the kinematics of the feet in the robot frame of a gait."""
 

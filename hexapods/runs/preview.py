@@ -1,8 +1,11 @@
 """What is known of a walking problem before anything runs: support, reach, states, the law."""
 
+import math
 from bisect import bisect_left
 from dataclasses import dataclass
 from functools import lru_cache
+
+import numpy as np
 
 from hexapods.agents.q_table import MAX_VALUES, table_size
 from hexapods.domain.body import Robot
@@ -31,6 +34,8 @@ class LegPreview(Record):
         mass_kg: its mass, with the foot.
         out_of_reach: what it cannot reach of its grid, in a sentence; null if it reaches all.
         built: all its numbers, as in a request: its place by `x_m` and `y_m`.
+        links_m: its joints and its foot while the robot stands, from the torso outward: right,
+            forward, up from the torso's centre; null if it cannot stand.
     """
 
     leg: int
@@ -40,6 +45,7 @@ class LegPreview(Record):
     mass_kg: float
     out_of_reach: str | None
     built: dict[str, float]
+    links_m: list[tuple[float, float, float]] | None
 
 
 @dataclass(frozen=True)
@@ -150,14 +156,15 @@ def preview(walk: WalkingProblem) -> Preview:
         cells_m=list(grid.places_m),
         built=written_out(robot),
         legs=[
-            LegPreview(leg, group, side, home, kg, unreached.get(leg), built)
-            for leg, (group, side, home, kg, built) in enumerate(
+            LegPreview(leg, group, side, home, kg, unreached.get(leg), built, links)
+            for leg, (group, side, home, kg, built, links) in enumerate(
                 zip(
                     gait.group_of_leg,
                     gait.mirror,
                     support.homes_m,
                     legs.masses_kg,
                     legs_written_out(robot),
+                    _standing_links_m(robot, gait),
                     strict=True,
                 ),
                 start=1,
@@ -179,6 +186,20 @@ def preview(walk: WalkingProblem) -> Preview:
         safe_side_m=safe,
         better=_better(walk, support) if least < STANDS_M else None,
     )
+
+
+def _standing_links_m(robot: Robot, gait: Gait) -> list[list[tuple[float, float, float]] | None]:
+    """Return the places of the joints and the foot of each leg with the feet at home."""
+    legs = legs_of(robot)
+    angles = legs.under(gait).joint_angles(np.zeros((len(legs), 3)))
+    turn = math.radians(90 - gait.forward_deg)
+    cos, sin = math.cos(turn), math.sin(turn)
+    return [
+        [(x * cos - y * sin, x * sin + y * cos, z) for x, y, z in places.tolist()]
+        if np.isfinite(places).all()
+        else None
+        for places in legs.links_in_body(angles.tolist())
+    ]
 
 
 def law_m_per_step(gait: Gait, grid: FootGrid) -> float:

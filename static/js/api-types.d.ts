@@ -583,6 +583,7 @@ export interface EventBodies {
   scene: SceneView;
   summary: SummaryEvent;
   viewers: ViewersEvent;
+  robots: RobotsEvent;
 }
 /**
  * State of the server when the stream begins: the newest runs, or the one that is followed.
@@ -658,10 +659,10 @@ export interface TrainingConfigView {
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
-   * A preset, and by name the parts that differ from it.
+   * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
    */
   robot: {
-    preset:
+    preset?:
       | "stiff"
       | "compliant"
       | "slippery"
@@ -674,6 +675,8 @@ export interface TrainingConfigView {
       | "freenove"
       | "phantomx"
       | "chica";
+    id?: string;
+    name?: string;
     legs?: {
       azimuth_deg: number;
       radius_m: number;
@@ -705,6 +708,7 @@ export interface TrainingConfigView {
       | "freenove"
       | "phantomx"
       | "chica"
+      | string
       | {
           azimuth_deg: number;
           radius_m: number;
@@ -854,10 +858,10 @@ export interface RaceConfigView {
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
-   * A preset, and by name the parts that differ from it.
+   * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
    */
   robot: {
-    preset:
+    preset?:
       | "stiff"
       | "compliant"
       | "slippery"
@@ -870,6 +874,8 @@ export interface RaceConfigView {
       | "freenove"
       | "phantomx"
       | "chica";
+    id?: string;
+    name?: string;
     legs?: {
       azimuth_deg: number;
       radius_m: number;
@@ -901,6 +907,7 @@ export interface RaceConfigView {
       | "freenove"
       | "phantomx"
       | "chica"
+      | string
       | {
           azimuth_deg: number;
           radius_m: number;
@@ -1139,10 +1146,10 @@ export interface ExperimentConfig {
   /**
    * every combination is a setting; without gaits, as in `bodies`, each robot has the gait that suits it.
    *
-   * Items: A preset, and by name the parts that differ from it.
+   * Items: A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
    */
   robots: {
-    preset:
+    preset?:
       | "stiff"
       | "compliant"
       | "slippery"
@@ -1155,6 +1162,8 @@ export interface ExperimentConfig {
       | "freenove"
       | "phantomx"
       | "chica";
+    id?: string;
+    name?: string;
     legs?: {
       azimuth_deg: number;
       radius_m: number;
@@ -1186,6 +1195,7 @@ export interface ExperimentConfig {
       | "freenove"
       | "phantomx"
       | "chica"
+      | string
       | {
           azimuth_deg: number;
           radius_m: number;
@@ -1456,6 +1466,12 @@ export interface SummaryEvent {
  * The number of pages that watch the stage.
  */
 export interface ViewersEvent {
+  count: number;
+}
+/**
+ * Stored robots have changed; `GET /options` has them. `count` leaves hidden ones out.
+ */
+export interface RobotsEvent {
   count: number;
 }
 /**
@@ -1913,6 +1929,10 @@ export interface LegPreview {
   built: {
     [k: string]: number;
   };
+  /**
+   * its joints and its foot while the robot stands, from the torso outward: right, forward, up from the torso's centre; null if it cannot stand.
+   */
+  links_m: [number, number, number][] | null;
 }
 /**
  * Machine on which the experiment ran; empty before its start.
@@ -1979,17 +1999,25 @@ export interface OptionsView {
   exports: ExportOption[];
 }
 /**
- * A robot preset.
+ * A robot: built in, or stored, which has its id as its name too.
  */
 export interface RobotOption {
   name: string;
   title: string;
   description: string;
   /**
-   * A preset, and by name the parts that differ from it.
+   * of a stored robot; null for one that is built in.
    */
-  robot: {
-    preset:
+  id: string | null;
+  /**
+   * whether it is left out where a robot is chosen.
+   */
+  hidden: boolean;
+  /**
+   * of a stored robot: by value, for links that are opened where it is not stored; null for one that is built in or from a file.
+   */
+  body: {
+    preset?:
       | "stiff"
       | "compliant"
       | "slippery"
@@ -2002,6 +2030,8 @@ export interface RobotOption {
       | "freenove"
       | "phantomx"
       | "chica";
+    id?: string;
+    name?: string;
     legs?: {
       azimuth_deg: number;
       radius_m: number;
@@ -2033,6 +2063,77 @@ export interface RobotOption {
       | "freenove"
       | "phantomx"
       | "chica"
+      | string
+      | {
+          azimuth_deg: number;
+          radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
+        }[]
+      | undefined;
+  } | null;
+  /**
+   * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
+   */
+  robot: {
+    preset?:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
+    id?: string;
+    name?: string;
+    legs?: {
+      azimuth_deg: number;
+      radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
+    }[];
+    [k: string]:
+      | number
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
+      | string
       | {
           azimuth_deg: number;
           radius_m: number;
@@ -2052,6 +2153,10 @@ export interface RobotOption {
         }[]
       | undefined;
   };
+  /**
+   * names of the joints of each leg, from the torso to the foot.
+   */
+  joints: string[][];
   /**
    * directions of its legs in its own frame, anticlockwise.
    */
@@ -2480,6 +2585,93 @@ export interface SpectatorsView {
   watching: number;
 }
 /**
+ * A leg of a stored robot.
+ */
+export interface StoredLeg {
+  /**
+   * its number, from 1.
+   */
+  leg: number;
+  /**
+   * where it is on the torso, anticlockwise from body x.
+   */
+  azimuth_deg: number;
+  /**
+   * names of its joints, from the torso to the foot.
+   */
+  joints: string[];
+}
+/**
+ * A stored robot.
+ */
+export interface StoredRobotView {
+  /**
+   * of its content: the same robot has the same id on every server.
+   */
+  id: string;
+  /**
+   * no other robot here has it.
+   */
+  name: string;
+  /**
+   * whether it is left out where a robot is chosen.
+   */
+  hidden: boolean;
+  /**
+   * one that suits it.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
+  /**
+   * legs of each group of this gait.
+   */
+  groups: number[][];
+  legs: StoredLeg[];
+  /**
+   * of a robot from a file: what was guessed, in sentences.
+   */
+  guesses: string[];
+  /**
+   * likewise, what was repaired.
+   */
+  repairs: string[];
+  /**
+   * likewise, what a person has corrected; null for nothing.
+   */
+  choices: {
+    [k: string]: unknown;
+  } | null;
+  /**
+   * name of the file that it is from; null if it was made here.
+   */
+  file: string | null;
+  created_at: string;
+}
+/**
+ * Stored robots, in the order in which they were stored.
+ */
+export interface StoredRobotsView {
+  items: StoredRobotView[];
+}
+/**
  * Number of trials by outcome, with the reasons of those that failed or were set aside.
  */
 export interface SummaryCounts {
@@ -2748,4 +2940,75 @@ export interface WhatIfView {
   chosen: WhatIfHalf;
   default: WhatIfHalf;
   compute_s: number;
+}
+/**
+ * A stored robot with all its numbers, and what is known of it before it walks.
+ */
+export interface WholeRobotView {
+  /**
+   * of its content: the same robot has the same id on every server.
+   */
+  id: string;
+  /**
+   * no other robot here has it.
+   */
+  name: string;
+  /**
+   * whether it is left out where a robot is chosen.
+   */
+  hidden: boolean;
+  /**
+   * one that suits it.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
+  /**
+   * legs of each group of this gait.
+   */
+  groups: number[][];
+  legs: StoredLeg[];
+  /**
+   * of a robot from a file: what was guessed, in sentences.
+   */
+  guesses: string[];
+  /**
+   * likewise, what was repaired.
+   */
+  repairs: string[];
+  /**
+   * likewise, what a person has corrected; null for nothing.
+   */
+  choices: {
+    [k: string]: unknown;
+  } | null;
+  /**
+   * name of the file that it is from; null if it was made here.
+   */
+  file: string | null;
+  created_at: string;
+  /**
+   * by value, as a request may have it.
+   */
+  robot: {
+    [k: string]: unknown;
+  };
+  preview: Preview;
 }

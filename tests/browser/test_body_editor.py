@@ -97,6 +97,16 @@ def is_told_and_accessible(dashboard: Dashboard, editor: Locator) -> None:
     )
     expect(known(editor)).to_contain_text("4 legs: 25 states, 8 moves · stands by 0 mm")
     assert dashboard.violations_in_both_themes() == []
+    picture = editor.get_by_role("slider", name="Direction from which the robot is seen")
+    assert picture.locator("path.limb").count() == 4
+    before = drawn(picture)
+    picture.press("ArrowRight")
+    expect(picture).to_have_attribute("aria-valuenow", "345")
+    assert drawn(picture) != before
+
+
+def drawn(picture: Locator) -> str | None:
+    return picture.locator("path.limb").first.get_attribute("d")
 
 
 def move_legs(page: Page, editor: Locator) -> float:
@@ -122,6 +132,7 @@ def add_legs_and_shorten_one(dashboard: Dashboard, editor: Locator) -> None:
     """What the server tells follows; what is impossible is said at its leg, and can be mended."""
     editor.get_by_role("button", name="Add a leg").click()
     expect(known(editor)).to_contain_text("6 legs: 25 states")
+    expect(editor.locator(".body-picture path.limb")).to_have_count(6)
     tibia = editor.get_by_role("spinbutton", name="Tibia, as a number")
     tibia.fill("0.03")
     expect(editor.get_by_role("alert")).to_have_text(re.compile(r"^Leg 6 cannot reach cell"))

@@ -1,5 +1,6 @@
 """Inverse and forward kinematics of the legs, and the check of reach."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from hexapods.domain.kinematics import JOINT_LIMITS_RAD, check_reach, legs_of
 from hexapods.domain.legs import FootKinematics
 from hexapods.domain.motion import StepMotion
 from hexapods.domain.observation import legal_actions
-from hexapods.domain.robot import Robot, robot
+from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.types import FloatArray
 
 
@@ -37,6 +38,25 @@ def test_forward_kinematics_inverts_inverse_kinematics(gait: str, places: FloatA
 
     assert angles.shape == (18,)
     assert np.allclose(legs.foot_offsets(angles.tolist()), places, atol=1e-12)
+
+
+def test_links_lead_from_the_mounts_by_their_lengths_to_the_feet() -> None:
+    made = PRESETS["ant"]
+    legs = legs_of(made)
+    gait = resolve("tripod", made.azimuths_deg)
+    angles = legs.under(gait).joint_angles(np.zeros((6, 3)))
+    feet = legs.feet_in_body(angles[None])[0]
+
+    for leg, (mount, places) in enumerate(
+        zip(made.legs, legs.links_in_body(angles.tolist()), strict=True)
+    ):
+        x, y, z = places[0]
+        assert math.hypot(x, y) == pytest.approx(mount.radius_m)
+        assert z == mount.z_m
+        lengths_m = np.linalg.norm(np.diff(places, axis=0), axis=1)
+        wanted = [made.of_legs(name)[leg] for name in ("coxa_m", "femur_m", "tibia_m")]
+        assert lengths_m == pytest.approx(wanted)
+        assert places[-1] == pytest.approx(feet[leg], abs=1e-12)
 
 
 @given(offsets(8))

@@ -44,6 +44,19 @@ def test_the_law_counts_each_group_by_its_share_of_the_feet(
     assert told(gait, written).law_m == pytest.approx(law_m, abs=5e-4)
 
 
+def test_the_links_of_a_standing_robot_end_at_home_on_the_ground() -> None:
+    known = told("tripod", "ant")
+
+    for leg in known.legs:
+        assert leg.links_m is not None
+        assert len(leg.links_m) == 4
+        *place, height_m = leg.links_m[-1]
+        assert place == pytest.approx(leg.home_m)
+        assert height_m == pytest.approx(-PRESETS["ant"].body_height_m)
+    short = told("tripod", {"tibia_m": 0.01})
+    assert [leg.links_m for leg in short.legs] == [None] * 6
+
+
 def test_a_robot_that_tips_is_offered_other_groups() -> None:
     pace = told("pace")
 

@@ -113,6 +113,11 @@ def _config(kind: str, text: str) -> Config:
     return from_json(CONFIGS[kind], _json("config", text))  # type: ignore[index]  # it is checked
 
 
+def forget_configs() -> None:
+    """Parse all configs anew, as robots in them have other names."""
+    _config.cache_clear()
+
+
 def _json(name: str, text: Any) -> Any:
     if text is None:
         return None

@@ -171,3 +171,18 @@ ROOM_RUNS = Table(
     Column("created_at", UtcTime, nullable=False),
     Index("ix_room_runs_room_card_seed", "room", "card", "seed"),
 )
+
+ROBOTS = Table(
+    "robots",
+    METADATA,
+    # Beginning of the SHA-256 of its document, which is a file.
+    Column("id", PortableText, primary_key=True),
+    Column("name", PortableText, nullable=False),
+    Column("hidden", BigInteger, nullable=False, server_default="0"),
+    Column("gait", JsonWithNan),
+    Column("guesses", JsonWithNan, nullable=False),
+    Column("repairs", JsonWithNan, nullable=False),
+    Column("choices", JsonWithNan),
+    Column("file", PortableText),
+    Column("created_at", UtcTime, nullable=False),
+)

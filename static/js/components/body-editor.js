@@ -10,6 +10,7 @@ import { bodyIsOpen } from "../form.js";
 import { count } from "../format.js";
 import { inWords } from "../preview.js";
 import { BodyFields } from "./body-fields.js";
+import { BodyPicture } from "./body-picture.js";
 import { BodyPlan } from "./body-plan.js";
 import { Dialog, Held, html, Icon } from "./elements.js";
 
@@ -94,6 +95,7 @@ const FieldSide = () => html`
   <div class="body-field-side">
     <${BodyFields} />
     <${Known} />
+    <${BodyPicture} />
   </div>
 `;
 
