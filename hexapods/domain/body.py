@@ -6,13 +6,13 @@ ring has leg 1 along x, so that forward is where its gait says. Legs are numbere
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar, NamedTuple
 
 from hexapods.domain.errors import ImpossibleLegs, InvalidInput
 
 MIN_LEGS, MAX_LEGS = 3, 12
-NO_NUMBERS = ("name", "legs")
-"""Fields of a robot that are not a number."""
+NO_NUMBERS = ("name", "legs", "model")
+"""Fields of a robot that are not a number; a robot from a file has a model."""
 _OPTIONAL = ("torso_length_m", "torso_width_m")
 """Fields of a robot that may be None."""
 
@@ -51,6 +51,17 @@ class LegMount:
         return self.azimuth_deg if self.yaw_deg is None else self.yaw_deg
 
 
+class Servo(NamedTuple):
+    """What a position servo can do."""
+
+    kp: float
+    """Position gain [N·m/rad]."""
+    kv: float
+    """Velocity gain [N·m·s/rad]."""
+    torque_nm: float
+    """Its largest torque."""
+
+
 def ring(legs: int, radius_m: float = 0.10) -> tuple[LegMount, ...]:
     """Return the mounts of a regular ring, leg 1 along body x, numbered anticlockwise.
 
@@ -76,6 +87,9 @@ class Robot:
     Raises:
         InvalidInput: if a value is out of range.
     """
+
+    changeable: ClassVar[tuple[str, ...] | None] = None
+    """Names of the fields that an input may change; None for all."""
 
     name: str = "stiff"
     """Name of the preset; with the suffix `(modified)` if fields differ from it."""
@@ -159,6 +173,16 @@ class Robot:
                     raise ImpossibleLegs(
                         f"the feet of legs {other} and {number} are in one place", [other, number]
                     )
+
+    def servo_of(self, leg: int, joint: str) -> Servo:  # noqa: ARG002 - a leg has equal servos
+        """Return the servo of a joint, by its leg from 1 and its name."""
+        names = ("servo_kp", "servo_kv", "servo_torque_nm")
+        return Servo(*(self.of_legs(name)[leg - 1] for name in names))
+
+    @property
+    def foot_radii_m(self) -> tuple[float, ...]:
+        """Radius of each foot."""
+        return (self.foot_radius_m,) * len(self.legs)
 
     def of_legs(self, name: str) -> tuple[float, ...]:
         """Return a number that legs may have their own of, such as `coxa_m`, leg by leg."""
