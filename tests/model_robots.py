@@ -79,9 +79,9 @@ def _floats(numbers: Any) -> Any:
 
 
 def _inertia(compiled: mujoco.MjModel, body: int) -> Any:
-    turn = np.empty(9)
-    mujoco.mju_quat2Mat(turn, compiled.body_iquat[body])
-    turn = turn.reshape(3, 3)
+    flat = np.empty(9)
+    mujoco.mju_quat2Mat(flat, compiled.body_iquat[body])
+    turn = flat.reshape(3, 3)
     full = turn @ np.diag(compiled.body_inertia[body]) @ turn.T
     return _floats(full[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]])
 
@@ -156,7 +156,7 @@ def model_of_legs(
                 hinge.name, hinge.axis, (0.0, 0.0, 0.0), (-2.5, 2.5), 0.0,
                 20 * torque_nm, 0.5 * torque_nm, torque_nm, 0.001 * torque_nm, 0.02 * torque_nm,
             )  # fmt: skip
-            middle = tuple(part / 2 for part in hinge.link_m)
+            middle = _floats(part / 2 for part in hinge.link_m)
             half = [max(abs(part) / 2, radius) for part in hinge.link_m]
             links.append(
                 ModelLink(
@@ -170,14 +170,16 @@ def model_of_legs(
                     _inertia_of_box(link_kg, half),
                     joint,
                     (_capsule(hinge.link_m, radius),),
-                )  # fmt: skip
+                )
             )
             at_m, parent = hinge.link_m, len(links) - 1
         feet.append(ModelFoot(parent, at_m, foot_radius_m))
     return RobotModel(tuple(links), tuple(feet))
 
 
-def _inertia_of_box(kg: float, half_m: Sequence[float]) -> tuple[float, ...]:
+def _inertia_of_box(
+    kg: float, half_m: Sequence[float]
+) -> tuple[float, float, float, float, float, float]:
     x, y, z = (half * half for half in half_m)
     return kg / 3 * (y + z), kg / 3 * (x + z), kg / 3 * (x + y), 0.0, 0.0, 0.0
 
@@ -189,7 +191,7 @@ def _capsule(along_m: Sequence[float], radius_m: float) -> ModelGeom:
     return ModelGeom(
         "capsule",
         (radius_m, length / 2, 0.0),
-        tuple(part / 2 for part in along_m),
+        _floats(part / 2 for part in along_m),
         _floats(turned / np.linalg.norm(turned)),
     )
 

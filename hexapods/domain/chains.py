@@ -15,6 +15,7 @@ foot goes to the nearest place of the right height.
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -207,12 +208,12 @@ class _Rows(NamedTuple):
     """Angles by the offset of the foot, its squares and products of two, (3, joints, 3)."""
     foot: slice
     """The foot in the frame of the first joint where the leg stands, (3,)."""
-    length: int
+    length: slice
     """Length of the leg from joint to joint [m]."""
     weights: slice
     """How much an error along the axes of the body counts, as a matrix of errors in the frame of
     the first joint, (3, 3)."""
-    is_flat: int
+    is_flat: slice
     """1 for a foot that moves in a surface only, or 0."""
 
 
@@ -230,8 +231,7 @@ class ChainSolver:
         self.most = most = max(len(chain.axes) for chain in chains)
         sizes = 9, 12 * most, 9 * most, 3, 1, 9, 1
         ends = np.cumsum((0, *sizes)).tolist()
-        parts = [slice(start, end) for start, end in zip(ends[:-1], ends[1:], strict=True)]
-        self._rows = _Rows(*parts[:4], ends[4], parts[5], ends[6])
+        self._rows = _Rows(*(slice(start, end) for start, end in pairwise(ends)))
         columns = [_parameters(chain, most) for chain in chains]
         self.parameters = np.array(columns).T
         self.follows_grid = tuple(bool(column[-1] == 0) for column in columns)
@@ -269,7 +269,7 @@ class ChainSolver:
         moved = _product(to_first, offsets)
         target = parameters[rows.foot] + moved
         turned = _expanded(parameters[rows.expansion].reshape(3, self.most, 3, *each), moved)
-        length = parameters[rows.length]
+        length = parameters[rows.length][0]
         near = length * length
         stages = self._stages(parameters)
         is_there = np.zeros(offsets.shape[1:], bool)
@@ -287,7 +287,7 @@ class ChainSolver:
             change = _damped_step(columns, error, _DAMPING * missing + _LEAST_DAMPING * near)
             if self._is_any_flat:
                 rests = sum(change[joint] * change[joint] for joint in range(self.most))
-                is_there |= (parameters[rows.is_flat] > 0) & (rests <= _RESTS_RAD2)
+                is_there |= (parameters[rows.is_flat][0] > 0) & (rests <= _RESTS_RAD2)
             turned += np.where(is_there, 0.0, change)
         if not is_there.all() or self._is_any_flat:
             turned = np.where(
@@ -304,8 +304,8 @@ class ChainSolver:
         error = target - self._vectors(turned, self._stages(parameters))[:, -1]
         to_first = parameters[rows.to_first].reshape(3, 3, *each)
         height = to_first[0, 2] * error[0] + to_first[1, 2] * error[1] + to_first[2, 2] * error[2]
-        is_level = np.abs(height) <= _HEIGHT_ERROR * parameters[rows.length]
-        reached: FloatArray = np.where(parameters[rows.is_flat] > 0, is_level, is_there)
+        is_level = np.abs(height) <= _HEIGHT_ERROR * parameters[rows.length][0]
+        reached: FloatArray = np.where(parameters[rows.is_flat][0] > 0, is_level, is_there)
         return reached
 
     def _stages(self, parameters: FloatArray) -> FloatArray:
@@ -347,8 +347,9 @@ class ChainSolver:
 
 def _product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Return matrices times vectors, elementwise over the last axes, (3, ...)."""
-    product: FloatArray = matrix[:, 0] * vector[0]
-    product = product + matrix[:, 1] * vector[1] + matrix[:, 2] * vector[2]
+    product: FloatArray = (
+        matrix[:, 0] * vector[0] + matrix[:, 1] * vector[1] + matrix[:, 2] * vector[2]
+    )
     return product
 
 
@@ -429,8 +430,8 @@ def _expansion(
 ) -> FloatArray:
     """Return the second-order expansion of the inverse about the standing pose, (3, most, 3).
 
-    J q + ½ H(q, q) = u is solved by q = A u − ½ A H(A u, A u), A the pseudoinverse of J. A foot that
-    moves in a surface has none: it begins where it stands.
+    J q + ½ H(q, q) = u is solved by q = A u − ½ A H(A u, A u), A the pseudoinverse of J. A foot
+    that moves in a surface has none: it begins where it stands.
     """
     expansion = np.zeros((3, most, 3))
     if is_flat:

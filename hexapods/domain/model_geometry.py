@@ -26,7 +26,7 @@ class Frame(NamedTuple):
     rotation: FloatArray
     origin_m: FloatArray
 
-    def point(self, at_m: Sequence[float]) -> FloatArray:
+    def point(self, at_m: Sequence[float] | FloatArray) -> FloatArray:
         """Return a point of the link in the body frame."""
         turned: FloatArray = self.rotation @ np.asarray(at_m, float) + self.origin_m
         return turned

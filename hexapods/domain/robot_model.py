@@ -72,8 +72,8 @@ class ModelJoint(Record):
     """A hinge by which a link turns against its parent, and the servo that turns it.
 
     Attributes:
-        name: a `JOINT_NAME`; no other joint of its leg has it; the links of all legs have names of one kind, such
-            as `hip` or `knee`, where the file has.
+        name: a `JOINT_NAME`; no other joint of its leg has it; the links of all legs have names of
+            one kind, such as `hip` or `knee`, where the file has.
         axis: unit vector in the frame of the link.
         anchor_m: a point of the axis in the frame of the link.
         limits_rad: lowest and highest angle.
