@@ -6,7 +6,7 @@ ring has leg 1 along x, so that forward is where its gait says. Legs are numbere
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 from hexapods.domain.errors import ImpossibleLegs, InvalidInput
 
@@ -87,9 +87,6 @@ class Robot:
     Raises:
         InvalidInput: if a value is out of range.
     """
-
-    changeable: ClassVar[tuple[str, ...] | None] = None
-    """Names of the fields that an input may change; None for all."""
 
     name: str = "stiff"
     """Name of the preset; with the suffix `(modified)` if fields differ from it."""

@@ -1,11 +1,12 @@
 """Forward kinematics of a model of a robot in one pose: where its links, joints and feet are."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from hexapods.domain.robot_model import RobotModel
+from hexapods.domain.robot_model import Quaternion, RobotModel
 from hexapods.domain.types import FloatArray
 
 
@@ -80,6 +81,44 @@ def leg_chains(model: RobotModel, angles: Mapping[int, Sequence[float]]) -> list
     return chains
 
 
+def turned_mounts(model: RobotModel, by_deg: Sequence[float]) -> RobotModel:
+    """Return a model whose legs are turned about the verticals through their first joints [°]."""
+    angles = home_angles(model)
+    frames = link_frames(model, angles)
+    mounts = [chain.anchors_m[0] for chain in leg_chains(model, angles)]
+    links = list(model.links)
+    for number, link in enumerate(links):
+        if not link.leg or links[link.parent].leg:
+            continue
+        half = np.deg2rad(by_deg[link.leg - 1]) / 2
+        parent, mount = frames[link.parent], mounts[link.leg - 1]
+        turn = np.array([np.cos(half), 0, 0, np.sin(half)])
+        # The turn is about the body's z axis; in the parent's frame that axis is its third row.
+        about = np.concatenate((turn[:1], turn[3] * parent.rotation[2]))
+        off = parent.point(link.at_m) - mount
+        at = parent.rotation.T @ (mount + quaternion_matrix(turn) @ off - parent.origin_m)
+        x, y, z = at.tolist()
+        links[number] = replace(
+            link, at_m=(x, y, z), wxyz=_quaternion_product(about.tolist(), link.wxyz)
+        )
+    return replace(model, links=tuple(links))
+
+
+def _quaternion_product(one: Sequence[float], other: Quaternion) -> Quaternion:
+    w, x, y, z = one
+    a, b, c, d = other
+    product = np.array(
+        [
+            w * a - x * b - y * c - z * d,
+            w * b + x * a + y * d - z * c,
+            w * c - x * d + y * a + z * b,
+            w * d + x * c - y * b + z * a,
+        ]
+    )
+    a, b, c, d = (product / np.linalg.norm(product)).tolist()
+    return a, b, c, d
+
+
 def rotation_about(axis: FloatArray, angle_rad: float) -> FloatArray:
     """Return the matrix of a rotation about a unit vector (Rodrigues), (3, 3)."""
     x, y, z = axis
@@ -90,7 +129,7 @@ def rotation_about(axis: FloatArray, angle_rad: float) -> FloatArray:
     return turned
 
 
-def quaternion_matrix(wxyz: Sequence[float]) -> FloatArray:
+def quaternion_matrix(wxyz: Sequence[float] | FloatArray) -> FloatArray:
     """Return the matrix of a rotation, (3, 3), from a quaternion that is not quite a unit."""
     w, x, y, z = np.array(wxyz, float) / np.linalg.norm(wxyz)
     return np.array(

@@ -39,12 +39,12 @@ class ModelRobot(Robot):
     """A robot from a file.
 
     Its lengths and masses are those of its model, from which `model_robot` derives all fields;
-    what an input may change is `changeable`. Fields of links that only the closed form of legs has,
-    such as `coxa_m`, mean nothing here. Servo fields are the largest of all joints: a change scales
-    every joint. Feet at home stand on one plane, at the mean of their heights in the file.
+    an input may change the fields in `changeable`. Fields of links that only the closed form of
+    legs has, such as `coxa_m`, mean nothing here. Servo fields are the largest of all joints: a
+    change scales every joint. Feet at home stand on one plane, at the mean of their heights in the file.
     """
 
-    changeable: ClassVar[tuple[str, ...] | None] = (
+    changeable: ClassVar[tuple[str, ...]] = (
         *_SERVO,
         "friction",
         "step_height_m",
@@ -52,6 +52,8 @@ class ModelRobot(Robot):
         "shift_s",
         "dt_s",
     )
+    """Names of the fields that an input may change."""
+
     model: RobotModel = field(kw_only=True)
 
     def servo_of(self, leg: int, joint: str) -> Servo:

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from hexapods.domain.body import MAX_LEGS, MIN_LEGS, NO_NUMBERS, LegMount, Robot, ring
 from hexapods.domain.creatures import PRESETS
 from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import JsonForm, Schema
 
 __all__ = ["MAX_LEGS", "MIN_LEGS", "PRESETS", "LegMount", "Robot", "ring"]
@@ -53,6 +54,7 @@ _OWN = (
     "servo_torque_nm",
 )
 """Fields of a robot that a leg may have its own of."""
+_LINKS = tuple(name for name in _OWN if not name.startswith("servo_"))
 LEG_RANGES: dict[str, tuple[float, float]] = {
     "azimuth_deg": AZIMUTH,
     "radius_m": MOUNT_RADIUS,
@@ -88,6 +90,8 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
         if name in given and given[name] is None:
             raise InvalidInput(f"robot.{name} must not be null; leave it out for the preset's")
     base = _preset(given.pop("preset", "stiff"))
+    if isinstance(base, ModelRobot):
+        return changed_model(base, given)
     legs = _legs(given, base)
     numbers = {f.name for f in fields(Robot)}.difference(NO_NUMBERS)
     for name, number in given.items():
@@ -96,6 +100,25 @@ def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
             raise UnknownName("robot field", name, valid)
         given[name] = _number(name, number)
     changed = replace(base, legs=legs, **given)
+    return changed if changed == base else replace(changed, name=f"{base.name} (modified)")
+
+
+def changed_model(base: ModelRobot, given: Mapping[str, Any]) -> ModelRobot:
+    """Return a robot from a file with other servos, friction or times.
+
+    Raises:
+        UnknownName: for a field that its file fixes, such as a length or a mass.
+        InvalidInput: for a value out of range.
+    """
+    changes: dict[str, Any] = {}
+    for name, value in given.items():
+        if name not in base.changeable:
+            raise UnknownName("field that can differ from a robot's file", name, base.changeable)
+        # Servos of large robots are far stronger than those of a hexapod.
+        own = getattr(base, name)
+        limits = (own / 100, own * 100) if name.startswith("servo_") else RANGES[name]
+        changes[name] = _limited(name, value, limits)
+    changed = replace(base, **changes)
     return changed if changed == base else replace(changed, name=f"{base.name} (modified)")
 
 
@@ -119,13 +142,18 @@ def _leg_as_mapping(leg: LegMount) -> dict[str, float]:
 
 
 def written_out(value: Robot) -> dict[str, float | None]:
-    """Return every number of a robot that is not a leg's own; the torso of a cylinder is no box."""
-    return {name: getattr(value, name) for name in RANGES}
+    """Return every number of a robot that is not a leg's own; the torso of a cylinder is no box.
+
+    Of a robot from a file the lengths and masses of links are left out: each link has its own.
+    """
+    left_out = {"home_radius_m", *_LINKS} if isinstance(value, ModelRobot) else set()
+    return {name: getattr(value, name) for name in RANGES if name not in left_out}
 
 
 def legs_written_out(value: Robot) -> list[dict[str, float]]:
     """Return every number of each leg, as in a request: also those that are the robot's."""
-    own = {name: value.of_legs(name) for name in _OWN}
+    is_from_file = isinstance(value, ModelRobot)
+    own = {} if is_from_file else {name: value.of_legs(name) for name in _OWN}
     return [
         {
             "x_m": leg.radius_m * math.cos(math.radians(leg.azimuth_deg)),

@@ -29,6 +29,8 @@ MAX_GEOMS = 1000
 MAX_TRIANGLES = 60_000
 """Of all meshes together."""
 JOINT_NAME = re.compile(r"[A-Za-z0-9_.-]{1,40}", re.ASCII)
+MAX_ANGLE_RAD = 7.0
+"""Largest limit of a joint, more than a turn."""
 _UNIT = 1e-6
 """How far the length of an axis or a quaternion may be from 1."""
 
@@ -267,7 +269,7 @@ def _problems_of_joint(joint: ModelJoint) -> Iterator[str]:
             f"has a joint {joint.name[:40]!r}: names have 1 to 40 letters, digits, points, "
             "hyphens and underscores"
         )
-    if not (-7 <= low < high <= 7 and low <= joint.home_rad <= high):
+    if not (-MAX_ANGLE_RAD <= low < high <= MAX_ANGLE_RAD and low <= joint.home_rad <= high):
         yield f"has a joint {joint.name} that is not at home within its limits"
     if not (_is_unit(joint.axis) and _are_finite(joint.anchor_m)):
         yield f"has a joint {joint.name} without an axis"

@@ -61,7 +61,16 @@ def _add_link(
     body.mass, body.ipos = link.mass_kg, link.center_m
     body.inertia, body.iquat = _principal(link.inertia)
     if link.joint is not None:
-        _add_joint(spec, robot, body, name, link.leg, link.joint)
+        _add_joint(body, name, link.joint)
+        servo = spec.add_actuator(
+            name=name,
+            target=name,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+            forcelimited=True,
+        )
+        set_servo(servo, robot.servo_of(link.leg, link.joint.name))
     for number, geom in enumerate(link.geoms):
         _add_geom(
             body,
@@ -86,14 +95,7 @@ def _principal(inertia: tuple[float, ...]) -> tuple[list[float], list[float]]:
     return [least, middle, largest], wxyz.tolist()
 
 
-def _add_joint(
-    spec: mujoco.MjSpec,
-    robot: ModelRobot,
-    body: mujoco.MjsBody,
-    name: str,
-    leg: int,
-    joint: ModelJoint,
-) -> None:
+def _add_joint(body: mujoco.MjsBody, name: str, joint: ModelJoint) -> None:
     made = body.add_joint(
         name=name,
         type=mujoco.mjtJoint.mjJNT_HINGE,
@@ -104,15 +106,6 @@ def _add_joint(
         armature=joint.armature,
     )
     made.damping = np.array([joint.damping, 0, 0])[: np.size(made.damping)]
-    servo = spec.add_actuator(
-        name=name,
-        target=name,
-        trntype=mujoco.mjtTrn.mjTRN_JOINT,
-        gaintype=mujoco.mjtGain.mjGAIN_FIXED,
-        biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-        forcelimited=True,
-    )
-    set_servo(servo, robot.servo_of(leg, joint.name))
 
 
 def _add_geom(
