@@ -29,8 +29,13 @@ from hexapods.domain.types import FloatArray
 
 _ROUNDS = 14
 """Of the inverse kinematics, at most; within reach two or three suffice."""
-_EXACT = 1e-10
-"""Error at which a foot has arrived, relative to the length of its leg."""
+_EXACT, _NEAR = 3e-6, 1e-3
+"""Errors, relative to the length of the leg, from which one more round suffices: it leaves the
+square of them. The joint targets of a step need less, since they are interpolated."""
+_CHUNK = 1500
+"""Feet whose numbers stay in a processor's cache."""
+_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
+"""Indices of the other two of three axes."""
 _DAMPING = 0.1
 """Relative to the square of the error [rad²]."""
 _LEAST_DAMPING = 1e-12
@@ -150,6 +155,8 @@ class ChainLegs(Legs):
 class ChainKinematics(FootKinematics):
     """Kinematics of the feet of chains in the robot frame of a gait."""
 
+    is_costly = True
+
     def __init__(self, legs: ChainLegs, solver: "ChainSolver", gait: Gait) -> None:
         self.legs, self._solver, self._chain_legs = legs, solver, legs
         turn = math.radians(90 - gait.forward_deg)
@@ -160,17 +167,22 @@ class ChainKinematics(FootKinematics):
         self.homes_m = np.stack(
             (x * self._cos - y * self._sin, x * self._sin + y * self._cos), axis=1
         )
-        most, ones = solver.most, np.ones(len(legs))
-        home = np.zeros((most, len(legs)))
+        ones = np.ones(len(legs))
+        self._home_rad = np.zeros((len(legs), solver.most))
         for leg in range(len(legs)):
             own = legs.standing_rad[legs.leg_of_joint == leg]
-            home[: len(own), leg] = own
-        to_body = np.array(
-            [self._cos * ones, -self._sin * ones, self._sin * ones, self._cos * ones]
+            self._home_rad[leg, : len(own)] = own
+        self.frames = np.array(
+            [
+                self._cos * ones,
+                -self._sin * ones,
+                self._sin * ones,
+                self._cos * ones,
+                np.arange(len(legs)),
+            ]
         )
-        self.frames = np.concatenate((to_body, home, solver.parameters))
-        """Of each leg: x and y of the body frame for x of the robot frame, and for its y; the
-        angles of its joints where it stands; and the parameters of its chain."""
+        """Of each leg: x and y of the body frame for x of the robot frame, and for its y; and the
+        index of the leg."""
 
     def mirrored(self, signs: FloatArray) -> FloatArray:
         frames = self.frames.copy()
@@ -178,13 +190,32 @@ class ChainKinematics(FootKinematics):
         return frames
 
     def solve(self, places: FloatArray, heights: FloatArray, frames: FloatArray) -> FloatArray:
-        most = self._solver.most
-        offsets = np.empty((3, *places.shape[1:]))
+        return self._solve(places, heights, frames, _NEAR)
+
+    def joint_angles(self, offsets: FloatArray) -> FloatArray:
+        x, y, z = np.ascontiguousarray(np.moveaxis(offsets, -1, 0))
+        frames = np.broadcast_to(
+            self.frames.reshape(5, *(1 for _ in x.shape[:-1]), x.shape[-1]), (5, *x.shape)
+        )
+        return self.in_pose_order(self._solve(np.array((x, y)), z, frames, _EXACT))
+
+    def _solve(
+        self, places: FloatArray, heights: FloatArray, frames: FloatArray, near: float
+    ) -> FloatArray:
+        shape = places.shape[1:]
+        offsets = np.empty((3, *shape))
         offsets[:2] = frames[:2] * places[0] + frames[2:4] * places[1]
         offsets[2] = heights
-        turned = self._solver.solve(offsets, frames[4 + most :])
-        angles: FloatArray = np.moveaxis(frames[4 : 4 + most], 0, -1) + turned
-        return angles
+        offsets, legs = offsets.reshape(3, -1), frames[4].astype(int).ravel()
+        angles = np.empty((len(legs), self._solver.most))
+        with np.errstate(invalid="ignore", over="ignore"):
+            for start in range(0, len(legs), _CHUNK):
+                part = slice(start, start + _CHUNK)
+                leg = legs[part]
+                parameters = self._solver.parameters.take(leg, 1)
+                turned = self._solver.solve(offsets[:, part], parameters, near)
+                angles[part] = self._home_rad[leg] + turned
+        return angles.reshape(*shape, -1)
 
     def foot_offsets(self, angles: Sequence[float]) -> list[tuple[float, float, float]]:
         turned = self._chain_legs.turned(np.array([angles]))
@@ -254,12 +285,15 @@ class ChainSolver:
         feet: FloatArray = in_body + self._origins_m
         return feet
 
-    def solve(self, offsets: FloatArray, parameters: FloatArray) -> FloatArray:
+    def solve(
+        self, offsets: FloatArray, parameters: FloatArray, near: float = _EXACT
+    ) -> FloatArray:
         """Return the angles of joints that move feet from where they stand.
 
         Args:
             offsets: of the feet in the body frame, (3, ...) [m].
             parameters: of each foot those of its leg, (rows, ...); broadcasts with `offsets`.
+            near: error from which one more round suffices, relative to the length of the leg.
 
         Returns:
             Angles from the standing pose, (..., most) [rad]; NaN where a foot is out of reach.
@@ -269,8 +303,7 @@ class ChainSolver:
         moved = _product(to_first, offsets)
         target = parameters[rows.foot] + moved
         turned = _expanded(parameters[rows.expansion].reshape(3, self.most, 3, *each), moved)
-        length = parameters[rows.length][0]
-        near = length * length
+        squared_length = parameters[rows.length][0] * parameters[rows.length][0]
         stages = self._stages(parameters)
         is_there = np.zeros(offsets.shape[1:], bool)
         for _ in range(_ROUNDS):
@@ -281,18 +314,18 @@ class ChainSolver:
                 error, columns = _product(weights, error), _product(weights[:, :, None], columns)
             squared = error * error
             missing = squared[0] + squared[1] + squared[2]
-            is_there |= missing <= _EXACT * _EXACT * near
-            if is_there.all():
-                break
-            change = _damped_step(columns, error, _DAMPING * missing + _LEAST_DAMPING * near)
+            damping = _DAMPING * missing + _LEAST_DAMPING * squared_length
+            change = _damped_step(columns, error, damping)
+            turned += np.where(is_there, 0.0, change)
+            is_there |= missing <= near * near * squared_length
             if self._is_any_flat:
                 rests = sum(change[joint] * change[joint] for joint in range(self.most))
                 is_there |= (parameters[rows.is_flat][0] > 0) & (rests <= _RESTS_RAD2)
-            turned += np.where(is_there, 0.0, change)
+            if is_there.all():
+                break
         if not is_there.all() or self._is_any_flat:
-            turned = np.where(
-                self._is_reached(turned, target, parameters, is_there), turned, np.nan
-            )
+            is_reached = self._is_reached(turned, target, parameters, is_there)
+            turned = np.where(is_reached, turned, np.nan)
         return np.ascontiguousarray(np.moveaxis(turned, 0, -1))
 
     def _is_reached(
@@ -363,7 +396,7 @@ def _expanded(expansion: FloatArray, moved: FloatArray) -> FloatArray:
     terms = (
         expansion[0] * moved
         + expansion[1] * (moved * moved)
-        + expansion[2] * (moved * moved[[1, 2, 0]])
+        + expansion[2] * (moved * moved.take(_NEXT, 0))
     )
     angles: FloatArray = terms[:, 0] + terms[:, 1] + terms[:, 2]
     return angles
@@ -377,16 +410,20 @@ def _damped_step(columns: FloatArray, error: FloatArray, damping: FloatArray) ->
         error: (3, n).
         damping: (n,).
     """
-    diagonals, others = columns * columns, columns * columns[[1, 2, 0]]
+    diagonals, others = columns * columns, columns * columns.take(_NEXT, 0)
     diagonal, other = diagonals[:, 0] + damping, others[:, 0]  # xx yy zz; xy yz zx
     for joint in range(1, columns.shape[1]):
         diagonal, other = diagonal + diagonals[:, joint], other + others[:, joint]
-    next_diagonal, last_diagonal = diagonal[[1, 2, 0]], diagonal[[2, 0, 1]]
-    next_other, last_other = other[[1, 2, 0]], other[[2, 0, 1]]
+    next_diagonal, last_diagonal = diagonal.take(_NEXT, 0), diagonal.take(_LAST, 0)
+    next_other, last_other = other.take(_NEXT, 0), other.take(_LAST, 0)
     cofactors = next_diagonal * last_diagonal - next_other * next_other
     mixed = next_other * last_other - other * last_diagonal
     determinant = diagonal[0] * cofactors[0] + other[0] * mixed[0] + other[2] * mixed[2]
-    solved = cofactors * error + mixed * error[[1, 2, 0]] + mixed[[2, 0, 1]] * error[[2, 0, 1]]
+    solved = (
+        cofactors * error
+        + mixed * error.take(_NEXT, 0)
+        + mixed.take(_LAST, 0) * error.take(_LAST, 0)
+    )
     solved = solved / determinant
     parts = columns * solved[:, None]
     step: FloatArray = parts[0] + parts[1] + parts[2]

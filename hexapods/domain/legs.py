@@ -119,11 +119,14 @@ class FootKinematics(ABC):
         legs: the legs.
         homes_m: home positions of the feet, (legs, 2).
         frames: what `solve` needs to know of each leg, (..., legs).
+        is_costly: whether `solve` takes so long that a step's joint targets are interpolated
+            between a few of its places.
     """
 
     legs: Legs
     homes_m: FloatArray
     frames: FloatArray
+    is_costly: bool = False
 
     @abstractmethod
     def mirrored(self, signs: FloatArray) -> FloatArray:

@@ -41,7 +41,8 @@ class ModelRobot(Robot):
     Its lengths and masses are those of its model, from which `model_robot` derives all fields;
     an input may change the fields in `changeable`. Fields of links that only the closed form of
     legs has, such as `coxa_m`, mean nothing here. Servo fields are the largest of all joints: a
-    change scales every joint. Feet at home stand on one plane, at the mean of their heights in the file.
+    change scales every joint. Feet at home stand on one plane, at the mean of their heights in
+    the file.
     """
 
     changeable: ClassVar[tuple[str, ...]] = (
