@@ -2,7 +2,7 @@
 
 Forward kinematics is a product of exponentials about the pose in which the robot stands. Each joint
 has a frame whose z axis is its own, so that its exponential turns two coordinates. The inverse
-begins with a second-order expansion about the standing pose, and goes on by damped least squares
+begins with cubic polynomials that fit it near the standing pose, and goes on by damped least squares
 (Levenberg-Marquardt), damped by the square of the error (Sugihara 2011, "Solvability-unconcerned
 inverse kinematics by the Levenberg-Marquardt method"). A foot that has arrived is left alone, and
 all operations are elementwise, so that no result depends on the others of a batch. A chain with
@@ -29,7 +29,7 @@ from hexapods.domain.types import FloatArray
 
 _ROUNDS = 14
 """Of the inverse kinematics, at most; within reach two or three suffice."""
-_EXACT, _NEAR = 3e-6, 1e-3
+_EXACT, _NEAR = 3e-6, 6e-3
 """Errors, relative to the length of the leg, from which one more round suffices: it leaves the
 square of them. The joint targets of a step need less, since they are interpolated."""
 _CHUNK = 1500
@@ -46,8 +46,13 @@ _HEIGHT_COUNTS = 8.0
 """How much more the height counts than the place, of a foot that moves in a surface."""
 _HEIGHT_ERROR = 0.02
 """Largest error of such a foot's height, relative to the length of its leg."""
-_RESTS_RAD2 = 1e-14
-"""Squared change of a round at which such a foot has arrived."""
+_RESTS = 1 / 30
+"""Change of a round at which such a foot has arrived [rad], relative to `_EXACT` or `_NEAR`."""
+_FITTED_BOX = np.array([(-0.2, 0.2), (-0.2, 0.2), (-0.05, 0.2)])
+"""Where the first angles are fitted, relative to the distance of the foot from the first joint."""
+_FITTED_PER_AXIS = 9
+_MONOMIALS = 19
+"""Of three numbers, of degrees 1 to 3."""
 
 
 class ChainLegs(Legs):
@@ -236,7 +241,7 @@ class _Rows(NamedTuple):
     """Of each joint the rotation of the next joint's frame to its own, and the place of the next
     joint's origin, or of the foot, (3, 4, joints)."""
     expansion: slice
-    """Angles by the offset of the foot, its squares and products of two, (3, joints, 3)."""
+    """Coefficients of `_monomials` that give the first angles, (7, joints, 3)."""
     foot: slice
     """The foot in the frame of the first joint where the leg stands, (3,)."""
     length: slice
@@ -260,7 +265,7 @@ class ChainSolver:
 
     def __init__(self, chains: Sequence[Chain]) -> None:
         self.most = most = max(len(chain.axes) for chain in chains)
-        sizes = 9, 12 * most, 9 * most, 3, 1, 9, 1
+        sizes = 9, 12 * most, 21 * most, 3, 1, 9, 1
         ends = np.cumsum((0, *sizes)).tolist()
         self._rows = _Rows(*(slice(start, end) for start, end in pairwise(ends)))
         columns = [_parameters(chain, most) for chain in chains]
@@ -269,6 +274,33 @@ class ChainSolver:
         self._is_any_flat = not all(self.follows_grid)
         origins = np.array([chain.anchors_m[0] for chain in chains]).T
         self._origins_m = origins[:, None]
+        fitted = [self._fitted(leg, chain) for leg, chain in enumerate(chains)]
+        self.parameters[self._rows.expansion] = np.array(fitted).T
+
+    def _fitted(self, leg: int, chain: Chain) -> FloatArray:
+        """Return coefficients of first angles by least squares around the standing pose.
+
+        Where too few places are within reach, they are those of the expansion.
+        """
+        parameters = self.parameters[:, leg]
+        taylor: FloatArray = parameters[self._rows.expansion]
+        size = float(np.linalg.norm(chain.foot_m - chain.anchors_m[0]))
+        axes = [size * np.linspace(low, high, _FITTED_PER_AXIS) for low, high in _FITTED_BOX]
+        places = np.stack(np.meshgrid(*axes), axis=0).reshape(3, -1)
+        with np.errstate(invalid="ignore", over="ignore"):
+            angles = self.solve(places, parameters[:, None])
+        is_reached = np.isfinite(angles[:, 0])
+        if is_reached.sum() < 4 * _MONOMIALS:
+            return taylor
+        to_first = parameters[self._rows.to_first].reshape(3, 3)
+        # Relative to the size, so that all coefficients are of one order.
+        terms = _monomials(to_first @ places[:, is_reached] / size)
+        terms = np.moveaxis(terms, -1, 0).reshape(-1, 21)[:, :_MONOMIALS]
+        found, *_ = np.linalg.lstsq(terms, angles[is_reached], rcond=None)
+        degrees = np.repeat((1, 2, 2, 3, 3, 3, 3), 3)[:_MONOMIALS]
+        coefficients = np.zeros((21, self.most))
+        coefficients[:_MONOMIALS] = found / size ** degrees[:, None]
+        return np.moveaxis(coefficients.reshape(7, 3, -1), 1, 2).ravel()
 
     def feet_m(self, turned: FloatArray) -> FloatArray:
         """Return the centres of the feet in the body frame, (3, k, legs).
@@ -302,7 +334,7 @@ class ChainSolver:
         to_first = parameters[rows.to_first].reshape(3, 3, *each)
         moved = _product(to_first, offsets)
         target = parameters[rows.foot] + moved
-        turned = _expanded(parameters[rows.expansion].reshape(3, self.most, 3, *each), moved)
+        turned = _expanded(parameters[rows.expansion].reshape(7, self.most, 3, *each), moved)
         squared_length = parameters[rows.length][0] * parameters[rows.length][0]
         stages = self._stages(parameters)
         is_there = np.zeros(offsets.shape[1:], bool)
@@ -320,7 +352,9 @@ class ChainSolver:
             is_there |= missing <= near * near * squared_length
             if self._is_any_flat:
                 rests = sum(change[joint] * change[joint] for joint in range(self.most))
-                is_there |= (parameters[rows.is_flat][0] > 0) & (rests <= _RESTS_RAD2)
+                is_there |= (parameters[rows.is_flat][0] > 0) & (
+                    rests <= _RESTS * near * _RESTS * near
+                )
             if is_there.all():
                 break
         if not is_there.all() or self._is_any_flat:
@@ -387,19 +421,35 @@ def _product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
 
 
 def _expanded(expansion: FloatArray, moved: FloatArray) -> FloatArray:
-    """Return angles by the expansion to second order, (most, n).
+    """Return angles by polynomials of an offset, (most, ...).
 
     Args:
-        expansion: coefficients of the offset, its squares and its products, (3, most, 3, n).
-        moved: the offset in the frame of the first joint, (3, n).
+        expansion: coefficients, (7, most, 3, ...).
+        moved: the offset in the frame of the first joint, (3, ...).
     """
-    terms = (
-        expansion[0] * moved
-        + expansion[1] * (moved * moved)
-        + expansion[2] * (moved * moved.take(_NEXT, 0))
-    )
-    angles: FloatArray = terms[:, 0] + terms[:, 1] + terms[:, 2]
+    terms = expansion * _monomials(moved)[:, None]
+    sums: FloatArray = terms[0]
+    for group in range(1, 7):
+        sums = sums + terms[group]
+    angles: FloatArray = sums[:, 0] + sums[:, 1] + sums[:, 2]
     return angles
+
+
+def _monomials(moved: FloatArray) -> FloatArray:
+    """Return the monomials of three numbers up to degree 3, (7, 3, ...); the last two are 0.
+
+    They are x y z; xx yy zz; xy yz zx; xxx yyy zzz; xxy yyz zzx; xxz yyx zzy; xyz.
+    """
+    found = np.zeros((7, *moved.shape))
+    after = moved.take(_NEXT, 0)
+    found[0] = moved
+    squares = np.multiply(moved, moved, out=found[1])
+    np.multiply(moved, after, out=found[2])
+    np.multiply(squares, moved, out=found[3])
+    np.multiply(squares, after, out=found[4])
+    np.multiply(squares, moved.take(_LAST, 0), out=found[5])
+    np.multiply(found[2, 0], moved[2], out=found[6, 0])
+    return found
 
 
 def _damped_step(columns: FloatArray, error: FloatArray, damping: FloatArray) -> FloatArray:
@@ -465,12 +515,12 @@ def _parameters(chain: Chain, most: int) -> FloatArray:
 def _expansion(
     chain: Chain, columns: FloatArray, to_first: FloatArray, most: int, *, is_flat: bool
 ) -> FloatArray:
-    """Return the second-order expansion of the inverse about the standing pose, (3, most, 3).
+    """Return the second-order expansion of the inverse about the standing pose, (7, most, 3).
 
     J q + ½ H(q, q) = u is solved by q = A u − ½ A H(A u, A u), A the pseudoinverse of J. A foot
     that moves in a surface has none: it begins where it stands.
     """
-    expansion = np.zeros((3, most, 3))
+    expansion = np.zeros((7, most, 3))
     if is_flat:
         return expansion
     count = len(columns)
