@@ -1,8 +1,8 @@
 """The interface of legs: what the rest of the program knows of those of a robot.
 
-How many joints a leg has, what they are called and how its foot is moved is known here only: the
-one kind of leg that there is implements the interface in `hexapods.domain.kinematics`. Which legs
-move together is a matter of the gait (`hexapods.domain.gait`).
+How many joints a leg has, what they are called and how its foot is moved is known here only. Two
+kinds implement it: `hexapods.domain.kinematics`, and `hexapods.domain.chains` for any chain. Which
+legs move together is a matter of the gait (`hexapods.domain.gait`).
 """
 
 from abc import ABC, abstractmethod
@@ -119,11 +119,14 @@ class FootKinematics(ABC):
         legs: the legs.
         homes_m: home positions of the feet, (legs, 2).
         frames: what `solve` needs to know of each leg, (..., legs).
+        is_costly: whether `solve` takes so long that a step's joint targets are interpolated
+            between a few of its places.
     """
 
     legs: Legs
     homes_m: FloatArray
     frames: FloatArray
+    is_costly: bool = False
 
     @abstractmethod
     def mirrored(self, signs: FloatArray) -> FloatArray:

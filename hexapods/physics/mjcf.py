@@ -8,9 +8,11 @@ import numpy as np
 from hexapods.assets import models_dir
 from hexapods.domain.disturbances import Payload
 from hexapods.domain.kinematics import JOINT_LIMITS_RAD
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.robot import Robot
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.physics.conditions import apply_conditions, set_servo
+from hexapods.physics.model_spec import model_spec
 
 VISIBLE_GROUP = 1
 """The group of the visual geoms."""
@@ -75,6 +77,11 @@ def robot_spec(robot: Robot) -> mujoco.MjSpec:
     return spec
 
 
+@robot_spec.register
+def _(robot: ModelRobot) -> mujoco.MjSpec:
+    return model_spec(robot, mujoco.MjSpec.from_file(str(models_dir() / "torso.xml")))
+
+
 def is_painted(geom_name: str) -> bool:
     """Return whether a visual geom is painted in the agent's colour."""
     return not any(part in geom_name for part in _UNPAINTED)
@@ -117,7 +124,7 @@ def _leg_spec(robot: Robot, number: int) -> mujoco.MjSpec:
         joint, servo = spec.joint(link), spec.actuator(link)
         joint.armature, joint.range = robot.joint_armature, JOINT_LIMITS_RAD[link]
         joint.damping = np.array([robot.joint_damping, 0, 0])[: np.size(joint.damping)]
-        set_servo(servo, robot, number)
+        set_servo(servo, robot.servo_of(number, link))
     foot = spec.geom("foot")
     foot.mass, foot.size = own("foot_kg"), [robot.foot_radius_m, 0, 0]
     _set_friction(foot, robot)
