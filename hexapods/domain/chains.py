@@ -61,7 +61,6 @@ class ChainLegs(Legs):
     Attributes:
         standing: of each leg its joints and foot while the robot stands.
         standing_rad: angles of all joints then, (joints,).
-        follows_grid: of each leg whether its foot can go to any place near home.
     """
 
     def __init__(self, robot: ModelRobot) -> None:

@@ -1,6 +1,7 @@
 """Effects of a world on a MuJoCo model: servos, legs, ground, gravity and payload.
 
-No joint is added or removed, so that a state of one model continues in another. Sensor noise, delay and dead band are no part of a model.
+No joint is added or removed, so that a state of one model continues in another. Sensor noise, delay
+and dead band are no part of a model.
 """
 
 from collections.abc import Sequence

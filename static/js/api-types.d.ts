@@ -1908,6 +1908,10 @@ export interface LegPreview {
    */
   out_of_reach: string | null;
   /**
+   * whether its foot can go to any place near home; one of two joints cannot.
+   */
+  follows_grid: boolean;
+  /**
    * all its numbers, as in a request: its place by `x_m` and `y_m`.
    */
   built: {
@@ -2257,6 +2261,10 @@ export interface Preview {
    * largest grid side with which every action is always possible; likewise.
    */
   safe_side_m: number | null;
+  /**
+   * which legs cannot follow the grid, in a sentence; null if all can.
+   */
+  beside_grid: string | null;
   /**
    * groups to take instead; null if it does not tip, or tips with any.
    */

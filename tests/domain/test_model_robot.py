@@ -103,6 +103,9 @@ def test_it_begins_with_a_gait_and_a_grid_with_which_it_walks(model: RobotModel,
     assert known.safe_side_m >= side_m
     assert len(known.legs) == len(model.feet)
     assert "coxa_m" not in known.built
+    follows = "legs 1, 2, 3, 4" if len(model.joints_of(1)) == 2 else None
+    assert (known.beside_grid is None) if follows is None else follows in (known.beside_grid or "")
+    assert {leg.follows_grid for leg in known.legs} == {follows is None}
     links = known.legs[0].links_m
     assert links is not None
     assert len(links) == len(model.joints_of(1)) + 1
