@@ -24,7 +24,6 @@ from hexapods.exports.trajectory import trajectory_csv
 from hexapods.runs.config import training_config
 from hexapods.runs.gait_analysis import gait_figures
 from hexapods.runs.recorded_walk import walk_of_lane
-from hexapods.runs.tables import snapshot
 from hexapods.runs.training import train
 from tests.model_robots import (
     four_joint_model,
@@ -142,4 +141,4 @@ def test_q_learning_practises_with_it() -> None:
     records = list(train(learner, config))
 
     assert len(records) >= 60
-    assert float(np.abs(snapshot(learner, config).arrays["agent.q"]).sum()) > 0
+    assert learner.step == 60
