@@ -177,7 +177,7 @@ async function request(method, path, body, headers = {}) {
  * @param {Parameters<typeof request>} given
  * @returns {Promise<any>} the answer's JSON, null where there is none
  */
-const call = async (...given) => parse(await (await request(...given)).text());
+export const call = async (...given) => parse(await (await request(...given)).text());
 
 /** @param {Kind} kind */
 const collection = (kind) => `${kind}s`;

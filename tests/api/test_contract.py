@@ -1,6 +1,7 @@
 """OpenAPI document: it describes every route and response, and real responses match it."""
 
 import asyncio
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,8 @@ from app.api.option_answers import OptionsView
 from app.api.problems import STATUSES
 from app.api.rate_limit import QUESTIONS
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
+from app.api.robot_answers import StoredRobotsView, StoredRobotView, WholeRobotView
+from app.api.room_access import OF_PARTICIPANTS, OPEN_TO_ALL
 from app.server import create_app
 from app.settings import Settings
 from hexapods.domain.errors import HexapodError
@@ -38,7 +41,8 @@ from tests.storage.stores import temporary_store
 
 PAGES = {
     *("/", "/docs", "/favicon.ico", "/guide/{name}"),
-    *("/openapi.json", "/static", "/viewer", "/viewer/"),
+    *("/l/{lesson_id}", "/openapi.json", "/r/{code}", "/r/{code}/"),
+    *("/static", "/viewer", "/viewer/"),
 }
 """Pages for browsers, which are no part of the API."""
 Serve = Callable[..., Api]
@@ -65,7 +69,7 @@ def resolved(described: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any
 
 def test_every_route_is_described(app: FastAPI, described: dict[str, Any]) -> None:
     routes = {
-        (method.lower(), context.path.replace(":path", ""))
+        (method.lower(), re.sub(":(path|robot)", "", context.path))
         for context in iter_route_contexts(app.routes)
         if context.path and context.path not in PAGES
         for method in set(context.methods or ()) - {"HEAD"}
@@ -133,11 +137,13 @@ def test_security_requirements_are_described(
     api = serve(**settings)
     bearer = {"Authorization": "Bearer a-token-for-tests"} if settings else {}
     described = api.client.get("/openapi.json", headers=bearer).json()
-    assert set(described["components"]["securitySchemes"]) == {"bearer", "cookie"}
+    assert set(described["components"]["securitySchemes"]) == {"bearer", "cookie", "participant"}
     for method, path, operation in operations(described):
         is_free = {} in operation["security"]
-        if path in ("/healthz", "/readyz"):
+        if path in ("/healthz", "/readyz") or (method, path) in OPEN_TO_ALL:
             assert is_free
+        elif (method, path) in OF_PARTICIPANTS:
+            assert operation["security"] == [{"participant": []}]
         else:
             is_read = method == "get" or path in QUESTIONS
             assert is_free == (reads if is_read else writes), path
@@ -189,7 +195,6 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     yield RecordingView, api.get(f"/races/{race['id']}/recording")
     for clock in ("paper", "wall", "free"):
         yield TimelineView, api.get(f"/races/{race['id']}/timeline?clock={clock}")
-    yield OptionsView, api.get("/options")
     yield StageView, api.get("/stage")
     asked = api.call("POST", "/what-if", json={"gait": WALK["gait"], "steps": 50})
     yield WhatIfView, asked.json()
@@ -197,6 +202,12 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     experiment = api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1})
     yield ExperimentView, experiment
     yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
+    stored = api.call("POST", "/robots", json={"robot": {"preset": "ant", "femur_m": 0.07}}).json()
+    yield StoredRobotView, stored
+    yield WholeRobotView, api.get(f"/robots/{stored['id']}")
+    yield StoredRobotsView, api.get("/robots")
+    yield OptionsView, api.get("/options")
+    api.call("DELETE", f"/robots/{stored['id']}")
     yield ExperimentView, api.finished(experiment)
     yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
     yield TrialsView, api.get(f"/experiments/{experiment['id']}/trials")
@@ -225,6 +236,8 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     api.finished(api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1}))
     api.ended(run)
     api.call("DELETE", f"/trainings/{run['id']}")
+    stored = api.call("POST", "/robots", json={"robot": {"preset": "ant", "femur_m": 0.07}}).json()
+    api.call("DELETE", f"/robots/{stored['id']}")
 
     async def first_event() -> ServerSentEvent:
         listener = EventListener("operator")
@@ -237,8 +250,8 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     subscription.close()
     received = {event.event for event in events}
     assert snapshot.raw_data is not None
-    # A viewer connects to the stage only in a browser.
-    assert received | {"snapshot", "viewers"} == set(models)
+    # A viewer connects to the stage only in a browser, and a room has a stage of its own.
+    assert received | {"snapshot", "viewers", "room"} == set(models)
     for name, data in [("snapshot", snapshot.raw_data), *((one.event, one.data) for one in events)]:
         TypeAdapter(models[name]).validate_json(data)
 
