@@ -38,7 +38,7 @@ _OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]
 _COOKIE = re.compile(rf"(?:__Host-)?{ROOM_NAME}_\d+_(?P<code>[{ALPHABET}]{{{CODE_LENGTH}}})")
 _DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
 """By the end of the path that is sent to, what the card must allow."""
-_LEAVE = "/participants/me"
+_LEAVE = "/me"
 _JOIN = "/participants"
 OPEN_TO_ALL = frozenset(
     {
