@@ -46,7 +46,10 @@ def _lesson(request: Request, body: BodyDep) -> Lesson:
     responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
     openapi_extra={
         "requestBody": {
-            "content": dict.fromkeys(("application/json", MEDIA_TYPE), {"schema": GIVEN_LESSON}),
+            "content": {
+                "application/json": {"schema": GIVEN_LESSON},
+                MEDIA_TYPE: {"schema": GIVEN_LESSON},
+            },
             "required": True,
         }
     },

@@ -28,7 +28,7 @@ from app.storage.errors import NotFound
 WRONG_CODES, WRONG_CODES_PER_S = 60, 1.0
 """Of an address, which a class may share."""
 JOINS, JOINS_PER_S = 48, 0.2
-"""Of an address, likewise."""
+"""Of an address, likewise, to one room, which has places for more."""
 ROOMS = "/api/v1/rooms"
 PAGES = "/r"
 READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})

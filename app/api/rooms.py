@@ -214,7 +214,7 @@ def join_room(
     rooms = services.rooms
     if rooms.seat(normalized(code), cookie.value) is None:
         rooms.get(code).check_open()
-        if (wait_s := services.joins.take(client_of(scope))) > 0:
+        if (wait_s := services.joins.take(f"{normalized(code)} {client_of(scope)}")) > 0:
             raise Busy(_JOINS_USED_UP, whole_seconds(wait_s))
     joined = rooms.join(code, cookie.value)
     shown = {"name": joined.participant.name, "seed": joined.participant.seed}

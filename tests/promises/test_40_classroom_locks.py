@@ -1,8 +1,8 @@
 """Locks of a classroom: every route and websocket as a participant, against every card.
 
 The matrix is generated: routes from the app, cards from the built-in lessons. A participant changes
-nothing but by the routes of their own room that the card allows, reads no lesson, and sees nothing of
-another participant's run before the reveal.
+nothing but by the routes of their own room that the card allows, reads no lesson, and sees nothing
+of another participant's run before the reveal.
 """
 
 import json

@@ -9,6 +9,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import httpx2
@@ -103,82 +104,100 @@ class School:
         self.kills += 1
 
 
+class Class:
+    """A room, its teacher and pupils, and all that was acknowledged.
+
+    Attributes:
+        known: name and seed of each pupil who has joined.
+        runs: id of each pupil's run.
+        facts: what the room says of itself.
+    """
+
+    def __init__(self, school: School) -> None:
+        self.school, self.teacher = school, Client(school)
+        code = self.teacher.call("POST", "/rooms", {"lesson": LESSON}).json()["code"]
+        self.room = f"/rooms/{code}"
+        self.pupils = [Client(school) for _ in range(PUPILS)]
+        self.known: dict[int, dict[str, Any]] = {}
+        self.runs: dict[int, str] = {}
+        self.facts: dict[str, Any] = {"card": 0, "state": "open", "revealed": []}
+
+    def join(self, number: int) -> None:
+        answer = self.pupils[number].call("POST", f"{self.room}/participants", {})
+        assert answer.status_code in (200, 201), answer.text
+        self.known[number] = answer.json()
+
+    def predict(self, number: int) -> None:
+        body = {"card": 1, "value": number / 10}
+        answer = self.pupils[number].call("POST", f"{self.room}/predictions", body)
+        # 409: the answer was kept, and its acknowledgement lost.
+        assert answer.status_code in (201, 409), answer.text
+
+    def start(self, number: int) -> None:
+        answer = self.pupils[number].call("POST", f"{self.room}/runs", {})
+        assert answer.status_code == 202, answer.text
+        self.runs[number] = answer.json()["id"]
+
+    def teach(self, method: str, path: str, body: Any, **changes: Any) -> None:
+        answer = self.teacher.call(method, self.room + path, body)
+        assert answer.status_code == 200, answer.text
+        self.facts.update(changes)
+
+    def check(self) -> None:
+        """Check that nothing that was acknowledged is lost."""
+        view = self.teacher.get(self.room)
+        assert {name: view[name] for name in self.facts} == self.facts
+        for number, who in self.known.items():
+            own = self.pupils[number].get(self.room)
+            assert own["role"] == "participant"
+            assert (own["me"]["name"], own["me"]["seed"]) == (who["name"], who["seed"])
+            if number in self.runs:
+                assert [one["run_id"] for one in own["me"]["runs"]] == [self.runs[number]]
+                assert own["me"]["predictions"] == [{"card": 1, "value": number / 10}]
+
+    def deeds(self) -> list[Callable[[], None]]:
+        """Return a lesson, deed by deed."""
+        numbers = range(PUPILS)
+        return [
+            *(partial(self.join, number) for number in numbers),
+            partial(self.teach, "PUT", "/card", {"card": 1}, card=1),
+            *(partial(self.predict, number) for number in numbers),
+            *(partial(self.start, number) for number in numbers),
+            partial(time.sleep, 0.5),
+            partial(self.teach, "POST", "/freeze", {}, state="frozen"),
+            partial(self.teach, "POST", "/freeze", {"frozen": False}, state="open"),
+            partial(self.teach, "POST", "/reveal", {}, revealed=[1]),
+        ]
+
+    def results(self) -> dict[int, dict[str, Any]]:
+        """Return the results of all pupils by seed, once their runs have finished."""
+        stall_check, path = ProgressTimeout(), f"{self.room}/results?card=1"
+        while (result := self.teacher.get(path)["cards"][0])["finished"] < PUPILS:
+            stall_check.check(result)
+            time.sleep(0.2)
+        return {one["seed"]: one for one in result["entries"] if one["run"] is not None}
+
+
 @pytest.mark.timeout(60 * KILLS + 300)
 def test_a_lesson_goes_on_after_kills(launch: Callable[..., Served]) -> None:
     chance = random.Random(41)
     school = School(launch)
-    teacher = Client(school)
-    code = teacher.call("POST", "/rooms", {"lesson": LESSON}).json()["code"]
-    room = f"/rooms/{code}"
-    pupils = [Client(school) for _ in range(PUPILS)]
-    known: dict[int, dict[str, Any]] = {}
-    runs: dict[int, str] = {}
-    facts: dict[str, Any] = {"card": 0, "state": "open", "revealed": []}
-
-    def join(number: int) -> None:
-        answer = pupils[number].call("POST", f"{room}/participants", {})
-        assert answer.status_code in (200, 201), answer.text
-        known[number] = answer.json()
-
-    def predict(number: int) -> None:
-        body = {"card": 1, "value": number / 10}
-        answer = pupils[number].call("POST", f"{room}/predictions", body)
-        # 409: the answer was kept, and its acknowledgement lost.
-        assert answer.status_code in (201, 409), answer.text
-
-    def start(number: int) -> None:
-        answer = pupils[number].call("POST", f"{room}/runs", {})
-        assert answer.status_code == 202, answer.text
-        runs[number] = answer.json()["id"]
-
-    def teach(method: str, path: str, body: Any, **changes: Any) -> None:
-        answer = teacher.call(method, room + path, body)
-        assert answer.status_code == 200, answer.text
-        facts.update(changes)
-
-    def check() -> None:
-        view = teacher.get(room)
-        assert {name: view[name] for name in facts} == facts
-        for number, who in known.items():
-            own = pupils[number].get(room)
-            assert own["role"] == "participant"
-            assert (own["me"]["name"], own["me"]["seed"]) == (who["name"], who["seed"])
-            if number in runs:
-                assert [one["run_id"] for one in own["me"]["runs"]] == [runs[number]]
-                value = {"card": 1, "value": number / 10}
-                assert own["me"]["predictions"] == [value]
-
-    numbers = range(PUPILS)
-    deeds: list[Callable[[], None]] = [
-        *(lambda n=n: join(n) for n in numbers),
-        lambda: teach("PUT", "/card", {"card": 1}, card=1),
-        *(lambda n=n: predict(n) for n in numbers),
-        *(lambda n=n: start(n) for n in numbers),
-        lambda: time.sleep(0.5),
-        lambda: teach("POST", "/freeze", {}, state="frozen"),
-        lambda: teach("POST", "/freeze", {"frozen": False}, state="open"),
-        lambda: teach("POST", "/reveal", {}, revealed=[1]),
-    ]
+    taught = Class(school)
+    deeds = taught.deeds()
     moments = set(chance.sample(range(len(deeds)), KILLS))
     for moment, deed in enumerate(deeds):
         if moment in moments:
             school.killed_during(deed, chance.uniform(0, 0.1))
         else:
             deed()
-        check()
+        taught.check()
     assert school.kills == KILLS
-
-    stall_check = ProgressTimeout()
-    while (result := teacher.get(f"{room}/results?card=1")["cards"][0])["finished"] < PUPILS:
-        stall_check.check(result)
-        time.sleep(0.2)
-    found = {entry["seed"]: entry for entry in result["entries"] if entry["run"] is not None}
+    found = taught.results()
     assert len(found) == PUPILS
-    for number, who in known.items():
+    for number, who in taught.known.items():
         entry = found[who["seed"]]
-        assert (entry["prediction"], entry["run"]["id"]) == (number / 10, runs[number])
+        assert (entry["prediction"], entry["run"]["id"]) == (number / 10, taught.runs[number])
         # As if nothing had happened.
-        body = {**FORM, "seed": who["seed"]}
-        unbroken = teacher.call("POST", "/trainings", body).json()
+        unbroken = taught.teacher.call("POST", "/trainings", {**FORM, "seed": who["seed"]}).json()
         ended = school.served.in_state(unbroken, "finished")
         assert ended["result"]["distance_m"] == entry["run"]["distance_m"]
