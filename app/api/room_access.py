@@ -28,7 +28,7 @@ from app.storage.errors import NotFound
 WRONG_CODES, WRONG_CODES_PER_S = 60, 1.0
 """Of an address, which a class may share."""
 JOINS, JOINS_PER_S = 48, 0.2
-"""Of an address, likewise."""
+"""Of an address, likewise, to one room, which has places for more."""
 ROOMS = "/api/v1/rooms"
 PAGES = "/r"
 READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -38,7 +38,7 @@ _OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]
 _COOKIE = re.compile(rf"(?:__Host-)?{ROOM_NAME}_\d+_(?P<code>[{ALPHABET}]{{{CODE_LENGTH}}})")
 _DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
 """By the end of the path that is sent to, what the card must allow."""
-_LEAVE = "/participants/me"
+_LEAVE = "/me"
 _JOIN = "/participants"
 OPEN_TO_ALL = frozenset(
     {
