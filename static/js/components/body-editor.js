@@ -12,7 +12,8 @@ import { inWords } from "../preview.js";
 import { BodyFields } from "./body-fields.js";
 import { BodyPicture } from "./body-picture.js";
 import { BodyPlan } from "./body-plan.js";
-import { Dialog, Held, html, Icon } from "./elements.js";
+import { Dialog, html, Icon } from "./elements.js";
+import { Held } from "./problems.js";
 
 const TEXT = "input[type=text]";
 
