@@ -10,6 +10,7 @@ const LONGEST_WAIT_MS = 8000;
  * @param {(name: string, data: any) => void} onEvent
  * @param {(state: "connecting" | "live" | "reconnecting") => void} onState
  * @param {string} [address] of the stream; that of the page's own stage without one
+ * @returns {() => void} closes it for good
  */
 export function openEvents(names, onEvent, onState, address = addressOf("events")) {
   /** @type {EventSource | null} */
@@ -41,8 +42,9 @@ export function openEvents(names, onEvent, onState, address = addressOf("events"
     };
   };
 
+  let isOver = false;
   const openNow = () => {
-    if (source?.readyState === EventSource.CLOSED) open();
+    if (!isOver && source?.readyState === EventSource.CLOSED) open();
   };
   addEventListener("online", openNow);
   document.addEventListener("visibilitychange", () => {
@@ -50,4 +52,9 @@ export function openEvents(names, onEvent, onState, address = addressOf("events"
   });
   onState("connecting");
   open();
+  return () => {
+    isOver = true;
+    clearTimeout(timer);
+    source?.close();
+  };
 }
