@@ -24,6 +24,8 @@ Spectators = Literal["public", "token"]
 LogLevel = Literal["debug", "info", "warning", "error"]
 
 PREFIX = "HEXAPODS_"
+ROBOTS_FOLDER = "robots"
+"""In the data folder: documents of stored robots, in a folder for each database."""
 MIN_QUOTA_MB = 10
 MAX_PORT = 65535
 _CHOICES = {"spectators": get_args(Spectators), "log_level": get_args(LogLevel)}

@@ -1,5 +1,6 @@
 """Arguments of the public functions: what a person may write for an agent, a robot or a world."""
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 from typing import Any, NoReturn, TypedDict
@@ -11,8 +12,9 @@ from hexapods.agents.registry import AgentClass
 from hexapods.domain.disturbances import Disturbance, as_text, disturbance, parse_disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import GaitSpec, read_gait
-from hexapods.domain.robot import PRESETS, Robot, robot
+from hexapods.domain.robot import PRESETS, Robot, read_document, robot
 from hexapods.domain.world import WORLDS, World, parse_world
+from hexapods.files import path_of
 from hexapods.runs.config import WalkingProblem
 
 GAIT = "left-right-origin"
@@ -23,7 +25,8 @@ GaitLike = str | Mapping[str, Any] | GaitSpec
 """A gait: its name, itself, or a mapping with `right_leg`, `left_leg`, and `symmetry`, `pairs` or
 `groups`."""
 RobotLike = str | Mapping[str, Any] | Robot
-"""A robot: a preset's name, a mapping with what differs from a preset, or itself."""
+"""A robot: a preset's name, a mapping with what differs from a preset or from a stored robot, by
+its `id`, or itself."""
 WorldLike = str | Iterable[Disturbance | Mapping[str, Any] | str] | World
 """A world: its name, disturbances (each a text, a mapping or itself), or itself."""
 
@@ -114,6 +117,27 @@ def read_robot(given: RobotLike) -> Robot:
     if not isinstance(given, str | Mapping | Robot):
         _refuse("robot", f"{' or '.join(PRESETS)}, a mapping or a Robot", given)
     return robot(given)
+
+
+def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
+    """Return the robot of a document that `hexapods robots export` wrote.
+
+    From then on `{"id": …}` is this robot too, also in tables and races that were made with it.
+
+    Args:
+        file: path of the document, which ends with `.json`.
+        name: its name; that of the file by default.
+
+    Raises:
+        InvalidInput: if the file cannot be read, or its robot is not valid.
+        DamagedFile: if it is no document of a robot.
+    """
+    path = path_of(file, "a robot's document")
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
+    return read_document(data, name or path.stem)
 
 
 def _refuse(name: str, valid: str, given: object) -> NoReturn:

@@ -23,6 +23,8 @@ from multiprocessing.context import ForkServerContext, SpawnContext
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
+from hexapods.domain import robot_documents
+
 STALLED_S = 8.0
 """A process stopped by a signal (SIGSTOP) for longer is killed: it would never be done."""
 LOST = 255
@@ -173,7 +175,7 @@ class Child:
         """
         context = process_context()
         self.pipe, other_end = context.Pipe()
-        arguments = self._target, self._set_up, other_end
+        arguments = self._target, self._set_up, robot_documents.known(), other_end
         self._process = context.Process(target=_run, args=arguments, name=self._set_up.name)
         try:
             self._process.start()
@@ -186,8 +188,14 @@ class Child:
         return True
 
 
-def _run(target: Callable[[Connection], None], set_up: SetUp, pipe: Connection) -> None:
+def _run(
+    target: Callable[[Connection], None],
+    set_up: SetUp,
+    robots: robot_documents.Known,
+    pipe: Connection,
+) -> None:
     set_up.apply()
+    robot_documents.learn(robots)
     target(pipe)
 
 

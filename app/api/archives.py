@@ -9,10 +9,11 @@ from app.api.answers import AnyRunView, ImportedView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.formats import attachment
+from app.api.robots import publish_robots
 from app.api.runs import RunIdsQuery, RunPath, find, located, phrase
 from app.archive import archive
 from app.archive.transfer import export_chunks, export_many, import_runs
-from app.storage.run import KINDS, IdempotencyKey, Kind, Run
+from app.storage.run import KINDS, IdempotencyKey, Kind, Run, robots_of
 from hexapods.domain.errors import InvalidInput
 
 router = APIRouter()
@@ -105,4 +106,6 @@ def _imported(services: Services, start_request: StartRequest, *, is_one: bool) 
     runs = start_request.runs(services, create)
     for run in runs:
         services.bus.publish_run(run)
+    if any(robot.id is not None for run in runs for robot in robots_of(run.config)):
+        publish_robots(services)
     return runs

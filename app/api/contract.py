@@ -17,6 +17,7 @@ from app.api.cookies import NAME
 from app.api.event_answers import EventBodies
 from app.api.problems import MEDIA_TYPE
 from app.api.rate_limit import QUESTIONS
+from app.classroom import lesson
 from app.settings import Settings
 
 Schema = dict[str, Any]
@@ -24,6 +25,9 @@ BINARY: Schema = {"type": "string", "format": "binary"}
 TEXT: Schema = {"type": "string"}
 _REFERENCE = "#/components/schemas/{model}"
 _METHODS = ("get", "put", "post", "patch", "delete")
+_GIVEN_REFERENCE = "#/components/schemas/Given{model}"
+"""Of a lesson's parts as they are sent, in which more may be left out than in answers."""
+GIVEN_LESSON: Schema = {"$ref": _GIVEN_REFERENCE.format(model="Lesson")}
 _UNUSED_SCHEMAS = ("HTTPValidationError", "ValidationError")
 _WRITE_METHODS = frozenset(_METHODS) - {"get"}
 
@@ -62,7 +66,8 @@ _PROBLEMS: Mapping[int, tuple[str, str]] = {
     401: ("Unauthorized", "It needs the operator, or the token is wrong."),
     403: (
         "Forbidden",
-        "The request calls the server by a foreign name, or comes from a foreign page.",
+        "The request calls the server by a foreign name, comes from a foreign page, or is none "
+        "that the card of a participant's room allows.",
     ),
     404: ("NotFound", "There is no such thing (any more)."),
     405: ("MethodNotAllowed", "The method is not possible here."),
@@ -163,6 +168,9 @@ def _completed(schema: Schema, agents: tuple[str, ...], settings: Settings) -> S
         described = model.model_json_schema(ref_template=_REFERENCE, mode="serialization")
         schemas |= described.pop("$defs")
         schemas[name] = described
+    given = lesson.adapter().json_schema(ref_template=_GIVEN_REFERENCE)
+    parts = given.pop("$defs") | {"Lesson": given}
+    schemas |= {f"Given{name}": one for name, one in parts.items()}
     for name in _UNUSED_SCHEMAS:
         schemas.pop(name, None)
     components["responses"] = {name: _problem(status) for status, (name, _) in _PROBLEMS.items()}

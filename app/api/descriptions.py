@@ -48,7 +48,8 @@ VALID: Mapping[str, str] = {
     "pairs": "a list of [leader, partner], two legs' numbers each",
     "groups": "a list of groups, each a list of legs' numbers, or the name of a rule",
     "observation": _one_of(OBSERVATIONS),
-    "robot": f"{_one_of(PRESETS)}, or an object that says what differs from a preset",
+    "robot": f"{_one_of(PRESETS)}, or an object that says what differs from a preset or, by its "
+    "id, from a stored robot",
     "simulator": _one_of(SIMULATORS),
     "agent": "the name of an agent; GET /api/v1/options lists them",
     "continue_from": "the id of a training that is finished or stopped",
@@ -58,7 +59,8 @@ VALID: Mapping[str, str] = {
     "seeds": f"a whole number from 1 to {MAX_SEEDS:,}",
     "gaits": f"a list, each {_one_of(NAMED_GAITS)}, or an object",
     "observations": f"a list, each {_one_of(OBSERVATIONS)}",
-    "robots": f"a list, each {_one_of(PRESETS)}, or an object that says what differs from one",
+    "robots": f"a list, each {_one_of(PRESETS)}, or an object that says what differs from one, or "
+    "the id of a stored robot",
     "agents": "a list of agents' names; GET /api/v1/options lists them",
     "workers": "a whole number, from 1 to the number of cores",
     "lanes": (

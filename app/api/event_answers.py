@@ -12,6 +12,7 @@ from app.api.answers import (
     Settings,
     StageView,
 )
+from app.api.classroom_answers import RoomState
 from app.api.recorded_answers import Evaluation
 from app.storage.run import Kind, State
 from hexapods.runs.clocks import Clock
@@ -179,6 +180,16 @@ class ViewersEvent(Answer):
     count: Count
 
 
+class RoomEvent(RoomState):
+    """A room has changed; sent on its own stage alone."""
+
+
+class RobotsEvent(Answer):
+    """Stored robots have changed; `GET /options` has them. `count` leaves hidden ones out."""
+
+    count: Count
+
+
 class EventBodies(Answer):
     """Data of each server-sent event, by the event's name."""
 
@@ -192,3 +203,5 @@ class EventBodies(Answer):
     scene: SceneView
     summary: SummaryEvent
     viewers: ViewersEvent
+    robots: RobotsEvent
+    room: RoomEvent

@@ -21,7 +21,12 @@ from app.storage.artifact_file import CHUNK_BYTES
 
 MAX_BODY_BYTES = 1 << 20
 MAX_FILE_BYTES = 64 << 20
-_FILE_ROUTES = ("/api/v1/trainings/import", "/api/v1/import", "/api/v1/runs/import")
+_FILE_ROUTES = (
+    "/api/v1/trainings/import",
+    "/api/v1/import",
+    "/api/v1/runs/import",
+    "/api/v1/robots",
+)
 ANSWERS_BYTES, ANSWERS_SHARE_BYTES = 64 << 20, 32 << 20
 BODIES_BYTES, BODIES_SHARE_BYTES = 128 << 20, 96 << 20
 _SMALL_BYTES = 64 << 10

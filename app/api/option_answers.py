@@ -29,16 +29,25 @@ class GaitOption(Described):
 
 
 class RobotOption(Described):
-    """A robot preset.
+    """A robot: built in, or stored, which has its id as its name too.
 
     Attributes:
+        id: of a stored robot; null for one that is built in.
+        hidden: whether it is left out where a robot is chosen.
+        body: of a stored robot: by value, for links that are opened where it is not stored; null
+            for one that is built in or from a file.
+        joints: names of the joints of each leg, from the torso to the foot.
         azimuths_deg: directions of its legs in its own frame, anticlockwise.
         gait: a gait that suits it.
         gaits: names of the gaits that its legs can have.
         built: parts in whose place a disturbance puts another value, as they were built.
     """
 
+    id: str | None
+    hidden: bool
+    body: AnyRobot | None
     robot: AnyRobot
+    joints: list[list[str]]
     azimuths_deg: list[float]
     gait: AnyGait
     gaits: list[str]

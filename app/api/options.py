@@ -1,6 +1,6 @@
 """Route of the options: names, defaults, limits and help texts of all forms."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import MISSING, fields
 from functools import lru_cache
 from typing import Annotated, Any
@@ -16,6 +16,8 @@ from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
 from app.archive.transfer import MAX_RUNS
 from app.jobs.submissions import MAX_SETTINGS
+from app.storage.database.robots import Robots
+from app.storage.stored_robot import StoredRobot
 from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
 from hexapods import __version__
@@ -29,13 +31,14 @@ from hexapods.agents.registry import (
     searches,
 )
 from hexapods.domain import disturbances
-from hexapods.domain.creatures import CREATURES
+from hexapods.domain.creatures import CREATURES, Creature, own_gait
 from hexapods.domain.errors import InvalidInput
-from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, gait_as_json, resolve
+from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json, resolve
+from hexapods.domain.kinematics import legs_of
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot, as_mapping
+from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot, as_mapping, by_value
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
-from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
+from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS, counted
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
 from hexapods.experiments.config import (
     EXPERIMENTS,
@@ -74,13 +77,23 @@ router = APIRouter(prefix="/options", tags=["options"])
 )
 def get_options(services: ServicesDep, request: Request) -> Response:
     """Return the options, defaults, limits and help texts of all forms."""
-    return _content(tuple(services.agents)).response(request.scope)
+    robots = services.store.robots
+    content = _content(tuple(services.agents), robots, robots.version)
+    return content.response(request.scope)
 
 
-@lru_cache(maxsize=1)
-def _content(agents: tuple[str, ...]) -> CompressedContent:
-    """Return the answer compressed: it is most of what a first visit transfers, and no secret."""
-    return CompressedContent(bytes(JSONResponse(catalogue(agents)).body), "application/json")
+@lru_cache(maxsize=2)
+def _content(agents: tuple[str, ...], robots: Robots, version: int) -> CompressedContent:
+    """Return the answer compressed: it is most of what a first visit transfers, and no secret.
+
+    Args:
+        agents: names of the agents that were registered at server start.
+        robots: the stored ones.
+        version: of their list.
+    """
+    del version
+    answer = catalogue(agents, robots.readable(hidden=True))
+    return CompressedContent(bytes(JSONResponse(answer).body), "application/json")
 
 
 _EXPERIMENTS = {
@@ -212,29 +225,18 @@ _LEGS = declare("legs", Annotated[int, Ge(1), Le(MAX_LEGS), disturbances.LEGS], 
 """A leg in the list of those to which something happens."""
 
 
-def catalogue(agents: Collection[str]) -> dict[str, Any]:
+def catalogue(agents: Collection[str], robots: Iterable[StoredRobot] = ()) -> dict[str, Any]:
     """Return all options, defaults and limits, in plain types.
 
     Args:
         agents: names of the agents that were registered at server start.
+        robots: those that are stored.
     """
     settings = _all_settings(agents)
     return {
         "version": __version__,
         "gaits": [_gait(name) for name in NAMED_GAITS],
-        "robots": [
-            {
-                "name": name,
-                "title": one.title,
-                "description": one.description,
-                "robot": as_mapping(one.robot),
-                "azimuths_deg": [*one.robot.azimuths_deg],
-                "gait": gait_as_json(one.gait),
-                "gaits": [name for name in NAMED_GAITS if _divides(name, one.robot)],
-                "built": {part: getattr(one.robot, part) for part in _replaced_parts()},
-            }
-            for name, one in CREATURES.items()
-        ],
+        "robots": [*map(_built_in, CREATURES.values()), *map(_stored, robots)],
         "leg_fields": {name: _setting(setting) for name, setting in leg_fields().items()},
         "torso_fields": {name: _setting(setting) for name, setting in torso_fields().items()},
         "agents": _agents(agents),
@@ -266,6 +268,45 @@ def _gait(name: str) -> dict[str, Any]:
         "azimuths_deg": gait.azimuths_deg,
         "pairs": gait.groups,
         "description": _GAITS[name],
+    }
+
+
+def _built_in(creature: Creature) -> dict[str, Any]:
+    return {
+        "name": creature.robot.name,
+        "title": creature.title,
+        "description": creature.description,
+        **_robot(creature.robot, creature.gait),
+    }
+
+
+def _stored(stored: StoredRobot) -> dict[str, Any]:
+    made = stored.robot
+    origin = "made here" if stored.file is None else f"from {stored.file}"
+    return {
+        "name": stored.id,
+        "title": stored.name,
+        "description": f"{counted(len(made.legs), 'leg')}; {origin}.",
+        **_robot(made, own_gait(made)),
+        "hidden": stored.hidden,
+        "body": by_value(made),
+    }
+
+
+def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
+    legs = legs_of(made)
+    return {
+        "id": made.id,
+        "hidden": False,
+        "body": None,
+        "robot": as_mapping(made),
+        "joints": [
+            [joint.name for joint in legs.of_leg(number)] for number in range(1, len(legs) + 1)
+        ],
+        "azimuths_deg": [*made.azimuths_deg],
+        "gait": gait_as_json(gait),
+        "gaits": [name for name in NAMED_GAITS if _divides(name, made)],
+        "built": {part: getattr(made, part) for part in _replaced_parts()},
     }
 
 

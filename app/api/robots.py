@@ -1,13 +1,30 @@
-"""Routes of robots: what is known of one before it walks."""
+"""Routes of robots: those that are stored, and what is known of one before it walks."""
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter
-from pydantic import create_model
+from fastapi import APIRouter, Path, Query
+from pydantic import ConfigDict, Field, create_model
+from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import JSONResponse, Response
 
-from app.api.fields import Body, record_fields
+from app.api.contract import ATTACHMENT, LOCATION, answers
+from app.api.deps import BodyDep, Services, ServicesDep
+from app.api.fields import Body, Name, record_fields
+from app.api.formats import attachment
+from app.api.robot_answers import (
+    StoredRobotsView,
+    StoredRobotView,
+    WholeRobotView,
+    robot_view,
+    whole_view,
+)
+from app.api.schemas import PatchBody, one_given
+from app.archive.robot_import import check_stands, import_robot
+from hexapods.domain import robot_documents
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import AnyGait
 from hexapods.domain.records import to_json
+from hexapods.domain.robot import AnyRobot
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
 
@@ -18,6 +35,121 @@ _OTHER = {"world", "simulator", "tolerance"}
 _PreviewBody: Any = create_model(
     "PreviewBody", __base__=Body, **record_fields(WalkingProblem, _OTHER)
 )
+
+
+class _RobotId(StringConvertor):
+    """Matches ids in paths, and nothing that another route has in their place."""
+
+    regex = f"[0-9a-f]{{{robot_documents.ID_DIGITS}}}"
+
+
+register_url_convertor("robot", _RobotId())
+RobotPath = Annotated[str, Path(description="id of a stored robot")]
+
+
+class RobotBody(Body):
+    """A robot that is to be stored; its gait is one that suits it by default."""
+
+    robot: AnyRobot
+    gait: AnyGait | None = None
+    name: Name | None = None
+
+
+class RobotChangeBody(PatchBody):
+    """Changes to what is said of a stored robot."""
+
+    model_config = ConfigDict(json_schema_extra=one_given(("name", "hidden", "gait")))
+
+    name: Name | None = None
+    hidden: Annotated[bool, Field(strict=True)] | None = None
+    gait: AnyGait | None = None
+
+    def changes(self) -> dict[str, Any]:
+        """Return the given fields."""
+        given = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: value for name, value in given.items() if value is not None}
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Store a robot",
+    response_model=StoredRobotView,
+    responses=answers(201, headers=LOCATION) | {200: {"model": StoredRobotView}},
+    openapi_extra={
+        "requestBody": {
+            "content": {"application/json": {"schema": RobotBody.model_json_schema()}},
+            "required": True,
+        }
+    },
+)
+def store_robot(
+    services: ServicesDep, body: BodyDep, name: Annotated[Name | None, Query()] = None
+) -> Response:
+    """Store a body, `{"robot": …}`, or the document of a robot from `GET /robots/{id}/file`.
+
+    The id is that of its content: the same robot is stored once, with the name that it was given
+    first, and answered with 200.
+    """
+    stored, is_new = import_robot(services.store, body, name)
+    publish_robots(services)
+    location = {"Location": f"/api/v1/robots/{stored.id}"}
+    return JSONResponse(robot_view(stored), 201 if is_new else 200, location)
+
+
+@router.get("", summary="List stored robots", response_model=StoredRobotsView)
+def list_robots(
+    services: ServicesDep,
+    hidden: Annotated[bool, Query(description="true, to list hidden ones too")] = False,
+) -> Response:
+    """List the robots that people have stored; `GET /options` lists those that are built in too."""
+    return JSONResponse(
+        {"items": [robot_view(one) for one in services.store.robots.readable(hidden=hidden)]}
+    )
+
+
+@router.get("/{robot_id:robot}", summary="Get a stored robot", response_model=WholeRobotView)
+def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
+    """Return a stored robot with all its numbers, and what is known of it before it walks."""
+    return JSONResponse(whole_view(services.store.robots.get(robot_id)))
+
+
+@router.patch(
+    "/{robot_id:robot}",
+    summary="Rename or hide a stored robot, or give it another gait",
+    response_model=StoredRobotView,
+)
+def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBody) -> Response:
+    """Change what is said of a robot; it keeps its id."""
+    changes, robots = body.changes(), services.store.robots
+    if changes.get("name") == "":
+        raise InvalidInput("a robot has a name with a visible character")
+    if "gait" in changes:
+        check_stands(robots.get(robot_id).robot, changes["gait"])
+    changed = robots.change(robot_id, **changes)
+    publish_robots(services)
+    return JSONResponse(robot_view(changed))
+
+
+@router.delete(
+    "/{robot_id:robot}", status_code=204, summary="Delete a stored robot", name="del_robot"
+)
+def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
+    """Delete a robot that no run uses; one that runs use can be hidden."""
+    services.store.robots.delete(robot_id)
+    publish_robots(services)
+
+
+@router.get(
+    "/{robot_id:robot}/file",
+    summary="Download a stored robot",
+    response_class=Response,
+    responses=answers(200, {"application/json": {"type": "object"}}, headers=ATTACHMENT),
+)
+def get_robot_file(services: ServicesDep, robot_id: RobotPath) -> Response:
+    """Return its document, which `POST /robots` and `hexapods robots import` store elsewhere."""
+    data = services.store.robots.document(robot_id)
+    return attachment(data, "application/json", f"robot-{robot_id}.json")
 
 
 @router.post(
@@ -34,3 +166,8 @@ def preview_robot(body: _PreviewBody) -> Response:
     """
     walk = WalkingProblem(**{name: getattr(body, name) for name in type(body).model_fields})
     return JSONResponse(to_json(preview(walk)))
+
+
+def publish_robots(services: Services) -> None:
+    """Send an event to all pages, as stored robots have changed."""
+    services.bus.publish("robots", {"count": len(services.store.robots.stored())})

@@ -11,6 +11,12 @@ from typing import Any
 
 from app.archive import archive
 from app.archive.archived_files import check_files, is_file_of, members_of
+from app.archive.archived_robots import (
+    is_robot,
+    robot_members,
+    robots_to_store,
+    take_documents,
+)
 from app.archive.archived_run import read_run_json, run_json
 from app.archive.archived_trials import TRIALS, read_trials_json, trials_json
 from app.limits.memory_budget import MemoryBudget
@@ -19,6 +25,7 @@ from app.storage.errors import Busy, Damaged
 from app.storage.json_text import is_finite
 from app.storage.run import KINDS, Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
+from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.experiments.config import ExperimentConfig
 
@@ -93,7 +100,7 @@ def _contents(
     if not is_finite([curve, trials]):
         # They would be null in JSON, which every import rejects.
         raise Damaged(run_id, "its curve or its trials have NaN or an infinity")
-    texts = {RUN: run_json(run, curve)}
+    texts = {RUN: run_json(run, curve), **robot_members(store, run)}
     if run.kind == "experiment":
         texts[TRIALS] = trials_json(trials)
     return run, texts, members_of(store, run)
@@ -171,12 +178,15 @@ def _checked(
     """Validate the members of a run's archive; return the run with the id that it is to get."""
     if RUN not in members:
         raise DamagedFile(f"{label} is no archive of a run: it has no {RUN}")
-    run, curve = read_run_json(members.pop(RUN), f"{RUN} of {label}", agents)
-    trials = _trials(run, members, label)
-    check_files(run, members, label)
+    documents = take_documents(members, label)
+    with robot_documents.lent(documents.values()):
+        run, curve = read_run_json(members.pop(RUN), f"{RUN} of {label}", agents)
+        trials = _trials(run, members, label)
+        check_files(run, members, label)
+    robots = robots_to_store(run, documents, label)
     if not ids.is_plausible(run.id):
         run = replace(run, id=ids())
-    return run, Content(evaluations=curve, trials=trials, artifacts=members)
+    return run, Content(evaluations=curve, trials=trials, artifacts=members, robots=robots)
 
 
 def _trials(run: Run, members: dict[str, bytes], label: str) -> list[dict[str, Any]]:
@@ -193,4 +203,4 @@ def _is_any_member_name(name: str) -> bool:
 
 
 def _is_member_name(name: str) -> bool:
-    return name in (RUN, TRIALS) or any(is_file_of(name, kind) for kind in KINDS)
+    return name in (RUN, TRIALS) or is_robot(name) or any(is_file_of(name, kind) for kind in KINDS)

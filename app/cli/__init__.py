@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import TextIO
 
 from app.cli.options import CommandParser
+from app.cli.robot_names import stored_robots_known
 from hexapods import __version__
 from hexapods.domain.errors import HexapodError
 
@@ -76,7 +77,8 @@ def _run(given: Sequence[str]) -> int:
         parser = _parser(given)
     options = parser.parse_args(given)
     try:
-        code: int = options.run(options)
+        with stored_robots_known(vars(options).get("data")):
+            code: int = options.run(options)
     except HexapodError as error:
         print(f"hexapods {options.command}: {error}", file=sys.stderr)
         return 2

@@ -9,6 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from app.cli.robot_names import stored_robot
 from hexapods.domain.disturbances import KINDS, parse_disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.gait import NAMED_GAITS, GaitSpec
@@ -33,7 +34,8 @@ def add_walk_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--robot",
         default="stiff",
-        help=f"robot: {', '.join(PRESETS)}, a TOML file, or JSON with changes of a preset",
+        help=f"robot: {', '.join(PRESETS)}, the name or id of a stored one, a TOML file, or JSON "
+        "with changes of a preset or stored one",
     )
     parser.add_argument(
         "--simulator", default="mujoco", help=f"simulator: {' or '.join(SIMULATORS)}"
@@ -201,7 +203,7 @@ def read_gait(text: str) -> str | GaitSpec:
 
 
 def read_robot(text: str) -> Robot:
-    """Parse a robot: the name of a preset, the path of a TOML file, or JSON.
+    """Parse a robot: its name, the id of a stored one, the path of a TOML file, or JSON.
 
     Raises:
         InvalidInput: if it is none of these.
@@ -209,7 +211,7 @@ def read_robot(text: str) -> Robot:
     if text.lstrip().startswith("{"):
         return robot(_json("--robot", text))
     if not text.endswith(".toml"):
-        return robot(text)
+        return robot(text) if text in PRESETS else stored_robot(text)
     try:
         return robot(tomllib.loads(Path(text).read_text("utf-8")))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:

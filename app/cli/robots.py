@@ -1,20 +1,29 @@
-"""`hexapods robots`: those built in, what is known of one before it walks, and its model."""
+"""`hexapods robots`: those built in and stored, what is known of one, and its model."""
 
 import argparse
 import json
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from app.cli import stored_robots
 from app.cli.files import check_writable, size_text, write_whole
 from app.cli.options import CommandParser, read_gait, read_robot
+from app.cli.stored_runs import add_data, open_for_reading
 from app.cli.terminal import show_table
-from hexapods.domain.creatures import CREATURES, own_gait
-from hexapods.domain.errors import InvalidInput
+from app.settings import read_settings
+from hexapods.domain.creatures import CREATURES, Creature, own_gait
+from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json
+from hexapods.domain.gait import read_gait as read_gait_of
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import PRESETS, as_mapping
+from hexapods.domain.robot import PRESETS, Robot, as_mapping, document_of
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 from hexapods.runs.preview import Preview, preview
+
+if TYPE_CHECKING:
+    from app.storage.stored_robot import StoredRobot
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
@@ -25,7 +34,9 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     verbs = parser.add_subparsers(
         dest="verb", required=True, metavar="VERB", parser_class=CommandParser
     )
-    listing = verbs.add_parser("list", help="list the robots that are built in")
+    listing = verbs.add_parser("list", help="list the robots that are built in, and stored ones")
+    listing.add_argument("--hidden", action="store_true", help="list hidden ones, too")
+    add_data(listing)
     listing.add_argument("--json", action="store_true", help="print JSON")
     listing.set_defaults(run=list_robots)
     showing = verbs.add_parser(
@@ -39,41 +50,75 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     showing.add_argument("--json", action="store_true", help="print JSON")
     showing.set_defaults(run=show_robot)
     exporting = verbs.add_parser(
-        "export", help="write a robot as MJCF, which MuJoCo opens without other files"
+        "export",
+        help="write a robot as MJCF, which MuJoCo opens without other files, or as the document "
+        "that `hexapods robots import` stores elsewhere",
     )
     exporting.add_argument(
-        "--out", required=True, metavar="FILE.xml", help="file to write, ending with .xml"
+        "--out", required=True, metavar="FILE", help="file to write: .xml for MJCF, or .json"
     )
     exporting.add_argument("--json", action="store_true", help="print JSON")
     exporting.set_defaults(run=export_robot)
     for verb in (showing, exporting):
+        add_data(verb)
         verb.add_argument(
-            "robot", metavar="NAME", help=f"{', '.join(PRESETS)}, a TOML file, or JSON"
+            "robot",
+            metavar="NAME",
+            help=f"{', '.join(PRESETS)}, a stored one's name or id, a TOML file, or JSON",
         )
+    stored_robots.add_to(verbs)
 
 
 def list_robots(options: argparse.Namespace) -> int:
-    """Print the built-in robots, each with a gait that suits it."""
+    """Print the robots, each with a gait that suits it."""
+    robots = [*map(_built_in, CREATURES.values())]
+    try:
+        with open_for_reading(read_settings(data=options.data)) as store:
+            robots += map(_stored, store.robots.readable(hidden=options.hidden))
+    except HexapodError as error:
+        print(f"Stored robots cannot be read: {error}", file=sys.stderr)
     if options.json:
-        robots = [
-            {
-                "name": name,
-                "title": one.title,
-                "description": one.description,
-                "legs": len(one.robot.legs),
-                "gait": gait_as_json(one.gait),
-                "robot": as_mapping(one.robot),
-            }
-            for name, one in CREATURES.items()
-        ]
         print(json.dumps(robots))
         return 0
     rows = [
-        (name, len(one.robot.legs), gait_text(one.gait), one.description)
-        for name, one in CREATURES.items()
+        (
+            one["title"] if one["id"] else one["name"],
+            one["legs"],
+            gait_text(read_gait_of(one["gait"])),
+            one["description"],
+        )
+        for one in robots
     ]
     show_table("Robots", ("name", "legs", "gait", "description"), rows, text=(0, 2, 3))
     return 0
+
+
+def _built_in(creature: Creature) -> dict[str, Any]:
+    return {
+        "id": None,
+        "name": creature.robot.name,
+        "title": creature.title,
+        "description": creature.description,
+        "hidden": False,
+        **_robot(creature.robot, creature.gait),
+    }
+
+
+def _stored(stored: "StoredRobot") -> dict[str, Any]:
+    hidden = " It is hidden." if stored.hidden else ""
+    made = stored.robot
+    return {
+        "id": stored.id,
+        "name": stored.name,
+        "title": stored.name,
+        "description": f"Stored as {stored.id}.{hidden}",
+        "hidden": stored.hidden,
+        **_robot(made, own_gait(made)),
+    }
+
+
+def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
+    return {"legs": len(made.legs), "gait": gait_as_json(gait), "robot": as_mapping(made)}
 
 
 def show_robot(options: argparse.Namespace) -> int:
@@ -109,27 +154,28 @@ def show_robot(options: argparse.Namespace) -> int:
 
 
 def export_robot(options: argparse.Namespace) -> int:
-    """Write a robot as a model for MuJoCo.
+    """Write a robot as a model for MuJoCo, or as a document.
 
     Raises:
         HexapodError: if the robot is not valid, or the file cannot be written.
     """
-    from hexapods.exports.robot_model import robot_mjcf  # noqa: PLC0415 - loads MuJoCo
-
     # MuJoCo chooses how it reads a file by its ending.
-    if Path(options.out).suffix != ".xml":
-        raise InvalidInput(f"the name of the file must end with .xml: {options.out}")
+    ending = Path(options.out).suffix
+    if ending not in (".xml", ".json"):
+        raise InvalidInput(f"the name of the file must end with .xml or .json: {options.out}")
     made = read_robot(options.robot)
     check_writable(options.out)
-    data = robot_mjcf(made).encode()
+    if ending == ".json":
+        data, told = document_of(made), "`hexapods robots import` stores it elsewhere"
+    else:
+        from hexapods.exports.robot_model import robot_mjcf  # noqa: PLC0415 - loads MuJoCo
+
+        data, told = robot_mjcf(made).encode(), "its keyframe `home` has it standing"
     write_whole(options.out, data)
     if options.json:
         print(json.dumps({"robot": made.name, "file": options.out, "bytes": len(data)}))
     else:
-        print(
-            f"{made.name} is in {options.out} ({size_text(len(data))}); its keyframe `home` has it "
-            "standing."
-        )
+        print(f"{made.name} is in {options.out} ({size_text(len(data))}); {told}.")
     return 0
 
 

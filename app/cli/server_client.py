@@ -12,7 +12,13 @@ from hexapods.domain.errors import InvalidInput
 _TIMEOUT_S = 60.0
 
 
-def call_server(settings: Settings, method: str, path: str, body: bytes | None = None) -> Any:
+def call_server(
+    settings: Settings,
+    method: str,
+    path: str,
+    body: bytes | None = None,
+    media_type: str = "application/octet-stream",
+) -> Any:
     """Send a request to the server of the data folder, and return its decoded JSON response.
 
     Args:
@@ -20,6 +26,7 @@ def call_server(settings: Settings, method: str, path: str, body: bytes | None =
         method: HTTP method.
         path: path without its leading slash.
         body: body of the request, if any.
+        media_type: of the body.
 
     Raises:
         InvalidInput: if the server does not respond, or refuses.
@@ -30,7 +37,7 @@ def call_server(settings: Settings, method: str, path: str, body: bytes | None =
             f"another process has the data folder {settings.data}, and does not say where it "
             "listens; try again in a moment, or stop it"
         )
-    headers = {"Content-Type": "application/octet-stream"} if body is not None else {}
+    headers = {"Content-Type": media_type} if body is not None else {}
     if settings.token is not None:
         headers["Authorization"] = f"Bearer {settings.token}"
     request = urllib.request.Request(  # noqa: S310 - the address file's URL is validated

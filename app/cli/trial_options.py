@@ -43,7 +43,8 @@ def add_trial_options(parser: argparse.ArgumentParser, observations: str, robots
     parser.add_argument(
         "--robot",
         action="append",
-        help=f"one or more of {', '.join(PRESETS)}, a TOML file, or JSON (default {robots})",
+        help=f"one or more of {', '.join(PRESETS)}, a stored one, a TOML file, or JSON "
+        f"(default {robots})",
     )
     parser.add_argument(
         "--simulator", help=f"simulator: {' or '.join(SIMULATORS)} (default mujoco)"

@@ -117,7 +117,9 @@ def _add_condition_options(parser: argparse.ArgumentParser) -> None:
         "--gait", required=True, help=f"gait: {', '.join(NAMED_GAITS)}, or JSON as for train"
     )
     parser.add_argument(
-        "--robot", default="stiff", help=f"robot: {', '.join(PRESETS)}, a TOML file, or JSON"
+        "--robot",
+        default="stiff",
+        help=f"robot: {', '.join(PRESETS)}, a stored one, a TOML file, or JSON",
     )
     parser.add_argument(
         "--simulator", default="mujoco", help=f"simulator: {' or '.join(SIMULATORS)}"

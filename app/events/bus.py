@@ -20,7 +20,7 @@ RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
 MAX_PENDING = 2048
 """Most pending events of a slow subscription."""
-_STATE_EVENTS = frozenset({"run", "scene", "stage", "summary", "viewers"})
+_STATE_EVENTS = frozenset({"robots", "room", "run", "scene", "stage", "summary", "viewers"})
 """Names of events that carry a full state: a newer one supersedes pending older ones."""
 
 
@@ -54,9 +54,9 @@ class Event(NamedTuple):
 class Subscription:
     """Buffer of one subscriber: `drain()` it, or iterate: `async for event in subscription`.
 
-    A slow subscriber receives only the newest of each `scene`, `stage`, `summary` and `viewers`
-    event, and of `run` or `run-deleted` for each run. It is closed when it has `MAX_PENDING`
-    pending events and another comes; the client then reconnects with `Last-Event-ID`.
+    A slow subscriber receives only the newest of each `robots`, `scene`, `stage`, `summary` and
+    `viewers` event, and of `run` or `run-deleted` for each run. It is closed when it has
+    `MAX_PENDING` pending events and another comes; the client then reconnects with `Last-Event-ID`.
 
     Attributes:
         since: id of an event after which it receives every event, but coalesced.

@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, get_args
 
+from app.storage.stored_robot import StoredRobot
 from hexapods.domain.disturbances import disturbance
+from hexapods.domain.robot import Robot
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
@@ -166,11 +168,13 @@ class Content:
         evaluations: rows as for `Curves.append`.
         trials: rows as for `Trials.append`.
         artifacts: contents of files by name.
+        robots: stored robots that its config names, each with its document.
     """
 
     evaluations: Sequence[Mapping[str, Any]] = ()
     trials: Sequence[Mapping[str, Any]] = ()
     artifacts: Mapping[str, bytes] = field(default_factory=dict)
+    robots: Sequence[tuple[StoredRobot, bytes]] = ()
 
 
 def ranking_distance_m(result: Result | None) -> float | None:
@@ -185,6 +189,11 @@ def ranking_distance_m(result: Result | None) -> float | None:
         figures = [lane.clocks.paper for lane in result.lanes]
         distance_m = next((one.finished_distance_m for one in figures if one.rank == 1), None)
     return distance_m if distance_m is not None and math.isfinite(distance_m) else None
+
+
+def robots_of(config: Config) -> tuple[Robot, ...]:
+    """Return the robots of a config."""
+    return config.robots if isinstance(config, ExperimentConfig) else (config.robot,)
 
 
 def world_of(run: Run) -> World:

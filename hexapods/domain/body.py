@@ -5,16 +5,19 @@ ring has leg 1 along x, so that forward is where its gait says. Legs are numbere
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
+from hexapods.domain import robot_documents
 from hexapods.domain.errors import ImpossibleLegs, InvalidInput
 
 MIN_LEGS, MAX_LEGS = 3, 12
-NO_NUMBERS = ("name", "legs")
+NO_NUMBERS = ("name", "legs", "id")
 """Fields of a robot that are not a number."""
 _OPTIONAL = ("torso_length_m", "torso_width_m")
 """Fields of a robot that may be None."""
+_DOCUMENT = "document"
+"""In what is pickled of a stored robot: its document."""
 
 
 @dataclass(frozen=True)
@@ -73,12 +76,15 @@ class Robot:
     The defaults are the `stiff` hexapod. Dimensions, masses and servos are those of all legs that
     do not have their own. The torso is a cylinder, or a box if it has a length and a width.
 
+    Robots are equal if they are built alike, whatever they are called. One with an id is pickled
+    with the document of this id, so that the process that reads it knows that too.
+
     Raises:
         InvalidInput: if a value is out of range.
     """
 
-    name: str = "stiff"
-    """Name of the preset; with the suffix `(modified)` if fields differ from it."""
+    name: str = field(default="stiff", compare=False)
+    """Name of the preset or stored robot; with the suffix `(modified)` if fields differ from it."""
     legs: tuple[LegMount, ...] = ring(6)
     torso_radius_m: float = 0.10
     torso_half_height_m: float = 0.02
@@ -116,6 +122,19 @@ class Robot:
     """Sliding friction between feet and ground."""
     dt_s: float = 0.004
     """Time step of the physics; with 0.008 s results begin to drift."""
+    id: str | None = field(default=None, compare=False, kw_only=True)
+    """Of the stored robot that it is, or from which its fields differ; None for a preset."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        state = dict(vars(self))
+        if self.id is not None:
+            state[_DOCUMENT] = robot_documents.find(self.id, self.name)
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        if (document := state.pop(_DOCUMENT, None)) is not None:
+            robot_documents.add(document)
+        vars(self).update(state)
 
     def __post_init__(self) -> None:
         numbers = {name: value for name, value in vars(self).items() if name not in NO_NUMBERS}

@@ -11,8 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from hexapods.domain import robot_documents
 from hexapods.domain.body import LegMount, Robot, ring
-from hexapods.domain.gait import GaitSpec
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import GaitSpec, read_gait, resolve
 
 
 @dataclass(frozen=True)
@@ -252,8 +254,20 @@ PRESETS: dict[str, Robot] = {name: one.robot for name, one in CREATURES.items()}
 
 
 def own_gait(robot: Robot) -> str | GaitSpec:
-    """Return the gait that suits a robot: its preset's if it has as many legs, or one by one."""
+    """Return the gait that suits a robot, or one by one if none is known for as many legs."""
+    if robot.id is not None:
+        about = robot_documents.about(robot.id)
+        gait = None if about is None or about.gait is None else read_gait(about.gait)
+        return "one-by-one" if gait is None or not _divides(gait, robot) else gait
     preset = CREATURES.get(robot.name.removesuffix(" (modified)"))
     if preset is None or len(preset.robot.legs) != len(robot.legs):
         return "one-by-one"
     return preset.gait
+
+
+def _divides(gait: str | GaitSpec, robot: Robot) -> bool:
+    try:
+        resolve(gait, robot.azimuths_deg)
+    except InvalidInput:
+        return False
+    return True

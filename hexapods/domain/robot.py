@@ -1,14 +1,17 @@
-"""Robots from user input: named presets, and validated overrides of them."""
+"""Robots from user input: presets and stored robots, and validated overrides of them."""
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields, replace
+from functools import lru_cache
 from typing import Annotated, Any
 
+from hexapods.domain import robot_documents
 from hexapods.domain.body import MAX_LEGS, MIN_LEGS, NO_NUMBERS, LegMount, Robot, ring
 from hexapods.domain.creatures import PRESETS
-from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.errors import DamagedFile, InvalidInput, UnknownName
 from hexapods.domain.records import JsonForm, Schema
+from hexapods.domain.text import MAX_NAME
 
 __all__ = ["MAX_LEGS", "MIN_LEGS", "PRESETS", "LegMount", "Robot", "ring"]
 
@@ -61,6 +64,9 @@ LEG_RANGES: dict[str, tuple[float, float]] = {
     "foot_out_m": (0.001, 5.0),
     **{name: RANGES[name] for name in _OWN},
 }
+_BOX = {"torso_length_m", "torso_width_m"}
+"""Fields that a robot with a round torso does not have."""
+_MODIFIED = " (modified)"
 _PLACE = ("x_m", "y_m")
 """Fields of a leg in a request that may stand for its azimuth and radius."""
 _COORDINATE = (-MOUNT_RADIUS[1], MOUNT_RADIUS[1])
@@ -69,46 +75,126 @@ PLACED_RANGES = dict.fromkeys(_PLACE, _COORDINATE) | LEG_RANGES
 
 
 def robot(value: str | Mapping[str, Any] | Robot) -> Robot:
-    """Build a robot from user input: a preset's name, or overrides of a preset.
+    """Build a robot from user input: a preset's name, a stored robot's id, or overrides of either.
 
-    A mapping may have `preset` (default `stiff`), any number of `Robot`'s fields, and its legs
-    either as `n_legs` (a regular ring, with `mount_radius_m`) or as `legs`, a list of mappings with
-    the fields of `LegMount`; `x_m` and `y_m` may stand for azimuth and radius.
+    A mapping may have `preset` (default `stiff`), or the `id` of a stored robot and its `name`,
+    which is ignored where the robot has one; any number of `Robot`'s fields; and its legs either
+    as `n_legs` (a regular ring, with `mount_radius_m`) or as `legs`, a list of mappings with the
+    fields of `LegMount`; `x_m` and `y_m` may stand for azimuth and radius.
 
     Raises:
         UnknownName: for an unknown preset or field.
-        InvalidInput: for a value out of range.
+        InvalidInput: for a value out of range, or if no robot of this id is stored here.
     """
     if isinstance(value, Robot):
         return value
     if not isinstance(value, Mapping):
-        return _preset(value)
+        return _by_id(str(value), None) if robot_documents.is_id(value) else _preset(value)
     given = dict(value)
+    if "id" in given:
+        return _changed(_stored(given), given)
+    return _changed(_preset(given.pop("preset", "stiff")), given)
+
+
+def _changed(base: Robot, given: dict[str, Any]) -> Robot:
+    """Return a robot with the fields of an input that differ from another's."""
     for name in ("n_legs", "mount_radius_m", "legs"):
         if name in given and given[name] is None:
             raise InvalidInput(f"robot.{name} must not be null; leave it out for the preset's")
-    base = _preset(given.pop("preset", "stiff"))
     legs = _legs(given, base)
     numbers = {f.name for f in fields(Robot)}.difference(NO_NUMBERS)
     for name, number in given.items():
         if name not in numbers:
-            valid = ["preset", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]
+            valid = ["preset", "id", "n_legs", "mount_radius_m", "legs", *sorted(numbers)]
             raise UnknownName("robot field", name, valid)
         given[name] = _number(name, number)
     changed = replace(base, legs=legs, **given)
-    return changed if changed == base else replace(changed, name=f"{base.name} (modified)")
+    return changed if changed == base else replace(changed, name=f"{base.name}{_MODIFIED}")
 
 
 def as_mapping(value: Robot) -> dict[str, Any]:
-    """Return a robot as its preset and overrides, fit for JSON; the inverse of `robot`."""
+    """Return a robot as its preset or id and overrides, fit for JSON; the inverse of `robot`."""
+    name = value.name.removesuffix(_MODIFIED)
+    if value.id is not None:
+        return {"id": value.id, "name": name, **_differing(value, _by_id(value.id, name))}
     if PRESETS.get(value.name) == value:
         return {"preset": value.name}
-    preset = value.name.removesuffix(" (modified)")
-    base, own = asdict(PRESETS[preset]), asdict(value)
-    differs = {k: v for k, v in own.items() if k != "name" and v != base[k]}
+    return {"preset": name, **_differing(value, PRESETS[name])}
+
+
+def _differing(value: Robot, from_base: Robot) -> dict[str, Any]:
+    differs = {
+        one.name: getattr(value, one.name)
+        for one in fields(value)
+        if one.compare and getattr(value, one.name) != getattr(from_base, one.name)
+    }
     if "legs" in differs:
         differs["legs"] = [_leg_as_mapping(leg) for leg in value.legs]
-    return {"preset": preset, **differs}
+    return differs
+
+
+def by_value(value: Robot) -> dict[str, Any]:
+    """Return a robot as overrides of a preset, whatever it was made from, fit for JSON."""
+    base = PRESETS["stiff"]
+    return {"preset": base.name, **_differing(value, base)}
+
+
+def document_of(value: Robot) -> bytes:
+    """Return a robot by value as a document, which depends on no preset and no name."""
+    numbers = {
+        name: number + 0.0 for name, number in written_out(value).items() if number is not None
+    }
+    legs = [
+        {name: number + 0.0 for name, number in _leg_as_mapping(leg).items()} for leg in value.legs
+    ]
+    return robot_documents.encode({"robot": {**numbers, "legs": legs}})
+
+
+def read_document(data: bytes, name: str | None = None) -> Robot:
+    """Return the robot of a document, and keep the document in this process.
+
+    Raises:
+        DamagedFile: if it is none.
+        InvalidInput: if its robot is not valid.
+    """
+    made = parse_document(data)
+    robot_documents.add(data)
+    return replace(made, name=_name_of(robot_documents.id_of(data), name))
+
+
+@lru_cache(maxsize=32)
+def parse_document(data: bytes) -> Robot:
+    """Return the robot of a document, without a name; errors as of `read_document`."""
+    content = robot_documents.decode(data)
+    given = content.pop("robot", None)
+    # All of it, so that no other document holds the same robot.
+    if content or not isinstance(given, dict) or {*given} | _BOX != {*RANGES, "legs"}:
+        raise DamagedFile("the document of a robot is damaged: it must have its legs and numbers")
+    return replace(_changed(Robot(), given), id=robot_documents.id_of(data))
+
+
+def _stored(given: dict[str, Any]) -> Robot:
+    """Pop `id` and `name` from an input, and return the stored robot."""
+    robot_id, name = given.pop("id"), given.pop("name", None)
+    if name is not None and not (isinstance(name, str) and len(name) <= MAX_NAME):
+        raise InvalidInput(f"robot.name must be a text of at most {MAX_NAME} characters")
+    if "preset" in given:
+        raise InvalidInput("robot: give the id of a stored robot, or a preset, not both")
+    if not robot_documents.is_id(robot_id):
+        raise InvalidInput(
+            f"robot.id must have {robot_documents.ID_DIGITS} hexadecimal digits, not {robot_id!r}"
+        )
+    return _by_id(robot_id, name)
+
+
+def _by_id(robot_id: str, name: str | None) -> Robot:
+    made = parse_document(robot_documents.find(robot_id, name))
+    return replace(made, name=_name_of(robot_id, name))
+
+
+def _name_of(robot_id: str, name: str | None) -> str:
+    about = robot_documents.about(robot_id)
+    return (name or f"robot {robot_id[:6]}") if about is None else about.name
 
 
 def _leg_as_mapping(leg: LegMount) -> dict[str, float]:
@@ -259,18 +345,31 @@ _GIVEN: Schema = {
     "additionalProperties": False,
     "not": {"required": ["legs"], "anyOf": [{"required": [name]} for name in _COUNTED]},
 }
+_ID: Schema = {"type": "string", "pattern": f"^[0-9a-f]{{{robot_documents.ID_DIGITS}}}$"}
+_NAME: Schema = {"type": "string", "maxLength": MAX_NAME}
+_STORED: Schema = {
+    **_GIVEN,
+    "properties": {
+        "id": _ID,
+        "name": _NAME,
+        **{name: shape for name, shape in _GIVEN["properties"].items() if name != "preset"},
+    },
+    "required": ["id"],
+}
 _SENT: Schema = {
     "type": "object",
-    "description": "A preset, and by name the parts that differ from it.",
+    "description": "A preset, or the id and the name of a stored robot, and by name the parts that "
+    "differ from it.",
     "properties": {
         "preset": _PRESET,
+        "id": _ID,
+        "name": _NAME,
         "legs": {"type": "array", "items": {**_LEG, "required": ["azimuth_deg", "radius_m"]}},
     },
-    "required": ["preset"],
     "additionalProperties": {"type": "number"},
 }
 AnyRobot = Annotated[
     Robot,
-    JsonForm(robot, as_mapping, {"anyOf": [_PRESET, _GIVEN]}, _SENT),
+    JsonForm(robot, as_mapping, {"anyOf": [_PRESET, _ID, _GIVEN, _STORED]}, _SENT),
 ]
-"""A robot: in requests a preset's name too."""
+"""A robot: in requests a preset's name or a stored robot's id, too."""

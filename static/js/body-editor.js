@@ -9,7 +9,7 @@ import {
 import { consequencesOf, inOwnWords, objectionsTo, settingFor, unreachedBy } from "./body-words.js";
 import { bodyFields, bodyIsOpen, form, setField } from "./form.js";
 import { parseSetting } from "./parse.js";
-import { isSame } from "./robots.js";
+import { isSame, storedRobot } from "./robots.js";
 import { limitsOf } from "./settings.js";
 import { keepAnswer } from "./steps.js";
 import { connection, served } from "./store.js";
@@ -20,7 +20,7 @@ import { messageOf } from "./titles.js";
 /** @import { Body } from "./body.js" */
 /** @import { Objection } from "./body-words.js" */
 /** @import { Reply } from "./steps.js" */
-/** @import { FormValue, GaitConfig, Preview, SettingOption } from "./types.js" */
+/** @import { FormValue, GaitConfig, Preview, RobotConfig, SettingOption } from "./types.js" */
 
 /** What the server tells: of which question, and under which gait. */
 /** @typedef {{ of: string, known: Preview, gait: GaitConfig }} Told */
@@ -80,7 +80,7 @@ export function followBody() {
       if (!answer) return;
       told.value = answer;
       if (body.peek() || answer.of !== question.peek()) return;
-      first.value = openBody(form.peek().robot, form.peek().gait, answer.known);
+      first.value = openBody(byValue(form.peek().robot), form.peek().gait, answer.known);
       body.value = first.value;
     }),
     effect(() => {
@@ -92,6 +92,9 @@ export function followBody() {
   ];
   return () => stops.forEach((stop) => stop());
 }
+
+/** A stored robot as what it is made of: its body is another one's when it is changed. @param {RobotConfig} robot */
+const byValue = (robot) => storedRobot(robot, served().robots)?.body ?? robot;
 
 /** Forget the body that was edited. */
 function clear() {

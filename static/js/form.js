@@ -4,6 +4,7 @@ import { isSimulated, parseText } from "./disturbances.js";
 import { listed } from "./format.js";
 import { makeTexts, parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
 import { ignored, page } from "./page-state.js";
+import { linkedText, unlinked } from "./robots.js";
 import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, role, served } from "./store.js";
 
@@ -27,6 +28,10 @@ const { set, keep, valueOf } = makeTexts(texts);
 const written = (value) =>
   typeof value === "object" && value !== null && !Array.isArray(value) ? JSON.stringify(value) : String(value ?? "");
 
+/** The text of a field, as a link has it. @type {(field: string, value: FormValue) => string} */
+const textOf = (field, value) =>
+  (field === "robot" && linkedText(/** @type {RobotConfig} */ (value), served().robots)) || written(value);
+
 /** @param {{ name: string }[]} list */
 const namesOf = (list) => list.map(({ name }) => name);
 
@@ -34,13 +39,20 @@ const namesOf = (list) => list.map(({ name }) => name);
 const READERS = {
   agent: (text) => parseChoice(text, namesOf(learners.value)),
   gait: (text) => parseChoiceOrParts(text, namesOf(served().gaits)),
-  robot: (text) => parseChoiceOrParts(text, namesOf(served().robots)),
+  robot: readRobot,
   simulator: (text) => parseChoice(text, namesOf(served().simulators)),
   observation: (text) => parseChoice(text, namesOf(served().observations)),
   lanes: (text) => parseChoices(text, namesOf(served().agents), limitsOf("lanes")),
   name: (text) => parseName(text, limitsOf("name")),
   world: (text) => parseChoice(text, namesOf(served().worlds)),
 };
+/** @param {string} text @returns {Parsed<RobotConfig>} */
+function readRobot(text) {
+  const { robots } = served();
+  const { value, mistake } = parseChoiceOrParts(text, namesOf(robots));
+  return mistake === undefined ? { value: unlinked(value, robots) } : { mistake };
+}
+
 /** A list of texts, each of which a link has as a part of its own. They are kept as they are, valid or not. */
 const REPEATED = "disturb";
 
@@ -166,7 +178,7 @@ export const validSteps = () => ("steps" in mistakes.value ? null : form.value.s
 /** Change fields. @param {Record<string, FormValue>} changes */
 export const setFields = (changes) => batch(() => {
   set(Object.fromEntries(Object.entries(changes).map(([field, value]) =>
-    [field, field === REPEATED ? /** @type {string[]} */ (value) : [written(value)]])));
+    [field, field === REPEATED ? /** @type {string[]} */ (value) : [textOf(field, value)]])));
   // What a spectator tries is theirs even where it is the default.
   if (role.peek() !== "spectator") leaveOutDefaults();
 });

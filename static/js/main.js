@@ -17,7 +17,7 @@ import { announceOutcomes, headline, practiceTitle } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
-import { applyEvent, connection, eventNames, isLockedOut, options, role, version } from "./store.js";
+import { applyEvent, connection, eventNames, isLockedOut, options, robotChanges, role, version } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 
 const FIRST_RETRY_MS = 500;
@@ -39,7 +39,18 @@ async function loadOptions(attempt = 0) {
   openForm();
   openExperimentForm();
   followSpectators();
+  followRobots();
+}
 
+/** Ask for the options again when stored robots have changed. */
+function followRobots() {
+  let seen = robotChanges.peek();
+  effect(() => {
+    if (robotChanges.value === seen) return;
+    seen = robotChanges.value;
+    // What a later change asks for is newer.
+    getOptions().then((newer) => { if (robotChanges.peek() === seen) options.value = newer; }, () => {});
+  });
 }
 
 /** Load the module of spectators' pages; if that fails, again once the connection is back. */

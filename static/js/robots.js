@@ -1,22 +1,25 @@
-// Robots as forms and runs have them: the name of a preset, or an object with a preset and what differs from it.
+// Robots as forms and runs have them: the name of a preset or the id of a stored robot, or an object with either and
+// what differs from it.
 
 /** @import { Gait, GaitConfig, Robot, RobotConfig } from "./types.js" */
 
 /**
- * The preset of a robot, or the one that it is made from.
+ * The name by which the server's options have a robot, or the one that it is made from: of a preset, or an id.
  * @param {RobotConfig | undefined} robot
  */
-export const presetOf = (robot) => (typeof robot === "string" ? robot : robot?.preset);
+export const presetOf = (robot) => (typeof robot === "string" ? robot : robot?.preset ?? robot?.id);
+
+const IDENTITY = ["preset", "id", "name"];
 
 /**
  * Fields that differ from the preset: [field, value].
  * @param {RobotConfig | undefined} robot
  */
 const differences = (robot) =>
-  Object.entries(typeof robot === "object" ? robot : {}).filter(([field]) => field !== "preset" && field !== "name");
+  Object.entries(typeof robot === "object" ? robot : {}).filter(([field]) => !IDENTITY.includes(field));
 
 /**
- * A robot as the form keeps it: a preset by its name, a custom robot whole.
+ * A robot as the form keeps it: a preset by its name, a stored robot by its id, a custom one whole.
  * @template {RobotConfig} Robot
  * @param {Robot} robot
  */
@@ -64,15 +67,18 @@ function differenceInWords(field, value) {
   return `${words} ${value}${unit && `\u00a0${unit}`}`;
 }
 
+/** The name of a stored robot as a run has it; undefined for others. @param {RobotConfig | undefined} robot */
+export const storedName = (robot) => (typeof robot === "object" && robot.id ? robot.name : undefined);
+
 /**
- * A custom robot in words, "custom: stiff, femur 0.1 m"; null for a preset.
+ * A custom robot in words, "custom: stiff, femur 0.1 m"; null for a preset and a stored robot.
  * @param {RobotConfig | undefined} robot
  */
 export function customRobotInWords(robot) {
   const differs = differences(robot);
   if (!differs.length) return null;
   const parts = differs.map(([field, value]) => differenceInWords(field, value));
-  return `custom: ${[presetOf(robot), ...parts].filter(Boolean).join(", ")}`;
+  return `custom: ${[storedName(robot) ?? presetOf(robot), ...parts].filter(Boolean).join(", ")}`;
 }
 
 // ---- where its legs are
@@ -117,4 +123,30 @@ function legsBeside({ azimuths_deg }) {
     return onSide.filter(({ azimuth }) => azimuth > 0).sort((a, b) => a.azimuth - b.azimuth)[0].leg;
   };
   return { right_leg: nearest(-1), left_leg: nearest(1) };
+}
+
+// ---- robots that are stored
+
+/** The stored robot that the form may have by its id. @type {(robot: RobotConfig | undefined, robots: Robot[]) => Robot | undefined} */
+export const storedRobot = (robot, robots) => robots.find(({ id }) => id !== null && id === robot);
+
+/** Those that can be chosen: not the hidden ones, but for what is chosen. @type {(robots: Robot[], chosen: unknown[]) => Robot[]} */
+export const offered = (robots, chosen) => robots.filter(({ name, hidden }) => !hidden || chosen.includes(name));
+
+/**
+ * The text of a robot in a link: a stored body by value too, for a server that does not have it.
+ * @type {(robot: RobotConfig, robots: Robot[]) => string | null}
+ */
+export function linkedText(robot, robots) {
+  const stored = storedRobot(robot, robots);
+  return stored?.body ? JSON.stringify({ id: stored.id, name: stored.title, body: stored.body }) : null;
+}
+
+/**
+ * A robot of a link: a stored one by its id, or what came with it where it is not stored.
+ * @type {(robot: RobotConfig, robots: Robot[]) => RobotConfig}
+ */
+export function unlinked(robot, robots) {
+  if (typeof robot !== "object" || !robot.body) return robot;
+  return storedRobot(robot.id, robots) ? /** @type {string} */ (robot.id) : /** @type {RobotConfig} */ (robot.body);
 }

@@ -2,7 +2,7 @@
 import { worldTitle } from "./disturbances.js";
 import { experimentOf } from "./experiments/form.js";
 import { count, sentence } from "./format.js";
-import { customRobotInWords, partInWords, presetOf } from "./robots.js";
+import { customRobotInWords, offered, partInWords, presetOf, storedName } from "./robots.js";
 import { agentOf, choiceTitle, shortTitle, titleOf } from "./settings.js";
 import { options } from "./store.js";
 
@@ -25,7 +25,9 @@ function ownGaitTitle({ groups, pairs, symmetry }) {
 export function robotTitle(robot) {
   const custom = customRobotInWords(robot);
   const name = presetOf(robot) ?? "own robot";
-  return sentence(custom ?? find(options.value?.robots, name)?.title ?? name);
+  // What people call a robot stays as they write it.
+  const title = find(options.value?.robots, name)?.title ?? storedName(robot);
+  return custom ? sentence(custom) : title ?? sentence(name);
 }
 /** @type {(field: string, choice: string) => string} */
 const titleOfChoice = (field, choice) => {
@@ -58,6 +60,10 @@ export const flatParts = (clockName) => FLAT_PARTS[clockName] ?? "Flat parts are
  * @returns {[string, string][]}
  */
 export const choicesOf = (list, nameOf) => (list ?? []).map(({ name }) => [name, sentence(nameOf(name))]);
+
+/** Robots to choose from, those that are hidden only if they are chosen. @type {(chosen: unknown[]) => [string, string][]} */
+export const robotChoices = (chosen) =>
+  offered(options.value?.robots ?? [], chosen).map(({ name, title }) => [name, title]);
 
 // ---- fields
 
@@ -180,7 +186,7 @@ const sweptIn = (config) =>
  * @param {Run} run
  */
 export const describeRun = ({ config }) => {
-  const robots = (config.robots ?? []).map((one) => customRobotInWords(one) ?? presetOf(one) ?? "own robot");
+  const robots = (config.robots ?? []).map((one) => customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own robot");
   const observations = (config.observations ?? []).map(observationTitle);
   return [
     ...(config.experiment === "sweep" ? sweptIn(config) : []), worldsIn(config).join(", "),

@@ -116,8 +116,8 @@ export type Rates = Record<string, SettingValue>;
 
 export type Page<Item> = Omit<Api.RunPage, "items"> & { items: Item[] };
 
-/** The name of a preset, or an object with a preset and what differs from it. */
-export type RobotConfig = string | { preset?: string; name?: string; [part: string]: unknown };
+/** The name of a preset or the id of a stored robot, or an object with either and what differs from it. */
+export type RobotConfig = string | { preset?: string; id?: string; name?: string; [part: string]: unknown };
 /** A gait by the legs between which forward is, and one of the others: groups are legs, or the name of a rule. */
 export interface GaitParts {
   right_leg: number;

@@ -1,6 +1,7 @@
 """OpenAPI document: it describes every route and response, and real responses match it."""
 
 import asyncio
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ from app.api.option_answers import OptionsView
 from app.api.problems import STATUSES
 from app.api.rate_limit import QUESTIONS
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
+from app.api.robot_answers import StoredRobotsView, StoredRobotView, WholeRobotView
 from app.server import create_app
 from app.settings import Settings
 from hexapods.domain.errors import HexapodError
@@ -65,7 +67,7 @@ def resolved(described: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any
 
 def test_every_route_is_described(app: FastAPI, described: dict[str, Any]) -> None:
     routes = {
-        (method.lower(), context.path.replace(":path", ""))
+        (method.lower(), re.sub(":(path|robot)", "", context.path))
         for context in iter_route_contexts(app.routes)
         if context.path and context.path not in PAGES
         for method in set(context.methods or ()) - {"HEAD"}
@@ -189,7 +191,6 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     yield RecordingView, api.get(f"/races/{race['id']}/recording")
     for clock in ("paper", "wall", "free"):
         yield TimelineView, api.get(f"/races/{race['id']}/timeline?clock={clock}")
-    yield OptionsView, api.get("/options")
     yield StageView, api.get("/stage")
     asked = api.call("POST", "/what-if", json={"gait": WALK["gait"], "steps": 50})
     yield WhatIfView, asked.json()
@@ -197,6 +198,12 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     experiment = api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1})
     yield ExperimentView, experiment
     yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
+    stored = api.call("POST", "/robots", json={"robot": {"preset": "ant", "femur_m": 0.07}}).json()
+    yield StoredRobotView, stored
+    yield WholeRobotView, api.get(f"/robots/{stored['id']}")
+    yield StoredRobotsView, api.get("/robots")
+    yield OptionsView, api.get("/options")
+    api.call("DELETE", f"/robots/{stored['id']}")
     yield ExperimentView, api.finished(experiment)
     yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
     yield TrialsView, api.get(f"/experiments/{experiment['id']}/trials")
@@ -225,6 +232,8 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     api.finished(api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1}))
     api.ended(run)
     api.call("DELETE", f"/trainings/{run['id']}")
+    stored = api.call("POST", "/robots", json={"robot": {"preset": "ant", "femur_m": 0.07}}).json()
+    api.call("DELETE", f"/robots/{stored['id']}")
 
     async def first_event() -> ServerSentEvent:
         listener = EventListener("operator")

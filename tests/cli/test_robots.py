@@ -62,6 +62,6 @@ def test_a_robot_that_cannot_be_exported_is_refused(tmp_path: Path) -> None:
         return refusal("robots", "export", *arguments, folder=tmp_path, run=in_process)
 
     assert "unknown robot 'cat'; choose one of: stiff" in refused("cat", "--out", "cat.xml")
-    assert "must end with .xml: dog.urdf" in refused("dog", "--out", "dog.urdf")
+    assert "must end with .xml or .json: dog.urdf" in refused("dog", "--out", "dog.urdf")
     assert "cannot write no/dog.xml" in refused("dog", "--out", "no/dog.xml")
     assert not [*tmp_path.iterdir()]

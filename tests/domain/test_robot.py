@@ -40,7 +40,8 @@ def test_the_default_robot_has_the_specified_parameters() -> None:
     default = asdict(Robot())
 
     assert {name: default[name] for name in figures} == figures
-    assert set(default) == {*figures, "name", "legs", "torso_length_m", "torso_width_m"}
+    others = {"name", "legs", "id", "torso_length_m", "torso_width_m"}
+    assert set(default) == {*figures, *others}
     assert list(Robot().azimuths_deg) == [0, 60, 120, 180, 240, 300]
     assert (Robot().swing_substeps, Robot().shift_substeps) == (50, 30)
     assert Robot().step_s == pytest.approx(0.32)
@@ -119,7 +120,7 @@ def test_a_presets_mapping_is_its_name_alone() -> None:
         ("snake", "unknown robot 'snake'; choose one of: stiff, compliant, slippery"),
         ({"preset": "snake"}, "unknown robot 'snake'"),
         ({"preset": 3}, "unknown robot 3"),
-        ({"wings": 2}, "unknown robot field 'wings'; choose one of: preset, n_legs,.*tibia_m"),
+        ({"wings": 2}, "unknown robot field 'wings'; choose one of: preset, id, n_legs,.*tibia_m"),
         ({"name": "x"}, "unknown robot field 'name'"),
         ({"femur_m": "long"}, "robot.femur_m must be a number, not 'long'"),
         ({"femur_m": True}, "robot.femur_m must be a number, not True"),

@@ -3,6 +3,7 @@
 import json
 import time
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -31,9 +32,12 @@ from tests.storage.stores import training
 GAIT = "left-right-origin"
 
 
-def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps: int = 120) -> Run:
+def ended_training(
+    store: RunStore, run_id: str, name: str = "It learned", steps: int = 120, **walk: Any
+) -> Run:
     """Run a training, and store it with its curve, recording, table and result."""
-    config = training_config(gait=GAIT, steps=steps, simulator="kinematic", evaluate_every=5)
+    walk = {"gait": GAIT, **walk}
+    config = training_config(steps=steps, simulator="kinematic", evaluate_every=5, **walk)
     store.create(training(run_id, name=name, config=config, total=steps))
     recordings, learner = Recordings(store), build_learner(config)
     rest = learner.walker.simulator.pose(learner.walker.state).astype(np.float32)
@@ -55,10 +59,11 @@ def ended_training(store: RunStore, run_id: str, name: str = "It learned", steps
     return store.change(run_id, {"queued"}, "finished", done=steps, result=result, changes=changes)
 
 
-def ended_race(store: RunStore, run_id: str, training_id: str) -> Run:
+def ended_race(store: RunStore, run_id: str, training_id: str, **walk: Any) -> Run:
     """Run a race of a training's table against a greedy lane, and store it with its recordings."""
     lanes = (LaneConfig(agent="q-learning"), LaneConfig(agent="greedy"))
-    config = RaceConfig(gait=GAIT, simulator="kinematic", steps=8, lanes=lanes)
+    walk = {"gait": GAIT, **walk}
+    config = RaceConfig(simulator="kinematic", steps=8, lanes=lanes, **walk)
     table = from_bytes(store.artifact(training_id, TABLE) or b"", "the table")
     store.create(
         Run(

@@ -3,12 +3,14 @@
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from pathlib import Path
 
-from app.settings import Settings
+from app.settings import ROBOTS_FOLDER, Settings
 from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
+from app.storage.database.robots import Robots
 from app.storage.database.sqlite_file import SUFFIXES, check_file, create_file
 from app.storage.database.store import RunStore
 from app.storage.disk_space import RESERVE_FILE, DiskSpace
@@ -21,6 +23,7 @@ ARTIFACTS_FOLDER = "artifacts"
 ENTRIES = (
     *(name + suffix for name in (DATABASE_FILE, f"{DATABASE_FILE}.new") for suffix in SUFFIXES),
     ARTIFACTS_FOLDER,
+    ROBOTS_FOLDER,
     RESERVE_FILE,
     LOCK_FILE,
     ADDRESS_FILE,
@@ -56,14 +59,28 @@ def open_store(
             ownership = Ownership(database, on_lost)
             with _locked(ownership):
                 migrate(database)
-                folder = settings.data / ARTIFACTS_FOLDER / claim(database).database_id
-                folder.parent.mkdir(mode=0o700, exist_ok=True)
-                folder.mkdir(mode=0o700, exist_ok=True)
-                sync_folder(folder.parent)
-                store = RunStore(database, ArtifactFiles(folder, disk_space))
+                database_id = claim(database).database_id
+                files, robots = (
+                    _folder(settings.data / name, database_id)
+                    for name in (ARTIFACTS_FOLDER, ROBOTS_FOLDER)
+                )
+                store = RunStore(
+                    database,
+                    ArtifactFiles(files, disk_space),
+                    Robots(database, robots, disk_space),
+                )
                 _recover(store)
-                with ownership.watched():
+                with store.robots.known(), ownership.watched():
                     yield store
+
+
+def _folder(parent: Path, database_id: str) -> Path:
+    """Return the folder of a database within another one, made if it is not there."""
+    folder = parent / database_id
+    parent.mkdir(mode=0o700, exist_ok=True)
+    folder.mkdir(mode=0o700, exist_ok=True)
+    sync_folder(parent)
+    return folder
 
 
 @contextmanager
@@ -77,7 +94,8 @@ def _locked(ownership: Ownership) -> Iterator[None]:
 
 def _recover(store: RunStore) -> None:
     """Clean up after a crash: delete orphaned files, mark unended runs as interrupted."""
-    orphans, interrupted = store.delete_orphans(), store.interrupt_all()
+    orphans = store.delete_orphans() + store.robots.delete_orphans()
+    interrupted = store.interrupt_all()
     if orphans or interrupted:
         _logger.warning(
             "The last server died: %d runs are interrupted, %d unfinished files are gone",

@@ -9,11 +9,12 @@ from urllib.parse import quote
 from sqlalchemy import Connection, Engine, create_engine, event, select
 from sqlalchemy.pool import NullPool, StaticPool
 
-from app.settings import Settings
+from app.settings import ROBOTS_FOLDER, Settings
 from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import BUSY_S, Database, decode_leniently, postgresql_engine
 from app.storage.database.migration import check_current
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from app.storage.database.robots import Robots
 from app.storage.database.schema import ABOUT, METADATA
 from app.storage.database.sqlite_file import check_file
 from app.storage.database.store import RunStore
@@ -34,8 +35,11 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         database_id = database.read(_id)
         if database_id is None:
             database = stack.enter_context(closing(Database(_empty_engine())))
-        folder = settings.data / ARTIFACTS_FOLDER / (database_id or "none")
-        yield RunStore(database, ArtifactFiles(folder, DiskSpace(settings.data)))
+        disk_space, name = DiskSpace(settings.data), database_id or "none"
+        files = ArtifactFiles(settings.data / ARTIFACTS_FOLDER / name, disk_space)
+        robots = Robots(database, settings.data / ROBOTS_FOLDER / name, disk_space)
+        stack.enter_context(robots.known())
+        yield RunStore(database, files, robots)
 
 
 def _engine(settings: Settings) -> Engine:

@@ -23,6 +23,7 @@ from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
 from app.storage.database.engine import Database
 from app.storage.database.keys import Keys
+from app.storage.database.lesson_rows import LessonRows
 from app.storage.database.listing import Listing, fetch_page
 from app.storage.database.progress import ProgressCache
 from app.storage.database.queries import (
@@ -32,6 +33,8 @@ from app.storage.database.queries import (
     fetch_run_row,
     has_public_id,
 )
+from app.storage.database.robots import Robots
+from app.storage.database.room_rows import RoomRows, Seat
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import RUNS
 from app.storage.database.trials import Trials
@@ -50,6 +53,7 @@ from app.storage.run import (
     Run,
     Sort,
     State,
+    robots_of,
 )
 from app.storage.sessions import SessionRows
 from hexapods.domain.errors import DamagedFile
@@ -69,15 +73,19 @@ class RunStore:
         files: where the artifacts are.
         curves, trials: learning curves of trainings, and trials of experiments.
         keys: idempotency keys.
+        robots: stored robots.
         sessions: storage of operators' browser sessions, in the same database.
+        lessons: those that were stored.
+        rooms: rooms of classes, with their participants, predictions and runs.
     """
 
-    def __init__(self, database: Database, files: ArtifactFiles) -> None:
-        self.database, self.files = database, files
+    def __init__(self, database: Database, files: ArtifactFiles, robots: Robots) -> None:
+        self.database, self.files, self.robots = database, files, robots
         self._progress = ProgressCache()
         self._artifacts = Artifacts(database, files)
         self.curves, self.trials, self.keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SessionRows(database)
+        self.lessons, self.rooms = LessonRows(database), RoomRows(database)
 
     def check_disk_space(self) -> None:
         """Check that there is disk space for one more run.
@@ -103,13 +111,17 @@ class RunStore:
             runs: in order of insertion.
             key: idempotency key of the request that starts the last of them, stored in the same
                 transaction.
+
+        Raises:
+            NotFound: if a stored robot of them was deleted meanwhile.
         """
         if not runs:
             return
-        rows = [encode_run(run) for run in runs]
 
         def work(connection: Connection) -> None:
-            connection.execute(insert(RUNS), rows)
+            for run in runs:
+                self.robots.check(connection, robots_of(run.config))
+            connection.execute(insert(RUNS), [encode_run(run) for run in runs])
             self.keys.insert(connection, key, [runs[-1].id])
 
         self.database.write(work)
@@ -124,7 +136,7 @@ class RunStore:
 
         Args:
             imported: each run, which keeps its id if that is free in this store, and its curve,
-                trials and artifacts.
+                trials, artifacts and robots, which are stored unless they are already.
             new_id: creates an id if a run's own is already in use.
             key: idempotency key of the request, stored in the same transaction.
 
@@ -136,28 +148,32 @@ class RunStore:
         """
         stored: list[dict[str, StoredFile]] = [{} for _ in imported]
         was_submitted = False
+        robots = [one for _, content in imported for one in content.robots]
 
-        def work(connection: Connection) -> Sequence[Run]:
-            added = []
-            for (run, content), files in zip(imported, stored, strict=True):
-                added.append(self._insert(connection, run, content, files, new_id))
-            self.keys.insert(connection, key, [run.id for run in added])
-            return added
+        with self.robots.adding(robots) as new_robots:
 
-        try:
-            # Files first: a crash then leaves orphaned files, which the next start deletes, but
-            # never a row without its files.
-            for (_, content), files in zip(imported, stored, strict=True):
-                for name, data in content.artifacts.items():
-                    files[name] = self.files.write(data)
-            was_submitted = True
-            return self.database.write(work)
-        except BaseException as error:
-            # After an outage the transaction may have been committed with its reply lost. The
-            # files stay then; if they are orphans, the next start deletes them.
-            if not (was_submitted and isinstance(error, StorageFailed)):
-                self.files.remove(*(one.file for files in stored for one in files.values()))
-            raise
+            def work(connection: Connection) -> Sequence[Run]:
+                self.robots.insert(connection, new_robots)
+                added = []
+                for (run, content), files in zip(imported, stored, strict=True):
+                    added.append(self._insert(connection, run, content, files, new_id))
+                self.keys.insert(connection, key, [run.id for run in added])
+                return added
+
+            try:
+                # Files first: a crash then leaves orphaned files, which the next start deletes, but
+                # never a row without its files.
+                for (_, content), files in zip(imported, stored, strict=True):
+                    for name, data in content.artifacts.items():
+                        files[name] = self.files.write(data)
+                was_submitted = True
+                return self.database.write(work)
+            except BaseException as error:
+                # After an outage the transaction may have been committed with its reply lost. The
+                # files stay then; if they are orphans, the next start deletes them.
+                if not (was_submitted and isinstance(error, StorageFailed)):
+                    self.files.remove(*(one.file for files in stored for one in files.values()))
+                raise
 
     def _insert(
         self,
@@ -210,6 +226,7 @@ class RunStore:
         search: str | None = None,
         tag: str | None = None,
         sort: Sort = "newest",
+        reader: Sequence[Seat] | None = None,
     ) -> ListedRuns:
         """Return one page of runs; the arguments are those of a `Listing`.
 
@@ -218,7 +235,7 @@ class RunStore:
         Raises:
             InvalidInput: if the cursor is not one of a list in this order.
         """
-        listing = Listing(kind, state, limit, cursor, search, tag, sort)
+        listing = Listing(kind, state, limit, cursor, search, tag, sort, reader)
         progress = self._progress.snapshot()
         rows, cursor = self.database.read(lambda connection: fetch_page(connection, listing))
         return ListedRuns(

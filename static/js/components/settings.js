@@ -11,7 +11,7 @@ import {
   ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
-import { choicesOf, gaitTitle, labelOf, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
+import { choicesOf, gaitTitle, labelOf, observationTitle, robotChoices, robotTitle, simulatorTitle } from "../titles.js";
 import { isAtLeast } from "../workspace.js";
 import { Beforehand } from "./beforehand.js";
 import { EditBody } from "./edit-body.js";
@@ -314,14 +314,14 @@ const RaceGroup = () => html`
 
 /** @param {{ words?: string }} props */
 const RobotField = ({ words = chosenRobot()?.description }) => html`
-  <${SelectField} field="robot" label="Robot" choices=${robotChoices()} onValue=${chooseRobot} words=${words} />
+  <${SelectField} field="robot" label="Robot" choices=${choicesOfRobot()} onValue=${chooseRobot} words=${words} />
 `;
 
-/** The presets, and a custom robot that a link or a run has brought. */
-function robotChoices() {
+/** Those that are offered, and a custom robot that a link or a run has brought. */
+function choicesOfRobot() {
   const { robot } = form.value;
-  const presets = choicesOf(options.value?.robots, robotTitle);
-  return typeof robot === "string" ? presets : [...presets, [robot, robotTitle(robot)]];
+  const known = robotChoices([robot]);
+  return typeof robot === "string" ? known : [...known, [robot, robotTitle(robot)]];
 }
 
 /** @param {{ field: string, step: number }} props */

@@ -1,6 +1,6 @@
 // An experiment in few words: its state, what is the same in all its trials, and what came of it as the server says.
 import { count, duration, listed, percentage, sentence, whole } from "../format.js";
-import { customRobotInWords, presetOf } from "../robots.js";
+import { customRobotInWords, presetOf, storedName } from "../robots.js";
 import { served } from "../store.js";
 import { agentTitle, gaitTitle, observationTitle, simulatorTitle } from "../titles.js";
 
@@ -38,7 +38,7 @@ function gaitsIn({ gaits = [] }) {
  */
 export function configInWords(config) {
   const { agents = [], steps = [], observations = [], robots = [], seeds, seed, tolerance, simulator } = config;
-  const robotName = (/** @type {RobotConfig} */ one) => customRobotInWords(one) ?? presetOf(one) ?? "own";
+  const robotName = (/** @type {RobotConfig} */ one) => customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own";
   return sentence([
     fewOf(agents.map(agentTitle), "agent"),
     config.experiment === "figure4" ? "" : `${[steps].flat().map(whole).join(", ")} steps of practice`,

@@ -8,7 +8,7 @@ import { listed, sentence, whole } from "../../format.js";
 import { fullTitle, settingOf, shortTitle } from "../../settings.js";
 import { options, served } from "../../store.js";
 import {
-  agentTitle, choicesOf, gaitTitle, observationTitle, robotTitle, simulatorTitle,
+  agentTitle, choicesOf, gaitTitle, observationTitle, robotChoices, robotTitle, simulatorTitle,
 } from "../../titles.js";
 import { html } from "../elements.js";
 import { WorldPicture } from "../world.js";
@@ -70,7 +70,7 @@ const More = () => html`
     <summary>Robots and gaits<span class="dim">${summaryOfAll()}</span></summary>
     <div class="where">
       <${CheckList} field="gaits" label="Gaits" choices=${choicesOf(options.value?.gaits, gaitTitle)} />
-      <${CheckList} field="robots" label="Robots" choices=${choicesOf(options.value?.robots, robotTitle)} />
+      <${CheckList} field="robots" label="Robots" choices=${robotChoices(values.value.robots)} />
       <${CheckList} field="observations" label="Observation"
         choices=${choicesOf(options.value?.observations, observationTitle)} />
       <${Grid} fields=${gridOf(false)} />

@@ -1,0 +1,108 @@
+"""Response models of stored robots, as those of `app.api.answers`."""
+
+from datetime import datetime
+from typing import Any
+
+from app.api.answers import Answer
+from app.storage.stored_robot import StoredRobot
+from hexapods.domain.creatures import own_gait
+from hexapods.domain.gait import AnyGait, gait_as_json, resolve
+from hexapods.domain.kinematics import legs_of
+from hexapods.domain.records import to_json
+from hexapods.domain.robot import legs_written_out, written_out
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.preview import Preview, preview
+
+
+class StoredLeg(Answer):
+    """A leg of a stored robot.
+
+    Attributes:
+        leg: its number, from 1.
+        azimuth_deg: where it is on the torso, anticlockwise from body x.
+        joints: names of its joints, from the torso to the foot.
+    """
+
+    leg: int
+    azimuth_deg: float
+    joints: list[str]
+
+
+class StoredRobotView(Answer):
+    """A stored robot.
+
+    Attributes:
+        id: of its content: the same robot has the same id on every server.
+        name: no other robot here has it.
+        hidden: whether it is left out where a robot is chosen.
+        gait: one that suits it.
+        groups: legs of each group of this gait.
+        guesses: of a robot from a file: what was guessed, in sentences.
+        repairs: likewise, what was repaired.
+        choices: likewise, what a person has corrected; null for nothing.
+        file: name of the file that it is from; null if it was made here.
+    """
+
+    id: str
+    name: str
+    hidden: bool
+    gait: AnyGait
+    groups: list[list[int]]
+    legs: list[StoredLeg]
+    guesses: list[str]
+    repairs: list[str]
+    choices: dict[str, Any] | None
+    file: str | None
+    created_at: datetime
+
+
+class StoredRobotsView(Answer):
+    """Stored robots, in the order in which they were stored."""
+
+    items: list[StoredRobotView]
+
+
+class WholeRobotView(StoredRobotView):
+    """A stored robot with all its numbers, and what is known of it before it walks.
+
+    Attributes:
+        robot: by value, as a request may have it.
+        preview: with its gait, on the usual foot grid.
+    """
+
+    robot: dict[str, Any]
+    preview: Preview
+
+
+def robot_view(stored: StoredRobot) -> dict[str, Any]:
+    """Return a stored robot as a `StoredRobotView`.
+
+    Raises:
+        InvalidInput: if its document is not there, or damaged.
+    """
+    made = stored.robot
+    gait, legs = own_gait(made), legs_of(made)
+    return {
+        **to_json(stored),
+        "gait": gait_as_json(gait),
+        "groups": [list(group) for group in resolve(gait, made.azimuths_deg).groups],
+        "legs": [
+            {
+                "leg": number,
+                "azimuth_deg": azimuth_deg,
+                "joints": [joint.name for joint in legs.of_leg(number)],
+            }
+            for number, azimuth_deg in enumerate(made.azimuths_deg, start=1)
+        ],
+    }
+
+
+def whole_view(stored: StoredRobot) -> dict[str, Any]:
+    """Return a stored robot as a `WholeRobotView`; errors as of `robot_view`."""
+    made = stored.robot
+    numbers = {name: value for name, value in written_out(made).items() if value is not None}
+    return {
+        **robot_view(stored),
+        "robot": {**numbers, "legs": legs_written_out(made)},
+        "preview": to_json(preview(WalkingProblem(gait=own_gait(made), robot=made))),
+    }

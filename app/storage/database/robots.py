@@ -1,0 +1,336 @@
+"""Stored robots: rows of the `robots` table, and documents and uploads in files beside it."""
+
+import itertools
+import logging
+import threading
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection, String, cast, delete, func, insert, or_, select, update
+
+from app.storage.database.engine import Database
+from app.storage.database.queries import Row, fetch_rows
+from app.storage.database.rows import forget_configs
+from app.storage.database.schema import ROBOTS, RUNS
+from app.storage.disk_space import DiskSpace
+from app.storage.errors import Conflict, NotFound, StorageFailed, StorageFull
+from app.storage.stored_robot import MAX_ROBOTS, StoredRobot, distinct_name
+from hexapods.domain import robot_documents
+from hexapods.domain.errors import HexapodError
+from hexapods.domain.records import from_json, to_json
+from hexapods.domain.robot import Robot
+from hexapods.domain.robot_documents import ENDING
+from hexapods.files import is_disk_full, write_atomically
+
+UPLOAD_ENDING = ".upload"
+"""Of the files that robots were read from."""
+_versions = itertools.count()
+_logger = logging.getLogger(__name__)
+
+
+class Robots:
+    """Stores robots. Thread-safe.
+
+    A document is written before its row, and deleted after it: a crash leaves at most a file
+    without a row, which the next start deletes.
+
+    Attributes:
+        version: of the list of robots; another one after each change.
+    """
+
+    def __init__(self, database: Database, folder: Path, disk_space: DiskSpace) -> None:
+        """Use a table and a folder.
+
+        Args:
+            database: where the rows are.
+            folder: for these files alone; must exist before the first write.
+            disk_space: to check before each write.
+        """
+        self._database, self._folder, self._disk_space = database, folder, disk_space
+        # Of changes: a robot must not be deleted between its document's writing and its row's.
+        self.lock = threading.RLock()
+        self._told: set[str] = set()
+        self.version = next(_versions)
+
+    @contextmanager
+    def known(self) -> Iterator[None]:
+        """Let this process find the robots by their ids, and know their names."""
+        robot_documents.use_folder(self._folder)
+        try:
+            self._tell(self.stored(hidden=True))
+            yield
+        finally:
+            robot_documents.leave_folder(self._folder)
+            robot_documents.forget(self._told)
+
+    def stored(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
+        """Return the robots in the order in which they were stored.
+
+        Args:
+            hidden: whether hidden ones are listed too.
+        """
+        query = select(ROBOTS).order_by(ROBOTS.c.created_at, ROBOTS.c.id)
+        rows = self._database.read(lambda connection: fetch_rows(connection, query))
+        robots = filter(None, map(_decode, rows))
+        return [one for one in robots if hidden or not one.hidden]
+
+    def readable(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
+        """Return those of `stored` whose documents can be read; others are logged."""
+        found = []
+        for one in self.stored(hidden=hidden):
+            try:
+                one.robot  # noqa: B018 - reads the document
+            except HexapodError as error:
+                _logger.warning("robot %s (%s) is left out: %s", one.id, one.name, error)
+            else:
+                found.append(one)
+        return found
+
+    def get(self, robot_id: str) -> StoredRobot:
+        """Return a stored robot.
+
+        Raises:
+            NotFound: if there is no such robot, or its row is damaged.
+        """
+        return self._database.read(lambda connection: _fetch(connection, robot_id))
+
+    def find(self, text: str) -> StoredRobot | None:
+        """Return the robot of this id or name, without regard to case; None if there is none."""
+        robots = self.stored(hidden=True)
+        wanted = text.casefold()
+        return next((one for one in robots if wanted in (one.id, one.name.casefold())), None)
+
+    def document(self, robot_id: str) -> bytes:
+        """Return the document of a stored robot.
+
+        Raises:
+            NotFound: if there is no such robot.
+            DamagedFile: if it is damaged.
+        """
+        return robot_documents.find(self.get(robot_id).id)
+
+    def upload(self, robot_id: str) -> bytes | None:
+        """Return the file that a stored robot was read from; None if it was made here."""
+        try:
+            return self._path(robot_id, UPLOAD_ENDING).read_bytes()
+        except OSError:
+            return None
+
+    def add(
+        self, document: bytes, about: StoredRobot, upload: bytes | None = None
+    ) -> tuple[StoredRobot, bool]:
+        """Store a robot, unless it is stored already; then it is hidden no longer.
+
+        Args:
+            document: of the robot; validated.
+            about: what is stored beside it.
+            upload: the file that it was read from.
+
+        Returns:
+            the robot as stored, and whether it is new.
+
+        Raises:
+            Conflict: if another robot has this name.
+            StorageFull: if there are too many, or too little disk space.
+        """
+        with self.lock:
+            with suppress(NotFound):
+                stored = self.get(about.id)
+                return (self.change(stored.id, hidden=False) if stored.hidden else stored), False
+            if distinct_name(about.name, self._names()) != about.name:
+                raise _name_taken(about.name)
+            with self.adding([(about, document)], upload) as new:
+                self._database.write(lambda connection: self.insert(connection, new))
+            return about, True
+
+    @contextmanager
+    def adding(
+        self, robots: Iterable[tuple[StoredRobot, bytes]], upload: bytes | None = None
+    ) -> Iterator[Sequence[StoredRobot]]:
+        """Write the files of robots that are not stored, whose rows are inserted in the context.
+
+        Args:
+            robots: each with its document; its name is made distinct.
+            upload: the file that all of them were read from.
+
+        Yields:
+            those whose rows are to be inserted.
+        """
+        with self.lock:
+            names, new = self._names(), dict[str, tuple[StoredRobot, bytes]]()
+            ids = {one.id for one in self.stored(hidden=True)}
+            for robot, document in robots:
+                if robot.id not in (*ids, *new):
+                    named = replace(robot, name=distinct_name(robot.name, names))
+                    names.append(named.name)
+                    new[robot.id] = named, document
+            try:
+                for robot, document in new.values():
+                    self._write_files(robot.id, document, upload)
+                yield [robot for robot, _ in new.values()]
+            except StorageFailed:
+                raise  # it may have been committed; if it was not, the next start deletes the files
+            except BaseException:
+                for robot_id in new:
+                    self._remove_files(robot_id)
+                raise
+            self._tell(robot for robot, _ in new.values())
+
+    def _write_files(self, robot_id: str, document: bytes, upload: bytes | None = None) -> None:
+        files = {ENDING: document} | ({} if upload is None else {UPLOAD_ENDING: upload})
+        self._disk_space.check(sum(map(len, files.values())))
+        try:
+            for ending, data in files.items():
+                write_atomically(self._path(robot_id, ending), data)
+        except OSError as error:
+            self._remove_files(robot_id)
+            if is_disk_full(error):
+                raise StorageFull("the disk of the data folder is full; make room there") from error
+            raise StorageFailed(
+                f"a file cannot be written to the data folder ({error.strerror})"
+            ) from error
+
+    def _remove_files(self, robot_id: str) -> None:
+        # A file that stays is deleted by the next start.
+        for ending in (ENDING, UPLOAD_ENDING):
+            with suppress(OSError):
+                self._path(robot_id, ending).unlink()
+
+    def insert(self, connection: Connection, robots: Sequence[StoredRobot]) -> None:
+        """Insert rows within a transaction.
+
+        Raises:
+            StorageFull: if there would be too many.
+        """
+        count = connection.execute(select(func.count()).select_from(ROBOTS)).scalar_one()
+        if count + len(robots) > MAX_ROBOTS:
+            raise StorageFull(f"at most {MAX_ROBOTS} robots are stored; delete some that none use")
+        if robots:
+            connection.execute(insert(ROBOTS), [_encode(one) for one in robots])
+
+    def check(self, connection: Connection, robots: Iterable[Robot]) -> None:
+        """Check within a transaction that those of some robots that are stored ones are here.
+
+        Raises:
+            NotFound: if one was deleted.
+        """
+        for robot in robots:
+            if robot.id is not None:
+                _fetch(connection, robot.id)
+
+    def change(self, robot_id: str, **fields: Any) -> StoredRobot:
+        """Change what is stored beside a robot's document, and return it.
+
+        Raises:
+            NotFound: if there is no such robot.
+            Conflict: if another robot has the name.
+        """
+        with self.lock:
+            changed = replace(self.get(robot_id), **fields)
+            if distinct_name(changed.name, self._names(robot_id)) != changed.name:
+                raise _name_taken(changed.name)
+            values = {name: value for name, value in _encode(changed).items() if name in fields}
+            statement = update(ROBOTS).where(ROBOTS.c.id == robot_id).values(values)
+            self._database.write(lambda connection: connection.execute(statement))
+            self._tell([changed])
+            return changed
+
+    def delete(self, robot_id: str) -> None:
+        """Delete a robot.
+
+        Raises:
+            NotFound: if there is no such robot.
+            Conflict: if runs use it.
+        """
+
+        def work(connection: Connection) -> None:
+            robot, users = _fetch(connection, robot_id), _users(connection, robot_id)
+            if users:
+                runs = "a run uses" if users == 1 else f"{users:,} runs use"
+                raise Conflict(
+                    f"{runs} {robot.name}, and could not be shown without it; hide it instead, "
+                    f"or delete {'that run' if users == 1 else 'those runs'} first",
+                    "hidden" if robot.hidden else "used",
+                )
+            connection.execute(delete(ROBOTS).where(ROBOTS.c.id == robot_id))
+
+        with self.lock:
+            self._database.write(work)
+            self._remove_files(robot_id)
+            robot_documents.forget([robot_id])
+            self._changed()
+
+    def delete_orphans(self) -> int:
+        """Delete files without a row, and unfinished ones; only safe before the first write.
+
+        Returns:
+            the number of deleted files.
+        """
+        query = select(ROBOTS.c.id)
+        ids = set(self._database.read(lambda connection: connection.execute(query).scalars().all()))
+        orphans = [
+            path
+            for path in self._folder.iterdir()
+            if path.suffix not in (ENDING, UPLOAD_ENDING) or path.stem not in ids
+        ]
+        for path in orphans:
+            with suppress(OSError):
+                path.unlink()
+        return len(orphans)
+
+    def _tell(self, robots: Iterable[StoredRobot]) -> None:
+        for robot in robots:
+            robot.tell()
+            self._told.add(robot.id)
+        self._changed()
+
+    def _changed(self) -> None:
+        self.version = next(_versions)
+        forget_configs()  # which have the robots' names
+
+    def _names(self, robot_id: str | None = None) -> list[str]:
+        """Return the names of all robots, or of all others."""
+        return [one.name for one in self.stored(hidden=True) if one.id != robot_id]
+
+    def _path(self, robot_id: str, ending: str) -> Path:
+        if not robot_documents.is_id(robot_id):
+            raise NotFound(f"there is no robot {robot_id!r}")
+        return self._folder / f"{robot_id}{ending}"
+
+
+def _name_taken(name: str) -> Conflict:
+    return Conflict(f"there is a robot named {name!r} already; choose another name", "name")
+
+
+def _fetch(connection: Connection, robot_id: str) -> StoredRobot:
+    rows = fetch_rows(connection, select(ROBOTS).where(ROBOTS.c.id == robot_id))
+    robot = _decode(rows[0]) if rows else None
+    if robot is None:
+        raise NotFound(f"there is no robot {robot_id!r} (any more)")
+    return robot
+
+
+def _users(connection: Connection, robot_id: str) -> int:
+    """Return the number of runs whose config or result names a robot."""
+    told = (cast(column, String).contains(robot_id) for column in (RUNS.c.config, RUNS.c.result))
+    query = select(func.count()).select_from(RUNS).where(or_(*told))
+    return int(connection.execute(query).scalar_one())
+
+
+def _encode(robot: StoredRobot) -> dict[str, Any]:
+    return {**to_json(robot), "hidden": int(robot.hidden), "created_at": robot.created_at}
+
+
+def _decode(row: Row) -> StoredRobot | None:
+    """Return the robot of a row; None, with a warning in the log, if it is damaged."""
+    values: Mapping[str, Any] = {**row, "hidden": bool(row["hidden"])}
+    try:
+        if not robot_documents.is_id(row["id"]):
+            raise ValueError("its id is malformed")
+        return from_json(StoredRobot, values)
+    except (HexapodError, ValueError, TypeError) as error:
+        _logger.warning("the row of robot %.40r is damaged: %s", row["id"], error)
+        return None

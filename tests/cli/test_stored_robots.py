@@ -1,0 +1,101 @@
+"""Stored robots on the command line: with the data folder alone, and through its server."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hexapods.domain import robot_documents
+from hexapods.domain.robot import document_of, robot
+from tests.cli.running import in_process, output, refusal
+from tests.served import Served
+
+BODY = {"preset": "dog", "femur_m": 0.0955}
+ID = robot_documents.id_of(document_of(robot(BODY)))
+WALK = ("--gait", "trot", "--simulator", "kinematic")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "rex.json").write_bytes(document_of(robot(BODY)))
+    return tmp_path
+
+
+def told(folder: Path, *arguments: str) -> Any:
+    data = ("--data", str(folder / "data"))
+    return output("robots", *arguments, *data, folder=folder, run=in_process)
+
+
+def names(folder: Path, *arguments: str) -> list[str]:
+    return [one["name"] for one in told(folder, "list", *arguments) if one["id"] is not None]
+
+
+def test_a_robot_is_imported_shown_hidden_renamed_and_deleted(folder: Path) -> None:
+    made = told(folder, "import", "rex.json", "--name", "Rex")
+    assert (made["id"], made["name"]) == (ID, "Rex")
+    assert told(folder, "import", "rex.json", "--name", "Max")["name"] == "Rex"
+    assert names(folder) == ["Rex"]
+    assert told(folder, "show", "rex")["states"] == 25
+    assert told(folder, "show", ID, "--gait", "one-by-one")["states"] == 625
+    told(folder, "hide", "Rex")
+    assert (names(folder), names(folder, "--hidden")) == ([], ["Rex"])
+    told(folder, "hide", "Rex", "--undo")
+    told(folder, "rename", "Rex", "--name", "Max")
+    told(folder, "export", "Max", "--out", "max.json")
+    assert (folder / "max.json").read_bytes() == (folder / "rex.json").read_bytes()
+    assert told(folder, "delete", "max") == {"deleted": ID}
+    assert names(folder, "--hidden") == []
+
+
+def test_what_cannot_be_is_refused(folder: Path) -> None:
+    def refused(*arguments: str) -> str:
+        data = ("--data", str(folder / "data"))
+        return refusal("robots", *arguments, *data, folder=folder, run=in_process)
+
+    assert "cannot read no.json" in refused("import", "no.json")
+    (folder / "bad.json").write_text('{"format":"hexapods-robot-1"}')
+    assert "is damaged" in refused("import", "bad.json")
+    assert "unknown stored robot 'cat'; choose one of: none yet" in refused("delete", "cat")
+    told(folder, "import", "rex.json", "--name", "Rex")
+    assert "unknown stored robot 'cat'; choose one of: Rex" in refused("hide", "cat")
+    assert "unknown robot 'cat'; choose one of: stiff" in refused("show", "cat")
+    assert "Rex" in refused("show", "cat")
+    assert "choose another name" in refused("rename", "Rex", "--name", "stiff")
+
+
+def test_it_walks_by_name_and_its_table_knows_it(folder: Path) -> None:
+    data = {"HEXAPODS_DATA": str(folder / "data")}
+    told(folder, "import", "rex.json", "--name", "Rex")
+
+    def run(*arguments: str) -> Any:
+        done = in_process(*arguments, "--json", folder=folder, **data)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    steps = ("--steps", "60", "--out", "q.npz")
+    trained = run("train", *WALK, "--robot", "Rex", *steps)
+    assert trained["config"]["robot"] == {"id": ID, "name": "Rex"}
+    lanes = ("--lane", "q-learning=q.npz", "--lane", "greedy", "--steps", "4")
+    assert run("race", *WALK, "--robot", ID, *lanes)["config"]["robot"]["id"] == ID
+    changed = json.dumps({"id": ID, "friction": 0.5})
+    assert run("race", *WALK, "--robot", changed, *lanes)["config"]["robot"]["friction"] == 0.5
+    plan = ("--seeds", "2", "--steps", "20", "--agent", "q-learning", "--workers", "1")
+    swept = run("sweep", *WALK, "--robot", "Rex", *plan)
+    assert "Rex" in json.dumps(swept)
+    elsewhere = refusal("race", *WALK, *lanes, folder=folder, HEXAPODS_DATA="none")
+    assert f"there is no stored robot '{ID}' (Rex); import its document" in elsewhere
+
+
+def test_a_running_server_is_asked(folder: Path) -> None:
+    served = Served(folder / "data")
+    try:
+        assert told(folder, "import", "rex.json")["name"] == "rex"
+        assert names(folder) == ["rex"]
+        told(folder, "rename", "rex", "--name", "Rex")
+        told(folder, "hide", "Rex")
+        assert (names(folder), names(folder, "--hidden")) == ([], ["Rex"])
+        assert told(folder, "delete", ID) == {"deleted": ID}
+        assert names(folder, "--hidden") == []
+    finally:
+        served.end()
