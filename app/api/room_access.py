@@ -87,11 +87,15 @@ class RoomAccess:
 
     def is_open_to_all(self, scope: Scope) -> bool:
         """Whether a code is all that a request needs: to see a room, and to join it."""
-        found = _OF_ROOM.fullmatch(path_of(scope))
-        if found is None or scope["type"] != "http":
+        path = path_of(scope)
+        found = _OF_ROOM.fullmatch(path)
+        if scope["type"] != "http":
             return False
         if scope["method"] in READ_METHODS:
-            return found["rest"] is None
+            found = found or _PAGE_OF_ROOM.fullmatch(path)
+            return found is not None and found["rest"] is None
+        if found is None:
+            return False
         return scope["method"] == "POST" and found["rest"] == _JOIN
 
     def _refuse_participant(
@@ -104,6 +108,8 @@ class RoomAccess:
             if _TAUGHT.fullmatch(path_of(scope)):
                 return problem(403, "A lesson has its answers; participants see its cards alone.")
             if is_public or rest is not None or self._is_read_in_room(scope, seats):
+                return None
+            if self.is_open_to_all(scope):
                 return None
             return problem(403, "Participants see their room alone here; watching needs the token.")
         deed = _DEEDS.get(rest or "") if scope["method"] == "POST" else None

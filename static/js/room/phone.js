@@ -77,7 +77,7 @@ function Question({ card, number, text }) {
       ${locked === undefined && isRevealed.value
         ? html`<p class="dim">You gave no prediction before the reveal.</p>`
         : html`<${Answer} card=${card} number=${number} locked=${locked} actual=${useOwnCurve(card)} />`}
-      ${locked !== undefined && html`<p class="locked" role="status">Locked. It cannot be changed any more.</p>`}
+      ${locked !== undefined && html`<p class="lock-note" role="status">Locked. It cannot be changed any more.</p>`}
     </section>
   `;
 }

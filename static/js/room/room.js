@@ -1,5 +1,5 @@
 // The room of this page as signals: what the server tells who asks, kept by its events, and what can be done in it.
-import { batch, computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getAnyRun, getOptions } from "../api.js";
 import * as api from "../classroom-api.js";
 import { openEvents } from "../events.js";
@@ -131,20 +131,20 @@ function onEvent(name, data) {
 /** Load the room, and follow it until it ends. */
 export async function followRoom() {
   await refresh();
-  /** @type {(() => void) | null} */
-  let close = null;
+  const stream = computed(() => {
+    const { state, role } = room.value ?? {};
+    // A stranger follows nothing; what a stream tells depends on who has opened it.
+    return state === "ended" || (role === "spectator" && !isProjector) ? "" : role ?? "";
+  });
   effect(() => {
-    const state = room.value?.state;
-    if (state === undefined || state === "ended") {
-      close?.();
-      close = null;
-      if (state === "ended") connection.value = "live";
-      return;
+    if (!stream.value) {
+      connection.value = "live";
+      return undefined;
     }
-    close ??= openEvents(["room", ...eventNames], onEvent, (now) => {
+    return openEvents(["room", ...eventNames], onEvent, (now) => {
       connection.value = now;
       // The stream does not say why it ended: the room may have.
-      if (now === "reconnecting") refresh();
+      if (now === "reconnecting") untracked(refresh);
     }, api.eventsOf(code));
   });
   effect(() => {
