@@ -13,10 +13,11 @@ from fastapi import FastAPI
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.auth import PUBLIC_PATHS
-from app.api.cookies import NAME
+from app.api.cookies import NAME, ROOM_NAME
 from app.api.event_answers import EventBodies
 from app.api.problems import MEDIA_TYPE
 from app.api.rate_limit import QUESTIONS
+from app.api.room_access import OF_PARTICIPANTS, OPEN_TO_ALL
 from app.classroom import lesson
 from app.settings import Settings
 
@@ -256,6 +257,12 @@ def _add_security(schema: Schema, settings: Settings) -> None:
             "description": "set by opening the page once with ?token=… in its address; the name "
             "ends with the port of that address, and begins with __Host- over HTTPS",
         },
+        "participant": {
+            "type": "apiKey",
+            "in": "cookie",
+            "name": f"{ROOM_NAME}_{settings.port}_CODE",
+            "description": "set by joining a room; its name ends with the code of the room",
+        },
     }
     operator: list[Schema] = [{"bearer": []}, {"cookie": []}]
     for method, path, operation in operations(schema):
@@ -263,4 +270,9 @@ def _add_security(schema: Schema, settings: Settings) -> None:
             (method in _WRITE_METHODS and path not in QUESTIONS)
             or (settings.spectators != "public" and path not in PUBLIC_PATHS)
         )
-        operation["security"] = operator if needs_token else [*operator, {}]
+        if (method, path) in OF_PARTICIPANTS:
+            operation["security"] = [{"participant": []}]
+        elif needs_token and (method, path) not in OPEN_TO_ALL:
+            operation["security"] = operator
+        else:
+            operation["security"] = [*operator, {}]

@@ -148,13 +148,12 @@ async def _start_request(
     return StartRequest(f"{request.url.path}?{request.url.query}", body, idempotency_key)
 
 
-BodyDep = Annotated[bytes, Depends(_body)]
-"""The body of a request, as it was sent."""
 ServicesDep = Annotated[Services, Depends(_services)]
 StageDep = Annotated[SharedStage, Depends(_stage)]
 """The stage that the request's path is about."""
 StartRequestDep = Annotated[StartRequest, Depends(_start_request)]
 BodyDep = Annotated[bytes, Depends(_body)]
+"""The body of a request, as it was sent."""
 ReaderDep = Annotated[tuple[Seat, ...] | None, Depends(_reader)]
 """Which participants of rooms the client is, whose runs it sees; None for operators."""
 RoleDep = Annotated[Role, Depends(_role)]

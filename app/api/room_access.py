@@ -38,8 +38,21 @@ _OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]
 _COOKIE = re.compile(rf"(?:__Host-)?{ROOM_NAME}_\d+_(?P<code>[{ALPHABET}]{{{CODE_LENGTH}}})")
 _DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
 """By the end of the path that is sent to, what the card must allow."""
-_LEAVE = "/participants/me"
+_LEAVE = "/me"
 _JOIN = "/participants"
+OPEN_TO_ALL = frozenset(
+    {
+        ("get", f"{ROOMS}/{{code}}"),
+        ("post", f"{ROOMS}/{{code}}{_JOIN}"),
+        ("get", f"{PAGES}/{{code}}"),
+        ("get", f"{PAGES}/{{code}}/"),
+    }
+)
+"""Operations and pages for which a code is all that is needed."""
+OF_PARTICIPANTS = frozenset(
+    {("delete", f"{ROOMS}/{{code}}{_LEAVE}"), *(("post", f"{ROOMS}/{{code}}{x}") for x in _DEEDS)}
+)
+"""Operations that need the cookie of a participant."""
 _TAUGHT = re.compile(r"/api/v1/lessons(/.*)?")
 """What a participant does not read: lessons have the answers."""
 _READ_IN_ROOM = re.compile(
@@ -87,16 +100,14 @@ class RoomAccess:
 
     def is_open_to_all(self, scope: Scope) -> bool:
         """Whether a code is all that a request needs: to see a room, and to join it."""
-        path = path_of(scope)
-        found = _OF_ROOM.fullmatch(path)
         if scope["type"] != "http":
             return False
-        if scope["method"] in READ_METHODS:
-            found = found or _PAGE_OF_ROOM.fullmatch(path)
-            return found is not None and found["rest"] is None
+        path, method = path_of(scope), "get" if scope["method"] == "HEAD" else scope["method"]
+        found = _OF_ROOM.fullmatch(path) or _PAGE_OF_ROOM.fullmatch(path)
         if found is None:
             return False
-        return scope["method"] == "POST" and found["rest"] == _JOIN
+        template = f"{path[: found.start('code')]}{{code}}{found['rest'] or ''}"
+        return (method.lower(), template) in OPEN_TO_ALL
 
     def _refuse_participant(
         self, scope: Scope, seats: tuple[Seat, ...], *, is_public: bool

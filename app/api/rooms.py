@@ -223,7 +223,7 @@ def join_room(
     return response
 
 
-@router.delete("/{code}/participants/me", status_code=204, summary="Leave a room")
+@router.delete("/{code}/me", status_code=204, summary="Leave a room")
 def leave_room(
     services: ServicesDep, request: Request, code: CodePath, seed: SeatDep, response: Response
 ) -> None:

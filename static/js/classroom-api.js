@@ -60,6 +60,7 @@ export const revealCard = (code, card) => call("POST", `${pathOf(code)}/reveal`,
 export const endRoom = (code) => call("POST", `${pathOf(code)}/end`);
 /** @type {(code: string, run_id: string | null) => Promise<Classroom>} */
 export const spotlightRun = (code, run_id) => call("PUT", `${pathOf(code)}/spotlight`, { run_id });
-/** @type {(code: string, seed: number, changes: { is_name_hidden?: boolean, is_approved?: boolean }) => Promise<Classroom>} */
+/** What others see of a participant. @typedef {{ is_name_hidden?: boolean, is_approved?: boolean }} PersonChanges */
+/** @type {(code: string, seed: number, changes: PersonChanges) => Promise<Classroom>} */
 export const changeParticipant = (code, seed, changes) =>
   call("PATCH", `${pathOf(code)}/participants/${seed}`, changes);

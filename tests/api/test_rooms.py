@@ -158,7 +158,7 @@ def test_who_joins_again_has_the_same_name_and_seed(school: Class) -> None:
     assert "Path=/" in cookie
     again = pupil.call("POST", f"/rooms/{code.lower()[:3]}-{code[3:]}/participants")
     assert (again.status_code, again.json()) == (200, first.json())
-    assert pupil.call("DELETE", f"/rooms/{code}/participants/me").status_code == 204
+    assert pupil.call("DELETE", f"/rooms/{code}/me").status_code == 204
     refused(pupil.call("POST", f"/rooms/{code}/runs"), 401)
     other = pupil.call("POST", f"/rooms/{code}/participants")
     assert other.status_code == 201

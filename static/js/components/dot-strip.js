@@ -90,7 +90,8 @@ function Axis({ low, high, axis, at, width, y, size }) {
   return values.map((value, n) => html`
     <line class="axis" x1=${at(value)} x2=${at(value)} y1=${y} y2=${y + 3} />
     ${width > 0 && placed[n] && html`
-      <text class="axis-number" x=${at(value)} y=${y + AXIS_PX * size} text-anchor=${value === low ? "start" : "middle"}>
+      <text class="axis-number" x=${at(value)} y=${y + AXIS_PX * size}
+        text-anchor=${value === low ? "start" : "middle"}>
         ${axis(value)}
       </text>
     `}

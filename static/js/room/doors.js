@@ -23,10 +23,12 @@ export function Closed() {
       <h1>No room ${code.length > 12 ? "of this code" : code}</h1>
       <p role="alert">${refusal}</p>
       <label for="other-code">Code on the projector</label>
-      <input id="other-code" class="code-field" type="text" maxlength="12" autocomplete="off" autocapitalize="characters"
-        spellcheck=${false} value=${typed}
+      <input id="other-code" class="code-field" type="text" maxlength="12" autocomplete="off"
+        autocapitalize="characters" spellcheck=${false} value=${typed}
         onInput=${(/** @type {any} */ { target }) => setTyped(target.value)} />
-      <a class="primary as-button" href=${other || undefined} aria-disabled=${other ? undefined : "true"}>Go to the room</a>
+      <a class="primary as-button" href=${other || undefined} aria-disabled=${other ? undefined : "true"}>
+        Go to the room
+      </a>
     </main>
   `;
 }
@@ -46,10 +48,10 @@ export function Door() {
     <main class="door">
       <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
       <h1>${title}</h1>
-      <p class="dim">Room <b class="code">${code.toUpperCase()}</b>${participants > 0 && ` · ${participants} inside`}</p>
+      <p class="dim">Room <b class="code">${room.value?.code}</b>${participants > 0 && ` · ${participants} in it`}</p>
       <button class="primary" disabled=${busy.value.join} onClick=${join}>Join</button>
       <${Failure} at="join" />
-      <p class="dim">You get a name from a list, and a robot of your own. Nothing about you is stored.</p>
+      <p class="dim">You get a name from a list and a robot of your own. No account is needed.</p>
     </main>
   `;
 }
@@ -61,7 +63,7 @@ export const Away = () => connection.value === "reconnecting" && html`
   </p>
 `;
 
-/** A text of a card: the server makes it of Markdown, without HTML of the author's. @param {{ text: string }} props */
+/** A text of a card, which the server makes of Markdown without HTML of its own. @param {{ text: string }} props */
 export const Prose = ({ text }) => html`<div class="prose" dangerouslySetInnerHTML=${{ __html: text }}></div>`;
 
 /** An address as a person types it. @param {string} address */

@@ -8,14 +8,15 @@ import { agentOf, choiceTitle, fullTitle, rangeOf, sliderOf } from "../settings.
 import { options, setEntry } from "../store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Bounds, LessonCard, SettingOption } from "../types.js" */
+/** @import { Bounds, LessonCard, Limits, SettingOption } from "../types.js" */
 
 /** Card and setting → what was typed or chosen. @type {Signal<Record<string, any>>} */
 const drafts = signal({});
 
 const DEFAULT_AGENT = "q-learning";
 
-/** The declaration of a setting; null for one that is a choice of names. @type {(name: string, card: LessonCard) => SettingOption | null} */
+/** The declaration of a setting; null for one that is a choice of names. */
+/** @type {(name: string, card: LessonCard) => SettingOption | null} */
 function settingOf(name, card) {
   const agent = String(card.state?.form?.agent ?? DEFAULT_AGENT);
   return agentOf(agent).settings[name] ?? options.value?.settings[name] ?? null;
@@ -29,23 +30,32 @@ function namesOf(name) {
   return (lists[name] ?? []).map((one) => [one.name, sentence(one.title)]);
 }
 
-/** What a setting may be: its limits, or its choices. @type {(name: string, bounds: Bounds, card: LessonCard) => any} */
+/**
+ * What a setting may be: its choices as [value, title], or its limits.
+ * @typedef {{ choices: [any, string][], limits?: undefined, isWhole?: undefined }} Choices
+ * @typedef {{ choices?: undefined, limits: Limits, isWhole: boolean }} Range
+ */
+
+/** @type {(name: string, bounds: Bounds, card: LessonCard) => Choices | Range} */
 function ruleOf(name, bounds, card) {
   const setting = settingOf(name, card);
   const names = namesOf(name);
-  if (bounds.choices || names.length || setting?.choices.length) {
-    const all = names.length ? names : (setting?.choices ?? []).map((one) => [one, choiceTitle(/** @type {any} */ (setting), one)]);
-    const allowed = bounds.choices ?? all.map(([one]) => one);
-    return { choices: allowed.map((one) => [one, all.find(([own]) => own === one)?.[1] ?? String(one)]) };
-  }
-  const { minimum = null, maximum = null, excludes_minimum = false, excludes_maximum = false } = setting ?? {};
+  const words = setting?.choices.map((one) => [one, choiceTitle(setting, one)]) ?? [];
+  const titles = new Map(/** @type {[any, string][]} */ (names.length ? names : words));
+  const allowed = bounds.choices ?? [...titles.keys()];
+  if (allowed.length) return { choices: allowed.map((one) => [one, titles.get(one) ?? String(one)]) };
+  return { limits: limitsWithin(bounds, setting), isWhole: setting?.is_whole ?? false };
+}
+
+/** The limits of the card where it has any, else those of the setting. */
+/** @type {(bounds: Bounds, setting: SettingOption | null) => Limits} */
+function limitsWithin(bounds, setting) {
+  const minimum = bounds.minimum ?? setting?.minimum ?? null;
+  const maximum = bounds.maximum ?? setting?.maximum ?? null;
   return {
-    isWhole: setting?.is_whole ?? false,
-    limits: {
-      minimum: bounds.minimum ?? minimum, maximum: bounds.maximum ?? maximum,
-      excludes_minimum: excludes_minimum && (bounds.minimum ?? minimum) === minimum,
-      excludes_maximum: excludes_maximum && (bounds.maximum ?? maximum) === maximum,
-    },
+    minimum, maximum,
+    excludes_minimum: setting?.excludes_minimum === true && minimum === setting.minimum,
+    excludes_maximum: setting?.excludes_maximum === true && maximum === setting.maximum,
   };
 }
 
@@ -73,9 +83,9 @@ export function chosenSettings(card, number) {
 /** @param {string} name @param {Bounds} bounds @param {LessonCard} card @param {number} number */
 function valueOf(name, bounds, card, number) {
   const draft = drafts.value[`${number} ${name}`];
-  const { choices, limits, isWhole } = ruleOf(name, bounds, card);
+  const rule = ruleOf(name, bounds, card);
   if (draft === undefined) return initialOf(name, bounds, card);
-  return choices ? draft : parseNumber(String(draft), limits, isWhole).value;
+  return rule.choices ? draft : parseNumber(String(draft), rule.limits, rule.isWhole).value;
 }
 
 /** Settings in words: "α 0.3, 500 steps". @type {(given: Record<string, any>, card: LessonCard) => string} */

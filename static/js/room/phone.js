@@ -2,27 +2,27 @@
 import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../api.js";
 import { DotStrip } from "../components/dot-strip.js";
-import { html, ProgressBar } from "../components/elements.js";
-import { count, metres, whole } from "../format.js";
-import { Away, Door, Failure, Prose } from "./doors.js";
-import { chosenSettings, givenInWords, May } from "./may.js";
-import { CLOSER, closerLink, Picture, ReplayBar, replayed } from "./picture.js";
-import { Answer, draftOf } from "./questions.js";
+import { html } from "../components/elements.js";
+import { count, metres } from "../format.js";
+import { Deeds, Next } from "./deeds.js";
+import { Away, Door, Prose } from "./doors.js";
+import { May } from "./may.js";
+import { OwnRobot, OwnRun } from "./own-run.js";
+import { CLOSER, closerLink, replayed } from "./picture.js";
+import { Answer } from "./questions.js";
 import { axisOf, scoreInWords } from "./scores.js";
-import {
-  answers, busy, go, goesOn, isRevealed, lastRunId, leave, lock, ownAnswer, ownEntry, ownRun, room, shownResults,
-} from "./room.js";
+import { answers, goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, room, shownResults } from "./room.js";
 
-/** @import { Ask, Classroom, LessonCard, Run, WhatIfAnswer } from "../types.js" */
+/** @import { Ask, Classroom, LessonCard, WhatIfAnswer } from "../types.js" */
 
 export function Phone() {
   const known = /** @type {Classroom} */ (room.value);
   if (known.role !== "participant") return html`<${Door} />`;
-  const me = /** @type {NonNullable<Classroom["me"]>} */ (known.me);
+  const { me } = /** @type {{ me: NonNullable<Classroom["me"]> }} */ (known);
   return html`
     <header class="room-header">
       <p><b>${me.name}</b><span class="dim">seed ${me.seed}</span></p>
-      <p class="dim">${known.title}</p>
+      <p class="dim code">${known.code}</p>
     </header>
     <${Away} />
     ${known.state === "frozen" && html`
@@ -38,8 +38,6 @@ const Ended = () => html`
   <section class="phone-part">
     <h1>The lesson has ended</h1>
     <p>What your robots have learned stays with your teacher. Thank you.</p>
-    ${lastRunId.value && html`<a class="secondary as-button" href=${closerLink("why")}>Look at your last robot</a>`}
-    <button class="quiet" onClick=${leave}>Leave the room</button>
   </section>
 `;
 
@@ -48,7 +46,7 @@ function Present({ known }) {
   const { shown, html: texts, card, cards, state } = known;
   const isOpen = state === "open";
   return html`
-    ${replayed.value && html`<${OwnRobot} card=${shown} />`}
+    ${replayed.value && html`<${OwnRobot} />`}
     <article class="phone-part" aria-labelledby="card-title">
       <p class="dim">Card ${card + 1} of ${cards}</p>
       ${shown.title && html`<h1 id="card-title">${shown.title}</h1>`}
@@ -62,6 +60,7 @@ function Present({ known }) {
     `}
     ${answers.value[`${card}`] && html`<${WhatIfDots} answer=${answers.value[`${card}`]} />`}
     <${Closer} card=${shown} />
+    <${Next} card=${shown} />
     <${Deeds} card=${shown} number=${card} isOpen=${isOpen} />
   `;
 }
@@ -95,101 +94,7 @@ function useOwnCurve({ ask }) {
   return curve;
 }
 
-// ---- what can be done: lock, and go
-
-const GO = { "training": "Go: let it practise", "race": "Go: race", "what-if": "Go: try it on thirty robots" };
-
-/** @param {{ card: LessonCard, number: number, isOpen: boolean }} props */
-function Deeds({ card, number, isOpen }) {
-  const needsAnswer = Boolean(card.ask) && ownAnswer.value === undefined && !isRevealed.value;
-  const answer = draftOf(card, number);
-  const settings = chosenSettings(card, number);
-  const isBusy = busy.value.lock || busy.value.go;
-  const canLock = isOpen && answer !== undefined && !isBusy;
-  const given = JSON.stringify(ownEntry.value?.run?.given ?? null);
-  const isSame = ownRun.value !== null && ownRun.value.state !== "failed" &&
-    (Object.keys(card.may ?? {}).length === 0 || given === JSON.stringify(settings));
-  const canGo = isOpen && settings !== null && !isBusy && !goesOn(ownRun.value) && !isSame;
-  const lockAndGo = async () => (await lock(answer)) && go(settings ?? {});
-  return html`
-    <footer class="deeds">
-      <${Failure} at="lock" /><${Failure} at="go" />
-      ${needsAnswer && !card.go && html`
-        <button class="primary" aria-disabled=${canLock ? undefined : "true"}
-          onClick=${() => canLock && lock(answer)}>Lock my prediction</button>
-      `}
-      ${needsAnswer && card.go && html`
-        <button class="primary" aria-disabled=${canLock && canGo ? undefined : "true"}
-          onClick=${() => canLock && canGo && lockAndGo()}>Lock my prediction, and go</button>
-        <button class="secondary" aria-disabled=${canLock ? undefined : "true"}
-          onClick=${() => canLock && lock(answer)}>Lock my prediction</button>
-      `}
-      ${!needsAnswer && card.go && !(isSame && !Object.keys(card.may ?? {}).length) && !goesOn(ownRun.value) && html`
-        <button class="primary" aria-disabled=${canGo ? undefined : "true"} onClick=${() => canGo && go(settings ?? {})}>
-          ${ownRun.value ? "Go again with these settings" : GO[card.go]}
-        </button>
-      `}
-      <${Next} card=${card} needsAnswer=${needsAnswer} />
-    </footer>
-  `;
-}
-
-/** What one waits for. @param {{ card: LessonCard, needsAnswer: boolean }} props */
-function Next({ card, needsAnswer }) {
-  if (needsAnswer || goesOn(ownRun.value)) return null;
-  if (card.go && !ownRun.value && !answers.value[`${room.value?.card}`]) return null;
-  const isLast = room.value?.card === (room.value?.cards ?? 0) - 1;
-  const words = card.ask && !isRevealed.value
-    ? "Wait for the reveal." : isLast ? "This is the last card." : "The next card comes from your teacher.";
-  return html`<p class="dim waiting" role="status">${words}</p>`;
-}
-
-// ---- the own robot
-
-/** @param {{ card: LessonCard }} props */
-const OwnRobot = ({ card }) => html`
-  <section class="own-robot" aria-label="Your robot">
-    <${Picture} source="replay" />
-    <${ReplayBar} />
-    <${OwnRun} card=${card} />
-  </section>
-`;
-
-/** How far the own run is, or what came of it. */
-function OwnRun() {
-  const run = ownRun.value;
-  if (run === null) return null;
-  if (run.state === "queued") {
-    const place = run.queue_position ? ` Place ${run.queue_position} in the queue.` : "";
-    return html`<p class="run-words" role="status"><span class="spinner" aria-hidden="true"></span>
-      Your robot waits for its turn.${place}</p>`;
-  }
-  if (goesOn(run)) return html`<${Running} run=${run} />`;
-  if (run.state !== "finished") {
-    return html`<p class="run-words bad" role="alert">Your robot did not get to its end. Press Go again.</p>`;
-  }
-  const distance_m = ownEntry.value?.run?.distance_m ?? run.result?.distance_m ?? null;
-  const given = ownEntry.value?.run?.given ?? {};
-  return html`
-    <div class="own-distance" role="status">
-      <b class="num">${metres(distance_m)}</b>
-      <span class="dim">${run.kind === "race" ? "your learner at time-out" : "in 50 steps, after its practice"}
-        ${Object.keys(given).length > 0 && html`<br />with ${givenInWords(given, room.value?.shown ?? { text: "" })}`}</span>
-    </div>
-  `;
-}
-
-/** @param {{ run: Run }} props */
-function Running({ run }) {
-  const { done, total } = run.progress;
-  const what = run.kind === "race" ? "It races" : "It practises";
-  return html`
-    <div class="run-words" role="status">
-      <p>${what}: step ${whole(done)} of ${whole(total)}</p>
-      <${ProgressBar} label="Progress of your robot" share=${total ? done / total : 0} />
-    </div>
-  `;
-}
+// ---- what came of it
 
 /** Thirty ideal robots with these settings, beside the defaults. @param {{ answer: WhatIfAnswer }} props */
 function WhatIfDots({ answer }) {
@@ -214,8 +119,9 @@ function Closer({ card }) {
   if (!lastRunId.value || tabs.length === 0) return null;
   return html`
     <nav class="closer" aria-label="Look closer">
-      ${tabs.map((tab) => html`<a key=${tab} class="secondary as-button" href=${closerLink(tab)} target="_blank">
-        ${CLOSER[tab]}</a>`)}
+      ${tabs.map((tab) => html`
+        <a key=${tab} class="secondary as-button" href=${closerLink(tab)} target="_blank">${CLOSER[tab]}</a>
+      `)}
     </nav>
   `;
 }
@@ -229,7 +135,9 @@ function Revealed({ known }) {
   return html`
     <section class="phone-part revealed" aria-label="The class">
       ${found && found.distances_m.length > 0 && html`<${ClassDots} />`}
-      ${own?.score && html`<p class="score" role="status">${scoreInWords(own, /** @type {Ask} */ (known.shown.ask))}</p>`}
+      ${own?.score && html`
+        <p class="score" role="status">${scoreInWords(own, /** @type {Ask} */ (known.shown.ask))}</p>
+      `}
       ${known.html.reveal && html`<${Prose} text=${known.html.reveal} />`}
     </section>
   `;

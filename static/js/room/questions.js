@@ -53,7 +53,7 @@ export function answerInWords({ kind, unit }, value) {
  * @param {number[][]} [props.actual] the learning curve of the own run
  */
 export function Answer({ card, number, locked, actual = [] }) {
-  const ask = /** @type {Ask} */ (card.ask);
+  const { ask } = /** @type {{ ask: Ask }} */ (card);
   const onValue = (/** @type {any} */ value) => setEntry(drafts, `${number}`, value);
   const draft = drafts.value[`${number}`];
   if (ask.kind === "choice") return html`<${Choice} ask=${ask} locked=${locked} draft=${draft} onValue=${onValue} />`;
@@ -91,7 +91,9 @@ function NumberAnswer({ ask, draft, onValue }) {
           onInput=${(/** @type {any} */ { target }) => onValue(target.value)} />
         ${ask.unit && html`<b>${ask.unit}</b>`}
       </span>
-      <p id="answer-range" class=${mistake ? "bad" : "dim"} role=${mistake ? "alert" : undefined}>${mistake ?? range}</p>
+      <p id="answer-range" class=${mistake ? "bad" : "dim"} role=${mistake ? "alert" : undefined}>
+        ${mistake ?? range.replaceAll("-", "\u2212")}
+      </p>
     </div>
   `;
 }
@@ -119,8 +121,8 @@ export function Axes({ steps }) {
       <text class="mark-text" x=${LEFT - 6} y=${placed([0, y], steps)[1] + 4} text-anchor="end">${y.toFixed(1)}</text>
     `)}
     ${xs.map((x) => html`
-      <text class="mark-text" x=${placed([x, 0], steps)[0]} y=${HEIGHT - 6} text-anchor=${x === steps ? "end" : "middle"}>
-        ${x === steps ? `${whole(x)} steps` : whole(x)}</text>
+      <text class="mark-text" x=${placed([x, 0], steps)[0]} y=${HEIGHT - 6}
+        text-anchor=${x === xs.at(-1) ? "end" : "middle"}>${x === xs.at(-1) ? `${whole(x)} steps` : whole(x)}</text>
     `)}
     <text class="mark-text" x=${LEFT + 4} y="16">distance in m</text>
   `;
@@ -134,7 +136,14 @@ function pointOf({ currentTarget, clientX, clientY }, steps) {
   return pointAt((x - LEFT) / (WIDTH - LEFT - 8), (y - 8) / (HEIGHT - BOTTOM - 8), steps);
 }
 
-/** @typedef {{ steps: number, locked: any, draft: any, onValue: (value: any) => unknown, actual: number[][] }} ChartProps */
+/**
+ * @typedef {object} ChartProps
+ * @property {number} steps
+ * @property {any} locked
+ * @property {any} draft
+ * @property {(value: any) => unknown} onValue
+ * @property {number[][]} actual
+ */
 
 /** @param {ChartProps} props */
 function Point({ steps, locked, draft, onValue, actual }) {
@@ -146,7 +155,8 @@ function Point({ steps, locked, draft, onValue, actual }) {
     onValue(pointOf(event, steps));
   return html`
     <svg class=${`draw-chart ${isOpen ? "open" : ""}`} viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} role="img"
-      aria-label=${shown ? `Your point: ${inWords(shown)}` : "No point yet"} onPointerDown=${take} onPointerMove=${take}>
+      aria-label=${shown ? `Your point: ${inWords(shown)}` : "No point yet"}
+      onPointerDown=${take} onPointerMove=${take}>
       <${Axes} steps=${steps} />
       ${actual.length > 1 && html`<path class="actual" d=${`M${lineOf(actual, steps)}`} />`}
       ${at && html`<circle class="own-point" cx=${at[0]} cy=${at[1]} r="8" />`}
@@ -167,15 +177,43 @@ function Point({ steps, locked, draft, onValue, actual }) {
 
 /** @param {ChartProps} props */
 function Curve({ steps, locked, draft, onValue, actual }) {
+  const isOpen = locked === undefined;
+  /** @type {number[] | null} */
+  const heights = locked?.map((/** @type {number[]} */ [, y]) => y) ?? draft ?? null;
+  const [chosen, pen] = usePen(heights, steps, onValue);
+  const closed = { role: "img", "aria-label": `Your curve, ${heights ? "drawn" : "not drawn"}` };
+  const points = heights && knotsOf(steps).map((x, n) => [x, heights[n]]);
+  return html`
+    <svg class=${`draw-chart ${isOpen ? "open" : ""}`} viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} ...${isOpen ? pen : closed}>
+      <${Axes} steps=${steps} />
+      ${actual.length > 1 && html`<path class="actual" d=${`M${lineOf(actual, steps)}`} />`}
+      ${points && html`<path class="own-curve" d=${`M${lineOf(points, steps)}`} />`}
+      ${isOpen && points?.map((point, n) => html`
+        <circle class=${`knot ${n === chosen ? "chosen" : ""}`} cx=${placed(point, steps)[0]}
+          cy=${placed(point, steps)[1]} r="4" />
+      `)}
+    </svg>
+    <p class="dim">
+      ${isOpen && !points ? "Draw with a finger from left to right, or with the arrow keys." : "Your curve"}
+      ${actual.length > 1 && html` · <span class="actual-key">your robot</span>`}
+    </p>
+  `;
+}
+
+/**
+ * Draw a curve by a pointer, or by keys as a slider: the number of the chosen point, and the attributes of the chart.
+ * @param {number[] | null} heights
+ * @param {number} steps
+ * @param {(heights: number[]) => unknown} onValue
+ * @returns {[number, object]}
+ */
+function usePen(heights, steps, onValue) {
   const last = useRef(/** @type {[number, number] | null} */ (null));
   const [chosen, setChosen] = useState(0);
-  const isOpen = locked === undefined;
-  const heights = /** @type {number[] | null} */ (locked?.map((/** @type {number[]} */ [, y]) => y) ?? draft ?? null);
-  const points = heights && knotsOf(steps).map((x, n) => [x, heights[n]]);
   const stroke = (/** @type {any} */ event) => {
-    const to = pointOf(event, steps);
     if (event.type === "pointerdown") event.currentTarget.setPointerCapture(event.pointerId);
     else if (!last.current) return;
+    const to = pointOf(event, steps);
     onValue(drawn(heights, last.current ?? to, to, steps));
     last.current = to;
   };
@@ -187,29 +225,12 @@ function Curve({ steps, locked, draft, onValue, actual }) {
     setChosen(after.chosen);
     if (after.heights) onValue(after.heights);
   };
+  const lift = () => (last.current = null);
   const here = [knotsOf(steps)[chosen], heights?.[chosen] ?? 0];
-  const pointer = isOpen && {
-    role: "slider", tabIndex: 0, onKeyDown, onPointerDown: stroke, onPointerMove: stroke,
-    onPointerUp: () => (last.current = null),
+  return [chosen, {
+    role: "slider", tabIndex: 0, onKeyDown,
+    onPointerDown: stroke, onPointerMove: stroke, onPointerUp: lift, onPointerCancel: lift,
     "aria-label": "Your curve: left and right choose a step, up and down its distance",
     "aria-valuemin": LOWEST_M, "aria-valuemax": HIGHEST_M, "aria-valuenow": here[1], "aria-valuetext": inWords(here),
-  };
-  const closed = { role: "img", "aria-label": `Your curve, ${heights ? "drawn" : "not drawn"}` };
-  return html`
-    <svg class=${`draw-chart ${isOpen ? "open" : ""}`} viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} ...${pointer || closed}>
-      <${Axes} steps=${steps} />
-      ${actual.length > 1 && html`<path class="actual" d=${`M${lineOf(actual, steps)}`} />`}
-      ${points && html`
-        <path class="own-curve" d=${`M${lineOf(points, steps)}`} />
-        ${isOpen && points.map((point, n) => html`
-          <circle class=${`knot ${n === chosen ? "chosen" : ""}`} cx=${placed(point, steps)[0]}
-            cy=${placed(point, steps)[1]} r="4" />
-        `)}
-      `}
-    </svg>
-    <p class="dim">
-      ${isOpen && !points ? "Draw with a finger from left to right, or with the arrow keys." : "Your curve"}
-      ${actual.length > 1 && html` · <span class="actual-key">your robot</span>`}
-    </p>
-  `;
+  }];
 }

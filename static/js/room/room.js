@@ -61,7 +61,9 @@ export async function refresh() {
   try {
     const answer = await api.getRoom(code);
     batch(() => {
-      room.value = answer;
+      // The room forgets who was in it once it has ended; this page does not.
+      const { role, me } = room.peek() ?? answer;
+      room.value = answer.state === "ended" ? { ...answer, role, me } : answer;
       refusal.value = "";
     });
   } catch (error) {

@@ -51,5 +51,6 @@ export const tally = (ask, values) =>
 export function predictedMetres(ask, values) {
   if (ask?.kind !== "number") return null;
   const per = PER_METRE[ask.unit ?? "m"];
-  return per ? values.filter((value) => typeof value === "number").map((value) => /** @type {number} */ (value) / per) : null;
+  if (!per) return null;
+  return values.flatMap((value) => (typeof value === "number" ? [value / per] : []));
 }
