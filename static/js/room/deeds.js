@@ -24,17 +24,18 @@ function isSameAgain({ may }, settings) {
 export function Deeds({ card, number, isOpen }) {
   const settings = chosenSettings(card, number);
   const mayAct = isOpen && !busy.value.lock && !busy.value.go;
-  const canGo = mayAct && settings !== null && !goesOn(ownRun.value) && !isSameAgain(card, settings);
-  const isOffered = needsAnswer(card) || (card.go && !goesOn(ownRun.value) && !isSameAgain(card, settings));
+  const isAsked = needsAnswer(card);
+  const isNew = Boolean(card.go) && !goesOn(ownRun.value) && !isSameAgain(card, settings);
+  const canGo = mayAct && isNew && settings !== null;
   return html`
-    <div class=${isOffered ? "deeds" : ""}>
+    <div class=${isAsked || isNew ? "deeds" : ""}>
       <${Failure} at="lock" /><${Failure} at="go" />
-      ${isOffered && needsAnswer(card) && html`
+      ${isAsked && html`
         <${LockFirst} card=${card} number=${number} mayAct=${mayAct} canGo=${canGo} settings=${settings ?? {}} />
       `}
-      ${isOffered && !needsAnswer(card) && card.go && html`
+      ${!isAsked && isNew && html`
         <${Button} style="primary" canPress=${canGo} onPress=${() => go(settings ?? {})}
-          words=${ownRun.value ? "Go again with these settings" : GO[card.go]} />
+          words=${ownRun.value ? "Go again with these settings" : GO[card.go ?? "training"]} />
       `}
     </div>
   `;

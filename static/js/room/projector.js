@@ -11,9 +11,10 @@ import { Axes, lineOf } from "./questions.js";
 import { isRevealed, room, shownResults } from "./room.js";
 import { axisOf, predictedMetres, tally } from "./scores.js";
 
-/** @import { Ask, Classroom, LessonCard, ResultEntry } from "../types.js" */
+/** @import { Ask, CardResults, Classroom, LessonCard, ResultEntry } from "../types.js" */
 
-const DOTS = 3.2;
+/** Size of the dots, against those of a strip in a panel. */
+const DOTS = 4;
 
 /** Whether the class still gathers: nobody has done anything on the first card. @param {Classroom} known */
 const isLobby = ({ card, predicted, started, revealed, state }) =>
@@ -34,14 +35,16 @@ export function Projector() {
   `;
 }
 
-/** Where to join: large while the class gathers, small in the corner from then on. @param {{ known: Classroom }} props */
+/** Where to join: large while the class gathers, small from then on. @param {{ known: Classroom }} props */
 const Door = ({ known }) => html`
   <section class="join-here" aria-label="How to join">
     <img class="qr-code" src=${known.qr_code} alt=${`QR code of ${known.address}`} />
     <div>
       <p class="code">${known.code}</p>
       <p class="join-address">${shortAddress(known.address)}</p>
-      <p class="joined" role="status"><b class="num">${known.participants}</b> ${known.participants === 1 ? "is" : "are"} in</p>
+      <p class="joined" role="status">
+        <b class="num">${known.participants}</b> ${known.participants === 1 ? "is" : "are"} in
+      </p>
     </div>
   </section>
 `;
@@ -52,6 +55,7 @@ const Shown = ({ known }) => html`
     <p class="where">${known.title} · ${known.card + 1} of ${known.cards}
       ${known.state === "frozen" && html` · <b>Stop for a moment</b>`}</p>
     ${known.shown.title && html`<h1 id="shown-title">${known.shown.title}</h1>`}
+    ${known.spotlight !== null && html`<${Lit} known=${known} />`}
     <${Prose} text=${isRevealed.value && known.html.reveal ? known.html.reveal : known.html.text} />
     ${known.shown.ask && html`<${Asked} known=${known} ask=${known.shown.ask} />`}
   </article>
@@ -82,43 +86,55 @@ function Asked({ known, ask }) {
 
 /** @param {{ known: Classroom }} props */
 function Side({ known }) {
-  const { shown, predicted, participants } = known;
-  const isChart = shown.ask?.kind === "curve" || shown.ask?.kind === "point";
-  const entries = shownResults.value?.entries ?? [];
-  const hasDots = (shownResults.value?.distances_m.length ?? 0) > 0;
-  const isLit = known.spotlight !== null;
-  if (!shown.ask && !shown.go && !isLit) return null;
+  const { shown, predicted, participants, started } = known;
+  const found = shownResults.value;
+  if (isRevealed.value && ["curve", "point"].includes(shown.ask?.kind ?? "")) {
+    return html`<${Beside}><${Lines} card=${shown} entries=${found?.entries ?? []} /><//>`;
+  }
+  const hasDots = (found?.distances_m ?? []).length > 0;
+  const isAsked = Boolean(shown.ask) && !isRevealed.value;
+  const isAwaited = Boolean(shown.go) && shown.go !== "what-if" && !hasDots;
+  if (!isAsked && !isAwaited && !hasDots) return null;
   return html`
-    <section class="beside" aria-label="The class">
-      ${isLit && html`<${Lit} known=${known} />`}
-      ${shown.ask && !isRevealed.value && html`
-        <p class="locked-count" role="status"><b class="num">${predicted}</b> of ${participants} locked</p>
-      `}
-      ${shown.go && !hasDots && shown.go !== "what-if" && html`
-        <p class="locked-count"><b class="num">${known.started}</b> of ${participants} started</p>
-      `}
+    <${Beside}>
+      ${isAsked && html`<${Of} number=${predicted} all=${participants} word="locked" />`}
+      ${isAwaited && html`<${Of} number=${started} all=${participants} word="started" />`}
       ${hasDots && html`<${Landing} ask=${shown.ask ?? null} />`}
-      ${isChart && isRevealed.value && html`<${Lines} card=${shown} entries=${entries} />`}
-    </section>
+    <//>
   `;
 }
 
+/** @param {{ children: import("preact").ComponentChildren }} props */
+const Beside = ({ children }) => html`<section class="beside" aria-label="The class">${children}</section>`;
+
+/** @param {{ number: number, all: number, word: string }} props */
+const Of = ({ number, all, word }) => html`
+  <p class="locked-count" role="status"><b class="num">${number}</b> of ${all} ${word}</p>
+`;
+
 /** The run of a participant that the teacher shows to all. @param {{ known: Classroom }} props */
 function Lit({ known }) {
-  const person = known.people.find(({ run_id }) => run_id === known.spotlight);
-  const name = person && !person.is_name_hidden ? person.name : "One of you";
   const entry = shownResults.value?.entries.find(({ run }) => run?.id === known.spotlight);
+  const person = known.people.find(({ seed }) => seed === entry?.seed);
+  const name = person?.is_name_hidden ? null : entry?.name;
+  const distance_m = entry?.run?.distance_m ?? null;
   return html`
     <div class="lit">
       <${Picture} source="stage" key=${known.spotlight} />
-      <p><b>${name}</b>${entry?.run?.distance_m !== null && entry?.run && html` <span class="num">${metres(entry.run.distance_m)}</span>`}</p>
+      <p>
+        <b>${name ?? "One of you"}</b>
+        ${distance_m !== null && html`<span class="num">${metres(distance_m)}</span>`}
+      </p>
     </div>
   `;
 }
 
-/** The distances as they land, and after the reveal what was predicted on the same axis. @param {{ ask: Ask | null }} props */
+/**
+ * The distances as they land, and after the reveal what was predicted on the same axis.
+ * @param {{ ask: Ask | null }} props
+ */
 function Landing({ ask }) {
-  const { distances_m, interval, entries } = /** @type {NonNullable<typeof shownResults.value>} */ (shownResults.value);
+  const { distances_m, interval, entries } = /** @type {CardResults} */ (shownResults.value);
   const values = entries.map(({ prediction }) => prediction).filter((one) => one !== null);
   const predicted = isRevealed.value ? predictedMetres(ask, values) : null;
   const { low, high } = axisOf([...distances_m, ...(predicted ?? [])]);
@@ -128,12 +144,17 @@ function Landing({ ask }) {
     <div class="landing">
       <p class="typical-figure">
         <b class="num">${metres(interval?.iqm_m)}</b>
-        <span>typical of ${count(distances_m.length, "robot")}
-          ${interval && interval.low_m !== null && html`<br />95 %: ${metres(interval.low_m)} to ${metres(interval.high_m)}`}</span>
+        <span>
+          typical of ${count(distances_m.length, "robot")}
+          ${interval && interval.low_m !== null && html`
+            <br />95 %: ${interval.low_m.toFixed(2)} to ${metres(interval.high_m)}
+          `}
+        </span>
       </p>
       ${predicted && predicted.length > 0 && html`
         <h2>Predicted</h2>
-        <${DotStrip} ...${greatest} label=${`${predicted.length} predictions`} points=${predicted} color="var(--warn)" />
+        <${DotStrip} ...${greatest} label=${`${predicted.length} predictions`} points=${predicted} height=${24}
+          color="var(--warn)" />
         <h2>Walked</h2>
       `}
       <${DotStrip} ...${greatest} label=${`${distances_m.length} distances, typically ${metres(interval?.iqm_m)}`}
@@ -142,10 +163,14 @@ function Landing({ ask }) {
   `;
 }
 
-/** Predicted points and curves over the learning curves of the class. @param {{ card: LessonCard, entries: ResultEntry[] }} props */
+/**
+ * Predicted points and curves over the learning curves of the class.
+ * @param {{ card: LessonCard, entries: ResultEntry[] }} props
+ */
 function Lines({ card, entries }) {
   const [curves, setCurves] = useState(/** @type {number[][][]} */ ([]));
-  const ids = entries.flatMap(({ run }) => (run?.state === "finished" && run.kind === "training" ? [run.id] : []));
+  const ids = entries.flatMap(({ run }) =>
+    (run?.state === "finished" && run.kind === "training" ? [run.id] : []));
   useEffect(() => {
     if (ids.length === 0) return;
     getCurves(ids).then(({ curves: found }) => setCurves(found.map(({ steps: xs, distances_m }) =>
@@ -158,9 +183,11 @@ function Lines({ card, entries }) {
     <svg class="draw-chart lines" viewBox="0 0 340 200" role="img"
       aria-label=${`${predicted.length} predictions over ${curves.length} learning curves`}>
       <${Axes} steps=${steps} />
-      ${curves.filter((one) => one.length > 1).map((one) => html`<path class="actual" d=${`M${lineOf(one, steps)}`} />`)}
+      ${curves.filter((one) => one.length > 1).map((one) => html`
+        <path class="actual" d=${`M${lineOf(one, steps)}`} />
+      `)}
       ${predicted.map((/** @type {any} */ one) => (isPoint
-        ? html`<circle class="own-point" r="3" cx=${lineOf([one], steps).split(" ")[0]} cy=${lineOf([one], steps).split(" ")[1]} />`
+        ? html`<circle class="own-point" r="4" transform=${`translate(${lineOf([one], steps)})`} />`
         : html`<path class="predicted-curve" d=${`M${lineOf(one, steps)}`} />`))}
     </svg>
     <p class="key"><span class="predicted-key">predicted</span><span class="actual-key">learned</span></p>
