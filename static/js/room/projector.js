@@ -92,16 +92,13 @@ function Side({ known }) {
     return html`<${Beside}><${Lines} card=${shown} entries=${found?.entries ?? []} /><//>`;
   }
   const hasDots = (found?.distances_m ?? []).length > 0;
-  const isAsked = Boolean(shown.ask) && !isRevealed.value;
-  const isAwaited = Boolean(shown.go) && shown.go !== "what-if" && !hasDots;
-  if (!isAsked && !isAwaited && !hasDots) return null;
-  return html`
-    <${Beside}>
-      ${isAsked && html`<${Of} number=${predicted} all=${participants} word="locked" />`}
-      ${isAwaited && html`<${Of} number=${started} all=${participants} word="started" />`}
-      ${hasDots && html`<${Landing} ask=${shown.ask ?? null} />`}
-    <//>
-  `;
+  const parts = [];
+  if (shown.ask && !isRevealed.value) parts.push(html`<${Of} number=${predicted} all=${participants} word="locked" />`);
+  if (hasDots) parts.push(html`<${Landing} ask=${shown.ask ?? null} />`);
+  else if (["training", "race"].includes(shown.go ?? "")) {
+    parts.push(html`<${Of} number=${started} all=${participants} word="started" />`);
+  }
+  return parts.length > 0 && html`<${Beside}>${parts}<//>`;
 }
 
 /** @param {{ children: import("preact").ComponentChildren }} props */
