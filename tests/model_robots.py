@@ -1,6 +1,7 @@
 """Models of robots for tests: a built-in one as if it had been read from a file, and chains."""
 
 import math
+from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, get_args
@@ -16,6 +17,7 @@ from hexapods.domain.robot_model import (
     ModelGeom,
     ModelJoint,
     ModelLink,
+    ModelMesh,
     RobotModel,
 )
 from hexapods.exports.robot_model import home_angles_rad
@@ -290,3 +292,29 @@ def with_limits(model: RobotModel, leg: int, limits_rad: tuple[float, float]) ->
         for link in model.links
     )
     return replace(model, links=links)
+
+
+def mesh_of(vertices: Sequence[Sequence[float]], faces: Sequence[Sequence[int]]) -> ModelMesh:
+    """Return a mesh of vertices [m] and triangles."""
+    points, triangles = np.array(vertices, "<f4"), np.array(faces, "<u4")
+    return ModelMesh(
+        b64encode(points.tobytes()).decode(), b64encode(triangles.tobytes()).decode(), len(faces)
+    )
+
+
+def wedge(x_m: float, y_m: float, z_m: float) -> ModelMesh:
+    """Return a tetrahedron with three right angles."""
+    corners = [(0.0, 0.0, 0.0), (x_m, 0.0, 0.0), (0.0, y_m, 0.0), (0.0, 0.0, z_m)]
+    return mesh_of(corners, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+
+def with_meshes(model: RobotModel) -> RobotModel:
+    """Return a model whose torso and second link of every leg have a mesh of their own."""
+    links, seen = list(model.links), dict[int, int]()
+    for number, link in enumerate(links):
+        seen[link.leg] = seen.get(link.leg, 0) + 1
+        if number == 0:
+            links[number] = replace(link, mesh=wedge(0.1, 0.3, 0.05))
+        elif link.leg and seen[link.leg] == 2:
+            links[number] = replace(link, mesh=wedge(0.02, 0.03, -0.2))
+    return replace(model, links=tuple(links))

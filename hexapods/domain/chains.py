@@ -2,9 +2,9 @@
 
 Forward kinematics is a product of exponentials about the pose in which the robot stands. Each joint
 has a frame whose z axis is its own, so that its exponential turns two coordinates. The inverse
-begins with cubic polynomials that fit it near the standing pose, and goes on by damped least squares
-(Levenberg-Marquardt), damped by the square of the error (Sugihara 2011, "Solvability-unconcerned
-inverse kinematics by the Levenberg-Marquardt method"). A foot that has arrived is left alone, and
+begins with cubic polynomials that fit it near the standing pose, and goes on by least squares that
+are damped by the square of the error (Sugihara 2011, "Solvability-unconcerned inverse kinematics by
+the Levenberg-Marquardt method"). A foot that has arrived is left alone, and
 all operations are elementwise, so that no result depends on the others of a batch. A chain with
 more joints than it needs moves as little as it can from where it stands.
 
@@ -61,7 +61,6 @@ class ChainLegs(Legs):
     Attributes:
         standing: of each leg its joints and foot while the robot stands.
         standing_rad: angles of all joints then, (joints,).
-        follows_grid: of each leg whether its foot can go to any place near home.
     """
 
     def __init__(self, robot: ModelRobot) -> None:
@@ -352,9 +351,8 @@ class ChainSolver:
             is_there |= missing <= near * near * squared_length
             if self._is_any_flat:
                 rests = sum(change[joint] * change[joint] for joint in range(self.most))
-                is_there |= (parameters[rows.is_flat][0] > 0) & (
-                    rests <= _RESTS * near * _RESTS * near
-                )
+                is_flat = parameters[rows.is_flat][0] > 0
+                is_there |= is_flat & (rests <= _RESTS * near * _RESTS * near)
             if is_there.all():
                 break
         if not is_there.all() or self._is_any_flat:

@@ -40,12 +40,15 @@ class Legs(ABC):
         masses_kg: of each leg, with its foot.
         limits_rad: of all joints, (2, joints): lowest and highest angles.
         leg_of_joint: index of each joint's leg, from 0, (joints,).
+        follows_grid: of each leg whether its foot can go to any place near home; one of two joints
+            goes to the nearest place that it reaches.
     """
 
     def __init__(self, joints: Iterable[Joint], masses_kg: Sequence[float]) -> None:
         self.joints, self.masses_kg = tuple(joints), tuple(masses_kg)
         self.limits_rad: FloatArray = np.array([joint.limits_rad for joint in self.joints]).T
         self.leg_of_joint: IntArray = np.array([joint.leg - 1 for joint in self.joints])
+        self.follows_grid: tuple[bool, ...] = (True,) * len(self.masses_kg)
 
     def __len__(self) -> int:
         """Number of legs."""

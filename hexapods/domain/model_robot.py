@@ -25,7 +25,6 @@ _USUAL_LEG_M = math.hypot(0.15, 0.09)
 """From the coxa joint to the foot of the paper's hexapod, whose times and heights are scaled."""
 _STEP_HEIGHT_SHARE = 0.15
 """Of that distance."""
-_GRID_SHARE = 0.2
 _LONGEST_SWING_S = 0.17
 """Of a robot that stands on two legs meanwhile: with a longer one many fell."""
 _MOST_OF_HEIGHT = 0.8
@@ -110,7 +109,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
     """
     angles = home_angles(model)
     chains, frames = leg_chains(model, angles), link_frames(model, angles)
-    joints, leg_m = _joints(model), _leg_length_m(chains)
+    joints, leg_m = _joints(model), leg_length_m(chains)
     foot_radius_m = fmean(foot.radius_m for foot in model.feet)
     ground_m = fmean(
         chain.foot_m[2] - foot.radius_m for chain, foot in zip(chains, model.feet, strict=True)
@@ -144,14 +143,6 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
         joint_damping=max(*(joint.damping for joint in joints), 1e-4),
         **given,
     )
-
-
-def usual_grid_side_m(robot: Robot) -> float:
-    """Return the side of a foot grid that suits the size of a robot from a file [m]."""
-    if not isinstance(robot, ModelRobot):
-        return 0.04
-    chains = leg_chains(robot.model, home_angles(robot.model))
-    return _GRID_SHARE * _leg_length_m(chains)
 
 
 def torso_half_size_m(
@@ -199,7 +190,7 @@ def _largest_of(joints: Sequence[ModelJoint]) -> tuple[float, ...]:
     return tuple(max(getattr(joint, name) for joint in joints) for name in _SERVO)
 
 
-def _leg_length_m(chains: Sequence[Chain]) -> float:
+def leg_length_m(chains: Sequence[Chain]) -> float:
     """Return the mean distance of the feet at home from the first joints of their legs [m]."""
     return fmean(float(np.linalg.norm(one.foot_m - one.anchors_m[0])) for one in chains)
 

@@ -9,10 +9,14 @@ another program parses, so that a model from a stranger's archive is as harmless
 import hashlib
 import math
 import re
+from base64 import b64decode
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hexapods.domain.body import MAX_LEGS, MIN_LEGS
 from hexapods.domain.errors import InvalidInput
@@ -29,6 +33,8 @@ MAX_GEOMS = 1000
 MAX_TRIANGLES = 60_000
 """Of all meshes together."""
 JOINT_NAME = re.compile(r"[A-Za-z0-9_.-]{1,40}", re.ASCII)
+MAX_SIZE_M = 10.0
+"""Of a geom or a mesh."""
 MAX_ANGLE_RAD = 7.0
 """Largest limit of a joint, more than a turn."""
 _UNIT = 1e-6
@@ -67,6 +73,22 @@ class ModelMesh(Record):
     vertices: str
     faces: str
     triangles: int
+
+    def arrays(self) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+        """Return vertices (n, 3) [m] and faces (m, 3).
+
+        Raises:
+            InvalidInput: if they are not what their description says.
+        """
+        try:
+            vertices = np.frombuffer(b64decode(self.vertices, validate=True), "<f4").reshape(-1, 3)
+            faces = np.frombuffer(b64decode(self.faces, validate=True), "<u4").reshape(-1, 3)
+        except ValueError as error:
+            raise InvalidInput(f"a mesh is damaged: {error}") from error
+        fits = len(faces) == self.triangles and (not len(faces) or faces.max() < len(vertices))
+        if not (fits and np.isfinite(vertices).all()):
+            raise InvalidInput("a mesh is damaged: its faces do not fit its vertices")
+        return vertices, faces
 
 
 @dataclass(frozen=True)
@@ -258,8 +280,20 @@ def _problems_of_link(link: ModelLink) -> Iterator[str]:
     for geom in link.geoms:
         if not (_are_finite((*geom.at_m, *geom.size_m)) and _is_unit(geom.wxyz)):
             yield "has a geom without a place"
-        if min(geom.size_m) < 0 or not 0 < max(geom.size_m) <= 10:
-            yield "has a geom without a size, or larger than 10 m"
+        if min(geom.size_m) < 0 or not 0 < max(geom.size_m) <= MAX_SIZE_M:
+            yield f"has a geom without a size, or larger than {MAX_SIZE_M:g} m"
+    if link.mesh is not None:
+        yield from _problems_of_mesh(link.mesh)
+
+
+def _problems_of_mesh(mesh: ModelMesh) -> Iterator[str]:
+    try:
+        vertices, _ = mesh.arrays()
+    except InvalidInput as error:
+        yield f"has none that can be drawn: {error}"
+    else:
+        if len(vertices) and float(np.abs(vertices).max()) > MAX_SIZE_M:
+            yield f"has a mesh larger than {MAX_SIZE_M:g} m"
 
 
 def _problems_of_joint(joint: ModelJoint) -> Iterator[str]:

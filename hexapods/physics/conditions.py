@@ -1,7 +1,7 @@
 """Effects of a world on a MuJoCo model: servos, legs, ground, gravity and payload.
 
-Only parameters and geoms of existing bodies change, so that a state of one model continues in
-another. Sensor noise, delay and dead band are no part of a model.
+No joint is added or removed, so that a state of one model continues in another. Sensor noise, delay
+and dead band are no part of a model.
 """
 
 from collections.abc import Sequence
@@ -170,8 +170,10 @@ def _rough(rough: Rough, target: _Target) -> None:
 def _payload(payload: Payload, target: _Target) -> None:
     if payload.kg == 0:
         return
-    half = payload_half_side_m(payload.kg)
-    target.spec.body("torso").add_geom(
+    half, carrier = payload_half_side_m(payload.kg), target.spec.body("torso")
+    if carrier.explicitinertial:  # such a body does not get heavier by a geom
+        carrier = carrier.add_body(name="payload")
+    carrier.add_geom(
         name="payload",
         type=mujoco.mjtGeom.mjGEOM_BOX,
         size=[half] * 3,

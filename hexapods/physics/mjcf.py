@@ -51,6 +51,8 @@ def _compile_model(robot: Robot, conditions: World, forward_deg: float) -> mujoc
     for geom in spec.geoms:
         if geom.contype == 0 and geom.conaffinity == 0:  # those that are only drawn
             spec.delete(geom)
+    for mesh in list(spec.meshes):
+        spec.delete(mesh)
     apply_conditions(spec, robot, conditions, forward_deg)
     return spec.compile()
 
@@ -82,8 +84,10 @@ def _(robot: ModelRobot) -> mujoco.MjSpec:
     return model_spec(robot, mujoco.MjSpec.from_file(str(models_dir() / "torso.xml")))
 
 
-def is_painted(geom_name: str) -> bool:
-    """Return whether a visual geom is painted in the agent's colour."""
+def is_painted(robot: Robot, geom_name: str) -> bool:
+    """Return whether a visual geom is painted in the agent's colour; of files' robots the torso."""
+    if isinstance(robot, ModelRobot):
+        return geom_name.startswith("torso")
     return not any(part in geom_name for part in _UNPAINTED)
 
 

@@ -1,12 +1,14 @@
 """The MuJoCo model of a robot from a file, built from its numbers."""
 
+import hashlib
+from dataclasses import replace
 from itertools import count
 
 import mujoco
 import numpy as np
 
 from hexapods.domain.model_robot import ModelRobot
-from hexapods.domain.robot_model import ModelGeom, ModelJoint, ModelLink, Vector
+from hexapods.domain.robot_model import ModelGeom, ModelJoint, ModelLink, ModelMesh, Vector
 from hexapods.physics.conditions import set_servo
 
 _UNSEEN_GROUP = 3
@@ -30,7 +32,11 @@ def model_spec(robot: ModelRobot, spec: mujoco.MjSpec) -> mujoco.MjSpec:
     """
     spec.option.timestep = robot.dt_s
     bodies = [spec.body("torso")]
-    torso, links = bodies[0], robot.model.links
+    torso = bodies[0]
+    links = [
+        link if link.mesh is None or is_drawable(link.mesh) else replace(link, mesh=None)
+        for link in robot.model.links
+    ]
     torso.pos = [0, 0, robot.body_height_m + robot.foot_radius_m]
     for geom in list(torso.geoms):
         spec.delete(geom)
@@ -43,6 +49,8 @@ def model_spec(robot: ModelRobot, spec: mujoco.MjSpec) -> mujoco.MjSpec:
             name = f"leg{link.leg}_{part}" if link.leg else f"torso_{part}"
             bodies.append(bodies[link.parent].add_body(name=name, pos=link.at_m, quat=link.wxyz))
         _add_link(spec, robot, bodies[-1], name, link)
+        if link.mesh is not None:
+            _add_mesh(spec, bodies[-1], name, link.mesh)
     for leg, foot in enumerate(robot.model.feet, start=1):
         _add_geom(
             bodies[foot.link],
@@ -79,6 +87,30 @@ def _add_link(
             robot.friction,
             is_seen=link.mesh is None,
         )
+
+
+def _add_mesh(spec: mujoco.MjSpec, body: mujoco.MjsBody, name: str, mesh: ModelMesh) -> None:
+    """Add what is drawn of a link; equal meshes are one asset."""
+    content = hashlib.sha256(f"{mesh.vertices} {mesh.faces}".encode()).hexdigest()[:16]
+    if spec.mesh(content) is None:
+        vertices, faces = mesh.arrays()
+        asset = spec.add_mesh(name=content, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+        asset.uservert, asset.userface = vertices.ravel(), faces.astype(np.int32).ravel()
+    body.add_geom(
+        name=f"{name}_mesh",
+        type=mujoco.mjtGeom.mjGEOM_MESH,
+        meshname=content,
+        mass=0,
+        group=_SEEN_GROUP,
+        contype=0,
+        conaffinity=0,
+    )
+
+
+def is_drawable(mesh: ModelMesh) -> bool:
+    """Return whether a mesh has a surface: MuJoCo refuses others."""
+    vertices, faces = mesh.arrays()
+    return len(vertices) > 3 and len(faces) > 0 and bool((np.ptp(vertices, axis=0) > 1e-6).all())
 
 
 def _principal(inertia: tuple[float, ...]) -> tuple[list[float], list[float]]:

@@ -98,142 +98,8 @@ export interface Ask {
   text: string;
   /**
    * of which one is the answer, of kind `choice` alone; a name of an agent stands for the race that it wins.
-   *
-   * @maxItems 20
    */
-  choices:
-    | []
-    | [string]
-    | [string, string]
-    | [string, string, string]
-    | [string, string, string, string]
-    | [string, string, string, string, string]
-    | [string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string, string, string, string]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ];
+  choices: string[];
   /**
    * between which a number is.
    */
@@ -318,244 +184,7 @@ export interface Bounds {
   /**
    * the values of which one may be chosen.
    */
-  choices:
-    | [number | string | boolean]
-    | [number | string | boolean, number | string | boolean]
-    | [number | string | boolean, number | string | boolean, number | string | boolean]
-    | [number | string | boolean, number | string | boolean, number | string | boolean, number | string | boolean]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | null;
+  choices: [number | string | boolean, ...(number | string | boolean)[]] | null;
 }
 /**
  * The moment of another race at which a race branches off; until then both are the same.
@@ -592,49 +221,7 @@ export interface Card {
   /**
    * the tabs of the panel that are shown; null for those of the depth.
    */
-  show:
-    | []
-    | ["board" | "train" | "world" | "why" | "gait" | "table" | "what-if"]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | null;
+  show: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if")[] | null;
   /**
    * its question.
    */
@@ -700,10 +287,8 @@ export interface PageState {
   camera: ("leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
   /**
    * parts of the page that are hidden.
-   *
-   * @maxItems 2
    */
-  hidden: [] | ["panel" | "card"] | ["panel" | "card", "panel" | "card"];
+  hidden: ("panel" | "card")[];
 }
 /**
  * What is revealed after the answers.
@@ -1694,17 +1279,7 @@ export interface LaneView {
  * runs computed beside it, which slows its wall clock.
  */
 export interface RaceResult {
-  /**
-   * @maxItems 6
-   */
-  lanes:
-    | []
-    | [LaneResult]
-    | [LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult, LaneResult];
+  lanes: LaneResult[];
   recording_sha256?: string | null;
   shared_machine?: boolean;
 }
@@ -1952,13 +1527,7 @@ export interface ExperimentConfig {
  */
 export interface ExperimentResult {
   trials: TrialCounts;
-  /**
-   * @maxItems 1000
-   */
   claims: ClaimVerdict[];
-  /**
-   * @maxItems 128
-   */
   files: string[];
   shared_machine?: boolean;
   finding?: string;
@@ -2390,49 +1959,6 @@ export interface ExportOption {
   install: string | null;
 }
 /**
- * What was found in the file of a robot, from which a person may choose otherwise.
- */
-export interface FoundView {
-  file_format: "mjcf" | "urdf";
-  /**
-   * path in the zip of what was read; null if it was given alone.
-   */
-  file: string | null;
-  /**
-   * leg by leg: the names of the joints and of the foot in the file.
-   */
-  legs: ImportedLeg[];
-  /**
-   * names in the file of all that could be the foot of a leg.
-   */
-  feet: string[];
-  /**
-   * names of the file's keyframes.
-   */
-  keyframes: string[];
-  /**
-   * direction in which it walks, anticlockwise from x of its torso in the file.
-   */
-  forward_deg: number;
-  /**
-   * whether its feet reach a foot grid that suits its size.
-   */
-  reaches_grid: boolean;
-}
-/**
- * A leg as it is called in the file.
- */
-export interface ImportedLeg {
-  /**
-   * names of its joints, from the torso to the foot.
-   */
-  joints: string[];
-  /**
-   * name of its foot: of a geom, a site, or a body or link; fit for `Choices.feet`.
-   */
-  foot: string;
-}
-/**
  * Gait analysis of a race, lane by lane, or of a training; times are robot time [s].
  */
 export interface GaitAnalysis {
@@ -2742,28 +2268,12 @@ export interface LessonView {
   language: string;
   /**
    * what is learned, each a line of plain text.
-   *
-   * @maxItems 12
    */
-  aims:
-    | []
-    | [string]
-    | [string, string]
-    | [string, string, string]
-    | [string, string, string, string]
-    | [string, string, string, string, string]
-    | [string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string, string];
+  aims: string[];
   /**
    * its pages, in order.
    *
    * @minItems 1
-   * @maxItems 60
    */
   cards: [Card, ...Card[]];
   /**
@@ -3055,10 +2565,6 @@ export interface RobotOption {
         }[]
       | undefined;
   };
-  /**
-   * side of a foot grid that suits its size.
-   */
-  grid_side_m: number;
   /**
    * names of the joints of each leg, from the torso to the foot.
    */
@@ -4031,8 +3537,4 @@ export interface WholeRobotView {
     [k: string]: unknown;
   };
   preview: Preview;
-  /**
-   * what was found in its file; null if it was made here.
-   */
-  found: FoundView | null;
 }
