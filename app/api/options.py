@@ -301,7 +301,7 @@ def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
         "hidden": False,
         "body": None,
         "robot": as_mapping(made),
-        "grid_side_m": usual_side_m(made),
+        "grid_side_m": usual_side_m(made, gait),
         "joints": [
             [joint.name for joint in legs.of_leg(number)] for number in range(1, len(legs) + 1)
         ],

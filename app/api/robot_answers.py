@@ -126,7 +126,8 @@ def robot_view(stored: StoredRobot) -> dict[str, Any]:
 def whole_view(stored: StoredRobot, origin: Origin | None) -> dict[str, Any]:
     """Return a stored robot as a `WholeRobotView`; errors as of `robot_view`."""
     made = stored.robot
-    walk = WalkingProblem(gait=own_gait(made), robot=made, grid_side_m=usual_side_m(made))
+    gait = own_gait(made)
+    walk = WalkingProblem(gait=gait, robot=made, grid_side_m=usual_side_m(made, gait))
     numbers = {name: value for name, value in written_out(made).items() if value is not None}
     return {
         **robot_view(stored),

@@ -131,7 +131,7 @@ def show_robot(options: argparse.Namespace) -> int:
     """
     made = read_robot(options.robot)
     gait = own_gait(made) if options.gait is None else read_gait(options.gait)
-    side_m = usual_side_m(made) if options.grid_side_m is None else options.grid_side_m
+    side_m = usual_side_m(made, gait) if options.grid_side_m is None else options.grid_side_m
     walk = WalkingProblem(gait=gait, robot=made, divisions=options.divisions, grid_side_m=side_m)
     known = preview(walk)
     if options.json:

@@ -11,12 +11,13 @@ from hexapods.agents.q_table import MAX_VALUES, table_size
 from hexapods.domain.body import Robot
 from hexapods.domain.errors import Unreachable
 from hexapods.domain.gait import AnyGait, Gait, GaitSpec, gait_spec
-from hexapods.domain.grid import MAX_SIDE_M, MIN_SIDE_M, FootGrid
+from hexapods.domain.grid import MAX_SIDE_M, FootGrid
 from hexapods.domain.kinematics import check_reach, legs_of, out_of_reach
 from hexapods.domain.legs import Legs
-from hexapods.domain.model_robot import usual_grid_side_m
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import Record
 from hexapods.domain.robot import legs_written_out, written_out
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 
@@ -133,9 +134,11 @@ class Preview(Record):
     better: BetterGroups | None
 
 
-def usual_side_m(robot: Robot) -> float:
-    """Return the side of a foot grid that suits the size of a robot, within the limits [m]."""
-    return min(max(round(usual_grid_side_m(robot), 3), MIN_SIDE_M), MAX_SIDE_M)
+def usual_side_m(robot: Robot, gait: str | GaitSpec) -> float:
+    """Return the side of the foot grid with which a robot begins [m]."""
+    if not isinstance(robot, ModelRobot):
+        return FootGrid.side_m
+    return min(usual_grid_side_m(robot, gait), MAX_SIDE_M)
 
 
 def preview(walk: WalkingProblem) -> Preview:
