@@ -9,11 +9,10 @@ from app.storage.database.robots import Origin
 from app.storage.stored_robot import StoredRobot
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.gait import AnyGait, gait_as_json, resolve
-from hexapods.domain.grid import MAX_SIDE_M, MIN_SIDE_M
 from hexapods.domain.kinematics import legs_of
-from hexapods.domain.model_robot import usual_grid_side_m
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import Robot, legs_written_out, written_out
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.imports.imported import FileFormat, ImportedLeg
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
@@ -103,8 +102,8 @@ class WholeRobotView(StoredRobotView):
 
 
 def grid_side_m(made: Robot) -> float:
-    """Return the side of a foot grid that suits the size of a robot, within the limits [m]."""
-    return min(max(round(usual_grid_side_m(made), 3), MIN_SIDE_M), MAX_SIDE_M)
+    """Return the side of a foot grid that suits the size of a robot [m]."""
+    return usual_grid_side_m(made, own_gait(made))
 
 
 def robot_view(stored: StoredRobot) -> dict[str, Any]:
