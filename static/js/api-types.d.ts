@@ -2795,6 +2795,10 @@ export interface RobotOption {
    */
   joints: string[][];
   /**
+   * lowest and highest angle of each of them.
+   */
+  limits_rad: [number, number][][];
+  /**
    * directions of its legs in its own frame, anticlockwise.
    */
   azimuths_deg: number[];
