@@ -8,7 +8,7 @@ import socket
 import sys
 import threading
 from collections.abc import AsyncIterator, Callable
-from functools import cache
+from functools import cache, partial
 from types import FrameType
 
 import uvicorn
@@ -18,12 +18,14 @@ from starlette.websockets import WebSocket
 
 from app.api import (
     archives,
+    classroom_pages,
     contract,
     docs,
     events,
     experiments,
     exports,
     gait,
+    lessons,
     monitoring,
     options,
     pages,
@@ -31,12 +33,14 @@ from app.api import (
     races,
     replays,
     robots,
+    rooms,
     runs,
     spectators,
     stage,
     trainings,
 )
 from app.api.auth import TokenGuard
+from app.api.card_starts import CardStarts
 from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
 from app.api.deps import Services
 from app.api.guide import guide_routes
@@ -45,10 +49,14 @@ from app.api.memory_limit import HeldBodies
 from app.api.middleware import SecurityHeaders
 from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit, what_if_limiter
+from app.api.room_access import JOINS, JOINS_PER_S, RoomAccess
+from app.api.room_stages import RoomStages
 from app.api.stage_paths import StagePaths, stage_of
 from app.api.starts import start_routes
 from app.api.unfinished import Unfinished
 from app.api.wellformed import WellFormed
+from app.classroom.lessons import Lessons
+from app.classroom.rooms import Rooms
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
@@ -60,6 +68,7 @@ from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
+from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.stage.playback import Replays
 from app.stage.roles import Roles
@@ -76,6 +85,7 @@ from app.viewer.viewer_page import viewer_routes
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
 from hexapods import __version__, assets
+from hexapods.domain.errors import HexapodError
 from hexapods.processes import return_freed_memory, start_fork_server
 from hexapods.runs.config import usable_agents
 
@@ -108,15 +118,27 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     """
     recordings, bus = Recordings(store), RunMetrics()
     stopping = Stopping()
-    shared = SharedStage(
+    new_stage = partial(
+        SharedStage,
         store,
         recordings,
         bus,
         roles=Roles(settings.token, store.sessions, is_public=settings.spectators == "public"),
         viewer_slots=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
+    stages = [shared := new_stage()]
+    rooms = Rooms(store)
+    room_stages = RoomStages(
+        stages, lambda path: new_stage(path=path, session_path="", announces=False)
+    )
+    rooms.on_changed = room_stages.publish
     jobs = Jobs(
-        store, recordings, bus, on_queued=shared.stage.offer, niceness=settings.job_niceness
+        store,
+        recordings,
+        bus,
+        on_queued=lambda run_id: rooms.owner_of(run_id) or shared.stage.offer(run_id),
+        owner_of=rooms.owner_of,
+        niceness=settings.job_niceness,
     )
     app = FastAPI(
         title="Racing Hexapods",
@@ -134,7 +156,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         recordings=recordings,
         bus=bus,
         jobs=jobs,
-        stages=[shared],
+        stages=stages,
         idempotency=Idempotency(store),
         agents=usable_agents(),
         replays=replays,
@@ -145,6 +167,11 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         stopping=stopping,
         what_if_limiter=what_if_limiter(settings),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
+        lessons=Lessons(store.lessons),
+        rooms=rooms,
+        room_stages=room_stages,
+        card_starts=CardStarts(usable_agents()),
+        joins=RateLimiter(JOINS, JOINS_PER_S),
     )
     app.state.work_slots = WorkSlots()
     app.state.metrics = monitoring.registry_of(app.state.services)
@@ -156,7 +183,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     app.add_middleware(HeldBodies)
     what_ifs = app.state.services.what_if_limiter
     app.add_middleware(RateLimit, settings=settings, what_ifs=what_ifs)
-    app.add_middleware(TokenGuard, settings=settings)
+    app.add_middleware(TokenGuard, settings=settings, rooms=RoomAccess(rooms))
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(Unfinished)
     app.add_middleware(ProblemPages)
@@ -171,6 +198,7 @@ def _add_routes(app: FastAPI, agents: tuple[str, ...]) -> None:
     app.router.routes += [
         *viewer_routes(_serve_viewer),
         *pages.page_routes(assets.static_dir()),
+        *classroom_pages.classroom_routes(),
         *guide_routes(assets.docs_dir()),
     ]
 
@@ -186,7 +214,7 @@ def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(archives, trainings, races, experiments, runs, exports, replays, gait),
-        *(stage, spectators, events, options, robots),
+        *(stage, spectators, events, options, robots, lessons, rooms),
     )
     for module in modules:
         versioned.include_router(module.router)
@@ -203,13 +231,26 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     async with contextlib.AsyncExitStack() as opened:
         for shared in services.stages:
             await opened.enter_async_context(shared)
+        opened.push_async_callback(services.room_stages.close_all)
+        for room in services.rooms.open_rooms():
+            await services.room_stages.open(room)
         services.jobs.open()
+        await asyncio.to_thread(_resume_runs_of_rooms, services)
         try:
             yield
         finally:
             services.bus.close()
             await _end_long_requests(app)
             await asyncio.to_thread(services.jobs.close)
+
+
+def _resume_runs_of_rooms(services: Services) -> None:
+    """Queue again what participants of open rooms have started, and a crash has interrupted."""
+    for run_id in services.rooms.unfinished():
+        try:
+            services.jobs.resume(run_id)
+        except HexapodError as error:
+            _logger.warning("a participant's run is not resumed: %s", error)
 
 
 async def _end_long_requests(app: FastAPI) -> None:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Annotated, Any, Literal, Union
 
 from pydantic import Field, create_model
@@ -50,6 +51,12 @@ class AgentBodies:
         self.race: Any = one_of({"race": _race_body(lanes), "branch": BranchBody}, _race_or_branch)
         self.experiment: Any = _experiment_body(agents)
         self.change: Any = _change_body(agents)
+
+
+@cache
+def agent_bodies(agents: tuple[str, ...]) -> AgentBodies:
+    """Return the request bodies of the registered agents, which take long to build."""
+    return AgentBodies(agents)
 
 
 def _race_or_branch(value: Any) -> str:

@@ -10,15 +10,16 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.cookies import SessionCookie
 from app.api.problems import problem
 from app.api.rate_limit import is_question, too_many
+from app.api.room_access import READ_METHODS, RoomAccess
 from app.api.stage_paths import path_of, stage_of
 from app.limits.addresses import client_of
 from app.limits.connections import Connection
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.stage.roles import Roles
+from app.storage.database.room_rows import Seat
 from hexapods.domain.errors import HexapodError
 
-_READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 PUBLIC_PATHS = ("/healthz", "/readyz")
 _PUBLIC_FOLDERS = ("/static/",)
 WRONG_TOKENS, WRONG_TOKENS_PER_S = 20, 0.2
@@ -39,9 +40,15 @@ class TokenGuard:
     are guarded too.
     """
 
-    def __init__(self, app: ASGIApp, settings: Settings) -> None:
-        """Wrap an app, inside `StagePaths`; of the settings it uses `public_url`."""
-        self._app = app
+    def __init__(self, app: ASGIApp, settings: Settings, rooms: RoomAccess) -> None:
+        """Wrap an app, inside `StagePaths`; of the settings it uses `public_url`.
+
+        Args:
+            app: the wrapped app.
+            settings: of the server.
+            rooms: decides what participants of rooms may do.
+        """
+        self._app, self._rooms = app, rooms
         self._wrong_guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._is_https = (settings.public_url or "").startswith("https:")
 
@@ -57,7 +64,12 @@ class TokenGuard:
             return
         cookie, bearer = self._cookie(scope, headers), _bearer(headers)
         role = roles.of(bearer, cookie.value)
-        if role == "spectator":
+        seats = self._seats(scope, headers) if role == "spectator" or not roles.needs_token else ()
+        if seats:
+            # Where nobody needs a token, a participant is who has a room's cookie.
+            role = "spectator"
+        scope["state"]["seats"] = seats
+        if role == "spectator" and roles.needs_token:
             wrong = [credential for credential in (bearer, cookie.value) if credential]
             wait_s = max((self._wrong_guesses.take(client_of(scope)) for _ in wrong), default=0.0)
             if cookie.value:
@@ -65,7 +77,8 @@ class TokenGuard:
             if wait_s > 0:
                 await _too_many_guesses(scope, wait_s)(scope, receive, send)
                 return
-        if role == "operator" or _is_open_to_spectators(scope, roles):
+        refusal = self._refusal(scope, roles, seats) if role == "spectator" else None
+        if refusal is None:
             scope["state"]["role"] = role
             if role == "operator" and roles.needs_token:
                 _mark_authenticated(scope)
@@ -73,11 +86,25 @@ class TokenGuard:
         elif scope["type"] == "websocket":
             await _refuse_websocket(scope, receive, send)
         else:
-            await _unauthorized(f"This needs the operator: {_AUTH_HINT}.")(scope, receive, send)
+            await refusal(scope, receive, send)
+
+    def _seats(self, scope: Scope, headers: Headers) -> tuple[Seat, ...]:
+        return self._rooms.seats(headers, is_secure=self._is_secure(scope))
+
+    def _refusal(self, scope: Scope, roles: Roles, seats: tuple[Seat, ...]) -> ASGIApp | None:
+        """Return the refusal of a request of no operator; None if it is allowed."""
+        refusal = self._rooms.refuse(scope, seats, is_public=roles.is_public)
+        if refusal is not None or seats:
+            return refusal
+        if self._rooms.is_open_to_all(scope) or _is_open_to_spectators(scope, roles):
+            return None
+        return _unauthorized(f"This needs the operator: {_AUTH_HINT}.")
+
+    def _is_secure(self, scope: Scope) -> bool:
+        return self._is_https or scope["scheme"] in ("https", "wss")
 
     def _cookie(self, scope: Scope, headers: Headers) -> SessionCookie:
-        is_secure = self._is_https or scope["scheme"] in ("https", "wss")
-        return SessionCookie(headers, is_secure, scope["root_path"])
+        return SessionCookie(headers, self._is_secure(scope), stage_of(scope).session_path)
 
     async def _open_session(self, scope: Scope, headers: Headers, roles: Roles) -> Response:
         """Open a session for the token of `/?token=…`, and redirect to the address without it."""
@@ -103,7 +130,7 @@ class TokenGuard:
 
 
 def _is_open_to_spectators(scope: Scope, roles: Roles) -> bool:
-    changes = scope["type"] == "http" and scope["method"] not in _READ_METHODS
+    changes = scope["type"] == "http" and scope["method"] not in READ_METHODS
     if changes and not is_question(scope):
         return False
     path = path_of(scope)

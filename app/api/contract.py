@@ -13,10 +13,12 @@ from fastapi import FastAPI
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.auth import PUBLIC_PATHS
-from app.api.cookies import NAME
+from app.api.cookies import NAME, ROOM_NAME
 from app.api.event_answers import EventBodies
 from app.api.problems import MEDIA_TYPE
 from app.api.rate_limit import QUESTIONS
+from app.api.room_access import OF_PARTICIPANTS, OPEN_TO_ALL
+from app.classroom import lesson
 from app.settings import Settings
 
 Schema = dict[str, Any]
@@ -24,6 +26,9 @@ BINARY: Schema = {"type": "string", "format": "binary"}
 TEXT: Schema = {"type": "string"}
 _REFERENCE = "#/components/schemas/{model}"
 _METHODS = ("get", "put", "post", "patch", "delete")
+_GIVEN_REFERENCE = "#/components/schemas/Given{model}"
+"""Of a lesson's parts as they are sent, in which more may be left out than in answers."""
+GIVEN_LESSON: Schema = {"$ref": _GIVEN_REFERENCE.format(model="Lesson")}
 _UNUSED_SCHEMAS = ("HTTPValidationError", "ValidationError")
 _WRITE_METHODS = frozenset(_METHODS) - {"get"}
 
@@ -62,7 +67,8 @@ _PROBLEMS: Mapping[int, tuple[str, str]] = {
     401: ("Unauthorized", "It needs the operator, or the token is wrong."),
     403: (
         "Forbidden",
-        "The request calls the server by a foreign name, or comes from a foreign page.",
+        "The request calls the server by a foreign name, comes from a foreign page, or is none "
+        "that the card of a participant's room allows.",
     ),
     404: ("NotFound", "There is no such thing (any more)."),
     405: ("MethodNotAllowed", "The method is not possible here."),
@@ -163,6 +169,9 @@ def _completed(schema: Schema, agents: tuple[str, ...], settings: Settings) -> S
         described = model.model_json_schema(ref_template=_REFERENCE, mode="serialization")
         schemas |= described.pop("$defs")
         schemas[name] = described
+    given = lesson.adapter().json_schema(ref_template=_GIVEN_REFERENCE)
+    parts = given.pop("$defs") | {"Lesson": given}
+    schemas |= {f"Given{name}": one for name, one in parts.items()}
     for name in _UNUSED_SCHEMAS:
         schemas.pop(name, None)
     components["responses"] = {name: _problem(status) for status, (name, _) in _PROBLEMS.items()}
@@ -248,6 +257,12 @@ def _add_security(schema: Schema, settings: Settings) -> None:
             "description": "set by opening the page once with ?token=… in its address; the name "
             "ends with the port of that address, and begins with __Host- over HTTPS",
         },
+        "participant": {
+            "type": "apiKey",
+            "in": "cookie",
+            "name": f"{ROOM_NAME}_{settings.port}_CODE",
+            "description": "set by joining a room; its name ends with the code of the room",
+        },
     }
     operator: list[Schema] = [{"bearer": []}, {"cookie": []}]
     for method, path, operation in operations(schema):
@@ -255,4 +270,9 @@ def _add_security(schema: Schema, settings: Settings) -> None:
             (method in _WRITE_METHODS and path not in QUESTIONS)
             or (settings.spectators != "public" and path not in PUBLIC_PATHS)
         )
-        operation["security"] = operator if needs_token else [*operator, {}]
+        if (method, path) in OF_PARTICIPANTS:
+            operation["security"] = [{"participant": []}]
+        elif needs_token and (method, path) not in OPEN_TO_ALL:
+            operation["security"] = operator
+        else:
+            operation["security"] = [*operator, {}]

@@ -1,4 +1,4 @@
-"""Session cookie of an operator."""
+"""Session cookies: that of an operator, and those of participants of rooms."""
 
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
@@ -6,6 +6,7 @@ from starlette.requests import cookie_parser
 from app.storage.sessions import SESSION_S
 
 NAME = "hexapods_operator"
+ROOM_NAME = "hexapods_room"
 
 
 class SessionCookie:
@@ -19,22 +20,25 @@ class SessionCookie:
     Attributes:
         name: of the cookie.
         value: session id that the client sent; "" without a cookie.
+        others: all cookies of the request, by name.
     """
 
-    def __init__(self, headers: Headers, is_secure: bool, path: str) -> None:
+    def __init__(self, headers: Headers, is_secure: bool, path: str, name: str = NAME) -> None:
         """Parse it from the headers of a request.
 
         Args:
             headers: of the request.
             is_secure: whether browsers use HTTPS.
-            path: of the stage.
+            path: of the stage, or the code of a room.
+            name: beginning of its name.
         """
         port = headers.get("host", "").rpartition("]")[2].rpartition(":")[2]
         if not (port.isascii() and port.isdigit()):
             port = "443" if is_secure else "80"
         self._is_secure = is_secure
-        self.name = f"{'__Host-' if is_secure else ''}{NAME}_{port}{path.replace('/', '_')}"
-        self.value = cookie_parser("; ".join(headers.getlist("cookie"))).get(self.name, "")
+        self.name = f"{'__Host-' if is_secure else ''}{name}_{port}{path.replace('/', '_')}"
+        self.others = cookie_parser("; ".join(headers.getlist("cookie")))
+        self.value = self.others.get(self.name, "")
 
     def set_header(self, session_id: str) -> str:
         """Return the `Set-Cookie` value that stores a session id."""

@@ -8,9 +8,13 @@ from typing import Annotated, NamedTuple
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
+from app.api.card_starts import CardStarts
 from app.api.descriptions import VALID
+from app.api.room_stages import RoomStages
 from app.api.stage_paths import stage_of
 from app.cache import BytesCache
+from app.classroom.lessons import Lessons
+from app.classroom.rooms import Rooms
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.file_renderer import FileRenderer
@@ -21,6 +25,7 @@ from app.limits.memory_budget import MemoryBudget
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.stage.roles import Role
+from app.storage.database.room_rows import Seat
 from app.storage.database.store import RunStore
 from app.storage.idempotency import Create, Idempotency
 from app.storage.recordings import Recordings
@@ -48,6 +53,10 @@ class Services:
         stopping: ends what takes long in threads when the server stops.
         what_if_limiter: limits what-ifs of spectators, by their number and time.
         listeners: slots of event streams, of all stages.
+        lessons, rooms: of classes.
+        room_stages: the stages of the rooms that are open.
+        card_starts: makes what cards of lessons run.
+        joins: limits how often one address joins rooms.
         stream_lock: held while a race is encoded as a recorded stream for viser.
         exports: memory budget of exports that clients are still reading.
         analyses: gait analyses and timelines, which all pages that watch a run request at once.
@@ -69,6 +78,11 @@ class Services:
     stopping: Stopping
     what_if_limiter: RateLimiter
     listeners: ClientSlots["EventListener"]
+    lessons: Lessons
+    rooms: Rooms
+    room_stages: RoomStages
+    card_starts: CardStarts
+    joins: RateLimiter
     stream_lock: Lock = field(default_factory=Lock)
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
     analyses: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
@@ -77,8 +91,8 @@ class Services:
 class EventListener:
     """A client of the event stream, with its role; `close` ends its stream, if one is open."""
 
-    def __init__(self, role: Role) -> None:
-        self.role = role
+    def __init__(self, role: Role, seats: Sequence[Seat] = ()) -> None:
+        self.role, self.seats = role, seats
         self.close: Callable[[], None] = lambda: None
 
 
@@ -110,6 +124,10 @@ def _role(request: Request) -> Role:
     return role
 
 
+def _reader(request: Request) -> tuple[Seat, ...] | None:
+    return None if request.state.role == "operator" else request.state.seats
+
+
 async def _body(request: Request) -> bytes:
     try:
         return await request.body()
@@ -130,10 +148,12 @@ async def _start_request(
     return StartRequest(f"{request.url.path}?{request.url.query}", body, idempotency_key)
 
 
-BodyDep = Annotated[bytes, Depends(_body)]
-"""The body of a request, as it was sent."""
 ServicesDep = Annotated[Services, Depends(_services)]
 StageDep = Annotated[SharedStage, Depends(_stage)]
 """The stage that the request's path is about."""
 StartRequestDep = Annotated[StartRequest, Depends(_start_request)]
+BodyDep = Annotated[bytes, Depends(_body)]
+"""The body of a request, as it was sent."""
+ReaderDep = Annotated[tuple[Seat, ...] | None, Depends(_reader)]
+"""Which participants of rooms the client is, whose runs it sees; None for operators."""
 RoleDep = Annotated[Role, Depends(_role)]

@@ -12,6 +12,7 @@ from app.api.answers import (
     Settings,
     StageView,
 )
+from app.api.classroom_answers import RoomState
 from app.api.recorded_answers import Evaluation
 from app.storage.run import Kind, State
 from hexapods.runs.clocks import Clock
@@ -179,6 +180,10 @@ class ViewersEvent(Answer):
     count: Count
 
 
+class RoomEvent(RoomState):
+    """A room has changed; sent on its own stage alone."""
+
+
 class RobotsEvent(Answer):
     """Stored robots have changed; `GET /options` has them. `count` leaves hidden ones out."""
 
@@ -199,3 +204,4 @@ class EventBodies(Answer):
     summary: SummaryEvent
     viewers: ViewersEvent
     robots: RobotsEvent
+    room: RoomEvent

@@ -8,11 +8,10 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.api.contract import sends_events
-from app.api.deps import EventListener, RoleDep, Services, ServicesDep, StageDep
+from app.api.deps import EventListener, ReaderDep, RoleDep, Services, ServicesDep, StageDep
 from app.api.descriptions import VALID
 from app.limits.addresses import client_of
 from app.limits.client_slots import NoFreeSlot, Refusal
-from app.stage.roles import Role
 from app.storage.errors import Busy
 from app.storage.json_text import json_text
 from app.viewer.shared_stage import SharedStage
@@ -38,15 +37,15 @@ def _existing_run_id(
     return None if run_id is None else services.store.find(run_id).id
 
 
-async def _client_slot(
-    request: Request, services: ServicesDep, role: RoleDep
+async def client_slot(
+    request: Request, services: ServicesDep, role: RoleDep, reader: ReaderDep
 ) -> AsyncIterator[EventListener]:
     """Occupy a client slot until the stream ends, evicting another client if the slots allow it.
 
     Raises:
         Busy: if no slot is free.
     """
-    listener = EventListener(role)
+    listener = EventListener(role, reader or ())
     try:
         evicted = services.listeners.take(listener, client_of(request.scope), role == "operator")
     except NoFreeSlot as error:
@@ -69,10 +68,30 @@ async def get_events(
     services: ServicesDep,
     shared: StageDep,
     run_id: Annotated[str | None, Depends(_existing_run_id)],
-    listener: Annotated[EventListener, Depends(_client_slot)],
+    listener: Annotated[EventListener, Depends(client_slot)],
     last_event_id: Annotated[str | None, Header()] = None,
 ) -> AsyncIterator[ServerSentEvent]:
     """Stream a `snapshot` event, then changes; with `run_id` only those of this run."""
+    async for event in stream_events(services, shared, run_id, listener, last_event_id):
+        yield event
+
+
+async def stream_events(
+    services: Services,
+    shared: SharedStage,
+    run_id: str | None,
+    listener: EventListener,
+    last_event_id: str | None,
+) -> AsyncIterator[ServerSentEvent]:
+    """Yield the events of a stage for one client, who sees no run that a room hides.
+
+    Args:
+        services: of the server.
+        shared: the stage.
+        run_id: of the run that the client follows; None for all.
+        listener: the client, in its slot.
+        last_event_id: the header of this name.
+    """
     # Subscribe before reading, so that each change is in the snapshot or follows it.
     run_ids = None if run_id is None else {run_id}
     subscription = shared.channel.subscribe(run_ids, _event_id(last_event_id))
@@ -80,9 +99,7 @@ async def get_events(
     try:
         id_before_read = services.bus.last_id
         # In a thread: the database and the stage's lock would block the event loop.
-        text, listed_ids = await run_in_threadpool(
-            _snapshot, services, shared, listener.role, run_id
-        )
+        text, listed_ids = await run_in_threadpool(_snapshot, services, shared, listener, run_id)
         # All events after this id follow: a client that reconnects with it misses none.
         since = str(subscription.since)
         yield ServerSentEvent(event="snapshot", id=since, raw_data=text, retry=RETRY_MS)
@@ -93,18 +110,28 @@ async def get_events(
                 and event.run_id in listed_ids
             ):
                 continue  # deleted before the snapshot, and imported again
+            if _is_hidden(services, listener, event.run_id):
+                continue
             yield ServerSentEvent(event=event.event, id=str(event.id), raw_data=event.data)
     finally:
         # A client may disconnect before the first event.
         subscription.close()
 
 
+def _is_hidden(services: Services, listener: EventListener, run_id: str | None) -> bool:
+    return listener.role != "operator" and services.rooms.is_hidden(run_id, listener.seats)
+
+
 def _snapshot(
-    services: Services, shared: SharedStage, role: Role, run_id: str | None
+    services: Services, shared: SharedStage, listener: EventListener, run_id: str | None
 ) -> tuple[str, set[str]]:
     """Return the snapshot as JSON, and the ids of the runs in it."""
-    store = services.store
-    runs = store.list(limit=NEWEST_RUNS).items if run_id is None else [store.find(run_id)]
+    store, role = services.store, listener.role
+    reader = None if role == "operator" else listener.seats
+    if run_id is None:
+        runs = store.list(limit=NEWEST_RUNS, reader=reader).items
+    else:
+        runs = [store.find(run_id)]
     snapshot: dict[str, Any] = {
         "version": __version__,
         "role": role,

@@ -14,6 +14,7 @@ from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
+from app.api.robot_answers import grid_side_m
 from app.archive.transfer import MAX_RUNS
 from app.jobs.submissions import MAX_SETTINGS
 from app.storage.database.robots import Robots
@@ -300,6 +301,7 @@ def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
         "hidden": False,
         "body": None,
         "robot": as_mapping(made),
+        "grid_side_m": grid_side_m(made),
         "joints": [
             [joint.name for joint in legs.of_leg(number)] for number in range(1, len(legs) + 1)
         ],

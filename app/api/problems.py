@@ -18,6 +18,7 @@ from app.api.descriptions import field_errors
 from app.storage.errors import (
     Busy,
     Conflict,
+    Forbidden,
     Gone,
     NotAnswering,
     NotFound,
@@ -31,6 +32,7 @@ MAX_DETAIL = 1000
 _STORAGE_RETRY_S = 10
 STATUSES: dict[type[HexapodError], int] = {
     InvalidInput: 422,
+    Forbidden: 403,
     NotFound: 404,
     Gone: 410,
     Conflict: 409,

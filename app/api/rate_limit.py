@@ -91,6 +91,8 @@ def is_question(scope: Scope) -> bool:
 def is_spectators_what_if(scope: Scope) -> bool:
     """Whether a spectator asks for a what-if; to be called inside `TokenGuard`."""
     is_what_if = (scope["method"], path_of(scope)) == ("POST", WHAT_IF)
+    # Of a participant of a room it is the run of the card.
+    is_what_if = is_what_if or bool(scope["state"].get("asks_what_if"))
     return is_what_if and bool(scope["state"]["role"] == "spectator")
 
 

@@ -24,7 +24,7 @@ from app.api.answers import (
     TrainingView,
 )
 from app.api.contract import LOCATION, answers
-from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
+from app.api.deps import ReaderDep, Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
 from app.api.explanation_answers import ExplanationView
 from app.api.fields import RunId
@@ -51,6 +51,7 @@ RunIdsQuery = Annotated[
 
 def _listing(
     *,
+    reader: ReaderDep,
     state: Annotated[State | None, Query(description=VALID["state"])] = None,
     search: Annotated[str | None, Query(max_length=MAX_SEARCH, description=VALID["search"])] = None,
     limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 50,
@@ -58,7 +59,7 @@ def _listing(
     tag: Annotated[str | None, Query(max_length=MAX_TAG, description=VALID["tag"])] = None,
     sort: Annotated[Sort, Query(description=VALID["sort"])] = "newest",
 ) -> Listing:
-    return Listing(None, state, limit, cursor, search, tag, sort)
+    return Listing(None, state, limit, cursor, search, tag, sort, reader)
 
 
 ListingDep = Annotated[Listing, Depends(_listing)]

@@ -29,7 +29,7 @@ router = APIRouter(prefix="/spectators", tags=["stage"])
 def get_spectators(request: Request, services: ServicesDep, shared: StageDep) -> Response:
     """Return the address at which others watch, or why there is none, and its QR code."""
     is_public = shared.roles.is_public
-    address = _address_for_others(request, services.settings) if is_public else None
+    address = address_for_others(request, services.settings) if is_public else None
     reason = _LOOPBACK_ONLY if is_public else _NEEDS_TOKEN
     answer = {
         "address": address,
@@ -71,7 +71,8 @@ def local_address() -> str:
     return address
 
 
-def _address_for_others(request: Request, settings: Settings) -> str | None:
+def address_for_others(request: Request, settings: Settings) -> str | None:
+    """Return the address at which others reach the page; None if they cannot."""
     if settings.public_url is None:
         # The Host has been checked: by that name this client has reached the server.
         name = urlsplit(str(request.base_url)).hostname or ""

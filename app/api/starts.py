@@ -5,7 +5,7 @@ from typing import Any
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.agent_bodies import AgentBodies
+from app.api.agent_bodies import agent_bodies
 from app.api.answers import EstimateView, TrainingView, WhatIfView
 from app.api.contract import LOCATION, answers
 from app.api.deps import RoleDep, Services, ServicesDep, StartRequestDep
@@ -24,7 +24,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
     Args:
         agents: names of the registered agents.
     """
-    router, bodies = APIRouter(), AgentBodies(agents)
+    router, bodies = APIRouter(), agent_bodies(agents)
     training_body: Any = bodies.training
     change_body: Any = bodies.change
     _add_starts(
@@ -90,7 +90,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
             raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
         asker = Asker(check=services.stopping.check)
         if role == "spectator":
-            asker = _spectator(services, client_of(request.scope))
+            asker = spectators_asker(services, client_of(request.scope))
         return JSONResponse(services.what_if.ask(body.start().config, asker))
 
     return router
@@ -149,7 +149,7 @@ def _add_starts(
     )
 
 
-def _spectator(services: Services, client: str) -> Asker:
+def spectators_asker(services: Services, client: str) -> Asker:
     """Return the asker of a spectator's what-if, charged for what it takes beyond a second.
 
     Raises:

@@ -207,6 +207,8 @@ def _sentences(known: Preview) -> list[str]:
             f"It walks on grids of up to {known.largest_side_m:g} m; every action is always "
             f"possible on {safe}."
         )
+    if known.beside_grid is not None:
+        told.append(f"It walks beside its grid: {known.beside_grid}.")
     if not known.stands:
         told.append("It does not stand even on all of its feet.")
     if known.tips:

@@ -20,7 +20,7 @@ RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
 MAX_PENDING = 2048
 """Most pending events of a slow subscription."""
-_STATE_EVENTS = frozenset({"robots", "run", "scene", "stage", "summary", "viewers"})
+_STATE_EVENTS = frozenset({"robots", "room", "run", "scene", "stage", "summary", "viewers"})
 """Names of events that carry a full state: a newer one supersedes pending older ones."""
 
 

@@ -63,6 +63,7 @@ class Jobs:
         bus: EventBus,
         *,
         on_queued: Callable[[str], object] | None = None,
+        owner_of: Callable[[str], str | None] = lambda run_id: None,  # noqa: ARG005
         cores: int | None = None,
         niceness: int = 0,
     ) -> None:
@@ -73,13 +74,14 @@ class Jobs:
             recordings: receives the motion of the robots.
             bus: receives the events.
             on_queued: called with the id of each training or race that was submitted.
+            owner_of: returns which participant of a room waits for a run; None if it is none.
             cores: maximum number of jobs that run at once; by default one per core.
             niceness: added to the server's nice value in worker processes.
         """
         self._store, self._recordings, self._bus = store, recordings, bus
         self._on_queued = on_queued
         self.new_id = RunIds.of(store)
-        self._queue = RunQueue(store, self._publish)
+        self._queue = RunQueue(store, self._publish, owner_of)
         self._supervisor = Supervisor(
             store,
             recordings,

@@ -1,5 +1,9 @@
-"""The queue: runs in order of submission, each with the trainings that it depends on."""
+"""The queue: runs in order of submission, each with the trainings that it depends on.
 
+Of runs that participants of rooms have started, that of whom has had the fewest turns comes first.
+"""
+
+from collections import Counter
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 
@@ -9,6 +13,8 @@ from app.storage.run import QUEUED, RESUMABLE, RUNNING, IdempotencyKey, Run, Sta
 from hexapods.domain.errors import HexapodError
 
 MAX_QUEUED = 32
+"""Runs that wait, besides those of participants, of which each has one at a time."""
+MAX_OF_PARTICIPANTS = 2048
 RETRY_AFTER_S = 10
 
 
@@ -20,10 +26,18 @@ class RunQueue:
     Args:
         store: store of the runs.
         publish: called with every run that changes here.
+        owner_of: returns who waits for the run of an id; None if it is no participant of a room.
     """
 
-    def __init__(self, store: RunStore, publish: Callable[[Run], None]) -> None:
-        self._store, self._publish = store, publish
+    def __init__(
+        self,
+        store: RunStore,
+        publish: Callable[[Run], None],
+        owner_of: Callable[[str], str | None] = lambda run_id: None,  # noqa: ARG005
+    ) -> None:
+        self._store, self._publish, self._owner_of = store, publish, owner_of
+        self._turns: Counter[str] = Counter()
+        """How many runs of each participant were started."""
         self._runs: dict[str, Run] = {}
         """By id, in order; each as it was stored last."""
         self._unreconciled: set[str] = set()
@@ -52,12 +66,7 @@ class RunQueue:
             Busy: if the queue is full.
             StorageFull: if the disk has no space for another run.
         """
-        if len(self._runs) + len(runs) > MAX_QUEUED + free:
-            raise Busy(
-                f"{len(self._runs)} runs are waiting, the most is {MAX_QUEUED}; wait for one "
-                "to end, or stop one",
-                RETRY_AFTER_S,
-            )
+        self._check_room_for(runs, free)
         self._store.check_disk_space()
         try:
             if resumed:
@@ -72,6 +81,16 @@ class RunQueue:
         for run in runs:
             self._publish(run)
         return runs[-1]
+
+    def _check_room_for(self, runs: Sequence[Run], free: int) -> None:
+        is_owned = self._owner_of(runs[-1].id) is not None
+        alike = sum((self._owner_of(one) is not None) == is_owned for one in self._runs)
+        most = MAX_OF_PARTICIPANTS if is_owned else MAX_QUEUED
+        if alike + len(runs) > most + free:
+            raise Busy(
+                f"{alike} runs are waiting, the most is {most}; wait for one to end, or stop one",
+                RETRY_AFTER_S,
+            )
 
     def _requeue(self, run: Run) -> Run:
         """Store a resumed run as queued and delete the evaluations that it will repeat."""
@@ -107,10 +126,23 @@ class RunQueue:
         return any(not run.waiting_for for run in list(self._runs.values()))
 
     def pop_ready(self) -> Run | None:
-        """Remove and return the first run that waits for nothing but a core, None if none does."""
-        ready = (run for run in self._runs.values() if not run.waiting_for)
-        run = next(ready, None)
-        return None if run is None else self._runs.pop(run.id)
+        """Remove and return the first run that waits for nothing but a core, None if none does.
+
+        If it is a participant's, the first of the participant who has had the fewest turns; both
+        exchange their places, so that the runs of others keep theirs.
+        """
+        ready = [run for run in self._runs.values() if not run.waiting_for]
+        if not ready:
+            return None
+        first = ready[0]
+        if self._owner_of(first.id) is None:
+            return self._runs.pop(first.id)
+        owned = [(one, run) for run in ready if (one := self._owner_of(run.id)) is not None]
+        owner, run = min(owned, key=lambda pair: self._turns[pair[0]])
+        self._turns[owner] += 1
+        places = {run.id: first, first.id: run}
+        self._runs = {one.id: one for one in (places.get(i, r) for i, r in self._runs.items())}
+        return self._runs.pop(run.id)
 
     def push_front(self, run: Run) -> None:
         """Insert a run that could not be started at the head of the queue."""

@@ -38,6 +38,11 @@ class RateLimiter:
             self._keep(client, tokens - 1)
             return 0.0
 
+    def wait_s(self, client: str) -> float:
+        """Return the time until there is a token [s], and take none; 0 if there is one."""
+        with self._lock:
+            return max(0.0, (1 - self._tokens(client)) / self._per_s)
+
     def charge(self, client: str, tokens: float) -> None:
         """Take further tokens of a client for what it cost; the bucket may owe them then."""
         with self._lock:

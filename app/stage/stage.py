@@ -44,6 +44,7 @@ class Stage:
         recordings: recordings of the runs.
         channel: tells of changed and deleted runs; receives a `stage` event at each change.
         now: monotonic clock of playback [s].
+        announces: whether it shows earlier races by itself.
     """
 
     def __init__(
@@ -52,9 +53,11 @@ class Stage:
         recordings: Recordings,
         channel: Channel,
         now: Callable[[], float] = time.monotonic,
+        *,
+        announces: bool = True,
     ) -> None:
         self._store, self._recordings, self._now = store, recordings, now
-        self._channel = channel
+        self._channel, self._announces = channel, announces
         self._lock = threading.RLock()
         self._clock: Clock = "paper"
         self._state = StageState()
@@ -88,8 +91,8 @@ class Stage:
                 self._begin()
 
     def _restore(self) -> None:
-        newest = self._store.list(limit=_RECENT_RUNS).runs
-        interrupted = self._store.list(state="interrupted", limit=_RECENT_RUNS).runs
+        newest = self._store.list(limit=_RECENT_RUNS, reader=()).runs
+        interrupted = self._store.list(state="interrupted", limit=_RECENT_RUNS, reader=()).runs
         known = {run.id: run for run in (*newest, *interrupted) if run.kind != "experiment"}
         by_end = sorted(known.values(), key=_last_activity, reverse=True)
         last = [
@@ -304,7 +307,7 @@ class Stage:
             self._state = state.advance()
             self._begin()
             return
-        if not state.may_announce:
+        if not (state.may_announce and self._announces):
             self._waiting_since_s = None
             return
         if self._waiting_since_s is None:
@@ -319,7 +322,10 @@ class Stage:
 
     def _announce(self) -> None:
         """Announce a replay of the newest finished race that is recorded, if there is one."""
-        finished = self._store.list(kind="race", state="finished", limit=_RECENT_RUNS).runs
+        # None of a room that is hidden from those who watch.
+        finished = self._store.list(
+            kind="race", state="finished", limit=_RECENT_RUNS, reader=()
+        ).runs
         run = next((run for run in finished if self._is_recorded(run)), None)
         if run is None:
             return

@@ -15,6 +15,10 @@ class Conflict(HexapodError):
         self.state = state
 
 
+class Forbidden(HexapodError):
+    """A participant of a room may not do this on the card that is shown."""
+
+
 class Damaged(Conflict):
     """A stored run cannot be decoded; the message says why, and what to do about it."""
 

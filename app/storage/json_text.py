@@ -17,6 +17,14 @@ def json_text(data: Any) -> str:
         return json.dumps(finite(data), allow_nan=False)
 
 
+def read_json(text: object) -> Any:
+    """Return what a column has as JSON; None of what is none."""
+    try:
+        return json.loads(str(text))
+    except (ValueError, RecursionError):
+        return None
+
+
 def finite(data: Any) -> Any:
     """Return a copy of plain types with None in place of each NaN or infinity."""
     if isinstance(data, float) and not math.isfinite(data):

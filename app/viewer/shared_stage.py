@@ -27,6 +27,7 @@ class SharedStage:
     Attributes:
         path: of its page, without a slash at its end, such as ""; that of the API begins with it.
         roles: who may do what.
+        session_path: path of the stage whose sessions operators have here.
         channel: its events, and those of the runs.
         stage: what is shown.
         hub: relays the picture to viewers.
@@ -41,6 +42,8 @@ class SharedStage:
         roles: Roles,
         viewer_slots: ClientSlots[Session],
         path: str = "",
+        session_path: str | None = None,
+        announces: bool = True,
     ) -> None:
         """Create it with an empty stage; entering the context starts the rest.
 
@@ -51,10 +54,13 @@ class SharedStage:
             roles: see the class.
             viewer_slots: limit the viewers of all stages.
             path: see the class.
+            session_path: path of the stage whose sessions operators have here; by default its own.
+            announces: whether it shows earlier races by itself.
         """
         self.path, self.roles = path, roles
+        self.session_path = path if session_path is None else session_path
         self.channel = Channel(bus)
-        self.stage = Stage(store, recordings, self.channel)
+        self.stage = Stage(store, recordings, self.channel, announces=announces)
         self.hub = Hub(
             follow_position=self._follow_position,
             slots=viewer_slots,

@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 import yaml
 
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.plain_yaml import root_node
 from hexapods.exports.servo_map import (
     BUILT_IN_MAPS,
     USUAL_LIMITS_US,
@@ -21,7 +22,6 @@ from hexapods.exports.servo_map import (
 )
 
 MAX_MAP_BYTES = 64 * 1024
-_MAX_DEPTH = 5
 
 _FRAME_US = 20_000.0
 """Servos get a pulse every 20 ms, so none is longer."""
@@ -73,41 +73,7 @@ def read_servo_map(content: bytes, name: str, joints: Sequence[str]) -> ServoMap
     """
     if len(content) > MAX_MAP_BYTES:
         raise InvalidInput(f"{name} is no servo map: it is larger than {MAX_MAP_BYTES // 1024} kB")
-    return _Reader(name, joints).map(_root(content, name))
-
-
-def _root(content: bytes, name: str) -> Any:
-    """Return the root of the graph of YAML nodes; no value is constructed."""
-    try:
-        return yaml.compose(content.decode("utf-8-sig"), Loader=_NodeLoader)
-    except UnicodeDecodeError as error:
-        raise InvalidInput(f"{name} is no servo map: it is not text in UTF-8") from error
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = "" if mark is None else f", line {mark.line + 1}"
-        parts = [getattr(error, part, None) for part in ("context", "problem")]
-        problem = ", ".join(filter(None, parts)) or "it has characters that YAML does not allow"
-        raise InvalidInput(f"{name}{line}: not valid YAML: {problem}") from error
-
-
-class _NodeLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no annotations
-    """Composes nodes, but neither aliases, which a few lines repeat a billion times, nor depths."""
-
-    _depth = 0
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        """Return the next node; raises a `YAMLError` for one that is not read."""
-        event = self.peek_event()
-        if isinstance(event, yaml.AliasEvent):
-            problem = f"*{event.anchor[:40]}: aliases are not read; write the value out"
-            raise yaml.composer.ComposerError(problem=problem, problem_mark=event.start_mark)
-        self._depth += 1
-        if self._depth > _MAX_DEPTH:
-            problem = "it is nested too deeply for a servo map"
-            raise yaml.composer.ComposerError(problem=problem, problem_mark=event.start_mark)
-        node = super().compose_node(parent, index)
-        self._depth -= 1
-        return node
+    return _Reader(name, joints).map(root_node(content, name, "servo map"))
 
 
 class _Reader:

@@ -251,6 +251,8 @@ export const openForm = () => batch(() => {
 
 /** Whether the editor of the robot's body is open. */
 export const bodyIsOpen = signal(false);
+/** Whether the list of stored robots is open. */
+export const robotsAreOpen = signal(false);
 
 /** Let a spectator change the form. */
 export const tryOwnSettings = () => {

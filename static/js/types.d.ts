@@ -4,7 +4,10 @@ import type * as Api from "./api-types.js";
 
 export type {
   AgentOption as Agent,
+  Ask,
   BeliefView as Belief,
+  Bounds,
+  CardResultsView as CardResults,
   Change,
   ClaimView,
   Curve as ScoredCurve,
@@ -27,14 +30,26 @@ export type {
   GaitLane,
   GaitOption as Gait,
   Interval95 as Interval,
+  JoinedView as Joined,
   LaneResult,
+  LessonList,
+  LessonView,
+  ListedLesson,
   NarrativeSection,
+  NewLesson,
+  NewRoom,
   OptionsView as Options,
+  Person,
   PooledView,
   Preview,
   ReplayMark,
   ReplayView as ReplayPlan,
+  ResultEntry,
+  ResultsView as Results,
+  RoomState,
+  RoomView as Classroom,
   RobotOption as Robot,
+  StoredRobotView as StoredRobot,
   SceneActionValues as ActionValues,
   SceneLane,
   SceneView as Scene,
@@ -173,3 +188,14 @@ export interface ExperimentValues {
   grid_side_m: number[];
   [field: string]: ExperimentValue;
 }
+
+// ---- lessons, as they are written: what is absent has its default
+
+/** All members may be absent or null, at any depth. */
+type Loose<Value> = Value extends (infer Item)[] ? Loose<Item>[]
+  : Value extends object ? { [Name in keyof Value]?: Loose<Value[Name]> | null } : Value;
+/** A card of a lesson, as it is sent and stored. */
+export type LessonCard = { text: string, may?: Record<string, Api.Bounds>, ask?: Api.Ask | null }
+  & Omit<Loose<Api.Card>, "text" | "may" | "ask">;
+/** A lesson, as it is sent. */
+export type LessonDocument = { title: string, language?: string, aims?: string[], cards: LessonCard[] };

@@ -31,6 +31,7 @@ from app.api.problems import STATUSES
 from app.api.rate_limit import QUESTIONS
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.api.robot_answers import StoredRobotsView, StoredRobotView, WholeRobotView
+from app.api.room_access import OF_PARTICIPANTS, OPEN_TO_ALL
 from app.server import create_app
 from app.settings import Settings
 from hexapods.domain.errors import HexapodError
@@ -40,7 +41,8 @@ from tests.storage.stores import temporary_store
 
 PAGES = {
     *("/", "/docs", "/favicon.ico", "/guide/{name}"),
-    *("/openapi.json", "/static", "/viewer", "/viewer/"),
+    *("/l/{lesson_id}", "/openapi.json", "/r/{code}", "/r/{code}/"),
+    *("/static", "/viewer", "/viewer/"),
 }
 """Pages for browsers, which are no part of the API."""
 Serve = Callable[..., Api]
@@ -135,11 +137,13 @@ def test_security_requirements_are_described(
     api = serve(**settings)
     bearer = {"Authorization": "Bearer a-token-for-tests"} if settings else {}
     described = api.client.get("/openapi.json", headers=bearer).json()
-    assert set(described["components"]["securitySchemes"]) == {"bearer", "cookie"}
+    assert set(described["components"]["securitySchemes"]) == {"bearer", "cookie", "participant"}
     for method, path, operation in operations(described):
         is_free = {} in operation["security"]
-        if path in ("/healthz", "/readyz"):
+        if path in ("/healthz", "/readyz") or (method, path) in OPEN_TO_ALL:
             assert is_free
+        elif (method, path) in OF_PARTICIPANTS:
+            assert operation["security"] == [{"participant": []}]
         else:
             is_read = method == "get" or path in QUESTIONS
             assert is_free == (reads if is_read else writes), path
@@ -246,8 +250,8 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     subscription.close()
     received = {event.event for event in events}
     assert snapshot.raw_data is not None
-    # A viewer connects to the stage only in a browser.
-    assert received | {"snapshot", "viewers"} == set(models)
+    # A viewer connects to the stage only in a browser, and a room has a stage of its own.
+    assert received | {"snapshot", "viewers", "room"} == set(models)
     for name, data in [("snapshot", snapshot.raw_data), *((one.event, one.data) for one in events)]:
         TypeAdapter(models[name]).validate_json(data)
 

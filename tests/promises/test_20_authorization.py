@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import pytest
 from playwright.sync_api import Page, Request, expect
 
+from app.api.room_access import OPEN_TO_ALL
 from tests.browser.dashboard import PATIENCE_MS, Dashboard
 from tests.browser.serving import Serving, serving
 from tests.promises.raw import Route, every_route, request_lines, send, status_of
@@ -40,6 +41,12 @@ def role_of(route: Route) -> str:
     if route.method not in READS and route.path not in (WHAT_IF, PREVIEW):
         return "operator"
     return "anyone" if route.path in FOR_ANYONE else "spectator"
+
+
+def is_open_by_code(route: Route) -> bool:
+    """Whether the code of a room is all that a route requires."""
+    method = {"HEAD": "get"}.get(route.method, route.method.lower())
+    return (method, route.path) in OPEN_TO_ALL
 
 
 def status_for(server: Serving, route: Route, run_id: str, *headers: str) -> int:
@@ -114,7 +121,9 @@ def test_each_route_has_its_role_and_spectators_change_nothing(public: Public) -
     before = state_of(server)
     for route in every_route():
         status = status_for(server, route, run_id)
-        if role_of(route) == "operator":
+        if is_open_by_code(route):
+            assert status == 404, route
+        elif role_of(route) == "operator":
             assert status == 401, route
         else:
             assert status not in (401, 403), route
@@ -127,7 +136,9 @@ def test_each_route_has_its_role_and_spectators_change_nothing(public: Public) -
 def test_without_the_token_a_guarded_server_refuses_reads(guarded: Serving) -> None:
     for route in every_route():
         status = status_for(guarded, route, "none")
-        if role_of(route) == "anyone":
+        if is_open_by_code(route):
+            assert status == 404, route
+        elif role_of(route) == "anyone":
             assert status in (200, 503), route
         else:
             assert status == (403 if route.method == "WS" else 401), route

@@ -89,7 +89,7 @@ def _decode(row: Mapping[str, Any]) -> Run:
     values = {k: v for k, v in row.items() if k not in ("config", "result")}
     for name in _LISTS:
         values[name] = tuple(_json(name, row[name]))
-    values |= {name: _time(name, row[name]) for name in _TIMES}
+    values |= {name: decode_time(name, row[name]) for name in _TIMES}
     for name in ("name", "error", "continued_from"):
         values[name] = _text(name, row[name], is_needed=name == "name")
     values["tags"] = tuple(visible(tag) for tag in decode_tags(_limited("tags", row["tags"])))
@@ -126,7 +126,16 @@ def _json(name: str, text: Any) -> Any:
     return decode_json(json.loads(text))
 
 
-def _time(name: str, text: Any) -> datetime | None:
+def decode_time(name: str, text: Any) -> datetime | None:
+    """Return the time of a column in UTC; None if there is none.
+
+    Args:
+        name: of the column, for errors.
+        text: what it holds.
+
+    Raises:
+        ValueError: if it is no plausible time.
+    """
     if text is None:
         return None
     moment = datetime.fromisoformat(text)
@@ -139,7 +148,7 @@ def _time(name: str, text: Any) -> datetime | None:
 
 def _created_at_or_none(text: Any) -> datetime | None:
     try:
-        return _time("created_at", text)
+        return decode_time("created_at", text)
     except (ValueError, TypeError, OverflowError):
         return None
 

@@ -23,6 +23,7 @@ from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
 from app.storage.database.engine import Database
 from app.storage.database.keys import Keys
+from app.storage.database.lesson_rows import LessonRows
 from app.storage.database.listing import Listing, fetch_page
 from app.storage.database.progress import ProgressCache
 from app.storage.database.queries import (
@@ -33,6 +34,7 @@ from app.storage.database.queries import (
     has_public_id,
 )
 from app.storage.database.robots import Robots
+from app.storage.database.room_rows import RoomRows, Seat
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import RUNS
 from app.storage.database.trials import Trials
@@ -73,6 +75,8 @@ class RunStore:
         keys: idempotency keys.
         robots: stored robots.
         sessions: storage of operators' browser sessions, in the same database.
+        lessons: those that were stored.
+        rooms: rooms of classes, with their participants, predictions and runs.
     """
 
     def __init__(self, database: Database, files: ArtifactFiles, robots: Robots) -> None:
@@ -81,6 +85,7 @@ class RunStore:
         self._artifacts = Artifacts(database, files)
         self.curves, self.trials, self.keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SessionRows(database)
+        self.lessons, self.rooms = LessonRows(database), RoomRows(database)
 
     def check_disk_space(self) -> None:
         """Check that there is disk space for one more run.
@@ -221,6 +226,7 @@ class RunStore:
         search: str | None = None,
         tag: str | None = None,
         sort: Sort = "newest",
+        reader: Sequence[Seat] | None = None,
     ) -> ListedRuns:
         """Return one page of runs; the arguments are those of a `Listing`.
 
@@ -229,7 +235,7 @@ class RunStore:
         Raises:
             InvalidInput: if the cursor is not one of a list in this order.
         """
-        listing = Listing(kind, state, limit, cursor, search, tag, sort)
+        listing = Listing(kind, state, limit, cursor, search, tag, sort, reader)
         progress = self._progress.snapshot()
         rows, cursor = self.database.read(lambda connection: fetch_page(connection, listing))
         return ListedRuns(

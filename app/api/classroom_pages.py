@@ -1,0 +1,54 @@
+"""Links to lessons, and the dashboard on the stage of a room; its own page is in `app.api.pages`."""
+
+from urllib.parse import quote
+
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+from starlette.routing import BaseRoute, Route
+
+from app.api.deps import Services
+from app.api.problems import problem
+from app.classroom.names import normalized
+from app.storage.errors import NotFound
+
+
+def classroom_routes() -> list[BaseRoute]:
+    """Return the routes of links to lessons, `/l/ID`, and of the stages of rooms, `/r/CODE/`.
+
+    The stage of an open room serves the dashboard there; what is left is other spellings of its
+    code, and rooms that are not open.
+    """
+    return [
+        Route("/l/{lesson_id}", _lesson, name="lesson_page"),
+        Route("/r/{code}/", _room, name="room_stage"),
+    ]
+
+
+def _lesson(request: Request) -> Response:
+    """Lead to `/?lesson=ID`; relative, so that it is valid behind a proxy with a prefix."""
+    services: Services = request.app.state.services
+    lesson_id = request.path_params["lesson_id"]
+    try:
+        services.lessons.get(lesson_id)
+    except NotFound as error:
+        return problem(404, f"{_capital(str(error))}.")
+    query = request.scope["query_string"].decode("latin-1")
+    return RedirectResponse(f"../?lesson={quote(lesson_id)}{'&' if query else ''}{query}", 303)
+
+
+def _room(request: Request) -> Response:
+    services: Services = request.app.state.services
+    given = request.path_params["code"]
+    try:
+        room = services.rooms.get(given)
+    except NotFound as error:
+        return problem(404, f"{_capital(str(error))}.")
+    if not room.is_open:
+        return problem(410, f"The room {room.code} has ended; ask for the code of a new one.")
+    if normalized(given) == given:
+        return problem(503, "The room is opening; try again.", headers={"Retry-After": "1"})
+    return RedirectResponse(f"../{room.code}/", 303)
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

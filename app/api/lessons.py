@@ -1,0 +1,122 @@
+"""Routes of lessons: documents of cards, as JSON and as YAML files."""
+
+import json
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Path, Query, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.classroom_answers import LessonList, LessonView, NewLesson
+from app.api.contract import GIVEN_LESSON, TEXT, answers
+from app.api.deps import BodyDep, ServicesDep
+from app.api.formats import attachment, negotiated
+from app.classroom.lesson import Lesson, adapter, html_of, read_lesson
+from app.classroom.lesson_file import MAX_BYTES, MEDIA_TYPE, read_file, write_file
+from app.classroom.lessons import FoundLesson
+from hexapods.domain.errors import InvalidInput
+
+YAML_TYPES = (MEDIA_TYPE, "text/yaml", "application/x-yaml", "text/x-yaml")
+_TYPES = {"application/json": "json", **dict.fromkeys(YAML_TYPES, "yaml")}
+LessonPath = Annotated[str, Path(description="id of the lesson", max_length=100)]
+
+router = APIRouter(prefix="/lessons", tags=["lessons"])
+
+
+def _lesson(request: Request, body: BodyDep) -> Lesson:
+    """Return the lesson of a request's body, in JSON or YAML by its media type."""
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if len(body) > MAX_BYTES:
+        raise InvalidInput(f"a lesson has at most {MAX_BYTES // 1024} kB")
+    if media_type in YAML_TYPES:
+        return read_file(body, "the lesson")
+    try:
+        data = json.loads(body)
+    except (ValueError, RecursionError) as error:
+        raise InvalidInput(
+            f"the body is no JSON; send a lesson as application/json, or as {MEDIA_TYPE}"
+        ) from error
+    return read_lesson(data)
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Store a lesson",
+    response_model=NewLesson,
+    responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
+    openapi_extra={
+        "requestBody": {
+            "content": {
+                "application/json": {"schema": GIVEN_LESSON},
+                MEDIA_TYPE: {"schema": GIVEN_LESSON},
+            },
+            "required": True,
+        }
+    },
+)
+def add_lesson(
+    services: ServicesDep, request: Request, lesson: Annotated[Lesson, Depends(_lesson)]
+) -> Response:
+    """Store the lesson; the same content has the same id, on every server.
+
+    What its cards run must be possible to start, and what they open be within the setting's own
+    bounds. Texts are Markdown without HTML, pictures and scripts.
+    """
+    services.card_starts.check(lesson, services.store)
+    found = services.lessons.add(lesson)
+    path = request.url_for("get_lesson", lesson_id=found.id).path
+    link = str(request.url_for("lesson_page", lesson_id=found.id))
+    return JSONResponse({"id": found.id, "link": link}, 201, {"Location": path})
+
+
+@router.get("", summary="List lessons", response_model=LessonList)
+def list_lessons(services: ServicesDep) -> Response:
+    """Return the lessons that are built in, and those that were stored."""
+    items = [
+        {
+            "id": one.id,
+            "title": one.lesson.title,
+            "language": one.lesson.language,
+            "aims": list(one.lesson.aims),
+            "cards": len(one.lesson.cards),
+            "is_built_in": one.is_built_in,
+        }
+        for one in services.lessons.all()
+    ]
+    return JSONResponse({"items": items})
+
+
+@router.get(
+    "/{lesson_id}",
+    summary="Get a lesson (JSON, YAML)",
+    response_model=LessonView,
+    responses=answers(200, {MEDIA_TYPE: GIVEN_LESSON}),
+)
+def get_lesson(
+    services: ServicesDep,
+    request: Request,
+    lesson_id: LessonPath,
+    format: Annotated[Literal["json", "yaml"] | None, Query()] = None,  # noqa: A002
+) -> Response:
+    """Return a lesson; as YAML it is the file that `POST /lessons` takes, on any server."""
+    found = services.lessons.get(lesson_id)
+    if negotiated(request, format, ("json", "yaml"), _TYPES) == "yaml":
+        text = write_file(found.lesson).encode()
+        return attachment(text, MEDIA_TYPE, f"lesson-{found.id}.yaml")
+    return JSONResponse(lesson_view(found))
+
+
+@router.delete("/{lesson_id}", status_code=204, summary="Delete a stored lesson")
+def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> None:
+    """Delete it; rooms that have it keep it."""
+    services.lessons.delete(lesson_id)
+
+
+def lesson_view(found: FoundLesson) -> dict[str, Any]:
+    """Return a lesson as `GET /lessons/{lesson_id}` responds."""
+    return {
+        **adapter().dump_python(found.lesson, mode="json"),
+        "id": found.id,
+        "is_built_in": found.is_built_in,
+        "html": [html_of(card) for card in found.lesson.cards],
+    }

@@ -1,0 +1,202 @@
+"""What those who are no operators may do with rooms: the one place where that is decided.
+
+A participant is a spectator whom a room knows by a cookie. By default a participant changes
+nothing: only the room's own routes are open, as far as the card that is shown allows it. Nobody but
+operators and the participant sees a participant's run before it is shown to others.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from urllib.parse import parse_qsl
+
+from starlette.datastructures import Headers
+from starlette.responses import Response
+from starlette.types import Scope
+
+from app.api.cookies import ROOM_NAME, SessionCookie
+from app.api.problems import problem
+from app.api.rate_limit import is_question, too_many
+from app.api.stage_paths import path_of
+from app.classroom.names import ALPHABET, CODE_LENGTH, normalized
+from app.classroom.room import Deed
+from app.classroom.rooms import Rooms
+from app.limits.addresses import client_of
+from app.limits.token_bucket import RateLimiter
+from app.storage.database.room_rows import Seat
+from app.storage.errors import NotFound
+
+WRONG_CODES, WRONG_CODES_PER_S = 60, 1.0
+"""Of an address, which a class may share."""
+JOINS, JOINS_PER_S = 48, 0.2
+"""Of an address, likewise, to one room, which has places for more."""
+ROOMS = "/api/v1/rooms"
+PAGES = "/r"
+READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+_OF_ROOM = re.compile(r"/api/v1/rooms/(?P<code>[^/]+)(?P<rest>/.*)?")
+_PAGE_OF_ROOM = re.compile(r"/r/(?P<code>[^/]+)(?P<rest>/.*)?")
+_OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]+)(?:/.*)?")
+_COOKIE = re.compile(rf"(?:__Host-)?{ROOM_NAME}_\d+_(?P<code>[{ALPHABET}]{{{CODE_LENGTH}}})")
+_DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
+"""By the end of the path that is sent to, what the card must allow."""
+_LEAVE = "/me"
+_JOIN = "/participants"
+OPEN_TO_ALL = frozenset(
+    {
+        ("get", f"{ROOMS}/{{code}}"),
+        ("post", f"{ROOMS}/{{code}}{_JOIN}"),
+        ("get", f"{PAGES}/{{code}}"),
+        ("get", f"{PAGES}/{{code}}/"),
+    }
+)
+"""Operations and pages for which a code is all that is needed."""
+OF_PARTICIPANTS = frozenset(
+    {("delete", f"{ROOMS}/{{code}}{_LEAVE}"), *(("post", f"{ROOMS}/{{code}}{x}") for x in _DEEDS)}
+)
+"""Operations that need the cookie of a participant."""
+_TAUGHT = re.compile(r"/api/v1/lessons(/.*)?")
+"""What a participant does not read: lessons have the answers."""
+_READ_IN_ROOM = re.compile(
+    r"/|/favicon\.ico|/static/.*|/viewer/?.*|/healthz|/readyz|/api/v1/(stage|events|options)"
+)
+"""Besides the room itself and its runs, what participants read where others need the token."""
+
+
+class RoomAccess:
+    """Decides what a request of no operator may do. Thread-safe."""
+
+    def __init__(self, rooms: Rooms) -> None:
+        """Decide about these rooms."""
+        self._rooms = rooms
+        self._wrong_codes = RateLimiter(WRONG_CODES, WRONG_CODES_PER_S)
+
+    def seats(self, headers: Headers, *, is_secure: bool) -> tuple[Seat, ...]:
+        """Return which participants of open rooms a client is, by its cookies."""
+        found = []
+        for code, cookie in _room_cookies(headers, is_secure):
+            participant = self._rooms.seat(code, cookie.value)
+            if participant is not None and self._rooms.get(code).is_open:
+                found.append((code, participant.seed))
+        return tuple(found)
+
+    def refuse(self, scope: Scope, seats: tuple[Seat, ...], *, is_public: bool) -> Response | None:
+        """Return the refusal of a request by its path; None if the rules of rooms allow it.
+
+        Args:
+            scope: of the request, or of a websocket.
+            seats: which participants the client is.
+            is_public: whether spectators may watch.
+        """
+        code = _code_of(scope)
+        if code is not None and code not in dict(seats):
+            wait_s = self._wrong_codes.wait_s(client_of(scope))
+            if wait_s > 0:
+                detail = "Too many wrong codes of rooms came from this address; try again later."
+                return too_many(detail, wait_s)
+            if not self._is_room(code):
+                self._wrong_codes.take(client_of(scope))
+        if any(self._rooms.is_hidden(one, seats) for one in _runs_in(scope)):
+            return problem(403, "This run is a participant's; it is shown after the reveal.")
+        return self._refuse_participant(scope, seats, is_public=is_public) if seats else None
+
+    def is_open_to_all(self, scope: Scope) -> bool:
+        """Whether a code is all that a request needs: to see a room, and to join it."""
+        if scope["type"] != "http":
+            return False
+        path, method = path_of(scope), "get" if scope["method"] == "HEAD" else scope["method"]
+        found = _OF_ROOM.fullmatch(path) or _PAGE_OF_ROOM.fullmatch(path)
+        if found is None:
+            return False
+        template = f"{path[: found.start('code')]}{{code}}{found['rest'] or ''}"
+        return (method.lower(), template) in OPEN_TO_ALL
+
+    def _refuse_participant(
+        self, scope: Scope, seats: tuple[Seat, ...], *, is_public: bool
+    ) -> Response | None:
+        room = _OF_ROOM.fullmatch(path_of(scope))
+        code = None if room is None else normalized(room["code"])
+        rest = (room["rest"] or "") if room is not None and code in dict(seats) else None
+        if scope["type"] == "websocket" or scope["method"] in READ_METHODS:
+            if _TAUGHT.fullmatch(path_of(scope)):
+                return problem(403, "A lesson has its answers; participants see its cards alone.")
+            if is_public or rest is not None or self._is_read_in_room(scope, seats):
+                return None
+            if self.is_open_to_all(scope):
+                return None
+            return problem(403, "Participants see their room alone here; watching needs the token.")
+        deed = _DEEDS.get(rest or "") if scope["method"] == "POST" else None
+        if deed is not None and code is not None:
+            in_room = self._rooms.get(code)
+            scope["state"]["asks_what_if"] = deed == "run" and in_room.shown.go == "what-if"
+            refusal = in_room.refusal(deed)
+            return None if refusal is None else problem(403, f"{_capital(refusal)}.")
+        leaves = (scope["method"], rest) == ("DELETE", _LEAVE)
+        if leaves or self.is_open_to_all(scope):
+            return None
+        return problem(403, self._what_is_allowed(scope, seats[0][0]))
+
+    def _what_is_allowed(self, scope: Scope, code: str) -> str:
+        room = self._rooms.get(code)
+        deeds: dict[Deed, str] = {
+            "predict": "an answer to the card",
+            "run": "the run of the card",
+        }
+        open_deeds = [words for deed, words in deeds.items() if room.refusal(deed) is None]
+        allowed = " and ".join(open_deeds) or "nothing but to watch"
+        what = "This question" if is_question(scope) else "This"
+        return (
+            f"{what} is not open to participants of a room; the card that the room {code} shows "
+            f"allows {allowed}. DELETE {ROOMS}/{code}{_LEAVE} leaves the room."
+        )
+
+    def _is_read_in_room(self, scope: Scope, seats: tuple[Seat, ...]) -> bool:
+        path, codes = path_of(scope), set(dict(seats))
+        run = _OF_RUN.fullmatch(path)
+        if run is not None:
+            owner = self._rooms.owner_of(run["run"])
+            return owner is not None and owner.partition(" ")[0] in codes
+        is_rooms_stage = scope.get("root_path", "").removeprefix(f"{PAGES}/") in codes
+        shared = path in ("/api/v1/stage", "/api/v1/events") or path.startswith("/viewer")
+        return _READ_IN_ROOM.fullmatch(path) is not None and (is_rooms_stage or not shared)
+
+    def _is_room(self, code: str) -> bool:
+        try:
+            self._rooms.get(code)
+        except NotFound:
+            return False
+        return True
+
+
+def room_cookie(headers: Headers, code: str, *, is_secure: bool) -> SessionCookie:
+    """Return the cookie of a participant of a room."""
+    return SessionCookie(headers, is_secure, f"/{code}", ROOM_NAME)
+
+
+def _room_cookies(headers: Headers, is_secure: bool) -> Iterator[tuple[str, SessionCookie]]:
+    if ROOM_NAME not in (headers.get("cookie") or ""):
+        return
+    for name in SessionCookie(headers, is_secure, "", ROOM_NAME).others:
+        found = _COOKIE.fullmatch(name)
+        if found is not None:
+            cookie = room_cookie(headers, found["code"], is_secure=is_secure)
+            if cookie.name == name:
+                yield found["code"], cookie
+
+
+def _code_of(scope: Scope) -> str | None:
+    """Return the code of the room that a request names; None if it names none."""
+    path: str = scope["path"]
+    found = _PAGE_OF_ROOM.fullmatch(path) or _OF_ROOM.fullmatch(path_of(scope))
+    return None if found is None else normalized(found["code"])
+
+
+def _runs_in(scope: Scope) -> Iterator[str]:
+    """Yield all that may be the id of a run in a request's address."""
+    found = _OF_RUN.fullmatch(path_of(scope))
+    if found is not None:
+        yield found["run"]
+    for _, value in parse_qsl(scope["query_string"].decode("latin-1")):
+        yield from (one.strip() for one in value.split(","))
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

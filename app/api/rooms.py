@@ -1,0 +1,409 @@
+"""Routes of rooms, in which a class goes through a lesson together."""
+
+from collections.abc import AsyncIterator
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Header, Path, Query, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+from pydantic import Field, JsonValue
+from starlette.responses import JSONResponse, Response
+
+from app.api.answers import AnyRunView, WhatIfView
+from app.api.classroom_answers import (
+    JoinedView,
+    NewRoom,
+    PredictionView,
+    ResultsView,
+    RoomList,
+    RoomView,
+)
+from app.api.contract import LOCATION, TEXT, Schema, answers, sends_events
+from app.api.deps import EventListener, ReaderDep, ServicesDep
+from app.api.events import client_slot, stream_events
+from app.api.fields import INTEGRAL, Body
+from app.api.formats import attachment, negotiated
+from app.api.rate_limit import whole_seconds
+from app.api.room_access import room_cookie
+from app.api.room_views import qr_of, results_view, room_address, room_view
+from app.api.runs import located
+from app.api.starts import spectators_asker
+from app.classroom.lesson import CardNumber, read_lesson
+from app.classroom.names import normalized
+from app.classroom.results import MEDIA_TYPE, as_csv, results_of
+from app.classroom.room import Room
+from app.limits.addresses import client_of
+from app.storage.errors import Busy, Forbidden, NotFound
+from app.storage.json_text import finite
+from app.viewer.shared_stage import SharedStage
+from hexapods.domain.settings import MAX_SETTING_NAME
+from hexapods.domain.text import MAX_NAME, check_name
+
+CodePath = Annotated[str, Path(description="code of the room", max_length=20)]
+SeedPath = Annotated[int, Path(description="seed of the participant", ge=0)]
+MAX_SETTINGS = 60
+_SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
+_JOINS_USED_UP = "Too many have joined from this address within a short time; try again later."
+
+router = APIRouter(prefix="/rooms", tags=["rooms"])
+
+
+class RoomBody(Body):
+    """A room: its lesson, by its id or itself, and whether participants have to be approved."""
+
+    lesson: str | dict[str, JsonValue] | None = None
+    needs_approval: Annotated[bool, Field(strict=True)] = False
+
+
+class JoinBody(Body):
+    """Nothing: a participant's name is from a list of words."""
+
+
+class CardBody(Body):
+    """A card, by its number, from 0."""
+
+    card: Annotated[CardNumber, Field(strict=True), INTEGRAL]
+
+
+class RevealBody(Body):
+    """The card that is revealed; by default the one that is shown."""
+
+    card: Annotated[CardNumber, Field(strict=True), INTEGRAL] | None = None
+
+
+class FreezeBody(Body):
+    """Whether all stands still."""
+
+    frozen: Annotated[bool, Field(strict=True)] = True
+
+
+class PredictionBody(CardBody):
+    """An answer to the question of the card that is shown.
+
+    A choice is its text, a number a number, a point [x, y], and a curve a list of points.
+    """
+
+    value: JsonValue
+
+
+class RunBody(Body):
+    """The settings that the card opens, by name; those that are left out are the card's."""
+
+    settings: Annotated[
+        dict[Annotated[str, Field(max_length=MAX_SETTING_NAME)], JsonValue],
+        Field(max_length=MAX_SETTINGS),
+    ] = Field(default_factory=dict)
+
+
+class SpotlightBody(Body):
+    """The run of the room that its stage shows; null for none."""
+
+    run_id: Annotated[str, Field(max_length=64)] | None
+
+
+class ParticipantBody(Body):
+    """What others see of a participant; what is left out stays as it is."""
+
+    is_name_hidden: Annotated[bool, Field(strict=True)] | None = None
+    is_approved: Annotated[bool, Field(strict=True)] | None = None
+
+
+def _seat(services: ServicesDep, code: CodePath, reader: ReaderDep) -> int:
+    """Return the seed of the participant who asks, in the room of the path.
+
+    Raises:
+        Forbidden: if it is none of this room.
+    """
+    room = services.rooms.get(code)
+    seed = dict(reader or ()).get(room.code)
+    if seed is None:
+        raise Forbidden(
+            f"this is for participants of the room {room.code}; join it first with "
+            f"POST /api/v1/rooms/{room.code}/participants"
+        )
+    return seed
+
+
+SeatDep = Annotated[int, Depends(_seat)]
+"""Seed of the participant who asks."""
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Open a room",
+    response_model=NewRoom,
+    responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
+)
+async def open_room(
+    services: ServicesDep, request: Request, body: RoomBody | None = None
+) -> Response:
+    """Open a room with a stage of its own; its code is all that pupils need to join."""
+    body = body or RoomBody()
+
+    def create() -> Room:
+        lesson: Any = None
+        if isinstance(body.lesson, str):
+            lesson = services.lessons.get(body.lesson)
+        elif body.lesson is not None:
+            lesson = read_lesson(body.lesson)
+            services.card_starts.check(lesson, services.store)
+        for idle in services.rooms.idle_rooms():
+            services.rooms.end(idle.code)
+        return services.rooms.create(lesson, needs_approval=body.needs_approval)
+
+    room = await run_in_threadpool(create)
+    await services.room_stages.open(room)
+    for ended in services.rooms.all():
+        if not ended.is_open:
+            await services.room_stages.close(ended.code)
+    address = room_address(request, services, room.code)
+    shown = {"code": room.code, "address": address, "qr_code": qr_of(address)}
+    location = request.url_for("get_room", code=room.code).path
+    return JSONResponse(shown, 201, {"Location": location})
+
+
+@router.get("", summary="List the rooms that who asks may know", response_model=RoomList)
+def list_rooms(services: ServicesDep, reader: ReaderDep) -> Response:
+    """Return all rooms to operators, and to participants those in which they are."""
+    codes = None if reader is None else set(dict(reader))
+    items = [
+        {
+            "code": room.code,
+            "title": room.lesson.title,
+            "state": room.phase,
+            "participants": len(room.present),
+            "created_at": room.created_at.isoformat(),
+        }
+        for room in services.rooms.all()
+        if codes is None or room.code in codes
+    ]
+    return JSONResponse({"items": items})
+
+
+@router.get("/{code}", summary="Get a room", response_model=RoomView)
+def get_room(
+    services: ServicesDep, request: Request, code: CodePath, reader: ReaderDep
+) -> Response:
+    """Return the room as who asks may see it: teacher, participant, or anyone with the code."""
+    room = services.rooms.get(code)
+    return JSONResponse(room_view(request, services, room, dict(reader or ()).get(room.code)))
+
+
+@router.post(
+    "/{code}/participants",
+    status_code=201,
+    summary="Join a room",
+    response_model=JoinedView,
+    responses={
+        **answers(201, headers=_SETS_COOKIE),
+        200: {"model": JoinedView, "description": "who is in the room already"},
+    },
+)
+def join_room(
+    services: ServicesDep, request: Request, code: CodePath, body: JoinBody | None = None
+) -> Response:
+    """Join by the code, with neither account nor data: the name is from a list of words.
+
+    A cookie keeps name and seed; who has it gets both again, with 200.
+    """
+    del body
+    scope, headers = request.scope, request.headers
+    is_secure = scope["scheme"] == "https" or (services.settings.public_url or "")[:6] == "https:"
+    cookie = room_cookie(headers, normalized(code), is_secure=is_secure)
+    rooms = services.rooms
+    if rooms.seat(normalized(code), cookie.value) is None:
+        rooms.get(code).check_open()
+        if (wait_s := services.joins.take(f"{normalized(code)} {client_of(scope)}")) > 0:
+            raise Busy(_JOINS_USED_UP, whole_seconds(wait_s))
+    joined = rooms.join(code, cookie.value)
+    shown = {"name": joined.participant.name, "seed": joined.participant.seed}
+    response = JSONResponse(shown, 201 if joined.is_new else 200)
+    response.headers.append("Set-Cookie", cookie.set_header(joined.key))
+    return response
+
+
+@router.delete("/{code}/me", status_code=204, summary="Leave a room")
+def leave_room(
+    services: ServicesDep, request: Request, code: CodePath, seed: SeatDep, response: Response
+) -> None:
+    """Leave; answers and runs stay in the results."""
+    services.rooms.leave(code, seed)
+    is_secure = request.scope["scheme"] == "https"
+    cookie = room_cookie(request.headers, normalized(code), is_secure=is_secure)
+    response.headers.append("Set-Cookie", cookie.expire_header())
+
+
+@router.patch(
+    "/{code}/participants/{seed}",
+    summary="Hide the name of a participant, or approve",
+    response_model=RoomView,
+)
+def change_participant(
+    services: ServicesDep, request: Request, code: CodePath, seed: SeedPath, body: ParticipantBody
+) -> Response:
+    """Change what others see of a participant."""
+    room = services.rooms.change_participant(code, seed, **dict(body))
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.put("/{code}/card", summary="Show a card", response_model=RoomView)
+def show_card(services: ServicesDep, request: Request, code: CodePath, body: CardBody) -> Response:
+    """Show a card to all, and lock what it does not open."""
+    room = services.rooms.show_card(code, body.card)
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.post("/{code}/freeze", summary="Freeze all, or go on", response_model=RoomView)
+def freeze_room(
+    services: ServicesDep, request: Request, code: CodePath, body: FreezeBody | None = None
+) -> Response:
+    """Let nothing be answered or started; with `frozen` false let it be again."""
+    room = services.rooms.freeze(code, (body or FreezeBody()).frozen)
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.post("/{code}/reveal", summary="Reveal a card", response_model=RoomView)
+def reveal_card(
+    services: ServicesDep, request: Request, code: CodePath, body: RevealBody | None = None
+) -> Response:
+    """Show all answers and runs of a card to all participants; it takes no more answers."""
+    number = None if body is None else body.card
+    shown = services.rooms.get(code).card
+    room = services.rooms.reveal(code, shown if number is None else number)
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.post("/{code}/end", summary="End a room", response_model=RoomView)
+async def end_room(services: ServicesDep, request: Request, code: CodePath) -> Response:
+    """Close the room and its stage; its results stay."""
+    room = await run_in_threadpool(services.rooms.end, code)
+    await services.room_stages.close(room.code)
+    view = await run_in_threadpool(room_view, request, services, room, None)
+    return JSONResponse(view)
+
+
+@router.put(
+    "/{code}/spotlight", summary="Show a participant's run on the stage", response_model=RoomView
+)
+def put_spotlight(
+    services: ServicesDep, request: Request, code: CodePath, body: SpotlightBody
+) -> Response:
+    """Show a run of the room on its stage, to all who watch; all participants may see it then."""
+    room = services.rooms.spotlight(code, body.run_id)
+    shared = services.room_stages.of(room.code)
+    if shared is not None and body.run_id is not None:
+        shared.stage.set(run_id=body.run_id, playing=True)
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.post(
+    "/{code}/predictions", status_code=201, summary="Answer a card", response_model=PredictionView
+)
+def predict(services: ServicesDep, code: CodePath, seed: SeatDep, body: PredictionBody) -> Response:
+    """Keep the answer of the participant who asks; it can be given once, before the reveal."""
+    value = services.rooms.predict(code, seed, body.card, body.value)
+    return JSONResponse({"card": body.card, "value": value}, 201)
+
+
+@router.post(
+    "/{code}/runs",
+    status_code=202,
+    summary="Run what the card runs",
+    response_model=AnyRunView,
+    responses={
+        **answers(202, headers=LOCATION),
+        200: {"model": WhatIfView, "description": "the answer of a what-if"},
+    },
+)
+def start_run(
+    services: ServicesDep,
+    request: Request,
+    code: CodePath,
+    seed: SeatDep,
+    body: RunBody | None = None,
+) -> Response:
+    """Start the training or race of the card with the seed of the participant who asks.
+
+    Only the settings that the card opens may be given, within its bounds. What was started alike is
+    returned again; one run of a participant goes on at a time.
+    """
+    settings = (body or RunBody()).settings
+    starts, room = services.card_starts, services.rooms.check_run(code)
+    given = starts.given(room.shown, settings)
+    if room.shown.go == "what-if":
+        asker = spectators_asker(services, client_of(request.scope))
+        return JSONResponse(services.what_if.ask(starts.what_if(room.shown, given), asker))
+    run = services.rooms.start(
+        code,
+        seed,
+        given,
+        lambda now: starts.start(
+            now.shown, starts.given(now.shown, settings), seed, _name(now, seed)
+        ),
+        services.jobs.start,
+    )
+    return located(services, request, run, 202)
+
+
+def _name(room: Room, seed: int) -> str:
+    title = room.shown.title or room.lesson.title
+    return check_name(f"Seed {seed} · {title}"[:MAX_NAME])
+
+
+@router.get(
+    "/{code}/results",
+    summary="Get the results of a room (JSON, CSV)",
+    response_model=ResultsView,
+    responses=answers(200, {MEDIA_TYPE: TEXT}),
+)
+def get_results(
+    services: ServicesDep,
+    request: Request,
+    code: CodePath,
+    reader: ReaderDep,
+    *,
+    card: Annotated[CardNumber | None, Query(description="of one card; of all if absent")] = None,
+    format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
+) -> Response:
+    """Return by card what was predicted, what came of the runs, and how both compare.
+
+    A participant gets their own until the reveal; others get counts alone. CSV has no names.
+    """
+    room = services.rooms.get(code)
+    if card is not None:
+        room.check_card(card)
+    cards = range(len(room.lesson.cards)) if card is None else [card]
+    own, is_teacher = dict(reader or ()).get(room.code), reader is None
+    results = results_of(room, services.store, cards, own, is_teacher=is_teacher)
+    if negotiated(request, format, ("json", "csv")) == "csv":
+        return attachment(
+            as_csv(results).encode(), f"{MEDIA_TYPE}; charset=utf-8", f"{room.code}.csv"
+        )
+    return JSONResponse(finite(results_view(room, results)))
+
+
+def _room_stage(services: ServicesDep, code: CodePath) -> SharedStage:
+    room = services.rooms.get(code)
+    shared = services.room_stages.of(room.code)
+    if shared is None:
+        room.check_open()
+        raise NotFound(f"the room {room.code} has no stage")
+    return shared
+
+
+@router.get(
+    "/{code}/events",
+    summary="Stream the events of a room and of its stage",
+    response_class=EventSourceResponse,
+    openapi_extra=sends_events("EventBodies"),
+)
+async def get_room_events(
+    services: ServicesDep,
+    shared: Annotated[SharedStage, Depends(_room_stage)],
+    listener: Annotated[EventListener, Depends(client_slot)],
+    last_event_id: Annotated[str | None, Header()] = None,
+) -> AsyncIterator[ServerSentEvent]:
+    """Stream a `snapshot` event, then changes, as `/r/CODE/api/v1/events` does."""
+    async for event in stream_events(services, shared, None, listener, last_event_id):
+        yield event

@@ -1,0 +1,67 @@
+"""The texts of lessons: Markdown without HTML, pictures and links that run scripts."""
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from hexapods.domain.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from markdown_it import MarkdownIt
+
+_SCHEMES = ("http", "https", "mailto")
+
+
+def check_markdown(text: str, where: str) -> None:
+    """Check that a text has nothing that a page may not show.
+
+    Args:
+        text: in Markdown (CommonMark, and tables).
+        where: name of the field, for the message.
+
+    Raises:
+        InvalidInput: if it has HTML, a picture, or a link to something else than a page.
+    """
+    for token in _tokens(_parser(True).parse(text)):
+        if token.type in ("html_block", "html_inline"):
+            raise InvalidInput(
+                f"{where} has HTML, {_beginning(token.content)}; a text is Markdown alone, in "
+                "which a < of its own is written as &lt;"
+            )
+        if token.type == "image":
+            raise InvalidInput(f"{where} has a picture, and texts of lessons have none")
+        address = str(token.attrGet("href") or "") if token.type == "link_open" else ""
+        if (scheme := _scheme(address)) not in ("", *_SCHEMES):
+            raise InvalidInput(
+                f"{where} has a link with {scheme}:; links begin with {', '.join(_SCHEMES)}, or "
+                "lead to a page of this server"
+            )
+
+
+def as_html(text: str) -> str:
+    """Return a text that was checked as HTML; what is left of HTML in it is shown as text."""
+    return str(_parser(False).render(text))
+
+
+def _scheme(address: str) -> str:
+    try:
+        return urlsplit(address).scheme.lower()
+    except ValueError:
+        return "what is no address"
+
+
+@cache
+def _parser(has_html: bool) -> "MarkdownIt":
+    # Its import takes 0.1 s, and a server without lessons needs none.
+    from markdown_it import MarkdownIt  # noqa: PLC0415
+
+    return MarkdownIt("commonmark", {"html": has_html}).enable("table")
+
+
+def _tokens(tokens: list[Any]) -> list[Any]:
+    return [one for token in tokens for one in (token, *_tokens(token.children or []))]
+
+
+def _beginning(text: str) -> str:
+    text = " ".join(text.split())
+    return repr(text if len(text) <= 40 else f"{text[:40]}…")

@@ -1,0 +1,167 @@
+"""A room: a class that goes through a lesson together, and what its participants may do."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any, Literal
+
+from app.classroom.lesson import Card, Lesson
+from app.storage.database.room_rows import ParticipantRow, RoomRun
+from app.storage.errors import Conflict, NotFound
+
+Phase = Literal["open", "frozen", "ended"]
+Deed = Literal["predict", "run"]
+"""What a participant may do, if the card allows it."""
+_ASKS_NOTHING = "card {number} asks nothing; wait for one with a question"
+_RUNS_NOTHING = "card {number} runs nothing; wait for one with a button to go"
+
+
+@dataclass
+class Room:
+    """A room, as it is in the database.
+
+    Attributes:
+        code: by which one joins it.
+        lesson_id: of the lesson that was chosen; None for none.
+        lesson: what is taught.
+        card: number of the card that is shown, from 0.
+        revealed: numbers of the cards that are revealed.
+        is_frozen: whether nothing can be answered or started.
+        needs_approval: whether others see of a participant only what was approved.
+        spotlight: id of the run on the room's stage; None for none.
+        created_at, ended_at: in UTC; it is open while `ended_at` is None.
+        participants: by seed, those who left too.
+        predictions: by seed and card.
+        runs: by id, oldest first.
+    """
+
+    code: str
+    lesson_id: str | None
+    lesson: Lesson
+    card: int
+    revealed: frozenset[int]
+    is_frozen: bool
+    needs_approval: bool
+    spotlight: str | None
+    created_at: datetime
+    ended_at: datetime | None
+    participants: dict[int, ParticipantRow] = field(default_factory=dict)
+    predictions: dict[tuple[int, int], Any] = field(default_factory=dict)
+    runs: dict[str, RoomRun] = field(default_factory=dict)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it has not ended."""
+        return self.ended_at is None
+
+    @property
+    def shown(self) -> Card:
+        """The card that is shown."""
+        return self.lesson.cards[self.card]
+
+    @property
+    def present(self) -> list[ParticipantRow]:
+        """The participants who have not left, by seed."""
+        # Copied first, as others may join meanwhile.
+        return [one for _, one in sorted({**self.participants}.items()) if one.left_at is None]
+
+    @property
+    def phase(self) -> Phase:
+        """Whether it is open, frozen or ended."""
+        if not self.is_open:
+            return "ended"
+        return "frozen" if self.is_frozen else "open"
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What all in the room may know of it, in plain types, as its `room` event has it."""
+        runs = list(self.runs.values())
+        started = {one.seed for one in runs if one.is_main and one.card == self.card}
+        return {
+            "code": self.code,
+            "title": self.lesson.title,
+            "language": self.lesson.language,
+            "lesson_id": self.lesson_id,
+            "state": self.phase,
+            "card": self.card,
+            "cards": len(self.lesson.cards),
+            "revealed": sorted(self.revealed),
+            "participants": len(self.present),
+            "predicted": sum(card == self.card for _, card in list(self.predictions)),
+            "started": len(started),
+            "spotlight": self.spotlight,
+            "needs_approval": self.needs_approval,
+        }
+
+    def refusal(self, deed: Deed) -> str | None:
+        """Return why the card that is shown forbids a deed; None if it allows it."""
+        card = self.shown
+        if deed == "predict" and card.ask is None:
+            return _ASKS_NOTHING.format(number=self.card)
+        if deed == "run" and card.go is None:
+            return _RUNS_NOTHING.format(number=self.card)
+        return None
+
+    def check_open(self) -> None:
+        """Check that it has not ended.
+
+        Raises:
+            Conflict: if it has.
+        """
+        if not self.is_open:
+            raise Conflict(
+                f"the room {self.code} has ended; ask for the code of a new one", "ended"
+            )
+
+    def check_going_on(self) -> None:
+        """Check that it has neither ended nor is frozen.
+
+        Raises:
+            Conflict: if it is either.
+        """
+        self.check_open()
+        if self.is_frozen:
+            raise Conflict("the teacher has stopped the class for a moment; wait", "frozen")
+
+    def check_card(self, number: int) -> None:
+        """Check that the lesson has a card.
+
+        Raises:
+            NotFound: if it has not.
+        """
+        if not 0 <= number < len(self.lesson.cards):
+            raise NotFound(
+                f"the lesson has no card {number}; its cards are 0 to {len(self.lesson.cards) - 1}"
+            )
+
+    def participant(self, seed: int) -> ParticipantRow:
+        """Return the participant with a seed.
+
+        Raises:
+            NotFound: if there is none.
+        """
+        if seed not in self.participants:
+            raise NotFound(f"the room {self.code} has no participant with the seed {seed}")
+        return self.participants[seed]
+
+    def runs_of(self, seed: int, card: int) -> list[RoomRun]:
+        """Return what a participant started on a card, oldest first."""
+        return [
+            one
+            for one in list(self.runs.values())
+            if one.is_main and (one.seed, one.card) == (seed, card)
+        ]
+
+    def shows(self, seed: int, card: int) -> bool:
+        """Whether others see what a participant answered and ran on a card."""
+        return card in self.revealed and self.participants[seed].is_approved
+
+    def name_for_others(self, seed: int) -> str | None:
+        """Return the name of a participant as others see it; None if it is hidden."""
+        one = self.participants[seed]
+        return None if one.is_name_hidden or not one.is_approved else one.name
+
+
+def given_key(given: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    """Return settings that were given as what is equal where they are."""
+    return tuple(sorted((name, repr(value)) for name, value in given.items()))

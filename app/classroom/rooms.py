@@ -1,0 +1,529 @@
+"""The rooms of a server: opens them, lets participants join, answer and start, and keeps them all.
+
+All is written to the database before it counts, so that a server that is killed goes on with it.
+"""
+
+import hashlib
+import logging
+import secrets
+import threading
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
+from datetime import UTC, datetime, timedelta
+from typing import Any, NamedTuple
+
+from app.classroom.answers import check_answer
+from app.classroom.lesson import Lesson, plain, read_lesson
+from app.classroom.lessons import FoundLesson
+from app.classroom.names import Choose, new_code, new_name, normalized
+from app.classroom.room import Deed, Room, given_key
+from app.jobs.submissions import Start
+from app.storage.database.room_rows import (
+    ParticipantRow,
+    PredictionRow,
+    RoomRow,
+    RoomRun,
+    Seat,
+)
+from app.storage.database.store import RunStore
+from app.storage.errors import Busy, Conflict, Forbidden, NotFound
+from app.storage.run import NOT_ENDED, Run
+from hexapods.domain.errors import HexapodError
+
+MAX_OPEN = 16
+"""Rooms that are open at once; each has a stage of its own."""
+MAX_PARTICIPANTS = 64
+MAX_RUNS = 20
+"""Runs of a participant on a card."""
+IDLE = timedelta(days=1)
+"""A room in which nothing has happened for so long is ended where another needs its place."""
+_RETRY_S = 60
+_FAILED = ("failed", "stopped")
+_EMPTY: Mapping[str, Any] = {
+    "title": "A room",
+    "cards": [{"text": "Watch what the teacher shows."}],
+}
+_logger = logging.getLogger(__name__)
+
+
+class Joined(NamedTuple):
+    """A participant who has joined.
+
+    Attributes:
+        participant: with name and seed.
+        key: what the cookie holds.
+        is_new: whether the participant was not in the room before.
+    """
+
+    participant: ParticipantRow
+    key: str
+    is_new: bool
+
+
+class Rooms:
+    """All rooms of a server. Thread-safe."""
+
+    def __init__(
+        self,
+        store: RunStore,
+        *,
+        choose: Choose = secrets.choice,
+        now: Callable[[], datetime] = lambda: datetime.now(UTC),
+        on_changed: Callable[[Room], object] = lambda room: None,  # noqa: ARG005
+    ) -> None:
+        """Load the rooms.
+
+        Args:
+            store: where they are, and their runs.
+            choose: draws codes and names.
+            now: the clock, with time zone.
+            on_changed: called with each room that has changed.
+
+        Raises:
+            StorageFailed: if they cannot be read.
+        """
+        self._store, self._rows = store, store.rooms
+        self._choose, self._now = choose, now
+        self.on_changed = on_changed
+        self._lock = threading.RLock()
+        self._rooms: dict[str, Room] = {}
+        self._seats: dict[str, Seat] = {}
+        """Of participants, by the hash of the key."""
+        self._runs: dict[str, RoomRun] = {}
+        self._load()
+
+    def _load(self) -> None:
+        for row in self._rows.rooms():
+            try:
+                self._rooms[row.code] = _room(row)
+            except (HexapodError, ValueError, TypeError):
+                _logger.warning("the room %s cannot be read", row.code, exc_info=True)
+        for participant in self._rows.participants():
+            if participant.room in self._rooms:
+                self._seat(participant)
+        for one in self._rows.predictions():
+            if one.room in self._rooms:
+                self._rooms[one.room].predictions[one.seed, one.card] = one.value
+        for run in self._rows.runs():
+            self._runs[run.run_id] = run
+            if run.room in self._rooms and run.seed in self._rooms[run.room].participants:
+                self._rooms[run.room].runs[run.run_id] = run
+
+    def _seat(self, row: ParticipantRow) -> None:
+        self._rooms[row.room].participants[row.seed] = row
+        self._seats[row.key_sha256] = (row.room, row.seed)
+
+    # ---- of the teacher
+
+    def open_rooms(self) -> list[Room]:
+        """Return the rooms that are open, oldest first."""
+        return [room for room in self.all() if room.is_open]
+
+    def all(self) -> list[Room]:
+        """Return all rooms, oldest first."""
+        with self._lock:
+            return list(self._rooms.values())
+
+    def get(self, code: str) -> Room:
+        """Return a room, which may have ended, by its code as it was typed.
+
+        Raises:
+            NotFound: if there is none.
+        """
+        room = self._rooms.get(normalized(code))
+        if room is None:
+            raise NotFound(
+                f"there is no room {code[:20]!r}; look again at the code on the projector"
+            )
+        return room
+
+    def create(self, found: FoundLesson | Lesson | None, *, needs_approval: bool = False) -> Room:
+        """Open a room.
+
+        Args:
+            found: its lesson, stored or not; None for one without.
+            needs_approval: whether others see of a participant only what was approved.
+
+        Raises:
+            Busy: if too many are open.
+        """
+        lesson = found.lesson if isinstance(found, FoundLesson) else found
+        lesson_id = found.id if isinstance(found, FoundLesson) else None
+        with self._lock:
+            if len(self.open_rooms()) >= MAX_OPEN:
+                raise Busy(f"{MAX_OPEN} rooms are open, which is the most; end one", _RETRY_S)
+            row = RoomRow(
+                code=new_code(self._choose, self._rooms),
+                lesson_id=lesson_id,
+                lesson=_EMPTY if lesson is None else plain(lesson),
+                card=0,
+                revealed=[],
+                is_frozen=False,
+                needs_approval=needs_approval,
+                spotlight=None,
+                created_at=self._now(),
+                ended_at=None,
+            )
+            self._rows.add_room(row)
+            room = self._rooms[row.code] = _room(row)
+        return room
+
+    def idle_rooms(self) -> list[Room]:
+        """Return the open rooms in which nothing has happened for long."""
+        with self._lock:
+            return [room for room in self.open_rooms() if self._now() - _last_deed(room) > IDLE]
+
+    def show_card(self, code: str, number: int) -> Room:
+        """Show a card.
+
+        Raises:
+            NotFound: if there is no such room, or no such card.
+            Conflict: if the room has ended.
+        """
+        return self._change(code, lambda room: room.check_card(number), card=number)
+
+    def freeze(self, code: str, is_frozen: bool) -> Room:
+        """Let nothing be answered or started, or let it be again; errors as `show_card`."""
+        return self._change(code, is_frozen=is_frozen)
+
+    def reveal(self, code: str, number: int) -> Room:
+        """Reveal the answers and runs of a card to all participants; errors as `show_card`."""
+        with self._lock:
+            room = self.get(code)
+            room.check_card(number)
+            room.check_open()
+            approved = {seed for seed, one in room.participants.items() if one.is_approved}
+            runs = [r for r in room.runs.values() if r.card == number and r.seed in approved]
+            self._rows.change_room(
+                room.code,
+                {"revealed": sorted(room.revealed | {number})},
+                [one.run_id for one in runs],
+            )
+            room.revealed |= {number}
+            self._note_shown(room, runs)
+        self.on_changed(room)
+        return room
+
+    def spotlight(self, code: str, run_id: str | None) -> Room:
+        """Note the run on the room's stage, which others see from then on.
+
+        Raises:
+            NotFound: if it is no run of the room.
+            Conflict: if the room has ended, or the participant is not approved yet.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            runs = []
+            if run_id is not None:
+                if run_id not in room.runs:
+                    raise NotFound(f"the room {room.code} has no run {run_id!r}")
+                runs = [room.runs[run_id]]
+                participant = room.participants[runs[0].seed]
+                if not participant.is_approved:
+                    raise Conflict(f"{participant.name} is not approved yet; approve first", "open")
+            self._rows.change_room(room.code, {"spotlight": run_id}, [one.run_id for one in runs])
+            room.spotlight = run_id
+            self._note_shown(room, runs)
+        self.on_changed(room)
+        return room
+
+    def change_participant(
+        self, code: str, seed: int, *, is_name_hidden: bool | None, is_approved: bool | None
+    ) -> Room:
+        """Hide or show the name of a participant, and approve; None leaves it as it is.
+
+        Raises:
+            NotFound: if there is no such room or participant.
+            Conflict: if the room has ended.
+        """
+        given: dict[str, Any] = {"is_name_hidden": is_name_hidden, "is_approved": is_approved}
+        changes = {name: value for name, value in given.items() if value is not None}
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            participant = room.participant(seed)._replace(**changes)
+            own = [one for one in room.runs.values() if one.seed == seed]
+            runs = [r for r in own if is_approved and r.card in room.revealed]
+            self._rows.change_participant(room.code, seed, changes, [one.run_id for one in runs])
+            room.participants[seed] = participant
+            self._note_shown(room, runs)
+        self.on_changed(room)
+        return room
+
+    def end(self, code: str) -> Room:
+        """End a room: from then on nobody joins, answers or starts; its results stay.
+
+        Raises:
+            NotFound: if there is no such room.
+        """
+        with self._lock:
+            room = self.get(code)
+            if room.is_open:
+                now = self._now()
+                self._rows.change_room(room.code, {"ended_at": now})
+                room.ended_at = now
+        self.on_changed(room)
+        return room
+
+    def _change(
+        self, code: str, check: Callable[[Room], object] = Room.check_open, **changes: Any
+    ) -> Room:
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            check(room)
+            self._rows.change_room(room.code, changes)
+            for name, value in changes.items():
+                setattr(room, name, value)
+        self.on_changed(room)
+        return room
+
+    # ---- of participants
+
+    def join(self, code: str, key: str = "") -> Joined:
+        """Join a room; who was in it before, by the key, has the same name and seed again.
+
+        Raises:
+            NotFound: if there is no such room.
+            Conflict: if it has ended.
+            Busy: if it is full.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            seat = self.seat(room.code, key)
+            if seat is not None:
+                return Joined(seat, key, is_new=False)
+            if len(room.present) >= MAX_PARTICIPANTS:
+                raise Busy(
+                    f"{MAX_PARTICIPANTS} are in the room {room.code}, which is the most", _RETRY_S
+                )
+            key = secrets.token_urlsafe(32)
+            row = ParticipantRow(
+                room=room.code,
+                seed=max(room.participants, default=-1) + 1,
+                name=new_name(self._choose, {one.name for one in room.participants.values()}),
+                key_sha256=_sha256(key),
+                is_name_hidden=False,
+                is_approved=not room.needs_approval,
+                joined_at=self._now(),
+                left_at=None,
+            )
+            self._rows.add_participant(row)
+            self._seat(row)
+        self.on_changed(room)
+        return Joined(row, key, is_new=True)
+
+    def leave(self, code: str, seed: int) -> None:
+        """Leave a room; what was answered and run stays."""
+        with self._lock:
+            room, now = self.get(code), self._now()
+            self._rows.change_participant(room.code, seed, {"left_at": now})
+            room.participants[seed] = room.participant(seed)._replace(left_at=now)
+        self.on_changed(room)
+
+    def seat(self, code: str, key: str) -> ParticipantRow | None:
+        """Return the participant of a room by the key of the cookie; None if it is none's."""
+        seat = self._seats.get(_sha256(key)) if key else None
+        if seat is None or seat[0] != code:
+            return None
+        participant = self._rooms[code].participants[seat[1]]
+        return participant if participant.left_at is None else None
+
+    def predict(self, code: str, seed: int, card: int, value: Any) -> Any:
+        """Keep a participant's answer to the question of the card that is shown.
+
+        Raises:
+            NotFound: if there is no such card.
+            Forbidden: if the card is not shown, or asks nothing.
+            Conflict: if it was answered or revealed before, or the room has ended or is frozen.
+            InvalidInput: if the value is no answer to the question.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_card(card)
+            if card != room.card:
+                raise Forbidden(f"card {card} is not shown; the class is at card {room.card}")
+            _check_allowed(room, "predict")
+            room.check_going_on()
+            ask = room.lesson.cards[card].ask
+            answer = None if ask is None else check_answer(ask, value)
+            if (seed, card) in room.predictions:
+                raise Conflict(
+                    f"you have answered card {card} already; an answer stays", "answered"
+                )
+            if card in room.revealed:
+                raise Conflict(f"card {card} is revealed; it takes no more answers", "revealed")
+            self._rows.add_prediction(PredictionRow(room.code, seed, card, answer, self._now()))
+            room.predictions[seed, card] = answer
+        self.on_changed(room)
+        return answer
+
+    def check_run(self, code: str) -> Room:
+        """Return the room, if the card that is shown lets its participants start a run.
+
+        Raises:
+            Forbidden: if the card runs nothing.
+            Conflict: if the room has ended or is frozen.
+        """
+        room = self.get(code)
+        _check_allowed(room, "run")
+        room.check_going_on()
+        return room
+
+    def start(
+        self,
+        code: str,
+        seed: int,
+        given: Mapping[str, Any],
+        make: Callable[[Room], Start],
+        queue: Callable[[Start], Run],
+    ) -> Run:
+        """Start what the card that is shown runs; what was started alike is returned again.
+
+        Args:
+            code: of the room.
+            seed: of the participant.
+            given: settings that the participant gave, by name, as they were checked.
+            make: makes the start.
+            queue: queues it.
+
+        Raises:
+            Forbidden, Conflict: as `check_run`; also if a run of the participant has not ended.
+            Busy: if there were too many.
+        """
+        with self._lock:
+            room = self.check_run(code)
+            before = room.runs_of(seed, room.card)
+            for one in before:
+                run = self._run(one)
+                if run is None or run.state in _FAILED:
+                    continue
+                if given_key(one.given) == given_key(given):
+                    return run
+            self._check_none_goes_on(room, seed)
+            if len(before) >= MAX_RUNS:
+                raise Busy(f"you have started {MAX_RUNS} runs on this card, the most", _RETRY_S)
+            start = _Linked(make(room), self, room, seed, given)
+            try:
+                run = queue(start)
+            except BaseException:
+                self._unlink(room, start.links)
+                raise
+        self.on_changed(room)
+        return run
+
+    def _check_none_goes_on(self, room: Room, seed: int) -> None:
+        for one in room.runs.values():
+            run = self._run(one) if one.is_main and one.seed == seed else None
+            if run is not None and run.state in NOT_ENDED:
+                raise Conflict(f"your {run.kind} is {run.state}; wait for its end", run.state)
+
+    def _run(self, one: RoomRun) -> Run | None:
+        found = None
+        with suppress(NotFound):
+            run = self._store.find(one.run_id)
+            found = run if isinstance(run, Run) else None
+        return found
+
+    def link(self, room: Room, runs: Sequence[RoomRun]) -> None:
+        """Note whose runs these are, before they are stored."""
+        self._rows.add_runs(runs)
+        for one in runs:
+            self._runs[one.run_id] = room.runs[one.run_id] = one
+
+    def _unlink(self, room: Room, run_ids: Collection[str]) -> None:
+        if run_ids:
+            with suppress(HexapodError):  # a link to no run has no effect
+                self._rows.remove_runs(run_ids)
+        for one in run_ids:
+            self._runs.pop(one, None)
+            room.runs.pop(one, None)
+
+    # ---- who sees what
+
+    def owner_of(self, run_id: str) -> str | None:
+        """Return who waits for a run, as a text; None if it is no participant of a room."""
+        run = self._runs.get(run_id)
+        return None if run is None else f"{run.room} {run.seed}"
+
+    def is_hidden(self, run_id: str | None, reader: Iterable[Seat]) -> bool:
+        """Whether a run is hidden from a reader who is no operator.
+
+        Args:
+            run_id: of the run; None for none.
+            reader: the participants that the reader is.
+        """
+        run = self._runs.get(run_id or "")
+        return run is not None and not run.is_shown and (run.room, run.seed) not in reader
+
+    def unfinished(self) -> list[str]:
+        """Return the ids of interrupted runs of open rooms, which were asked for."""
+        with self._lock:
+            mains = [r for room in self.open_rooms() for r in room.runs.values() if r.is_main]
+        found = ((one.run_id, self._run(one)) for one in mains)
+        return [run_id for run_id, run in found if run is not None and run.state == "interrupted"]
+
+    def _note_shown(self, room: Room, runs: Iterable[RoomRun]) -> None:
+        for one in runs:
+            self._runs[one.run_id] = room.runs[one.run_id] = one._replace(is_shown=True)
+
+
+class _Linked:
+    """A start whose runs are a participant's; they are linked before they are stored.
+
+    So no run is ever stored without whose it is; a link to a run that was not stored has no effect.
+
+    Attributes:
+        links: ids of the runs.
+    """
+
+    def __init__(
+        self, start: Start, rooms: Rooms, room: Room, seed: int, given: Mapping[str, Any]
+    ) -> None:
+        self._start, self._rooms, self._room = start, rooms, room
+        self._seed, self._given = seed, given
+        self.links: list[str] = []
+
+    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
+        """See `Start`."""
+        runs, room = self._start.runs(store, new_id), self._room
+        is_shown = room.shows(self._seed, room.card)
+        self.links = [run.id for run in runs]
+        links = [
+            RoomRun(
+                run_id=run.id,
+                room=room.code,
+                seed=self._seed,
+                card=room.card,
+                given=self._given,
+                is_main=run is runs[-1],
+                is_shown=is_shown,
+                created_at=run.created_at,
+            )
+            for run in runs
+        ]
+        self._rooms.link(room, links)
+        return runs
+
+
+def _check_allowed(room: Room, deed: Deed) -> None:
+    if (refusal := room.refusal(deed)) is not None:
+        raise Forbidden(refusal)
+
+
+def _room(row: RoomRow) -> Room:
+    lesson = read_lesson(row.lesson)
+    card = min(max(row.card, 0), len(lesson.cards) - 1)
+    fields = {**row._asdict(), "lesson": lesson, "card": card, "revealed": frozenset(row.revealed)}
+    return Room(**fields)
+
+
+def _last_deed(room: Room) -> datetime:
+    times = [one.joined_at for one in room.participants.values()]
+    return max([room.created_at, *times, *(one.created_at for one in room.runs.values())])
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()

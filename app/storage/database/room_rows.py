@@ -1,0 +1,249 @@
+"""Rows of rooms of classes: `rooms`, `participants`, `predictions` and `room_runs`.
+
+All are read when the server starts; from then on they are only written. A row that cannot be
+decoded is left out, and logged.
+"""
+
+import json
+import logging
+from collections.abc import Collection, Mapping, Sequence
+from datetime import datetime
+from typing import Any, NamedTuple, TypeVar
+
+from sqlalchemy import (
+    Column,
+    Connection,
+    String,
+    Table,
+    and_,
+    cast,
+    delete,
+    exists,
+    insert,
+    not_,
+    or_,
+    select,
+    update,
+)
+from sqlalchemy.sql.elements import ColumnElement
+
+from app.storage.database.columns import JsonWithNan, UtcTime, decode_json
+from app.storage.database.engine import Database
+from app.storage.database.rows import decode_time
+from app.storage.database.schema import PARTICIPANTS, PREDICTIONS, ROOM_RUNS, ROOMS, RUNS
+
+_logger = logging.getLogger(__name__)
+RowT = TypeVar("RowT", bound=tuple[Any, ...])
+Seat = tuple[str, int]
+"""A participant: code of the room, and seed."""
+
+
+class RoomRow(NamedTuple):
+    """A room.
+
+    Attributes:
+        code: by which one joins it.
+        lesson_id: of the lesson that was chosen; None for none.
+        lesson: its document.
+        card: number of the card that is shown, from 0.
+        revealed: numbers of the cards that are revealed.
+        is_frozen: whether nothing can be answered or started.
+        needs_approval: whether others see of a participant only what was approved.
+        spotlight: id of the run on the room's stage; None for none.
+        created_at, ended_at: in UTC; it is open while `ended_at` is None.
+    """
+
+    code: str
+    lesson_id: str | None
+    lesson: Mapping[str, Any]
+    card: int
+    revealed: list[int]
+    is_frozen: bool
+    needs_approval: bool
+    spotlight: str | None
+    created_at: datetime
+    ended_at: datetime | None
+
+
+class ParticipantRow(NamedTuple):
+    """A participant of a room.
+
+    Attributes:
+        room: its code.
+        seed: of the participant's runs, which no other participant has.
+        name: from a list of words, distinct in the room.
+        key_sha256: SHA-256 of the key in the cookie, hexadecimal.
+        is_name_hidden: whether others see no name.
+        is_approved: whether others may see answers and runs after the reveal.
+        joined_at, left_at: in UTC.
+    """
+
+    room: str
+    seed: int
+    name: str
+    key_sha256: str
+    is_name_hidden: bool
+    is_approved: bool
+    joined_at: datetime
+    left_at: datetime | None
+
+
+class PredictionRow(NamedTuple):
+    """An answer to the question of a card."""
+
+    room: str
+    seed: int
+    card: int
+    value: Any
+    made_at: datetime
+
+
+class RoomRun(NamedTuple):
+    """A run of a participant.
+
+    Attributes:
+        run_id: id of the run, which may have been deleted.
+        room, seed: whose it is.
+        card: on which it was started.
+        given: settings that the participant gave, by name.
+        is_main: whether it is what was started, not a training that it needs.
+        is_shown: whether others may see it.
+        created_at: in UTC.
+    """
+
+    run_id: str
+    room: str
+    seed: int
+    card: int
+    given: Mapping[str, Any]
+    is_main: bool
+    is_shown: bool
+    created_at: datetime
+
+
+class RoomRows:
+    """Reads and writes the rooms in a database."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def rooms(self) -> list[RoomRow]:
+        """Return all rooms that can be decoded, oldest first."""
+        return self._all(ROOMS, RoomRow, ROOMS.c.created_at)
+
+    def participants(self) -> list[ParticipantRow]:
+        """Return all participants that can be decoded."""
+        return self._all(PARTICIPANTS, ParticipantRow, PARTICIPANTS.c.seed)
+
+    def predictions(self) -> list[PredictionRow]:
+        """Return all predictions that can be decoded."""
+        return self._all(PREDICTIONS, PredictionRow, PREDICTIONS.c.made_at)
+
+    def runs(self) -> list[RoomRun]:
+        """Return all runs of rooms that can be decoded, oldest first."""
+        return self._all(ROOM_RUNS, RoomRun, ROOM_RUNS.c.run_id)
+
+    def add_room(self, row: RoomRow) -> None:
+        """Insert a room."""
+        self._insert(ROOMS, [row])
+
+    def add_participant(self, row: ParticipantRow) -> None:
+        """Insert a participant."""
+        self._insert(PARTICIPANTS, [row])
+
+    def add_prediction(self, row: PredictionRow) -> None:
+        """Insert a prediction."""
+        self._insert(PREDICTIONS, [row])
+
+    def add_runs(self, rows: Sequence[RoomRun]) -> None:
+        """Insert runs, all or none."""
+        self._insert(ROOM_RUNS, rows)
+
+    def change_room(
+        self, code: str, changes: Mapping[str, Any], shown: Collection[str] = ()
+    ) -> None:
+        """Change columns of a room, and show some of its runs, in one transaction."""
+
+        def work(connection: Connection) -> None:
+            if changes:
+                connection.execute(update(ROOMS).where(ROOMS.c.code == code).values(**changes))
+            _show(connection, shown)
+
+        self._database.write(work)
+
+    def change_participant(
+        self, room: str, seed: int, changes: Mapping[str, Any], shown: Collection[str] = ()
+    ) -> None:
+        """Change columns of a participant, and show some runs, in one transaction."""
+        is_this = and_(PARTICIPANTS.c.room == room, PARTICIPANTS.c.seed == seed)
+
+        def work(connection: Connection) -> None:
+            if changes:
+                connection.execute(update(PARTICIPANTS).where(is_this).values(**changes))
+            _show(connection, shown)
+
+        self._database.write(work)
+
+    def remove_runs(self, run_ids: Collection[str]) -> None:
+        """Delete the links of runs that were never stored."""
+        statement = delete(ROOM_RUNS).where(ROOM_RUNS.c.run_id.in_(run_ids))
+        self._database.write(lambda connection: connection.execute(statement))
+
+    def _insert(self, table: Table, rows: Sequence[Any]) -> None:
+        if rows:
+            values = [row._asdict() for row in rows]
+            self._database.write(lambda connection: connection.execute(insert(table), values))
+
+    def _all(self, table: Table, kind: type[RowT], order: Column[Any]) -> list[RowT]:
+        query = select(*map(_undecoded, table.c)).order_by(order)
+        rows = self._database.read(lambda connection: connection.execute(query).mappings().all())
+        found = []
+        for row in rows:
+            try:
+                found.append(kind(**{one.name: _decoded(one, row[one.name]) for one in table.c}))
+            except (ValueError, TypeError, RecursionError):
+                _logger.warning("a row of %s cannot be read", table.name, exc_info=True)
+        return found
+
+
+def is_seen_by(reader: Sequence[Seat]) -> ColumnElement[bool]:
+    """Return the condition that a run is none of a room, is shown to others, or is the reader's.
+
+    Args:
+        reader: the participants that the reader is.
+    """
+    own: list[ColumnElement[bool]] = [
+        and_(ROOM_RUNS.c.room == room, ROOM_RUNS.c.seed == seed) for room, seed in reader
+    ]
+    hidden = and_(ROOM_RUNS.c.run_id == RUNS.c.id, not_(ROOM_RUNS.c.is_shown))
+    return not_(exists().where(and_(hidden, not_(or_(*own))) if own else hidden))
+
+
+def _show(connection: Connection, run_ids: Collection[str]) -> None:
+    if run_ids:
+        chosen = ROOM_RUNS.c.run_id.in_(list(run_ids))
+        connection.execute(update(ROOM_RUNS).where(chosen).values(is_shown=True))
+
+
+def _undecoded(column: Column[Any]) -> ColumnElement[Any]:
+    """Return a column without type decoding, so that no damaged value fails the query."""
+    if isinstance(column.type, JsonWithNan | UtcTime):
+        return cast(column, String).label(column.name)
+    return column
+
+
+def _decoded(column: Column[Any], value: Any) -> Any:
+    """Return the value of an undecoded column.
+
+    Raises:
+        ValueError, TypeError, RecursionError: if it is none of the column's type.
+    """
+    if value is None and column.nullable:
+        return None
+    if isinstance(column.type, JsonWithNan):
+        return decode_json(json.loads(value))
+    if isinstance(column.type, UtcTime):
+        return decode_time(column.name, value)
+    if not isinstance(value, column.type.python_type):
+        raise TypeError(f"{column.name} is no {column.type.python_type.__name__}")
+    return value

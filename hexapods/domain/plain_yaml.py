@@ -1,0 +1,160 @@
+"""YAML from outside, read as plain values: limited in size and depth, without aliases and tags.
+
+A few lines with aliases repeat a value a billion times (an alias bomb), and tags construct objects
+of Python, so neither is read.
+"""
+
+import re
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+import yaml
+
+from hexapods.domain.errors import InvalidInput
+
+_TAG = "tag:yaml.org,2002:"
+
+
+class NodeLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no annotations
+    """Composes nodes, but neither aliases nor depths.
+
+    Attributes:
+        max_depth: levels of nesting that are read.
+    """
+
+    max_depth = 5
+    _depth = 0
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        """Return the next node; raises a `YAMLError` for one that is not read."""
+        event = self.peek_event()
+        if isinstance(event, yaml.AliasEvent):
+            problem = f"*{event.anchor[:40]}: aliases are not read; write the value out"
+            raise yaml.composer.ComposerError(problem=problem, problem_mark=event.start_mark)
+        self._depth += 1
+        if self._depth > self.max_depth:
+            problem = f"it is nested too deeply: more than {self.max_depth} levels"
+            raise yaml.composer.ComposerError(problem=problem, problem_mark=event.start_mark)
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+
+class _PlainLoader(NodeLoader):
+    """Composes nodes whose plain scalars are what JSON has: YAML 1.1 takes `no` for false."""
+
+    max_depth = 16
+    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 - PyYAML's own, by first letter
+
+
+for _name, _pattern, _first in (
+    ("null", r"^(?:null|~|)$", ["n", "~", ""]),
+    ("bool", r"^(?:true|false)$", ["t", "f"]),
+    ("int", r"^[-+]?[0-9]{1,18}$", [*"-+0123456789"]),
+    (
+        "float",
+        r"^[-+]?(?:[0-9]{1,18}\.[0-9]{0,18}|\.[0-9]{1,18}|[0-9]{1,18})(?:[eE][-+]?[0-9]{1,3})?$",
+        [*"-+.0123456789"],
+    ),
+):
+    _PlainLoader.add_implicit_resolver(f"{_TAG}{_name}", re.compile(_pattern), _first)
+
+
+def root_node(content: bytes, name: str, what: str, loader: type[NodeLoader] = NodeLoader) -> Any:
+    """Return the root of the graph of YAML nodes; no value is constructed.
+
+    Args:
+        content: the file.
+        name: its name, for messages.
+        what: what it should be, for messages, such as `servo map`.
+        loader: class that composes the nodes.
+
+    Raises:
+        InvalidInput: naming the line, if it is no YAML, or has what is not read.
+    """
+    try:
+        return yaml.compose(content.decode("utf-8-sig"), Loader=loader)
+    except UnicodeDecodeError as error:
+        raise InvalidInput(f"{name} is no {what}: it is not text in UTF-8") from error
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        line = "" if mark is None else f", line {mark.line + 1}"
+        parts = [getattr(error, part, None) for part in ("context", "problem")]
+        problem = ", ".join(filter(None, parts)) or "it has characters that YAML does not allow"
+        raise InvalidInput(f"{name}{line}: not valid YAML: {problem}") from error
+    except RecursionError as error:
+        raise InvalidInput(f"{name} is no {what}: it is nested too deeply") from error
+
+
+def read_plain(content: bytes, name: str, what: str) -> Any:
+    """Return a document as plain values: null, booleans, numbers, texts, lists and objects.
+
+    Args:
+        content: the file.
+        name: its name, for messages.
+        what: what it should be, for messages.
+
+    Raises:
+        InvalidInput: as `root_node`; also for a name that is given twice, and for other tags.
+    """
+    return _plain(root_node(content, name, what, _PlainLoader), name)
+
+
+def write_plain(value: Any) -> str:
+    """Return plain values as YAML, which `read_plain` reads; long texts keep their lines."""
+    return str(
+        yaml.dump(value, Dumper=_PlainDumper, sort_keys=False, allow_unicode=True, width=100)
+    )
+
+
+class _PlainDumper(yaml.SafeDumper):  # type: ignore[misc]  # as above
+    """Writes texts of several lines as blocks, and no aliases."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        """Whether to write a value out each time."""
+        del data
+        return True
+
+
+def _text(dumper: _PlainDumper, text: str) -> Any:
+    style = "|" if "\n" in text else None
+    return dumper.represent_scalar(f"{_TAG}str", text, style=style)
+
+
+_PlainDumper.add_representer(str, _text)
+
+
+def _plain(node: Any, name: str) -> Any:
+    if node is None:
+        return None
+    tag = node.tag.removeprefix(_TAG)
+    if isinstance(node, yaml.ScalarNode) and tag in _SCALARS:
+        try:
+            return _SCALARS[tag](node.value)
+        except ValueError:
+            _refuse(node, name, f"{node.value[:40]!r} does not fit its tag")
+    if isinstance(node, yaml.SequenceNode) and tag == "seq":
+        return [_plain(one, name) for one in node.value]
+    if not isinstance(node, yaml.MappingNode) or tag != "map":
+        _refuse(node, name, f"the tag {tag[:40]!r} is not read")
+    found: dict[str, Any] = {}
+    for key, value in node.value:
+        if not isinstance(key, yaml.ScalarNode):
+            _refuse(key, name, "a name is a word, not a list or mapping")
+        if key.value in found:
+            _refuse(key, name, f"{key.value[:40]!r} is given twice")
+        found[key.value] = _plain(value, name)
+    return found
+
+
+_SCALARS: dict[str, Callable[[str], Any]] = {
+    "null": lambda value: None,  # noqa: ARG005
+    "bool": lambda value: {"true": True, "false": False}.get(value, value),
+    "int": int,
+    "float": float,
+    "str": str,
+}
+
+
+def _refuse(node: Any, name: str, problem: str) -> NoReturn:
+    raise InvalidInput(f"{name}, line {node.start_mark.line + 1}: {problem}")

@@ -1,0 +1,423 @@
+"""Rooms over REST: a class of clients with cookies of their own, and real jobs."""
+
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from typing import Any
+
+import httpx2
+import pytest
+from fastapi import FastAPI
+from pydantic import TypeAdapter
+from starlette.testclient import TestClient
+
+from app.api.classroom_answers import LessonList, LessonView, ResultsView, RoomList, RoomView
+from app.api.deps import Services
+from app.api.event_answers import RoomEvent
+from app.api.room_access import JOINS, WRONG_CODES
+from app.classroom.rooms import MAX_PARTICIPANTS
+from app.server import create_app
+from app.settings import Settings
+from app.storage.database.opening import open_store
+from tests.api.calls import ADDRESS, Api, refused
+
+TOKEN = "a-token-for-tests"
+FORM = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 60, "evaluate_every": 20}
+LESSON: dict[str, Any] = {
+    "title": "A short lesson",
+    "aims": ["Learn to wait"],
+    "cards": [
+        {"title": "Look", "text": "Only look."},
+        {
+            "title": "Guess",
+            "text": "How far?",
+            "state": {"form": FORM},
+            "ask": {"kind": "number", "text": "How far?", "minimum": -1, "maximum": 2, "unit": "m"},
+            "go": "training",
+            "may": {"alpha": {"minimum": 0.1, "maximum": 0.5}, "steps": {"maximum": 80}},
+            "reveal": {"text": "So far."},
+        },
+        {
+            "title": "Race",
+            "text": "Who wins?",
+            "state": {"form": {**FORM, "lanes": ["q-learning", "greedy"], "race_steps": 5}},
+            "ask": {"kind": "choice", "text": "Who?", "choices": ["q-learning", "greedy"]},
+            "go": "race",
+        },
+        {"text": "What if?", "state": {"form": {"steps": 20}}, "go": "what-if"},
+        {"text": "Where?", "ask": {"kind": "point", "text": "Where on the chart?"}},
+        {"text": "Draw", "ask": {"kind": "curve", "text": "Draw it."}},
+    ],
+}
+
+
+class Class:
+    """A server with a token, its teacher, and as many pupils as join.
+
+    Attributes:
+        teacher: an operator.
+    """
+
+    def __init__(self, client: TestClient, stack: ExitStack) -> None:
+        self._client, self._stack = client, stack
+        self.teacher = Api(client)
+        client.headers["Authorization"] = f"Bearer {TOKEN}"
+
+    def pupil(self) -> Api:
+        """Return a client without any cookie."""
+        client = TestClient(self._client.app, base_url=ADDRESS, follow_redirects=False)
+        client.portal = self._client.portal
+        client.headers["X-Requested-With"] = "tests"
+        self._stack.callback(client.close)
+        return Api(client)
+
+    def room(self, lesson: Any = LESSON, *, is_further: bool = False, **options: Any) -> str:
+        """Open a room, after the end of those before unless it is a further one."""
+        for room in [] if is_further else self.teacher.get("/rooms")["items"]:
+            self.teacher.call("POST", f"/rooms/{room['code']}/end")
+        answer = self.teacher.call("POST", "/rooms", json={"lesson": lesson, **options})
+        assert answer.status_code == 201, answer.text
+        return str(answer.json()["code"])
+
+    def joined(self, code: str) -> Api:
+        api = self.pupil()
+        answer = api.call("POST", f"/rooms/{code}/participants")
+        assert answer.status_code == 201, answer.text
+        return api
+
+    def show(self, code: str, card: int) -> None:
+        answer = self.teacher.call("PUT", f"/rooms/{code}/card", json={"card": card})
+        assert answer.status_code == 200, answer.text
+
+    def finished(self, run: dict[str, Any]) -> dict[str, Any]:
+        return self.teacher.finished(run)
+
+
+@pytest.fixture(scope="module")
+def school(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Class]:
+    settings = Settings(data=tmp_path_factory.mktemp("school"), job_niceness=0, token=TOKEN)
+    with ExitStack() as stack:
+        store = stack.enter_context(open_store(settings))
+        client = TestClient(create_app(settings, store), base_url=ADDRESS, follow_redirects=False)
+        yield Class(stack.enter_context(client), stack)
+
+
+def started(answer: httpx2.Response) -> dict[str, Any]:
+    assert answer.status_code == 202, answer.text
+    run: dict[str, Any] = answer.json()
+    return run
+
+
+def test_a_class_predicts_runs_and_sees_what_came_of_it(school: Class) -> None:
+    code = school.room()
+    assert len(code) == 6
+    assert not set(code) & set("0O1I")
+    pupils = [school.joined(code) for _ in range(4)]
+    views = [pupil.get(f"/rooms/{code}") for pupil in pupils]
+    assert [view["me"]["seed"] for view in views] == [0, 1, 2, 3]
+    assert len({view["me"]["name"] for view in views}) == 4
+    assert {view["role"] for view in views} == {"participant"}
+    school.show(code, 1)
+    for number, pupil in enumerate(pupils):
+        body = {"card": 1, "value": number / 10}
+        answer = pupil.call("POST", f"/rooms/{code}/predictions", json=body)
+        assert (answer.status_code, answer.json()) == (201, body)
+        refused(pupil.call("POST", f"/rooms/{code}/predictions", json=body), 409, "stays")
+    runs = [started(pupil.call("POST", f"/rooms/{code}/runs")) for pupil in pupils]
+    assert [run["config"]["seed"] for run in runs] == [0, 1, 2, 3]
+    for run in runs:
+        school.finished(run)
+
+    def own(view: dict[str, Any]) -> dict[str, Any]:
+        result: dict[str, Any] = next(one for one in view["cards"] if one["card"] == 1)
+        return result
+
+    before = own(pupils[1].get(f"/rooms/{code}/results"))
+    assert [entry["seed"] for entry in before["entries"]] == [1]
+    assert (before["distances_m"], before["interval"], before["answer"]) == ([], None, None)
+    assert (before["predicted"], before["finished"]) == (4, 4)
+    assert before["entries"][0]["score"] is None
+    teachers = own(school.teacher.get(f"/rooms/{code}/results?card=1"))
+    assert [entry["name"] for entry in teachers["entries"]] == [v["me"]["name"] for v in views]
+    assert school.teacher.call("POST", f"/rooms/{code}/reveal").status_code == 200
+    after = own(pupils[1].get(f"/rooms/{code}/results"))
+    distances = sorted(
+        entry["run"]["distance_m"] for entry in after["entries"] if entry["run"] is not None
+    )
+    assert after["distances_m"] == distances
+    assert len(distances) == 4
+    assert after["interval"]["low_m"] <= after["interval"]["iqm_m"] <= after["interval"]["high_m"]
+    score = after["entries"][3]["score"]
+    below = sum(one < 0.3 for one in distances) + sum(one == 0.3 for one in distances) / 2
+    assert score["quantile"] == pytest.approx(below / 4)
+    assert score["error"] == pytest.approx(abs(0.3 - after["interval"]["iqm_m"]))
+    assert min(entry["run"]["rank"] for entry in after["entries"]) == 1
+    late = pupils[0].call("POST", f"/rooms/{code}/predictions", json={"card": 1, "value": 1})
+    refused(late, 409)
+
+
+def test_who_joins_again_has_the_same_name_and_seed(school: Class) -> None:
+    code = school.room()
+    pupil = school.pupil()
+    first = pupil.call("POST", f"/rooms/{code}/participants")
+    cookie = first.headers["set-cookie"]
+    assert "HttpOnly" in cookie
+    assert "SameSite=Strict" in cookie
+    assert "Path=/" in cookie
+    again = pupil.call("POST", f"/rooms/{code.lower()[:3]}-{code[3:]}/participants")
+    assert (again.status_code, again.json()) == (200, first.json())
+    assert pupil.call("DELETE", f"/rooms/{code}/me").status_code == 204
+    refused(pupil.call("POST", f"/rooms/{code}/runs"), 401)
+    other = pupil.call("POST", f"/rooms/{code}/participants")
+    assert other.status_code == 201
+    assert other.json()["seed"] == first.json()["seed"] + 1
+
+
+def test_a_race_and_a_what_if_of_a_card(school: Class) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, 2)
+    race = started(pupil.call("POST", f"/rooms/{code}/runs", json={}))
+    assert race["kind"] == "race"
+    assert race["config"]["seed"] == 0
+    assert [lane["agent"] for lane in race["config"]["lanes"]] == ["q-learning", "greedy"]
+    body = {"card": 2, "value": "greedy"}
+    assert pupil.call("POST", f"/rooms/{code}/predictions", json=body).status_code == 201
+    ended = school.finished(race)
+    again = started(pupil.call("POST", f"/rooms/{code}/runs"))
+    assert again["id"] == race["id"]
+    (result,) = school.teacher.get(f"/rooms/{code}/results?card=2")["cards"]
+    (entry,) = result["entries"]
+    lanes = ended["result"]["lanes"]
+    won = [lane["agent"] for lane in lanes if lane["clocks"]["paper"]["rank"] == 1]
+    assert entry["run"]["winners"] == won
+    assert entry["run"]["distance_m"] == lanes[0]["clocks"]["paper"]["finished_distance_m"]
+    assert entry["score"]["share"] == (1 / len(won) if "greedy" in won else 0)
+    school.show(code, 3)
+    answer = pupil.call("POST", f"/rooms/{code}/runs")
+    assert answer.status_code == 200
+    assert len(answer.json()["chosen"]["distances_m"]) == 30
+
+
+@pytest.mark.parametrize(
+    ("card", "settings", "words"),
+    [
+        (1, {"alpha": 0.9}, "lpha must be a number from 0.1 to 0.5"),
+        (1, {"steps": 90}, "up to 80"),
+        (1, {"gamma": 0.1}, "amma cannot be changed on this card; open are: alpha, steps"),
+        (1, {"steps": "many"}, "teps must be a whole number"),
+        (1, {"seed": 4}, "eed cannot be changed"),
+        (2, {"alpha": 0.3}, "open are: none"),
+    ],
+)
+def test_settings_outside_of_the_card_are_refused(
+    school: Class, card: int, settings: dict[str, Any], words: str
+) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, card)
+    refused(pupil.call("POST", f"/rooms/{code}/runs", json={"settings": settings}), 422, words)
+
+
+@pytest.mark.parametrize(
+    ("card", "value", "words"),
+    [
+        (1, "far", "must be a number from -1 to 2"),
+        (1, 3, "must be a number from -1 to 2"),
+        (1, True, "must be a number"),
+        (2, "beam", "choose one of: q-learning, greedy"),
+        (2, 1, "choose one of"),
+        (4, [1], "point is [x, y]"),
+        (5, [[0, 0]], "2 to 200 points"),
+        (5, [[1, 0], [0, 0]], "from left to right"),
+    ],
+)
+def test_answers_that_are_none_are_refused(
+    school: Class, card: int, value: Any, words: str
+) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, card)
+    answer = pupil.call("POST", f"/rooms/{code}/predictions", json={"card": card, "value": value})
+    refused(answer, 422, words)
+
+
+def test_what_the_card_does_not_allow_is_refused(school: Class) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    refused(pupil.call("POST", f"/rooms/{code}/runs"), 403, "ard 0 runs nothing")
+    body: dict[str, Any] = {"card": 0, "value": 1}
+    refused(pupil.call("POST", f"/rooms/{code}/predictions", json=body), 403, "asks nothing")
+    school.show(code, 1)
+    body = {"card": 2, "value": "greedy"}
+    refused(pupil.call("POST", f"/rooms/{code}/predictions", json=body), 403, "is at card 1")
+    refused(pupil.call("POST", "/trainings", json=FORM), 403, "an answer to the card")
+    refused(pupil.call("PUT", f"/rooms/{code}/card", json={"card": 2}), 403)
+    refused(pupil.call("GET", "/lessons/one-run-proves-nothing"), 403)
+    assert school.teacher.call("POST", f"/rooms/{code}/freeze").status_code == 200
+    refused(pupil.call("POST", f"/rooms/{code}/runs"), 409, "stopped the class")
+    answer = school.teacher.call("POST", f"/rooms/{code}/freeze", json={"frozen": False})
+    assert answer.json()["state"] == "open"
+    other = school.room(is_further=True)
+    refused(pupil.call("POST", f"/rooms/{other}/runs"), 403)
+    spectator = school.pupil()
+    refused(spectator.call("POST", f"/rooms/{code}/runs"), 401)
+
+
+def test_others_see_no_run_before_the_reveal(school: Class) -> None:
+    code = school.room()
+    one, other = school.joined(code), school.joined(code)
+    spectator = school.pupil()
+    school.show(code, 1)
+    run = started(one.call("POST", f"/rooms/{code}/runs"))
+    school.finished(run)
+
+    def sees(api: Api) -> bool:
+        listed = [item["id"] for item in api.get("/runs")["items"]]
+        answer = api.call("GET", f"/trainings/{run['id']}/curve")
+        assert (run["id"] in listed) == (answer.status_code == 200)
+        assert api.call("GET", f"/runs/curves?id={run['id']}").status_code == answer.status_code
+        return run["id"] in listed
+
+    assert [sees(api) for api in (school.teacher, one, other, spectator)] == [
+        *(True, True, False, False)
+    ]
+    answer = school.teacher.call("PUT", f"/rooms/{code}/spotlight", json={"run_id": run["id"]})
+    assert answer.json()["spotlight"] == run["id"]
+    shown = school.teacher.client.get(f"/r/{code}/api/v1/stage").json()
+    assert shown["run_id"] == run["id"]
+    assert sees(other)
+    assert sees(spectator)
+
+
+def test_names_are_hidden_and_participants_approved(school: Class) -> None:
+    code = school.room(needs_approval=True)
+    one, other = school.joined(code), school.joined(code)
+    school.show(code, 4)
+    for pupil in (one, other):
+        body = {"card": 4, "value": [1, 2]}
+        assert pupil.call("POST", f"/rooms/{code}/predictions", json=body).status_code == 201
+    school.teacher.call("POST", f"/rooms/{code}/reveal", json={"card": 4})
+
+    def others() -> list[tuple[int, str | None]]:
+        (result,) = one.get(f"/rooms/{code}/results?card=4")["cards"]
+        return [(x["seed"], x["name"]) for x in result["entries"] if not x["is_own"]]
+
+    assert others() == []
+    path = f"/rooms/{code}/participants/1"
+    view = school.teacher.call("PATCH", path, json={"is_approved": True}).json()
+    assert others() == [(1, view["people"][1]["name"])]
+    school.teacher.call("PATCH", path, json={"is_name_hidden": True})
+    assert others() == [(1, None)]
+    csv = school.teacher.call("GET", f"/rooms/{code}/results?format=csv").text
+    assert csv.startswith("card,seed,")
+    assert view["people"][1]["name"] not in csv
+    refused(one.call("PATCH", path, json={"is_approved": True}), 403)
+
+
+def test_a_room_has_a_page_and_an_end(school: Class) -> None:
+    code = school.room()
+    client = school.pupil().client
+    door = client.get(f"/r/{code}")
+    assert door.status_code == 200
+    assert "static/js/room/main.js" in door.text
+    assert client.get(f"/r/{code.lower()}/").headers["location"] == f"../{code}/"
+    page = client.get(f"/r/{code}/")
+    assert page.status_code == 200
+    assert "<html" in page.text
+    assert client.get(f"/r/{code}/api/v1/rooms/{code}").json()["role"] == "spectator"
+    pupil = school.joined(code)
+    assert school.teacher.call("POST", f"/rooms/{code}/end").json()["state"] == "ended"
+    refused(pupil.call("POST", f"/rooms/{code}/participants"), 409, "has ended")
+    refused(school.pupil().call("POST", f"/rooms/{code}/participants"), 409, "has ended")
+    assert client.get(f"/r/{code}/").status_code == 410
+    refused(client.get("/r/ZZZZZZ/"), 404, "look again at the code")
+    assert school.teacher.get(f"/rooms/{code}/results")["code"] == code
+
+
+def test_codes_cannot_be_guessed(serve: Callable[..., Api]) -> None:
+    api = serve(token=TOKEN)
+    statuses = [api.call("GET", f"/rooms/WRONG{n % 9}").status_code for n in range(WRONG_CODES)]
+    assert statuses == [404] * WRONG_CODES
+    answer = api.client.get("/r/AAAAAA/static/favicon.svg")
+    refused(answer, 429, "wrong codes")
+    assert int(answer.headers["retry-after"]) >= 1
+
+
+def test_one_address_cannot_fill_a_room(school: Class) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    answers = [school.pupil().call("POST", f"/rooms/{code}/participants") for _ in range(JOINS + 1)]
+    refused(answers[-1], 429, "Too many have joined")
+    assert pupil.get(f"/rooms/{code}")["participants"] < MAX_PARTICIPANTS
+    # Who is in already is not disturbed, however often the page is loaded anew.
+    for _ in range(100):
+        assert pupil.call("POST", f"/rooms/{code}/participants").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "body", "words"),
+    [
+        ("POST", "/participants", {"name": "<b>Bad</b>"}, "unknown field 'name'"),
+        ("POST", "/predictions", {"card": 1}, "value"),
+        ("POST", "/predictions", {"card": "one", "value": 1}, "card"),
+        ("POST", "/runs", {"steps": 4}, "unknown field 'steps'; choose one of: settings"),
+        ("PUT", "/card", {"card": -1}, "card"),
+        ("PUT", "/card", {"card": 1.5}, "card"),
+        ("POST", "/freeze", {"frozen": "yes"}, "frozen"),
+        ("PUT", "/spotlight", {}, "run_id"),
+        ("PATCH", "/participants/0", {"is_approved": 1}, "is_approved"),
+    ],
+)
+def test_what_cannot_be_is_told(
+    school: Class, method: str, path: str, body: Any, words: str
+) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, 1)
+    is_pupils = path in ("/participants", "/predictions", "/runs")
+    api = pupil if is_pupils and path != "/participants" else school.pupil()
+    problem = refused(
+        (api if is_pupils else school.teacher).call(method, f"/rooms/{code}{path}", json=body), 422
+    )
+    assert words in problem["detail"]
+    refused(school.teacher.call("PUT", f"/rooms/{code}/card", json={"card": 9}), 404, "0 to 5")
+    refused(school.teacher.call("POST", f"/rooms/{code}/reveal", json={"card": 9}), 404)
+    answer = school.teacher.call("PUT", f"/rooms/{code}/spotlight", json={"run_id": "none"})
+    refused(answer, 404, "has no run")
+
+
+def test_changes_of_a_room_are_events_of_its_stage(school: Class) -> None:
+    assert isinstance(school.teacher.client.app, FastAPI)
+    services: Services = school.teacher.client.app.state.services
+    code = school.room()
+    shared = services.room_stages.of(code)
+    assert shared is not None
+    subscription = shared.channel.subscribe()
+    elsewhere = services.stages[0].channel.subscribe(names={"room"})
+    pupil = school.joined(code)
+    school.show(code, 1)
+    pupil.call("POST", f"/rooms/{code}/predictions", json={"card": 1, "value": 0.5})
+    (event,) = [one for one in subscription.drain() if one.event == "room"]
+    told = TypeAdapter(RoomEvent).validate_json(event.data)
+    assert (told.card, told.participants, told.predicted) == (1, 1, 1)
+    run = started(pupil.call("POST", f"/rooms/{code}/runs"))
+    school.finished(run)
+    assert elsewhere.drain() == []
+    for one in (subscription, elsewhere):
+        one.close()
+
+
+def test_answers_match_their_models(school: Class) -> None:
+    code = school.room("one-run-proves-nothing")
+    pupil = school.joined(code)
+    school.show(code, 1)
+    pupil.call("POST", f"/rooms/{code}/predictions", json={"card": 1, "value": 0.5})
+    school.finished(started(pupil.call("POST", f"/rooms/{code}/runs")))
+    for api in (school.teacher, pupil, school.pupil()):
+        TypeAdapter(RoomView).validate_python(api.get(f"/rooms/{code}"))
+        TypeAdapter(ResultsView).validate_python(api.get(f"/rooms/{code}/results"))
+        TypeAdapter(RoomList).validate_python(api.get("/rooms"))
+    TypeAdapter(LessonView).validate_python(school.teacher.get("/lessons/one-run-proves-nothing"))
+    TypeAdapter(LessonList).validate_python(school.teacher.get("/lessons"))
+    assert pupil.get(f"/rooms/{code}")["shown"]["reveal"] is None
+    assert school.teacher.get(f"/rooms/{code}")["shown"]["reveal"] is not None
