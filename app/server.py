@@ -95,8 +95,14 @@ SWITCH_S = 0.001
 """Python's switch interval [s]: shorter than its 5 ms, for the event loop's latency."""
 _TICKS_PER_S = 10
 """Frequency of uvicorn's main loop [1/s]."""
-_PRELOADED = ["app.cli", "app.jobs.worker", "hexapods.physics.mujoco_simulator"]
-"""What jobs and pools import: the program that started them, and what is imported late."""
+_PRELOADED = [
+    "app.cli",
+    "app.jobs.worker",
+    "hexapods.imports.reading",
+    "hexapods.physics.mujoco_simulator",
+]
+"""What jobs, pools and readers of robots import: the program that started them, and what is
+imported late."""
 _DESCRIPTION = (
     "Hexapods that learn to walk, and race against look-ahead search. Errors are problem "
     "documents (RFC 9457), and each says what is valid; requests that prefer text/html get a page."

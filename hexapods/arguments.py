@@ -12,9 +12,11 @@ from hexapods.agents.registry import AgentClass
 from hexapods.domain.disturbances import Disturbance, as_text, disturbance, parse_disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import GaitSpec, read_gait
-from hexapods.domain.robot import PRESETS, Robot, read_document, robot
+from hexapods.domain.model_robot import model_robot
+from hexapods.domain.robot import PRESETS, Robot, document_of, read_document, robot
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.files import path_of
+from hexapods.imports.child import read_robot_file
 from hexapods.runs.config import WalkingProblem
 
 GAIT = "left-right-origin"
@@ -120,23 +122,26 @@ def read_robot(given: RobotLike) -> Robot:
 
 
 def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
-    """Return the robot of a document that `hexapods robots export` wrote.
+    """Return the robot of a file: MJCF or URDF, alone or in a zip, or a document (`.json`).
 
-    From then on `{"id": …}` is this robot too, also in tables and races that were made with it.
+    A document is what `hexapods robots export` writes. From then on `{"id": …}` is this robot too,
+    also in tables and races that were made with it.
 
     Args:
-        file: path of the document, which ends with `.json`.
-        name: its name; that of the file by default.
+        file: its path.
+        name: the robot's name; that of the file by default.
 
     Raises:
         InvalidInput: if the file cannot be read, or its robot is not valid.
-        DamagedFile: if it is no document of a robot.
+        DamagedFile: if it is no robot.
     """
-    path = path_of(file, "a robot's document")
+    path = path_of(file, "a robot's file")
     try:
         data = path.read_bytes()
     except OSError as error:
         raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
+    if path.suffix.lower() != ".json":
+        data = document_of(model_robot(read_robot_file(data, path.name).model, path.stem))
     return read_document(data, name or path.stem)
 
 

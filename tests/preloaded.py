@@ -11,6 +11,7 @@ _IMPORTED_LATE = (
     "hexapods.experiments.report.files",
     "hexapods.experiments.summary",
     "app.jobs.experiment_worker",
+    "hexapods.imports.reading",
     "hexapods.physics.mujoco_simulator",
     "matplotlib.backends.backend_svg",
     "numpy.ma",

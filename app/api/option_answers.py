@@ -36,6 +36,7 @@ class RobotOption(Described):
         hidden: whether it is left out where a robot is chosen.
         body: of a stored robot: by value, for links that are opened where it is not stored; null
             for one that is built in or from a file.
+        grid_side_m: side of a foot grid that suits its size.
         joints: names of the joints of each leg, from the torso to the foot.
         azimuths_deg: directions of its legs in its own frame, anticlockwise.
         gait: a gait that suits it.
@@ -47,6 +48,7 @@ class RobotOption(Described):
     hidden: bool
     body: AnyRobot | None
     robot: AnyRobot
+    grid_side_m: float
     joints: list[list[str]]
     azimuths_deg: list[float]
     gait: AnyGait

@@ -64,6 +64,7 @@ from hexapods.runs.config import (
 )
 from hexapods.runs.gait_analysis import MAX_WINDOW_S
 from hexapods.runs.lane import LaneConfig
+from hexapods.runs.preview import usual_side_m
 from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from hexapods.shows.scene_spec import PAPERS_LANES
 
@@ -300,6 +301,7 @@ def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
         "hidden": False,
         "body": None,
         "robot": as_mapping(made),
+        "grid_side_m": usual_side_m(made, gait),
         "joints": [
             [joint.name for joint in legs.of_leg(number)] for number in range(1, len(legs) + 1)
         ],

@@ -1,17 +1,20 @@
 """Response models of stored robots, as those of `app.api.answers`."""
 
+import json
 from datetime import datetime
 from typing import Any
 
 from app.api.answers import Answer
+from app.storage.database.robots import Origin
 from app.storage.stored_robot import StoredRobot
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.gait import AnyGait, gait_as_json, resolve
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import legs_written_out, written_out
+from hexapods.imports.imported import FileFormat, ImportedLeg
 from hexapods.runs.config import WalkingProblem
-from hexapods.runs.preview import Preview, preview
+from hexapods.runs.preview import Preview, preview, usual_side_m
 
 
 class StoredLeg(Answer):
@@ -62,16 +65,39 @@ class StoredRobotsView(Answer):
     items: list[StoredRobotView]
 
 
+class FoundView(Answer):
+    """What was found in the file of a robot, from which a person may choose otherwise.
+
+    Attributes:
+        file: path in the zip of what was read; null if it was given alone.
+        legs: leg by leg: the names of the joints and of the foot in the file.
+        feet: names in the file of all that could be the foot of a leg.
+        keyframes: names of the file's keyframes.
+        forward_deg: direction in which it walks, anticlockwise from x of its torso in the file.
+        reaches_grid: whether its feet reach a foot grid that suits its size.
+    """
+
+    file_format: FileFormat
+    file: str | None
+    legs: list[ImportedLeg]
+    feet: list[str]
+    keyframes: list[str]
+    forward_deg: float
+    reaches_grid: bool
+
+
 class WholeRobotView(StoredRobotView):
     """A stored robot with all its numbers, and what is known of it before it walks.
 
     Attributes:
+        found: what was found in its file; null if it was made here.
         robot: by value, as a request may have it.
-        preview: with its gait, on the usual foot grid.
+        preview: with its gait, on a foot grid that suits its size.
     """
 
     robot: dict[str, Any]
     preview: Preview
+    found: FoundView | None
 
 
 def robot_view(stored: StoredRobot) -> dict[str, Any]:
@@ -97,12 +123,15 @@ def robot_view(stored: StoredRobot) -> dict[str, Any]:
     }
 
 
-def whole_view(stored: StoredRobot) -> dict[str, Any]:
+def whole_view(stored: StoredRobot, origin: Origin | None) -> dict[str, Any]:
     """Return a stored robot as a `WholeRobotView`; errors as of `robot_view`."""
     made = stored.robot
+    gait = own_gait(made)
+    walk = WalkingProblem(gait=gait, robot=made, grid_side_m=usual_side_m(made, gait))
     numbers = {name: value for name, value in written_out(made).items() if value is not None}
     return {
         **robot_view(stored),
         "robot": {**numbers, "legs": legs_written_out(made)},
-        "preview": to_json(preview(WalkingProblem(gait=own_gait(made), robot=made))),
+        "preview": to_json(preview(walk)),
+        "found": None if origin is None else json.loads(origin.found),
     }

@@ -7,7 +7,7 @@ from pydantic import ConfigDict, Field, create_model
 from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import JSONResponse, Response
 
-from app.api.contract import ATTACHMENT, LOCATION, answers
+from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers
 from app.api.deps import BodyDep, Services, ServicesDep
 from app.api.fields import Body, Name, record_fields
 from app.api.formats import attachment
@@ -19,15 +19,17 @@ from app.api.robot_answers import (
     whole_view,
 )
 from app.api.schemas import PatchBody, one_given
-from app.archive.robot_import import check_stands, import_robot
+from app.archive.robot_import import check_stands, correct_robot, import_robot
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import AnyGait
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import AnyRobot
+from hexapods.imports.choices import Choices
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
 
+FILE_TYPES = ("application/xml", "application/zip", "application/octet-stream")
 router = APIRouter(prefix="/robots", tags=["robots"])
 
 _OTHER = {"world", "simulator", "tolerance"}
@@ -58,11 +60,12 @@ class RobotBody(Body):
 class RobotChangeBody(PatchBody):
     """Changes to what is said of a stored robot."""
 
-    model_config = ConfigDict(json_schema_extra=one_given(("name", "hidden", "gait")))
+    model_config = ConfigDict(json_schema_extra=one_given(("name", "hidden", "gait", "choices")))
 
     name: Name | None = None
     hidden: Annotated[bool, Field(strict=True)] | None = None
     gait: AnyGait | None = None
+    choices: Choices | None = None
 
     def changes(self) -> dict[str, Any]:
         """Return the given fields."""
@@ -78,20 +81,27 @@ class RobotChangeBody(PatchBody):
     responses=answers(201, headers=LOCATION) | {200: {"model": StoredRobotView}},
     openapi_extra={
         "requestBody": {
-            "content": {"application/json": {"schema": RobotBody.model_json_schema()}},
+            "content": {
+                "application/json": {"schema": RobotBody.model_json_schema()},
+                **{kind: {"schema": BINARY} for kind in FILE_TYPES},
+            },
             "required": True,
         }
     },
 )
 def store_robot(
-    services: ServicesDep, body: BodyDep, name: Annotated[Name | None, Query()] = None
+    services: ServicesDep,
+    body: BodyDep,
+    name: Annotated[Name | None, Query()] = None,
+    file: Annotated[Name | None, Query(description="name of the file")] = None,
 ) -> Response:
-    """Store a body, `{"robot": …}`, or the document of a robot from `GET /robots/{id}/file`.
+    """Store a body, `{"robot": …}`, the document of a robot, or a robot's file.
 
-    The id is that of its content: the same robot is stored once, with the name that it was given
-    first, and answered with 200.
+    A file is MJCF or URDF, alone or in a zip with its meshes. What was guessed of it and repaired
+    is told; `PATCH /robots/{id}` corrects it. The id is that of its content: the same robot is
+    stored once, with the name that it was given first, and answered with 200.
     """
-    stored, is_new = import_robot(services.store, body, name)
+    stored, is_new = import_robot(services.store, body, name, file or None)
     publish_robots(services)
     location = {"Location": f"/api/v1/robots/{stored.id}"}
     return JSONResponse(robot_view(stored), 201 if is_new else 200, location)
@@ -111,22 +121,30 @@ def list_robots(
 @router.get("/{robot_id:robot}", summary="Get a stored robot", response_model=WholeRobotView)
 def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
     """Return a stored robot with all its numbers, and what is known of it before it walks."""
-    return JSONResponse(whole_view(services.store.robots.get(robot_id)))
+    robots = services.store.robots
+    return JSONResponse(whole_view(robots.get(robot_id), robots.origin(robot_id)))
 
 
 @router.patch(
     "/{robot_id:robot}",
-    summary="Rename or hide a stored robot, or give it another gait",
+    summary="Rename or hide a stored robot, give it another gait, or correct it",
     response_model=StoredRobotView,
 )
 def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBody) -> Response:
-    """Change what is said of a robot; it keeps its id."""
+    """Change what is said of a robot, which keeps its id, or how its file is read.
+
+    With `choices` the file is read again: the answer has the new robot's id. The one before is
+    deleted, or hidden where runs use it.
+    """
     changes, robots = body.changes(), services.store.robots
+    choices = changes.pop("choices", None)
     if changes.get("name") == "":
         raise InvalidInput("a robot has a name with a visible character")
     if "gait" in changes:
         check_stands(robots.get(robot_id).robot, changes["gait"])
-    changed = robots.change(robot_id, **changes)
+    if choices is not None:
+        robot_id = correct_robot(services.store, robot_id, choices).id
+    changed = robots.change(robot_id, **changes) if changes else robots.get(robot_id)
     publish_robots(services)
     return JSONResponse(robot_view(changed))
 

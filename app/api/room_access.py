@@ -120,6 +120,8 @@ class RoomAccess:
                 return problem(403, "A lesson has its answers; participants see its cards alone.")
             if is_public or rest is not None or self._is_read_in_room(scope, seats):
                 return None
+            if self.is_open_to_all(scope):
+                return None
             return problem(403, "Participants see their room alone here; watching needs the token.")
         deed = _DEEDS.get(rest or "") if scope["method"] == "POST" else None
         if deed is not None and code is not None:

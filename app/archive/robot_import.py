@@ -1,48 +1,71 @@
-"""Import of a robot: a body, the document of a robot, or, by and by, a robot's file."""
+"""Import of a robot: a body, the document of a robot, or a robot's file."""
 
 import json
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
+from app.storage.database.robots import Origin
 from app.storage.database.store import RunStore
 from app.storage.stored_robot import StoredRobot, distinct_name
 from hexapods.domain import robot_documents
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.gait import GaitSpec, gait_spec, read_gait, resolve
+from hexapods.domain.model_robot import ModelRobot, model_robot
+from hexapods.domain.records import to_json
 from hexapods.domain.robot import Robot, document_of, parse_document, robot
 from hexapods.domain.support import STANDS_M, Support
-from hexapods.domain.text import check_name
+from hexapods.domain.text import MAX_NAME, check_name, visible
+from hexapods.imports.child import read_robot_file
+from hexapods.imports.choices import AS_FOUND, Choices
+from hexapods.imports.imported import ImportedRobot
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import preview
 
 MEMBERS = ("robot", "gait", "name")
 """Of the JSON by which a body is stored."""
 _UNNAMED = "Robot"
+_TOLD = (
+    'send {"robot": …}, with a robot as in any request; the document of a robot as '
+    "`GET /robots/{id}/file` and `hexapods robots export` give it; or MJCF or URDF, alone or in a "
+    "zip with its meshes"
+)
 _NAMED = ("tripod", "tetrapod", "trot")
 """Gaits that are tried for a robot of which none is known, with their few groups."""
 _FALLBACK = "one-by-one"
 
 
-def import_robot(store: RunStore, data: bytes, name: str | None = None) -> tuple[StoredRobot, bool]:
+def import_robot(
+    store: RunStore, data: bytes, name: str | None = None, file: str | None = None
+) -> tuple[StoredRobot, bool]:
     """Store a robot, unless it is stored already.
 
     Args:
         store: receives it.
-        data: `{"robot": …, "gait": …, "name": …}`, of which gait and name may be missing, or the
-            document of a robot.
+        data: `{"robot": …, "gait": …, "name": …}`, of which gait and name may be missing; the
+            document of a robot; or MJCF or URDF, alone or in a zip.
         name: its name; by default what the data say, or `Robot`, made distinct.
+        file: name of the file.
 
     Returns:
         the robot as stored, and whether it is new.
 
     Raises:
         InvalidInput: if it is no robot, or one that cannot stand or reach its feet's homes.
-        DamagedFile: if its document was changed.
+        DamagedFile: if its document was changed, or the file is damaged.
         Conflict: if another robot has its name.
         StorageFull: if there are too many, or too little disk space.
     """
+    if not data:
+        raise InvalidInput(f"the body is empty: {_TOLD}")
+    if _is_model(data):
+        imported = read_robot_file(data, file)
+        about, document = _of_file(imported, AS_FOUND, file)
+        own = name if name is not None else _distinct(store, check_name(imported.name[:MAX_NAME]))
+        about = replace(about, name=_named(store, own or None))
+        return store.robots.add(document, about, Origin(data, _found(imported)))
     content = _json(data)
     if "format" in content:
         made, document = parse_document(data), data
@@ -54,13 +77,63 @@ def import_robot(store: RunStore, data: bytes, name: str | None = None) -> tuple
     given_gait = content.get("gait")
     gait = suiting_gait(made) if given_gait is None else read_gait(given_gait)
     check_stands(made, gait)
-    given = name if name is not None else content.get("name")
     about = StoredRobot(
         id=robot_documents.id_of(document),
-        name=_named(store, given),
+        name=_named(store, name if name is not None else content.get("name")),
         gait=gait,
     )
     return store.robots.add(document, about)
+
+
+def correct_robot(store: RunStore, robot_id: str, choices: Choices) -> StoredRobot:
+    """Read the file of a stored robot again, as a person decided; return the robot that it is now.
+
+    It has another id unless nothing has changed. The one before is deleted, or hidden if runs use
+    it.
+
+    Raises:
+        NotFound: if there is no such robot.
+        InvalidInput: if it is from no file, or a choice is not valid.
+    """
+    stored, origin = store.robots.get(robot_id), store.robots.origin(robot_id)
+    if origin is None:
+        raise InvalidInput(f"{stored.name} is from no file here: there is nothing to read again")
+    imported = read_robot_file(origin.upload, stored.file, choices)
+    about, document = _of_file(imported, choices, stored.file)
+    return store.robots.replace(robot_id, document, about, Origin(origin.upload, _found(imported)))
+
+
+def _of_file(
+    imported: ImportedRobot, choices: Choices, file: str | None
+) -> tuple[StoredRobot, bytes]:
+    """Return a robot from a file, under a name that is to be replaced, with its document."""
+    document = document_of(model_robot(imported.model, _UNNAMED))
+    about = StoredRobot(
+        id=robot_documents.id_of(document),
+        name=_UNNAMED,
+        gait=imported.gait,
+        guesses=imported.guesses,
+        repairs=imported.repairs,
+        choices=None if choices == AS_FOUND else to_json(choices),
+        file=visible(file or f"{imported.name}.{imported.file_format}")[:MAX_NAME],
+    )
+    return about, document
+
+
+def _found(imported: ImportedRobot) -> bytes:
+    names = ("file_format", "file", "legs", "feet", "keyframes", "forward_deg", "reaches_grid")
+    told = to_json(imported)
+    return json.dumps({name: told[name] for name in names}).encode()
+
+
+def _is_model(data: bytes) -> bool:
+    """Whether data are a zip, or XML after blanks and a byte order mark."""
+    return data.startswith(b"PK") or data[:1000].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
+
+
+def _distinct(store: RunStore, name: str) -> str:
+    taken = [one.name for one in store.robots.stored(hidden=True)]
+    return distinct_name(name or _UNNAMED, taken)
 
 
 def suiting_gait(made: Robot) -> str | GaitSpec:
@@ -83,6 +156,9 @@ def check_stands(made: Robot, gait: str | GaitSpec) -> None:
     Raises:
         InvalidInput: if they do not, naming a leg, or the gait does not divide its legs.
     """
+    if isinstance(made, ModelRobot):
+        resolve(gait, made.azimuths_deg)
+        return  # how it stands is corrected after it is stored
     known = preview(WalkingProblem(gait=gait, robot=made))
     if known.largest_side_m is None:
         raise InvalidInput(f"it cannot walk on any foot grid: {known.out_of_reach}")
@@ -95,28 +171,24 @@ def check_stands(made: Robot, gait: str | GaitSpec) -> None:
 
 def _named(store: RunStore, given: Any) -> str:
     if given is None:
-        return distinct_name(_UNNAMED, [one.name for one in store.robots.stored(hidden=True)])
+        return _distinct(store, _UNNAMED)
     if not isinstance(given, str) or not (name := check_name(given)):
         raise InvalidInput("a robot has a name with a visible character")
     return name
 
 
 def _json(data: bytes) -> dict[str, Any]:
-    told = (
-        'send {"robot": …}, with a robot as in any request, or the document of a robot as '
-        "`GET /robots/{id}/file` and `hexapods robots export` give it"
-    )
     if len(data) > robot_documents.MAX_BYTES:
-        raise InvalidInput(f"a robot has at most {robot_documents.MAX_BYTES:,} bytes; {told}")
+        raise InvalidInput(f"a robot has at most {robot_documents.MAX_BYTES:,} bytes; {_TOLD}")
     try:
         content = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise InvalidInput(f"it is no JSON: {told}") from error
+        raise InvalidInput(f"it is no JSON: {_TOLD}") from error
     if not isinstance(content, Mapping):
-        raise InvalidInput(f"it is no JSON object: {told}")
+        raise InvalidInput(f"it is no JSON object: {_TOLD}")
     unknown = [one for one in content if one not in MEMBERS]
     if "format" not in content and unknown:
-        raise InvalidInput(f"unknown member {unknown[0][:100]!r}: {told}")
+        raise InvalidInput(f"unknown member {unknown[0][:100]!r}: {_TOLD}")
     return dict(content)
 
 

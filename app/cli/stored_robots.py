@@ -25,9 +25,13 @@ _MAX_BYTES = 64 << 20
 def add_to(verbs: "argparse._SubParsersAction[Any]") -> None:
     """Add the verbs' parsers."""
     importing = verbs.add_parser(
-        "import", help="store a robot, from a document that `hexapods robots export` wrote"
+        "import",
+        help="store a robot from MJCF or URDF, alone or in a zip, or from a document that "
+        "`hexapods robots export` wrote",
     )
-    importing.add_argument("file", metavar="FILE.json", help='the document, or {"robot": …}')
+    importing.add_argument(
+        "file", metavar="FILE", help="MJCF, URDF, a zip, a document, or JSON with `robot`"
+    )
     importing.add_argument("--name", help="its name (default: that of the file)")
     hiding = verbs.add_parser("hide", help="leave a stored robot out where robots are chosen")
     hiding.add_argument("--undo", action="store_true", help="offer it again")
@@ -59,11 +63,14 @@ def _import(options: argparse.Namespace) -> int:
     def store_it(store: "RunStore") -> "StoredRobot":
         from app.archive.robot_import import import_robot  # noqa: PLC0415 - loads the jobs
 
-        return import_robot(store, data, name)[0]
+        return import_robot(store, data, name, path.name)[0]
 
-    query = urlencode({"name": name})
+    query = urlencode({"name": name, "file": path.name})
     told = _changed(settings, store_it, ("POST", f"api/v1/robots?{query}", data))
-    return _print(options, told, f"{path} is robot {told['name']} ({told['id']}) here.")
+    lines = [f"{path} is robot {told['name']} ({told['id']}) here."]
+    lines += [f"Guessed: {one}" for one in told["guesses"]]
+    lines += [f"Repaired: {one}" for one in told["repairs"]]
+    return _print(options, told, "\n".join(lines))
 
 
 def _hide(options: argparse.Namespace) -> int:

@@ -6,14 +6,14 @@ ring has leg 1 along x, so that forward is where its gait says. Legs are numbere
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import ImpossibleLegs, InvalidInput
 
 MIN_LEGS, MAX_LEGS = 3, 12
-NO_NUMBERS = ("name", "legs", "id")
-"""Fields of a robot that are not a number."""
+NO_NUMBERS = ("name", "legs", "id", "model")
+"""Fields of a robot that are not a number; a robot from a file has a model."""
 _OPTIONAL = ("torso_length_m", "torso_width_m")
 """Fields of a robot that may be None."""
 _DOCUMENT = "document"
@@ -52,6 +52,17 @@ class LegMount:
     def direction_deg(self) -> float:
         """Direction in which it points at rest, anticlockwise from body x."""
         return self.azimuth_deg if self.yaw_deg is None else self.yaw_deg
+
+
+class Servo(NamedTuple):
+    """What a position servo can do."""
+
+    kp: float
+    """Position gain [N·m/rad]."""
+    kv: float
+    """Velocity gain [N·m·s/rad]."""
+    torque_nm: float
+    """Its largest torque."""
 
 
 def ring(legs: int, radius_m: float = 0.10) -> tuple[LegMount, ...]:
@@ -178,6 +189,16 @@ class Robot:
                     raise ImpossibleLegs(
                         f"the feet of legs {other} and {number} are in one place", [other, number]
                     )
+
+    def servo_of(self, leg: int, joint: str) -> Servo:  # noqa: ARG002 - a leg has equal servos
+        """Return the servo of a joint, by its leg from 1 and its name."""
+        names = ("servo_kp", "servo_kv", "servo_torque_nm")
+        return Servo(*(self.of_legs(name)[leg - 1] for name in names))
+
+    @property
+    def foot_radii_m(self) -> tuple[float, ...]:
+        """Radius of each foot."""
+        return (self.foot_radius_m,) * len(self.legs)
 
     def of_legs(self, name: str) -> tuple[float, ...]:
         """Return a number that legs may have their own of, such as `coxa_m`, leg by leg."""

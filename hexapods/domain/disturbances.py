@@ -7,7 +7,7 @@ from the start. Each field is declared once, as `hexapods.domain.settings` descr
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from types import MappingProxyType
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 from annotated_types import Ge, Gt, Le
 
@@ -15,11 +15,11 @@ from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.kinematics import JOINT_LIMITS_RAD, legs_of
 from hexapods.domain.records import JsonForm, Schema
 from hexapods.domain.robot import MAX_LEGS, RANGES, Robot
+from hexapods.domain.robot_model import JOINT_NAME, MAX_ANGLE_RAD
 from hexapods.domain.settings import Setting, declared_fields
 
 MAX_STEP = 10_000_000
 """The highest step in which something may begin or end; no run has more."""
-Joint = Literal["coxa", "femur", "tibia"]
 Direction = Annotated[
     float,
     Ge(-180),
@@ -193,22 +193,26 @@ class Stuck(Disturbance):
         int, Ge(1), Le(MAX_LEGS), Setting(title="Leg", help="The number of the leg, from 1.")
     ]
     joint: Annotated[
-        Joint, Setting(title="Joint", help="Coxa turns the leg, femur lifts it, tibia bends it.")
+        str,
+        Setting(
+            title="Joint",
+            help="Coxa turns the leg, femur lifts it, tibia bends it; robots from files have "
+            "others.",
+        ),
     ]
     angle_rad: Annotated[
         float,
-        Ge(min(low for low, _ in JOINT_LIMITS_RAD.values())),
-        Le(max(high for _, high in JOINT_LIMITS_RAD.values())),
+        Ge(-MAX_ANGLE_RAD),
+        Le(MAX_ANGLE_RAD),
         Setting(title="Angle", unit="rad", help="Positive lifts; 0 is straight."),
     ]
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        low, high = JOINT_LIMITS_RAD[self.joint]
-        if not low <= self.angle_rad <= high:
+        if JOINT_NAME.fullmatch(self.joint) is None:
             raise InvalidInput(
-                f"stuck: the {self.joint} turns from {low:g} to {high:g} rad, not to "
-                f"{self.angle_rad:g}"
+                f"stuck: joint must be the name of a joint, such as {', '.join(JOINT_LIMITS_RAD)}, "
+                f"not {self.joint[:40]!r}"
             )
 
     def parts(self) -> "Mapping[Key, Disturbance]":
@@ -216,9 +220,15 @@ class Stuck(Disturbance):
         return {("leg", self.leg, self.joint): self}
 
     def check(self, robot: Robot) -> None:
-        """Check that the robot has the leg and the joint."""
+        """Check that the robot has the leg and the joint, which turns so far."""
         _check_leg(self.kind, self.leg, robot)
-        legs_of(robot).index(self.leg, self.joint)
+        legs = legs_of(robot)
+        low, high = legs.joints[legs.index(self.leg, self.joint)].limits_rad
+        if not low <= self.angle_rad <= high:
+            raise InvalidInput(
+                f"stuck: the {self.joint} of leg {self.leg} turns from {low:g} to {high:g} rad, "
+                f"not to {self.angle_rad:g}"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""The one kind of leg that there is, of three joints: coxa (yaw), femur and tibia (pitch).
+"""Legs of three joints, in closed form: coxa (yaw), femur and tibia (pitch); and reach of all legs.
 
 The foot lies in the vertical plane that the coxa turns; in that plane femur and tibia are a
 two-link arm with the knee above. Positive pitch lifts.
@@ -11,11 +11,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from hexapods.domain.chains import chain_legs
 from hexapods.domain.errors import Unreachable
 from hexapods.domain.feet import Reach
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.legs import FootKinematics, Joint, Legs
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.robot import LegMount, Robot
 from hexapods.domain.types import FloatArray
 
@@ -186,6 +188,11 @@ _coxa_femur_tibia = lru_cache(maxsize=64)(_CoxaFemurTibia)
 def legs_of(robot: Robot) -> Legs:
     """Return the legs of a robot. A kind of robot with other legs registers its own function."""
     return _coxa_femur_tibia(robot)
+
+
+@legs_of.register
+def _(robot: ModelRobot) -> Legs:
+    return chain_legs(robot)
 
 
 _REACH_SAMPLES = 8

@@ -1,8 +1,8 @@
 """The interface of legs: what the rest of the program knows of those of a robot.
 
-How many joints a leg has, what they are called and how its foot is moved is known here only: the
-one kind of leg that there is implements the interface in `hexapods.domain.kinematics`. Which legs
-move together is a matter of the gait (`hexapods.domain.gait`).
+How many joints a leg has, what they are called and how its foot is moved is known here only. Two
+kinds implement it: `hexapods.domain.kinematics`, and `hexapods.domain.chains` for any chain. Which
+legs move together is a matter of the gait (`hexapods.domain.gait`).
 """
 
 from abc import ABC, abstractmethod
@@ -40,12 +40,15 @@ class Legs(ABC):
         masses_kg: of each leg, with its foot.
         limits_rad: of all joints, (2, joints): lowest and highest angles.
         leg_of_joint: index of each joint's leg, from 0, (joints,).
+        follows_grid: of each leg whether its foot can go to any place near home; one of two joints
+            goes to the nearest place that it reaches.
     """
 
     def __init__(self, joints: Iterable[Joint], masses_kg: Sequence[float]) -> None:
         self.joints, self.masses_kg = tuple(joints), tuple(masses_kg)
         self.limits_rad: FloatArray = np.array([joint.limits_rad for joint in self.joints]).T
         self.leg_of_joint: IntArray = np.array([joint.leg - 1 for joint in self.joints])
+        self.follows_grid: tuple[bool, ...] = (True,) * len(self.masses_kg)
 
     def __len__(self) -> int:
         """Number of legs."""
@@ -119,11 +122,14 @@ class FootKinematics(ABC):
         legs: the legs.
         homes_m: home positions of the feet, (legs, 2).
         frames: what `solve` needs to know of each leg, (..., legs).
+        is_costly: whether `solve` takes so long that a step's joint targets are interpolated
+            between a few of its places.
     """
 
     legs: Legs
     homes_m: FloatArray
     frames: FloatArray
+    is_costly: bool = False
 
     @abstractmethod
     def mirrored(self, signs: FloatArray) -> FloatArray:

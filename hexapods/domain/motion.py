@@ -17,6 +17,9 @@ from hexapods.domain.robot import Robot
 from hexapods.domain.simulator import RECORDING_HZ
 from hexapods.domain.types import Action, FloatArray, IntArray
 
+_SWING_KNOTS, _SHIFT_KNOTS = 8, 8
+"""Places of a swing and of a shift for which costly inverse kinematics is solved."""
+
 
 class StepPlan(NamedTuple):
     """Foot offsets at the phases of one step, without slip."""
@@ -49,8 +52,11 @@ class StepMotion:
         self.kinematics, self._law = legs_of(robot).under(gait), law
         total = robot.swing_substeps + robot.shift_substeps
         wanted = np.arange(total) if substeps is None else substeps
-        self._samples = _samples(robot, gait, self.kinematics, wanted)
-        self._substeps = len(wanted)
+        swing, shift = _phases(robot, wanted)
+        self._swing, swing = _knots(swing, _SWING_KNOTS, self.kinematics)
+        self._shift, shift = _knots(shift, _SHIFT_KNOTS, self.kinematics)
+        self._samples = _samples(robot, gait, self.kinematics, swing, shift)
+        self._counts = len(swing), len(shift)
 
     def plan(self, start: Feet, action: Action) -> StepPlan:
         """Plan a step from the feet's offsets, by the kinematic law."""
@@ -81,8 +87,14 @@ class StepMotion:
         angles = self.kinematics.solve(places, samples.lift, frames)
         most = angles.shape[-1]
         by_leg = angles.reshape(-1, most).take(order, 0)
-        by_leg = by_leg.reshape(len(plans), self._substeps, -1, most)
-        return self.kinematics.in_pose_order(by_leg)
+        by_leg = by_leg.reshape(len(plans), sum(self._counts), -1, most)
+        targets = self.kinematics.in_pose_order(by_leg)
+        if self._swing is None and self._shift is None:
+            return targets
+        parts = targets[:, : self._counts[0]], targets[:, self._counts[0] :]
+        return np.concatenate(
+            (_interpolated(parts[0], self._swing), _interpolated(parts[1], self._shift)), axis=1
+        )
 
 
 def _phase_endpoints(plan: StepPlan) -> tuple[tuple[float, ...], ...]:
@@ -117,21 +129,79 @@ class _Samples(NamedTuple):
     (groups, substeps · legs)."""
 
 
-def _samples(robot: Robot, gait: Gait, kinematics: FootKinematics, substeps: IntArray) -> _Samples:
+def _phases(robot: Robot, substeps: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return the phase, 0 to 1, of each substep of the swing, and of each of the shift."""
+    is_swing = substeps < robot.swing_substeps
+    return (
+        (substeps[is_swing] + 1) / robot.swing_substeps,
+        (substeps[~is_swing] - robot.swing_substeps + 1) / robot.shift_substeps,
+    )
+
+
+def _knots(
+    phases: FloatArray, count: int, kinematics: FootKinematics
+) -> tuple[FloatArray | None, FloatArray]:
+    """Return the phases at which inverse kinematics is solved, and how others follow from them.
+
+    Returns:
+        Weights of the knots at each phase, (phases, knots), None if they are the phases
+        themselves; and the knots.
+    """
+    if not kinematics.is_costly or len(phases) <= count:
+        return None, phases
+    number = np.arange(count)
+    # Chebyshev points with both ends, and Lagrange's polynomials in barycentric form (Berrut and
+    # Trefethen 2004, "Barycentric Lagrange interpolation").
+    knots = (1 - np.cos(np.pi * number / (count - 1))) / 2
+    signs = (-1.0) ** number
+    signs[[0, -1]] /= 2
+    away = phases[:, None] - knots
+    is_knot = np.abs(away) < 1e-12
+    shares = signs / np.where(is_knot, 1.0, away)
+    weights = shares / shares.sum(axis=1, keepdims=True)
+    on_knot = is_knot.any(axis=1)
+    weights[on_knot] = is_knot[on_knot]
+    return weights, knots
+
+
+def _interpolated(targets: FloatArray, weights: FloatArray | None) -> FloatArray:
+    """Return joint targets between knots, elementwise.
+
+    Args:
+        targets: at the knots, (n, knots, joints).
+        weights: as `_knots` returns them.
+
+    Returns:
+        (n, phases, joints).
+    """
+    if weights is None:
+        return targets
+    between = weights[:, :1] * targets[:, None, 0]
+    for knot in range(1, weights.shape[1]):
+        between = between + weights[:, knot, None] * targets[:, None, knot]
+    return between
+
+
+def _samples(
+    robot: Robot,
+    gait: Gait,
+    kinematics: FootKinematics,
+    swing_times: FloatArray,
+    shift_times: FloatArray,
+) -> _Samples:
     """Sample the trajectory of a step: easing by half a cosine, lifting by half a sine.
 
     Args:
-        robot: for the number of substeps and the step height.
+        robot: for the step height.
         gait: for the groups.
         kinematics: of the feet under this gait.
-        substeps: indices of the wanted ones.
+        swing_times: phases of the swing, 0 to 1.
+        shift_times: phases of the shift, 0 to 1.
     """
-    count, is_swing = len(kinematics.legs), substeps < robot.swing_substeps
+    count = len(kinematics.legs)
     # In the samples of each group there is room for the legs of the largest; a smaller one repeats
     # some of its own there, which command nothing.
     all_legs, groups, size = np.arange(count), len(gait.groups), max(gait.sizes)
-    swing_times = (substeps[is_swing] + 1) / robot.swing_substeps
-    shift_times = (substeps[~is_swing] - robot.swing_substeps + 1) / robot.shift_substeps
     swing, shift = len(swing_times), len(shift_times)
     swing_phase, shift_phase = np.repeat(swing_times, size), np.repeat(shift_times, count)
     zeros = np.zeros(count)

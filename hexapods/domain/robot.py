@@ -10,6 +10,8 @@ from hexapods.domain import robot_documents
 from hexapods.domain.body import MAX_LEGS, MIN_LEGS, NO_NUMBERS, LegMount, Robot, ring
 from hexapods.domain.creatures import PRESETS
 from hexapods.domain.errors import DamagedFile, InvalidInput, UnknownName
+from hexapods.domain.model_documents import model_content, read_model_content
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import JsonForm, Schema
 from hexapods.domain.text import MAX_NAME
 
@@ -56,6 +58,7 @@ _OWN = (
     "servo_torque_nm",
 )
 """Fields of a robot that a leg may have its own of."""
+_LINKS = tuple(name for name in _OWN if not name.startswith("servo_"))
 LEG_RANGES: dict[str, tuple[float, float]] = {
     "azimuth_deg": AZIMUTH,
     "radius_m": MOUNT_RADIUS,
@@ -101,6 +104,8 @@ def _changed(base: Robot, given: dict[str, Any]) -> Robot:
     for name in ("n_legs", "mount_radius_m", "legs"):
         if name in given and given[name] is None:
             raise InvalidInput(f"robot.{name} must not be null; leave it out for the preset's")
+    if isinstance(base, ModelRobot):
+        return changed_model(base, given)
     legs = _legs(given, base)
     numbers = {f.name for f in fields(Robot)}.difference(NO_NUMBERS)
     for name, number in given.items():
@@ -109,6 +114,25 @@ def _changed(base: Robot, given: dict[str, Any]) -> Robot:
             raise UnknownName("robot field", name, valid)
         given[name] = _number(name, number)
     changed = replace(base, legs=legs, **given)
+    return changed if changed == base else replace(changed, name=f"{base.name}{_MODIFIED}")
+
+
+def changed_model(base: ModelRobot, given: Mapping[str, Any]) -> ModelRobot:
+    """Return a robot from a file with other servos, friction or times.
+
+    Raises:
+        UnknownName: for a field that its file fixes, such as a length or a mass.
+        InvalidInput: for a value out of range.
+    """
+    changes: dict[str, Any] = {}
+    for name, value in given.items():
+        if name not in base.changeable:
+            raise UnknownName("field that can differ from a robot's file", name, base.changeable)
+        # Servos of large robots are far stronger than those of a hexapod.
+        own = getattr(base, name)
+        limits = (own / 100, own * 100) if name.startswith("servo_") else RANGES[name]
+        changes[name] = _limited(name, value, limits)
+    changed = replace(base, **changes)
     return changed if changed == base else replace(changed, name=f"{base.name}{_MODIFIED}")
 
 
@@ -133,14 +157,18 @@ def _differing(value: Robot, from_base: Robot) -> dict[str, Any]:
     return differs
 
 
-def by_value(value: Robot) -> dict[str, Any]:
-    """Return a robot as overrides of a preset, whatever it was made from, fit for JSON."""
+def by_value(value: Robot) -> dict[str, Any] | None:
+    """Return a body as overrides of a preset, fit for JSON; None for a robot from a file."""
+    if isinstance(value, ModelRobot):
+        return None
     base = PRESETS["stiff"]
     return {"preset": base.name, **_differing(value, base)}
 
 
 def document_of(value: Robot) -> bytes:
     """Return a robot by value as a document, which depends on no preset and no name."""
+    if isinstance(value, ModelRobot):
+        return robot_documents.encode(model_content(value))
     numbers = {
         name: number + 0.0 for name, number in written_out(value).items() if number is not None
     }
@@ -166,6 +194,8 @@ def read_document(data: bytes, name: str | None = None) -> Robot:
 def parse_document(data: bytes) -> Robot:
     """Return the robot of a document, without a name; errors as of `read_document`."""
     content = robot_documents.decode(data)
+    if "model" in content:
+        return replace(read_model_content(content), id=robot_documents.id_of(data))
     given = content.pop("robot", None)
     # All of it, so that no other document holds the same robot.
     if content or not isinstance(given, dict) or {*given} | _BOX != {*RANGES, "legs"}:
@@ -205,13 +235,18 @@ def _leg_as_mapping(leg: LegMount) -> dict[str, float]:
 
 
 def written_out(value: Robot) -> dict[str, float | None]:
-    """Return every number of a robot that is not a leg's own; the torso of a cylinder is no box."""
-    return {name: getattr(value, name) for name in RANGES}
+    """Return every number of a robot that is not a leg's own; the torso of a cylinder is no box.
+
+    Of a robot from a file the lengths and masses of links are left out: each link has its own.
+    """
+    left_out = {"home_radius_m", *_LINKS} if isinstance(value, ModelRobot) else set()
+    return {name: getattr(value, name) for name in RANGES if name not in left_out}
 
 
 def legs_written_out(value: Robot) -> list[dict[str, float]]:
     """Return every number of each leg, as in a request: also those that are the robot's."""
-    own = {name: value.of_legs(name) for name in _OWN}
+    is_from_file = isinstance(value, ModelRobot)
+    own = {} if is_from_file else {name: value.of_legs(name) for name in _OWN}
     return [
         {
             "x_m": leg.radius_m * math.cos(math.radians(leg.azimuth_deg)),

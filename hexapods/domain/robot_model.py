@@ -6,10 +6,17 @@ in the file, such as an arm or a wheel, was fixed when it was read. Nothing here
 another program parses, so that a model from a stranger's archive is as harmless as its numbers.
 """
 
+import hashlib
 import math
+import re
+from base64 import b64decode
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hexapods.domain.body import MAX_LEGS, MIN_LEGS
 from hexapods.domain.errors import InvalidInput
@@ -25,6 +32,11 @@ MAX_GEOMS = 1000
 """Of all links together."""
 MAX_TRIANGLES = 60_000
 """Of all meshes together."""
+JOINT_NAME = re.compile(r"[A-Za-z0-9_.-]{1,40}", re.ASCII)
+MAX_SIZE_M = 10.0
+"""Of a geom or a mesh."""
+MAX_ANGLE_RAD = 7.0
+"""Largest limit of a joint, more than a turn."""
 _UNIT = 1e-6
 """How far the length of an axis or a quaternion may be from 1."""
 
@@ -62,14 +74,30 @@ class ModelMesh(Record):
     faces: str
     triangles: int
 
+    def arrays(self) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+        """Return vertices (n, 3) [m] and faces (m, 3).
+
+        Raises:
+            InvalidInput: if they are not what their description says.
+        """
+        try:
+            vertices = np.frombuffer(b64decode(self.vertices, validate=True), "<f4").reshape(-1, 3)
+            faces = np.frombuffer(b64decode(self.faces, validate=True), "<u4").reshape(-1, 3)
+        except ValueError as error:
+            raise InvalidInput(f"a mesh is damaged: {error}") from error
+        fits = len(faces) == self.triangles and (not len(faces) or faces.max() < len(vertices))
+        if not (fits and np.isfinite(vertices).all()):
+            raise InvalidInput("a mesh is damaged: its faces do not fit its vertices")
+        return vertices, faces
+
 
 @dataclass(frozen=True)
 class ModelJoint(Record):
     """A hinge by which a link turns against its parent, and the servo that turns it.
 
     Attributes:
-        name: no other joint of its leg has it; the links of all legs have names of one kind, such
-            as `hip` or `knee`, where the file has.
+        name: a `JOINT_NAME`; no other joint of its leg has it; the links of all legs have names of
+            one kind, such as `hip` or `knee`, where the file has.
         axis: unit vector in the frame of the link.
         anchor_m: a point of the axis in the frame of the link.
         limits_rad: lowest and highest angle.
@@ -140,7 +168,7 @@ class ModelFoot(Record):
     radius_m: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RobotModel(Record):
     """A robot from a file.
 
@@ -152,7 +180,8 @@ class RobotModel(Record):
         feet: leg by leg.
 
     Raises:
-        InvalidInput: if they are not a robot with 3 to 12 legs of 2 to 6 joints each.
+        InvalidInput: if they are not a robot with 3 to 12 legs of 2 to 6 joints each, all of
+            which move their foot.
     """
 
     links: tuple[ModelLink, ...]
@@ -162,11 +191,39 @@ class RobotModel(Record):
         for problem in self._problems():
             raise InvalidInput(f"the model of the robot is damaged: {problem}")
 
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of its content, by which models are compared."""
+        return hashlib.sha256(repr(_content(self)).encode()).hexdigest()
+
+    def __repr__(self) -> str:
+        return f"RobotModel({len(self.links)} links, {len(self.feet)} legs, {self.digest[:8]})"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, RobotModel) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
+
+    def links_of(self, leg: int) -> list[ModelLink]:
+        """Return the links of a leg, counted from 1; of 0 the torso and what is fixed to it."""
+        return [link for link in self.links if link.leg == leg]
+
     def joints_of(self, leg: int) -> list[ModelJoint]:
         """Return the joints of a leg, counted from 1, from the torso to the foot."""
-        return [link.joint for link in self.links if link.leg == leg and link.joint is not None]
+        return [link.joint for link in self.links_of(leg) if link.joint is not None]
 
     def _problems(self) -> Iterator[str]:
+        yield from self._problems_of_size()
+        for number, link in enumerate(self.links):
+            for problem in (*self._problems_of_place(number, link), *_problems_of_link(link)):
+                yield f"link {number} ({link.name}) {problem}"
+        if [link.leg for link in self.links] != sorted(link.leg for link in self.links):
+            yield "its links must be leg by leg, after the torso"
+        for leg, foot in enumerate(self.feet, start=1):
+            yield from self._problems_of_leg(leg, foot)
+
+    def _problems_of_size(self) -> Iterator[str]:
         legs = len(self.feet)
         if not 0 < len(self.links) <= MAX_LINKS:
             yield f"it must have 1 to {MAX_LINKS} links, not {len(self.links)}"
@@ -176,45 +233,77 @@ class RobotModel(Record):
             yield f"it must have at most {MAX_GEOMS} geoms"
         if sum(link.mesh.triangles for link in self.links if link.mesh) > MAX_TRIANGLES:
             yield f"its meshes must have at most {MAX_TRIANGLES} triangles"
-        for number, link in enumerate(self.links):
-            for problem in self._problems_of(number, link, legs):
-                yield f"link {number} ({link.name}) {problem}"
-        if [link.leg for link in self.links] != sorted(link.leg for link in self.links):
-            yield "its links must be leg by leg, after the torso"
-        for leg, foot in enumerate(self.feet, start=1):
-            if not (0 < foot.link < len(self.links) and self.links[foot.link].leg == leg):
-                yield f"the foot of leg {leg} is on no link of it"
-            if not (_are_finite(foot.at_m) and 0.001 <= foot.radius_m <= 2):
-                yield f"the foot of leg {leg} must have a radius of 0.001 to 2 m"
-            names = [joint.name for joint in self.joints_of(leg)]
-            if not MIN_JOINTS <= len(names) <= MAX_JOINTS or len(set(names)) < len(names):
-                yield f"leg {leg} must have {MIN_JOINTS} to {MAX_JOINTS} joints with own names"
 
-    def _problems_of(self, number: int, link: ModelLink, legs: int) -> Iterator[str]:
+    def _problems_of_place(self, number: int, link: ModelLink) -> Iterator[str]:
         if not (-1 if number == 0 else 0) <= link.parent < number:
             yield "has no parent before it"
         elif number == 0 and (link.joint or link.leg):
             yield "must be the torso, without a joint"
         elif number and self.links[link.parent].leg not in (0, link.leg):
             yield "has a parent in another leg"
-        if not 0 <= link.leg <= legs or (link.joint is not None and link.leg == 0):
+        if not 0 <= link.leg <= len(self.feet) or (link.joint is not None and link.leg == 0):
             yield "is of no leg"
-        if not (1e-6 <= link.mass_kg <= 1000 and _are_finite((*link.center_m, *link.inertia))):
-            yield "must have a mass of 1e-6 to 1000 kg"
-        if not (_are_finite(link.at_m) and _is_unit(link.wxyz)):
-            yield "has no place"
-        if link.joint is not None:
-            yield from _problems_of_joint(link.joint)
-        for geom in link.geoms:
-            if not (_are_finite((*geom.at_m, *geom.size_m)) and _is_unit(geom.wxyz)):
-                yield "has a geom without a place"
-            if min(geom.size_m) < 0 or not 0 < max(geom.size_m) <= 10:
-                yield "has a geom without a size, or larger than 10 m"
+
+    def _problems_of_leg(self, leg: int, foot: ModelFoot) -> Iterator[str]:
+        if not (0 < foot.link < len(self.links) and self.links[foot.link].leg == leg):
+            yield f"the foot of leg {leg} is on no link of it"
+            return
+        if not (_are_finite(foot.at_m) and 0.001 <= foot.radius_m <= 2):
+            yield f"the foot of leg {leg} must have a radius of 0.001 to 2 m"
+        names = [joint.name for joint in self.joints_of(leg)]
+        if not MIN_JOINTS <= len(names) <= MAX_JOINTS or len(set(names)) < len(names):
+            yield f"leg {leg} must have {MIN_JOINTS} to {MAX_JOINTS} joints with own names"
+        carrying, link = set(), self.links[foot.link]
+        while link.leg:
+            carrying.add(link.joint.name if link.joint else "")
+            link = self.links[link.parent]
+        if still := [name for name in names if name not in carrying]:
+            yield f"joint {still[0]} of leg {leg} does not move its foot"
+
+
+def _content(value: Any) -> Any:
+    """Return a model in tuples; whole numbers are floats, as they are when a file is read."""
+    if isinstance(value, Record):
+        return tuple(_content(part) for name, part in vars(value).items() if name != "digest")
+    if isinstance(value, tuple):
+        return tuple(map(_content, value))
+    return float(value) if isinstance(value, int | float) else value
+
+
+def _problems_of_link(link: ModelLink) -> Iterator[str]:
+    if not (1e-6 <= link.mass_kg <= 1000 and _are_finite((*link.center_m, *link.inertia))):
+        yield "must have a mass of 1e-6 to 1000 kg"
+    if not (_are_finite(link.at_m) and _is_unit(link.wxyz)):
+        yield "has no place"
+    if link.joint is not None:
+        yield from _problems_of_joint(link.joint)
+    for geom in link.geoms:
+        if not (_are_finite((*geom.at_m, *geom.size_m)) and _is_unit(geom.wxyz)):
+            yield "has a geom without a place"
+        if min(geom.size_m) < 0 or not 0 < max(geom.size_m) <= MAX_SIZE_M:
+            yield f"has a geom without a size, or larger than {MAX_SIZE_M:g} m"
+    if link.mesh is not None:
+        yield from _problems_of_mesh(link.mesh)
+
+
+def _problems_of_mesh(mesh: ModelMesh) -> Iterator[str]:
+    try:
+        vertices, _ = mesh.arrays()
+    except InvalidInput as error:
+        yield f"has none that can be drawn: {error}"
+    else:
+        if len(vertices) and float(np.abs(vertices).max()) > MAX_SIZE_M:
+            yield f"has a mesh larger than {MAX_SIZE_M:g} m"
 
 
 def _problems_of_joint(joint: ModelJoint) -> Iterator[str]:
     low, high = joint.limits_rad
-    if not (-7 <= low < high <= 7 and low <= joint.home_rad <= high):
+    if JOINT_NAME.fullmatch(joint.name) is None:
+        yield (
+            f"has a joint {joint.name[:40]!r}: names have 1 to 40 letters, digits, points, "
+            "hyphens and underscores"
+        )
+    if not (-MAX_ANGLE_RAD <= low < high <= MAX_ANGLE_RAD and low <= joint.home_rad <= high):
         yield f"has a joint {joint.name} that is not at home within its limits"
     if not (_is_unit(joint.axis) and _are_finite(joint.anchor_m)):
         yield f"has a joint {joint.name} without an axis"

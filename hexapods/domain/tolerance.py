@@ -1,12 +1,14 @@
 """Build tolerance: a robot as it was built, which differs a little from the robot as designed."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.model_geometry import turned_mounts
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.robot import AZIMUTH, RANGES, LegMount, Robot
 
 MAX_TOLERANCE = 0.2
@@ -24,6 +26,8 @@ VARIED = (
     "friction",
 )
 """Fields of a robot that vary: lengths of links, masses, servo gains, friction."""
+VARIED_OF_MODELS = ("torso_kg", "legs_kg", "servo_kp", "servo_kv", "friction")
+"""What varies of a robot from a file: masses of the torso and of the links, gains, friction."""
 _FULL_TURN_DEG = 360.0
 
 
@@ -45,9 +49,14 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
     """
     if not 0 <= share <= MAX_TOLERANCE:
         raise InvalidInput(f"tolerance must be from 0 to {MAX_TOLERANCE:g}, not {share}")
-    drawn = rng.uniform(-1, 1, len(VARIED) + len(robot.legs)).tolist()
+    varied = VARIED_OF_MODELS if isinstance(robot, ModelRobot) else VARIED
+    drawn = rng.uniform(-1, 1, len(varied) + len(robot.legs)).tolist()
     if share == 0:
         return robot
+    if isinstance(robot, ModelRobot):
+        by = [1 + share * deviation for deviation in drawn[: len(varied)]]
+        turn_deg = share * _FULL_TURN_DEG / len(robot.legs)
+        return _model_as_built(robot, by, [turn_deg * off for off in drawn[len(varied) :]])
     own: dict[str, Any] = {
         name: _within(getattr(robot, name) * (1 + share * deviation), RANGES[name])
         for name, deviation in zip(VARIED, drawn, strict=False)
@@ -59,6 +68,33 @@ def build_tolerance(robot: Robot, share: float, rng: np.random.Generator) -> Rob
         for leg, off in zip(robot.legs, drawn[len(VARIED) :], strict=True)
     )
     return replace(robot, legs=legs, **own)
+
+
+def _model_as_built(
+    robot: ModelRobot, factors: Sequence[float], off_deg: Sequence[float]
+) -> ModelRobot:
+    """Return a robot from a file that deviates.
+
+    Args:
+        robot: the robot as designed.
+        factors: of `VARIED_OF_MODELS`.
+        off_deg: by how much each leg is turned about the vertical through its first joint.
+    """
+    torso, legs, kp, kv, friction = factors
+    links = []
+    for link in turned_mounts(robot.model, off_deg).links:
+        factor = legs if link.leg else torso
+        xx, yy, zz, xy, xz, yz = (factor * one for one in link.inertia)
+        own = replace(link, mass_kg=factor * link.mass_kg, inertia=(xx, yy, zz, xy, xz, yz))
+        links.append(own)
+    return replace(
+        robot,
+        model=replace(robot.model, links=tuple(links)),
+        torso_kg=torso * robot.torso_kg,
+        servo_kp=kp * robot.servo_kp,
+        servo_kv=kv * robot.servo_kv,
+        friction=_within(friction * robot.friction, RANGES["friction"]),
+    )
 
 
 def _as_built(leg: LegMount, factors: Mapping[str, float], off_deg: float) -> LegMount:

@@ -17,8 +17,9 @@ from hexapods.drawing.condition_colors import link_color
 from hexapods.drawing.shapes import Shape, antenna, geom_shape, joined
 from hexapods.physics.mjcf import VISIBLE_GROUP, compile_visual_model, is_painted
 
-ANTENNA_M = 0.15
-"""Height of the antenna's top over the torso's centre [m]."""
+_ANTENNA_M = 0.15
+_OVER_TORSO_M = 0.1
+"""Of the antenna's top, at least."""
 
 
 class Part(NamedTuple):
@@ -30,6 +31,11 @@ class Part(NamedTuple):
     """Whether it has the agent's colour."""
     links: IntArray
     """Body ids in the MuJoCo model, (n,)."""
+
+
+def antenna_m(robot: Robot) -> float:
+    """Return the height of the antenna's top over the torso's centre [m]."""
+    return max(_ANTENNA_M, robot.torso_half_height_m + _OVER_TORSO_M)
 
 
 class BodyPoses(NamedTuple):
@@ -104,7 +110,7 @@ def _parts(robot: Robot) -> tuple[Part, ...]:
     for geom in np.flatnonzero(model.geom_group == VISIBLE_GROUP):
         link, shape = _on_link(model, int(geom))
         name = model.geom(geom).name
-        painted = is_painted(name)
+        painted = is_painted(robot, name)
         links.setdefault((link, painted), []).append(shape)
     by_shape: dict[tuple[bytes, bool], tuple[Shape, list[int]]] = {}
     for (link, painted), shapes in links.items():
@@ -114,13 +120,13 @@ def _parts(robot: Robot) -> tuple[Part, ...]:
     parts = [
         Part(shape, painted, np.array(bodies)) for (_, painted), (shape, bodies) in by_shape.items()
     ]
-    return (*parts, _antenna(model))
+    return (*parts, _antenna(robot, model))
 
 
-def _antenna(model: mujoco.MjModel) -> Part:
+def _antenna(robot: Robot, model: mujoco.MjModel) -> Part:
     """Return the antenna under the name label, in the agent's colour; not part of the physics."""
     torso = model.body("torso").id
-    return Part(antenna(ANTENNA_M), True, np.array([torso]))
+    return Part(antenna(antenna_m(robot)), True, np.array([torso]))
 
 
 def _on_link(model: mujoco.MjModel, geom: int) -> tuple[int, Shape]:

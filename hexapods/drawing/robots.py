@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hexapods.domain.text import metres, whole
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.drawing.colormap import Rgb, mix, rgb
-from hexapods.drawing.robot_mesh import ANTENNA_M, Part, RobotMesh
+from hexapods.drawing.robot_mesh import Part, RobotMesh
 from hexapods.drawing.shapes import flag
 from hexapods.drawing.viser_internals.client import batch_colors
 from hexapods.runs.clocks import FINISH_LINE_M
@@ -149,12 +149,18 @@ class NameLabel:
         root: scene node of the lane.
         lane_spec: name and colour.
         x_m: centre of the lane [m].
+        antenna_m: height of the robot's antenna over its torso [m].
     """
 
     def __init__(
-        self, server: viser.ViserServer, root: str, lane_spec: LaneSpec, x_m: float
+        self,
+        server: viser.ViserServer,
+        root: str,
+        lane_spec: LaneSpec,
+        x_m: float,
+        antenna_m: float,
     ) -> None:
-        self._lane_spec, self._x_m = lane_spec, x_m
+        self._lane_spec, self._x_m, self._over_m = lane_spec, x_m, antenna_m + 0.03
         self._label = server.scene.add_label(
             f"{root}/label", lane_spec.name, anchor="bottom-center", font_screen_scale=_TEXT_SCALE
         )
@@ -181,7 +187,7 @@ class NameLabel:
         """
         # Rounded to the millimetre, so that a trembling robot causes no messages for its label.
         x, y, z = lane.qpos[:3].round(3).tolist()
-        position = (x + self._x_m, y, z + ANTENNA_M + 0.03)
+        position = (x + self._x_m, y, z + self._over_m)
         if position != self._position:
             self._label.position = self._position = position
         text = label_text(self._lane_spec, lane, ghost, ghost_name)

@@ -10,7 +10,7 @@ from hexapods.drawing.footgrid import FootGridDrawing
 from hexapods.drawing.ghosts import Ghosts, PhotoFinish
 from hexapods.drawing.lane_ground import LaneGround
 from hexapods.drawing.payload_and_push import PayloadCube, PushArrows
-from hexapods.drawing.robot_mesh import RobotMesh
+from hexapods.drawing.robot_mesh import RobotMesh, antenna_m
 from hexapods.drawing.robots import NameLabel, Robots
 from hexapods.drawing.track import LAMP, SQUARE_M, WORLD, Position, draw_ground, draw_lanes
 from hexapods.shows.stage_frame import AT_ORIGIN, LaneFrame, SceneSpec, StageFrame
@@ -144,7 +144,7 @@ class _RunScene:
         self._ghost_xs = xs[: len(ghost_spec.lane_specs)]
         self._ghost_robots: Robots | None = None
         self._labels = [
-            NameLabel(server, f"{SCENE_ROOT}/lane{n}", lane_spec, xs[n])
+            NameLabel(server, f"{SCENE_ROOT}/lane{n}", lane_spec, xs[n], antenna_m(spec.robot))
             for n, lane_spec in enumerate(lane_specs)
         ]
         self._payloads = [

@@ -51,11 +51,30 @@ def geom_shape(model: mujoco.MjModel, geom: int) -> Shape:
         return cylinder(size[0], size[1])
     if kind == types.mjGEOM_CAPSULE:
         return _capsule(size[0], size[1])
+    if kind == types.mjGEOM_MESH:
+        return mesh(model, int(model.geom_dataid[geom]))
     if kind in (types.mjGEOM_SPHERE, types.mjGEOM_ELLIPSOID):
         radii = size if kind == types.mjGEOM_ELLIPSOID else np.full(3, size[0])
         vertices, faces = _unit_sphere()
         return _smooth(vertices * radii, faces)
     raise ValueError(f"geom {geom} is of type {kind}, which the stage cannot draw")
+
+
+def mesh(model: mujoco.MjModel, number: int) -> Shape:
+    """Return a mesh of a model; at edges its faces share no vertices.
+
+    Faces share a vertex whose normals are in one of 26 directions.
+    """
+    start, count = int(model.mesh_vertadr[number]), int(model.mesh_vertnum[number])
+    first, faces_count = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
+    vertices = model.mesh_vert[start : start + count]
+    faces = model.mesh_face[first : first + faces_count]
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    towards = np.repeat((np.rint(normals) + 1).astype(int) @ (1, 3, 9), 3)
+    own, number_of = np.unique(faces.ravel() * 27 + towards, return_inverse=True)
+    return _smooth(vertices[own // 27], number_of.reshape(-1, 3))
 
 
 def box(half: FloatArray) -> Shape:

@@ -69,6 +69,7 @@ class _Scene:
         width = 2 * robot.span_m + _GAP_M
         self._offsets_m = [(number - (count - 1) / 2) * width for number in range(count)]
         self._options, self._width_m = options, count * width
+        self._height_m = max(0.08, robot.body_height_m / 2)
         self.model = _model(shown, self._width_m, options)
         self._data = mujoco.MjData(self.model)
         self._camera = mujoco.MjvCamera()
@@ -97,7 +98,7 @@ class _Scene:
             data.qpos[:] = placed.ravel()
             mujoco.mj_kinematics(model, data)
             mujoco.mj_camlight(model, data)
-            self._camera.lookat[1:] = y_m, 0.08
+            self._camera.lookat[1:] = y_m, self._height_m
             mujoco.mjv_updateScene(
                 model, data, view, None, self._camera, mujoco.mjtCatBit.mjCAT_ALL, scene
             )
@@ -155,12 +156,13 @@ def _model(shown: ShownPoses, width_m: float, options: VideoOptions) -> mujoco.M
         )
     colors = colors_of(shown.agents)
     for number, color in enumerate(colors):
-        robot = robot_spec(shown.problem.built_robot)
+        built = shown.problem.built_robot
+        robot = robot_spec(built)
         robot.delete(robot.geom("ground"))
         rgba = [*(int(color[at : at + 2], 16) / 255 for at in (1, 3, 5)), 1]
         dark = [0.3 * one + 0.22 for one in rgba[:3]] + [1]
         for geom in robot.geoms:
-            geom.rgba = rgba if is_painted(geom.name) else dark
+            geom.rgba = rgba if is_painted(built, geom.name) else dark
         # MuJoCo warns of options that differ; there is no physics here.
         robot.option.timestep, robot.option.integrator = (
             spec.option.timestep,

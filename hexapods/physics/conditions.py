@@ -1,7 +1,7 @@
 """Effects of a world on a MuJoCo model: servos, legs, ground, gravity and payload.
 
-Only parameters and geoms of existing bodies change, so that a state of one model continues in
-another. Sensor noise, delay and dead band are no part of a model.
+No joint is added or removed, so that a state of one model continues in another. Sensor noise, delay
+and dead band are no part of a model.
 """
 
 from collections.abc import Sequence
@@ -11,6 +11,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from hexapods.domain.body import Servo
 from hexapods.domain.disturbances import (
     Disturbance,
     Friction,
@@ -31,6 +32,8 @@ from hexapods.domain.world import World
 
 _NO_KG = 1e-6
 """Mass of each geom of a leg that is gone; MuJoCo needs some."""
+_NO_INERTIA = 1e-9
+"""Of each body of such a leg, if it has its own [kg·m²]."""
 _NO_TORQUE_NM = 1e-9
 _GROUND_HALF_WIDTH_M = 50.0
 _GROUND_END_M = 2000.0
@@ -84,10 +87,21 @@ def _lost(lost: Lost, target: _Target) -> None:
     """Make legs weightless and let nothing touch them; their joints stay in the state."""
     for leg in lost.legs:
         _cut_power(target, leg)
-        links = [joint.label for joint in legs_of(target.robot).of_leg(leg)]
-        for name in (*links, f"leg{leg}_foot"):
-            geom = target.spec.geom(name)
-            geom.mass, geom.contype = _NO_KG, 0
+        for body in target.spec.bodies:
+            if body.name.startswith(f"leg{leg}_"):
+                _make_weightless(body)
+
+
+def _make_weightless(body: mujoco.MjsBody) -> None:
+    """Take its mass from a body; of one with its own inertia too, of others that of the geoms."""
+    if body.explicitinertial:
+        body.mass, body.inertia, body.iquat = _NO_KG, [_NO_INERTIA] * 3, [1, 0, 0, 0]
+        body.fullinertia = [np.nan] * 6
+    for geom in body.geoms:
+        if geom.contype:
+            geom.contype = 0
+            if not body.explicitinertial:
+                geom.mass = _NO_KG
 
 
 @_apply.register
@@ -102,17 +116,14 @@ def _stuck(stuck: Stuck, target: _Target) -> None:
     """Let the servo hold the joint with all its torque, even without power: it is jammed."""
     legs = legs_of(target.robot)
     servo = target.spec.actuator(legs.joints[legs.index(stuck.leg, stuck.joint)].label)
-    set_servo(servo, target.robot, stuck.leg)
+    set_servo(servo, target.robot.servo_of(stuck.leg, stuck.joint))
 
 
-def set_servo(servo: mujoco.MjsActuator, robot: Robot, leg: int) -> None:
-    """Give a servo of a leg, counted from 1, the gains and the torque that it was built with."""
-    kp, kv, torque_nm = (
-        robot.of_legs(name)[leg - 1] for name in ("servo_kp", "servo_kv", "servo_torque_nm")
-    )
-    servo.gainprm[0] = kp
-    servo.biasprm[1:3] = -kp, -kv
-    servo.forcerange = [-torque_nm, torque_nm]
+def set_servo(servo: mujoco.MjsActuator, gains: Servo) -> None:
+    """Give an actuator the gains and the torque of a position servo."""
+    servo.gainprm[0] = gains.kp
+    servo.biasprm[1:3] = -gains.kp, -gains.kv
+    servo.forcerange = [-gains.torque_nm, gains.torque_nm]
 
 
 @_apply.register
@@ -159,8 +170,10 @@ def _rough(rough: Rough, target: _Target) -> None:
 def _payload(payload: Payload, target: _Target) -> None:
     if payload.kg == 0:
         return
-    half = payload_half_side_m(payload.kg)
-    target.spec.body("torso").add_geom(
+    half, carrier = payload_half_side_m(payload.kg), target.spec.body("torso")
+    if carrier.explicitinertial:  # such a body does not get heavier by a geom
+        carrier = carrier.add_body(name="payload")
+    carrier.add_geom(
         name="payload",
         type=mujoco.mjtGeom.mjGEOM_BOX,
         size=[half] * 3,

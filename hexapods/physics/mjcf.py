@@ -8,9 +8,11 @@ import numpy as np
 from hexapods.assets import models_dir
 from hexapods.domain.disturbances import Payload
 from hexapods.domain.kinematics import JOINT_LIMITS_RAD
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.robot import Robot
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.physics.conditions import apply_conditions, set_servo
+from hexapods.physics.model_spec import model_spec
 
 VISIBLE_GROUP = 1
 """The group of the visual geoms."""
@@ -49,6 +51,8 @@ def _compile_model(robot: Robot, conditions: World, forward_deg: float) -> mujoc
     for geom in spec.geoms:
         if geom.contype == 0 and geom.conaffinity == 0:  # those that are only drawn
             spec.delete(geom)
+    for mesh in list(spec.meshes):
+        spec.delete(mesh)
     apply_conditions(spec, robot, conditions, forward_deg)
     return spec.compile()
 
@@ -75,8 +79,15 @@ def robot_spec(robot: Robot) -> mujoco.MjSpec:
     return spec
 
 
-def is_painted(geom_name: str) -> bool:
-    """Return whether a visual geom is painted in the agent's colour."""
+@robot_spec.register
+def _(robot: ModelRobot) -> mujoco.MjSpec:
+    return model_spec(robot, mujoco.MjSpec.from_file(str(models_dir() / "torso.xml")))
+
+
+def is_painted(robot: Robot, geom_name: str) -> bool:
+    """Return whether a visual geom is painted in the agent's colour; of files' robots the torso."""
+    if isinstance(robot, ModelRobot):
+        return geom_name.startswith("torso")
     return not any(part in geom_name for part in _UNPAINTED)
 
 
@@ -117,7 +128,7 @@ def _leg_spec(robot: Robot, number: int) -> mujoco.MjSpec:
         joint, servo = spec.joint(link), spec.actuator(link)
         joint.armature, joint.range = robot.joint_armature, JOINT_LIMITS_RAD[link]
         joint.damping = np.array([robot.joint_damping, 0, 0])[: np.size(joint.damping)]
-        set_servo(servo, robot, number)
+        set_servo(servo, robot.servo_of(number, link))
     foot = spec.geom("foot")
     foot.mass, foot.size = own("foot_kg"), [robot.foot_radius_m, 0, 0]
     _set_friction(foot, robot)

@@ -39,7 +39,7 @@ def clearances_m(
         world: what happens by step; of a leg that is gone the foot is infinitely far from it.
     """
     feet = legs_of(robot).foot_positions(poses)
-    clearance: FloatArray = feet[..., 2] - robot.foot_radius_m
+    clearance: FloatArray = feet[..., 2] - robot.foot_radii_m
     for part, conditions in _stretches(steps, world):
         clearance[part] -= ground_heights(conditions, feet[part, :, :2])
         for lost in conditions.all_of(Lost):

@@ -13,8 +13,11 @@ from hexapods.domain.errors import Unreachable
 from hexapods.domain.gait import AnyGait, Gait, GaitSpec, gait_spec
 from hexapods.domain.grid import MAX_SIDE_M, FootGrid
 from hexapods.domain.kinematics import check_reach, legs_of, out_of_reach
+from hexapods.domain.legs import Legs
+from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import Record
 from hexapods.domain.robot import legs_written_out, written_out
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 
@@ -33,6 +36,7 @@ class LegPreview(Record):
         home_m: place of its foot at home: right, forward.
         mass_kg: its mass, with the foot.
         out_of_reach: what it cannot reach of its grid, in a sentence; null if it reaches all.
+        follows_grid: whether its foot can go to any place near home; one of two joints cannot.
         built: all its numbers, as in a request: its place by `x_m` and `y_m`.
         links_m: its joints and its foot while the robot stands, from the torso outward: right,
             forward, up from the torso's centre; null if it cannot stand.
@@ -44,6 +48,7 @@ class LegPreview(Record):
     home_m: tuple[float, float]
     mass_kg: float
     out_of_reach: str | None
+    follows_grid: bool
     built: dict[str, float]
     links_m: list[tuple[float, float, float]] | None
 
@@ -102,6 +107,7 @@ class Preview(Record):
         out_of_reach: what a leg cannot reach, in a sentence; null if all can.
         largest_side_m: largest grid side with which it may walk; null if it reaches none.
         safe_side_m: largest grid side with which every action is always possible; likewise.
+        beside_grid: which legs cannot follow the grid, in a sentence; null if all can.
         better: groups to take instead; null if it does not tip, or tips with any.
     """
 
@@ -124,7 +130,15 @@ class Preview(Record):
     out_of_reach: str | None
     largest_side_m: float | None
     safe_side_m: float | None
+    beside_grid: str | None
     better: BetterGroups | None
+
+
+def usual_side_m(robot: Robot, gait: str | GaitSpec) -> float:
+    """Return the side of the foot grid with which a robot begins [m]."""
+    if not isinstance(robot, ModelRobot):
+        return FootGrid.side_m
+    return min(usual_grid_side_m(robot, gait), MAX_SIDE_M)
 
 
 def preview(walk: WalkingProblem) -> Preview:
@@ -156,13 +170,14 @@ def preview(walk: WalkingProblem) -> Preview:
         cells_m=list(grid.places_m),
         built=written_out(robot),
         legs=[
-            LegPreview(leg, group, side, home, kg, unreached.get(leg), built, links)
-            for leg, (group, side, home, kg, built, links) in enumerate(
+            LegPreview(leg, group, side, home, kg, unreached.get(leg), follows, built, links)
+            for leg, (group, side, home, kg, follows, built, links) in enumerate(
                 zip(
                     gait.group_of_leg,
                     gait.mirror,
                     support.homes_m,
                     legs.masses_kg,
+                    legs.follows_grid,
                     legs_written_out(robot),
                     _standing_links_m(robot, gait),
                     strict=True,
@@ -184,7 +199,20 @@ def preview(walk: WalkingProblem) -> Preview:
         out_of_reach=next(iter(unreached.values()), None),
         largest_side_m=largest,
         safe_side_m=safe,
+        beside_grid=_beside_grid(legs),
         better=_better(walk, support) if least < STANDS_M else None,
+    )
+
+
+def _beside_grid(legs: Legs) -> str | None:
+    """Return a sentence on the legs that cannot follow a grid, if there are some."""
+    if all(legs.follows_grid):
+        return None
+    numbers = [leg for leg, follows in enumerate(legs.follows_grid, start=1) if not follows]
+    named = f"legs {', '.join(map(str, numbers))}" if numbers[1:] else f"leg {numbers[0]}"
+    return (
+        f"the joints of {named} move the foot in a surface only: it goes to the nearest place of "
+        "the right height that it reaches, beside the cell"
     )
 
 

@@ -1,5 +1,8 @@
 // Written by `make page-types` from the API's response models (app/api/*answers.py).
 
+export type JsonValue = unknown;
+export type GivenJsonValue = unknown;
+
 /**
  * Value of an action, [pair, cell], in a state, which is the cell of each pair.
  */
@@ -83,6 +86,35 @@ export interface Announcement {
   in_s: number;
 }
 /**
+ * A question, to which each participant gives one answer before the reveal.
+ */
+export interface Ask {
+  /**
+   * of answer: one of the choices, a number, a point on a chart, or a curve.
+   */
+  kind: "choice" | "number" | "point" | "curve";
+  /**
+   * the question, in Markdown.
+   */
+  text: string;
+  /**
+   * of which one is the answer, of kind `choice` alone; a name of an agent stands for the race that it wins.
+   */
+  choices: string[];
+  /**
+   * between which a number is.
+   */
+  minimum: number | null;
+  /**
+   * between which a number is.
+   */
+  maximum: number | null;
+  /**
+   * of the number; `m` and `cm` are compared with distances.
+   */
+  unit: string | null;
+}
+/**
  * A share of the seeds, and the verdict whether it exceeds one half.
  */
 export interface Beats {
@@ -139,6 +171,23 @@ export interface BetterGroups {
   states: number;
 }
 /**
+ * What may be chosen for a setting; without any of it, all that is valid.
+ */
+export interface Bounds {
+  /**
+   * least number, inclusive.
+   */
+  minimum: number | null;
+  /**
+   * greatest number, inclusive.
+   */
+  maximum: number | null;
+  /**
+   * the values of which one may be chosen.
+   */
+  choices: [number | string | boolean, ...(number | string | boolean)[]] | null;
+}
+/**
  * The moment of another race at which a race branches off; until then both are the same.
  */
 export interface Branch {
@@ -150,6 +199,224 @@ export interface Branch {
    * How many steps of that race are repeated.
    */
   step: number;
+}
+/**
+ * A page of a lesson.
+ */
+export interface Card {
+  /**
+   * by name the settings that may be changed, each with its bounds.
+   */
+  may: {
+    [k: string]: Bounds;
+  };
+  title: string | null;
+  /**
+   * in Markdown.
+   */
+  text: string;
+  /**
+   * what it opens of the page.
+   */
+  state: PageState | null;
+  /**
+   * the tabs of the panel that are shown; null for those of the depth.
+   */
+  show: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if")[] | null;
+  /**
+   * its question.
+   */
+  ask: Ask | null;
+  /**
+   * what the button runs, from the form of the state; null for nothing.
+   */
+  go: ("training" | "race" | "what-if") | null;
+  /**
+   * what is revealed afterwards, or its text alone.
+   */
+  reveal: Reveal | string | null;
+}
+/**
+ * A part of the page's state document; what is null stays as it is.
+ */
+export interface PageState {
+  /**
+   * the open view.
+   */
+  view: ("race" | "experiments" | "runs" | "compare") | null;
+  /**
+   * fields of the start that the page offers, by name: those of a training, settings of its agent (by themselves or in `settings`), `lanes` and `race_steps` of a race, `world` and `disturb`.
+   */
+  form: {
+    [k: string]: JsonValue;
+  } | null;
+  /**
+   * id of the run that is replayed.
+   */
+  run: string | null;
+  /**
+   * id of the run whose robots walk along.
+   */
+  ghost: string | null;
+  /**
+   * where the replay is held [s].
+   */
+  moment: number | null;
+  /**
+   * of the replay of a race.
+   */
+  clock: ("paper" | "wall" | "free") | null;
+  /**
+   * where the replay of a race ends.
+   */
+  end: ("time-out" | "all") | null;
+  /**
+   * how much of the page is shown.
+   */
+  depth: ("watch" | "try" | "study") | null;
+  /**
+   * the open tab of the panel.
+   */
+  tab: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
+  /**
+   * a second tab beside it.
+   */
+  pinned: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
+  /**
+   * its target: `leader`, `free`, or the number of a lane.
+   */
+  camera: ("leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
+  /**
+   * parts of the page that are hidden.
+   */
+  hidden: ("panel" | "card")[];
+}
+/**
+ * What is revealed after the answers.
+ */
+export interface Reveal {
+  /**
+   * in Markdown.
+   */
+  text: string;
+  /**
+   * the right choice or number, where it does not follow from the runs.
+   */
+  answer: number | string | null;
+}
+/**
+ * The results of a card, as who asks may see them.
+ */
+export interface CardResultsView {
+  card: number;
+  title: string;
+  ask: Ask | null;
+  is_revealed: boolean;
+  /**
+   * number of participants, of those who have answered, and of those whose run has finished.
+   */
+  participants: number;
+  /**
+   * number of participants, of those who have answered, and of those whose run has finished.
+   */
+  predicted: number;
+  /**
+   * number of participants, of those who have answered, and of those whose run has finished.
+   */
+  finished: number;
+  /**
+   * before the reveal a participant's own alone.
+   */
+  entries: ResultEntry[];
+  /**
+   * of all seeds, shortest first; empty before the reveal but for a teacher.
+   */
+  distances_m: number[];
+  interval: IntervalView | null;
+  /**
+   * what the lesson gives as the answer.
+   */
+  answer: number | string | null;
+}
+/**
+ * A participant's part of a card's results.
+ */
+export interface ResultEntry {
+  seed: number;
+  /**
+   * null where it is not to be seen.
+   */
+  name: string | null;
+  is_own: boolean;
+  prediction: JsonValue;
+  /**
+   * of the prediction; for participants after the reveal.
+   */
+  score: ScoreView | null;
+  run: RunOutcome | null;
+}
+/**
+ * How an answer compares with all seeds; null where that does not apply.
+ */
+export interface ScoreView {
+  /**
+   * whether it is the answer that the lesson gives.
+   */
+  is_right: boolean | null;
+  /**
+   * of races, the share of seeds in which the chosen agent won.
+   */
+  share: number | null;
+  /**
+   * share of the seeds below the number.
+   */
+  quantile: number | null;
+  /**
+   * difference from the lesson's answer, or else from the interquartile mean.
+   */
+  error: number | null;
+}
+/**
+ * A participant's run on a card.
+ */
+export interface RunOutcome {
+  id: string;
+  kind: "training" | "race" | "experiment";
+  state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
+  /**
+   * settings that they gave, by name.
+   */
+  given: {
+    [k: string]: unknown;
+  };
+  /**
+   * how far the robot walked; of a race the learner, at time-out.
+   */
+  distance_m: number | null;
+  /**
+   * agents of the lanes that won a race.
+   */
+  winners: string[];
+  /**
+   * among the seeds, 1 for the longest distance; null before the reveal.
+   */
+  rank: number | null;
+}
+/**
+ * Interquartile mean of the distances [m] with its 95 % interval, from three seeds on.
+ */
+export interface IntervalView {
+  iqm_m: number;
+  low_m: number | null;
+  high_m: number | null;
+}
+/**
+ * The texts of a card as HTML: of the card, of its question, and of what is revealed.
+ */
+export interface CardTexts {
+  text: string;
+  ask: string;
+  reveal: string;
 }
 /**
  * A change while it ran, and the step after which it applies; what stayed is left out.
@@ -584,6 +851,7 @@ export interface EventBodies {
   summary: SummaryEvent;
   viewers: ViewersEvent;
   robots: RobotsEvent;
+  room: RoomEvent;
 }
 /**
  * State of the server when the stream begins: the newest runs, or the one that is followed.
@@ -1012,17 +1280,7 @@ export interface LaneView {
  * runs computed beside it, which slows its wall clock.
  */
 export interface RaceResult {
-  /**
-   * @maxItems 6
-   */
-  lanes:
-    | []
-    | [LaneResult]
-    | [LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult, LaneResult];
+  lanes: LaneResult[];
   recording_sha256?: string | null;
   shared_machine?: boolean;
 }
@@ -1270,13 +1528,7 @@ export interface ExperimentConfig {
  */
 export interface ExperimentResult {
   trials: TrialCounts;
-  /**
-   * @maxItems 1000
-   */
   claims: ClaimVerdict[];
-  /**
-   * @maxItems 128
-   */
   files: string[];
   shared_machine?: boolean;
   finding?: string;
@@ -1475,6 +1727,48 @@ export interface RobotsEvent {
   count: number;
 }
 /**
+ * A room has changed; sent on its own stage alone.
+ */
+export interface RoomEvent {
+  code: string;
+  title: string;
+  language: string;
+  lesson_id: string | null;
+  /**
+   * `open`, `frozen`: nothing can be answered or started, or `ended`.
+   */
+  state: "open" | "frozen" | "ended";
+  /**
+   * number of the card that is shown, from 0.
+   */
+  card: number;
+  /**
+   * number of the lesson's cards.
+   */
+  cards: number;
+  /**
+   * numbers of the cards that are revealed.
+   */
+  revealed: number[];
+  /**
+   * number of those who are in it.
+   */
+  participants: number;
+  /**
+   * number of those who have answered the card that is shown.
+   */
+  predicted: number;
+  /**
+   * number of those who have started a run on it.
+   */
+  started: number;
+  /**
+   * id of the run on its stage.
+   */
+  spotlight: string | null;
+  needs_approval: boolean;
+}
+/**
  * An experiment, with the fields of its request body and their defaults.
  */
 export interface ExperimentOption {
@@ -1666,6 +1960,49 @@ export interface ExportOption {
   install: string | null;
 }
 /**
+ * What was found in the file of a robot, from which a person may choose otherwise.
+ */
+export interface FoundView {
+  file_format: "mjcf" | "urdf";
+  /**
+   * path in the zip of what was read; null if it was given alone.
+   */
+  file: string | null;
+  /**
+   * leg by leg: the names of the joints and of the foot in the file.
+   */
+  legs: ImportedLeg[];
+  /**
+   * names in the file of all that could be the foot of a leg.
+   */
+  feet: string[];
+  /**
+   * names of the file's keyframes.
+   */
+  keyframes: string[];
+  /**
+   * direction in which it walks, anticlockwise from x of its torso in the file.
+   */
+  forward_deg: number;
+  /**
+   * whether its feet reach a foot grid that suits its size.
+   */
+  reaches_grid: boolean;
+}
+/**
+ * A leg as it is called in the file.
+ */
+export interface ImportedLeg {
+  /**
+   * names of its joints, from the torso to the foot.
+   */
+  joints: string[];
+  /**
+   * name of its foot: of a geom, a site, or a body or link; fit for `Choices.feet`.
+   */
+  foot: string;
+}
+/**
  * Gait analysis of a race, lane by lane, or of a training; times are robot time [s].
  */
 export interface GaitAnalysis {
@@ -1851,6 +2188,179 @@ export interface GaitOption {
   pairs: number[][];
 }
 /**
+ * A question, to which each participant gives one answer before the reveal.
+ */
+export interface GivenAsk {
+  /**
+   * of answer: one of the choices, a number, a point on a chart, or a curve.
+   */
+  kind: "choice" | "number" | "point" | "curve";
+  /**
+   * the question, in Markdown.
+   */
+  text: string;
+  /**
+   * of which one is the answer, of kind `choice` alone; a name of an agent stands for the race that it wins.
+   */
+  choices?: string[];
+  /**
+   * between which a number is.
+   */
+  minimum?: number | null;
+  /**
+   * between which a number is.
+   */
+  maximum?: number | null;
+  /**
+   * of the number; `m` and `cm` are compared with distances.
+   */
+  unit?: string | null;
+}
+/**
+ * What may be chosen for a setting; without any of it, all that is valid.
+ */
+export interface GivenBounds {
+  /**
+   * least number, inclusive.
+   */
+  minimum?: number | null;
+  /**
+   * greatest number, inclusive.
+   */
+  maximum?: number | null;
+  /**
+   * the values of which one may be chosen.
+   */
+  choices?: [number | string | boolean, ...(number | string | boolean)[]] | null;
+}
+/**
+ * A page of a lesson.
+ */
+export interface GivenCard {
+  /**
+   * by name the settings that may be changed, each with its bounds.
+   */
+  may?: {
+    [k: string]: GivenBounds;
+  };
+  title?: string | null;
+  /**
+   * in Markdown.
+   */
+  text: string;
+  /**
+   * what it opens of the page.
+   */
+  state?: GivenPageState | null;
+  /**
+   * the tabs of the panel that are shown; null for those of the depth.
+   */
+  show?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if")[] | null;
+  /**
+   * its question.
+   */
+  ask?: GivenAsk | null;
+  /**
+   * what the button runs, from the form of the state; null for nothing.
+   */
+  go?: ("training" | "race" | "what-if") | null;
+  /**
+   * what is revealed afterwards, or its text alone.
+   */
+  reveal?: GivenReveal | string | null;
+}
+/**
+ * A part of the page's state document; what is null stays as it is.
+ */
+export interface GivenPageState {
+  /**
+   * the open view.
+   */
+  view?: ("race" | "experiments" | "runs" | "compare") | null;
+  /**
+   * fields of the start that the page offers, by name: those of a training, settings of its agent (by themselves or in `settings`), `lanes` and `race_steps` of a race, `world` and `disturb`.
+   */
+  form?: {
+    [k: string]: GivenJsonValue;
+  } | null;
+  /**
+   * id of the run that is replayed.
+   */
+  run?: string | null;
+  /**
+   * id of the run whose robots walk along.
+   */
+  ghost?: string | null;
+  /**
+   * where the replay is held [s].
+   */
+  moment?: number | null;
+  /**
+   * of the replay of a race.
+   */
+  clock?: ("paper" | "wall" | "free") | null;
+  /**
+   * where the replay of a race ends.
+   */
+  end?: ("time-out" | "all") | null;
+  /**
+   * how much of the page is shown.
+   */
+  depth?: ("watch" | "try" | "study") | null;
+  /**
+   * the open tab of the panel.
+   */
+  tab?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
+  /**
+   * a second tab beside it.
+   */
+  pinned?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
+  /**
+   * its target: `leader`, `free`, or the number of a lane.
+   */
+  camera?: ("leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
+  /**
+   * parts of the page that are hidden.
+   */
+  hidden?: ("panel" | "card")[];
+}
+/**
+ * What is revealed after the answers.
+ */
+export interface GivenReveal {
+  /**
+   * in Markdown.
+   */
+  text?: string;
+  /**
+   * the right choice or number, where it does not follow from the runs.
+   */
+  answer?: number | string | null;
+}
+/**
+ * A lesson.
+ */
+export interface GivenLesson {
+  /**
+   * in plain text.
+   */
+  title: string;
+  /**
+   * of its texts, such as `en` or `de-AT`.
+   */
+  language?: string;
+  /**
+   * what is learned, each a line of plain text.
+   */
+  aims?: string[];
+  /**
+   * its pages, in order.
+   *
+   * @minItems 1
+   */
+  cards: [GivenCard, ...GivenCard[]];
+}
+/**
  * A group of legs.
  */
 export interface GroupPreview {
@@ -1893,6 +2403,13 @@ export interface Interval95 {
   high: number | null;
 }
 /**
+ * A participant who has joined: name, and the seed of all their runs.
+ */
+export interface JoinedView {
+  name: string;
+  seed: number;
+}
+/**
  * A leg, with its foot in the robot frame.
  */
 export interface LegPreview {
@@ -1924,6 +2441,10 @@ export interface LegPreview {
    */
   out_of_reach: string | null;
   /**
+   * whether its foot can go to any place near home; one of two joints cannot.
+   */
+  follows_grid: boolean;
+  /**
    * all its numbers, as in a request: its place by `x_m` and `y_m`.
    */
   built: {
@@ -1935,6 +2456,71 @@ export interface LegPreview {
   links_m: [number, number, number][] | null;
 }
 /**
+ * All lessons: the built-in ones, then those that were stored, newest first.
+ */
+export interface LessonList {
+  items: ListedLesson[];
+}
+/**
+ * A lesson in a list.
+ */
+export interface ListedLesson {
+  id: string;
+  title: string;
+  language: string;
+  aims: string[];
+  /**
+   * number of its cards.
+   */
+  cards: number;
+  is_built_in: boolean;
+}
+/**
+ * A lesson with its id.
+ */
+export interface LessonView {
+  /**
+   * in plain text.
+   */
+  title: string;
+  /**
+   * of its texts, such as `en` or `de-AT`.
+   */
+  language: string;
+  /**
+   * what is learned, each a line of plain text.
+   */
+  aims: string[];
+  /**
+   * its pages, in order.
+   *
+   * @minItems 1
+   */
+  cards: [Card, ...Card[]];
+  /**
+   * of the lesson.
+   */
+  id: string;
+  /**
+   * whether it comes with the server.
+   */
+  is_built_in: boolean;
+  /**
+   * the texts of each card as HTML that a page may show as it is.
+   */
+  html: CardTexts[];
+}
+/**
+ * A room in a list.
+ */
+export interface ListedRoom {
+  code: string;
+  title: string;
+  state: "open" | "frozen" | "ended";
+  participants: number;
+  created_at: string;
+}
+/**
  * Machine on which the experiment ran; empty before its start.
  */
 export interface Machine {
@@ -1942,11 +2528,58 @@ export interface Machine {
   cores?: number | null;
 }
 /**
+ * The participant who asks.
+ */
+export interface Me {
+  name: string;
+  seed: number;
+  predictions: OwnAnswer[];
+  runs: OwnRun[];
+}
+/**
+ * What a participant has answered to the question of a card.
+ */
+export interface OwnAnswer {
+  card: number;
+  value: JsonValue;
+}
+/**
+ * A run that a participant has started, and the card on which that was.
+ */
+export interface OwnRun {
+  run_id: string;
+  card: number;
+}
+/**
  * A short text under a heading.
  */
 export interface NarrativeSection {
   heading: string;
   text: string;
+}
+/**
+ * A lesson that was stored.
+ */
+export interface NewLesson {
+  id: string;
+  /**
+   * address of the page with it.
+   */
+  link: string;
+}
+/**
+ * A room that was opened.
+ */
+export interface NewRoom {
+  code: string;
+  /**
+   * of its page, as this client reaches it.
+   */
+  address: string;
+  /**
+   * of the address, an SVG image as a data URI.
+   */
+  qr_code: string;
 }
 /**
  * Options, defaults, limits and help texts of all forms.
@@ -2154,6 +2787,10 @@ export interface RobotOption {
       | undefined;
   };
   /**
+   * side of a foot grid that suits its size.
+   */
+  grid_side_m: number;
+  /**
    * names of the joints of each leg, from the torso to the foot.
    */
   joints: string[][];
@@ -2212,6 +2849,32 @@ export interface WorldOption {
   }[];
 }
 /**
+ * A participant, as the teacher sees them.
+ */
+export interface Person {
+  seed: number;
+  name: string;
+  /**
+   * whether they have not left.
+   */
+  is_present: boolean;
+  is_name_hidden: boolean;
+  is_approved: boolean;
+  joined_at: string;
+  /**
+   * whether they have answered the card that is shown.
+   */
+  has_predicted: boolean;
+  /**
+   * of what they started last on the card that is shown.
+   */
+  run_id: string | null;
+  /**
+   * of what they started last on the card that is shown.
+   */
+  run_state: ("queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted") | null;
+}
+/**
  * Results of a setting, pooled over its gaits, with the best known as a share of greedy's.
  */
 export interface PooledView {
@@ -2256,6 +2919,13 @@ export interface SharedBy {
   share: number;
   low: number | null;
   high: number | null;
+}
+/**
+ * An answer that is kept.
+ */
+export interface PredictionView {
+  card: number;
+  value: JsonValue;
 }
 /**
  * What is known of a walking problem beforehand.
@@ -2358,6 +3028,10 @@ export interface Preview {
    * largest grid side with which every action is always possible; likewise.
    */
   safe_side_m: number | null;
+  /**
+   * which legs cannot follow the grid, in a sentence; null if all can.
+   */
+  beside_grid: string | null;
   /**
    * groups to take instead; null if it does not tip, or tips with any.
    */
@@ -2513,6 +3187,87 @@ export interface ReplayView {
    */
   lowest_level: number;
   highest_level: number;
+}
+/**
+ * The results of a room, by card.
+ */
+export interface ResultsView {
+  code: string;
+  cards: CardResultsView[];
+}
+/**
+ * The rooms that who asks may know: for a teacher all, for a participant their own.
+ */
+export interface RoomList {
+  items: ListedRoom[];
+}
+/**
+ * A room.
+ */
+export interface RoomView {
+  code: string;
+  title: string;
+  language: string;
+  lesson_id: string | null;
+  /**
+   * `open`, `frozen`: nothing can be answered or started, or `ended`.
+   */
+  state: "open" | "frozen" | "ended";
+  /**
+   * number of the card that is shown, from 0.
+   */
+  card: number;
+  /**
+   * number of the lesson's cards.
+   */
+  cards: number;
+  /**
+   * numbers of the cards that are revealed.
+   */
+  revealed: number[];
+  /**
+   * number of those who are in it.
+   */
+  participants: number;
+  /**
+   * number of those who have answered the card that is shown.
+   */
+  predicted: number;
+  /**
+   * number of those who have started a run on it.
+   */
+  started: number;
+  /**
+   * id of the run on its stage.
+   */
+  spotlight: string | null;
+  needs_approval: boolean;
+  /**
+   * of who asks.
+   */
+  role: "teacher" | "participant" | "spectator";
+  shown: Card;
+  html: CardTexts;
+  /**
+   * the participant who asks; null for others.
+   */
+  me: Me | null;
+  /**
+   * all participants, for a teacher alone.
+   */
+  people: Person[];
+  /**
+   * all of it, for a teacher alone.
+   */
+  lesson: LessonView | null;
+  /**
+   * of its page, as this client reaches it.
+   */
+  address: string;
+  /**
+   * of the address, an SVG image as a data URI.
+   */
+  qr_code: string;
 }
 /**
  * Page of runs of every kind.
@@ -3011,4 +3766,8 @@ export interface WholeRobotView {
     [k: string]: unknown;
   };
   preview: Preview;
+  /**
+   * what was found in its file; null if it was made here.
+   */
+  found: FoundView | null;
 }

@@ -80,7 +80,7 @@ export function followBody() {
       if (!answer) return;
       told.value = answer;
       if (body.peek() || answer.of !== question.peek()) return;
-      first.value = openBody(byValue(form.peek().robot), form.peek().gait, answer.known);
+      first.value = openBody(wholeRobot(form.peek().robot), form.peek().gait, answer.known);
       body.value = first.value;
     }),
     effect(() => {
@@ -94,7 +94,7 @@ export function followBody() {
 }
 
 /** A stored robot as what it is made of: its body is another one's when it is changed. @param {RobotConfig} robot */
-const byValue = (robot) => storedRobot(robot, served().robots)?.body ?? robot;
+const wholeRobot = (robot) => storedRobot(robot, served().robots)?.body ?? robot;
 
 /** Forget the body that was edited. */
 function clear() {
@@ -115,7 +115,7 @@ function clear() {
 export const openingError = computed(() => (body.value ? null : reply.value.error && messageOf(reply.value.error)));
 
 /** Whether the server has told of the body as it is now. */
-const isTold = computed(() => told.value?.of === question.value && !reply.value.error);
+export const isTold = computed(() => told.value?.of === question.value && !reply.value.error);
 
 /** Whether the robot cannot be built as it is. */
 export const isRefused = computed(() => reply.value.error !== null);

@@ -122,7 +122,7 @@ const TOAST_MS = 4000;
 let toastTimer;
 
 /** @param {string} message */
-function toast(message) {
+export function toast(message) {
   toastMessage.value = message;
   clearTimeout(toastTimer);
   toastTimer = setTimeout(() => (toastMessage.value = null), TOAST_MS);

@@ -32,10 +32,11 @@ export function inWords({ states, actions, tips, margin_m, law_m }) {
 }
 
 /** What speaks against it, as sentences. @param {Preview} known */
-export function objections({ groups, tips, out_of_reach, table_fits, values }) {
+export function objections({ groups, tips, out_of_reach, beside_grid, table_fits, values }) {
   const tipping = groups.filter(({ margin_m }) => margin_m < 0).map(({ legs }) => legs.join("+"));
   return [
     out_of_reach,
+    beside_grid && `It walks beside its grid: ${beside_grid}.`,
     tips && `It tips while legs ${listed(tipping)} swing: its centre of mass is not between the other feet.`,
     !table_fits && `A table of ${whole(values)} values is too large: only learners without one can start.`,
   ].filter((one) => typeof one === "string");

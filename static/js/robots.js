@@ -127,10 +127,16 @@ function legsBeside({ azimuths_deg }) {
 
 // ---- robots that are stored
 
-/** The stored robot that the form may have by its id. @type {(robot: RobotConfig | undefined, robots: Robot[]) => Robot | undefined} */
+/**
+ * The stored robot that the form has by its id.
+ * @type {(robot: RobotConfig | undefined, robots: Robot[]) => Robot | undefined}
+ */
 export const storedRobot = (robot, robots) => robots.find(({ id }) => id !== null && id === robot);
 
-/** Those that can be chosen: not the hidden ones, but for what is chosen. @type {(robots: Robot[], chosen: unknown[]) => Robot[]} */
+/**
+ * Those that can be chosen: hidden ones only if they are chosen.
+ * @type {(robots: Robot[], chosen: unknown[]) => Robot[]}
+ */
 export const offered = (robots, chosen) => robots.filter(({ name, hidden }) => !hidden || chosen.includes(name));
 
 /**

@@ -61,7 +61,10 @@ export const flatParts = (clockName) => FLAT_PARTS[clockName] ?? "Flat parts are
  */
 export const choicesOf = (list, nameOf) => (list ?? []).map(({ name }) => [name, sentence(nameOf(name))]);
 
-/** Robots to choose from, those that are hidden only if they are chosen. @type {(chosen: unknown[]) => [string, string][]} */
+/**
+ * Robots to choose from, those that are hidden only if they are chosen.
+ * @type {(chosen: unknown[]) => [string, string][]}
+ */
 export const robotChoices = (chosen) =>
   offered(options.value?.robots ?? [], chosen).map(({ name, title }) => [name, title]);
 
@@ -186,7 +189,8 @@ const sweptIn = (config) =>
  * @param {Run} run
  */
 export const describeRun = ({ config }) => {
-  const robots = (config.robots ?? []).map((one) => customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own robot");
+  const robots = (config.robots ?? []).map((one) =>
+    customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own robot");
   const observations = (config.observations ?? []).map(observationTitle);
   return [
     ...(config.experiment === "sweep" ? sweptIn(config) : []), worldsIn(config).join(", "),

@@ -9,6 +9,7 @@ import pytest
 from hexapods.domain import robot_documents
 from hexapods.domain.robot import document_of, robot
 from tests.cli.running import in_process, output, refusal
+from tests.imports.robots import dog
 from tests.served import Served
 
 BODY = {"preset": "dog", "femur_m": 0.0955}
@@ -99,3 +100,19 @@ def test_a_running_server_is_asked(folder: Path) -> None:
         assert names(folder, "--hidden") == []
     finally:
         served.end()
+
+
+def test_a_robot_from_a_file_is_imported_with_what_was_guessed(folder: Path) -> None:
+    (folder / "spot.xml").write_text(dog())
+    data = ("--data", str(folder / "data"))
+    said = in_process("robots", "import", "spot.xml", *data, folder=folder)
+    assert said.returncode == 0, said.stderr
+    assert "is robot spot (" in said.stdout
+    assert "Guessed: " in said.stdout
+    assert told(folder, "show", "spot")["states"] == 25
+    told(folder, "export", "spot", "--out", "out.xml")
+    told(folder, "export", "spot", "--out", "out.json")
+    told(folder, "delete", "spot")
+    assert told(folder, "import", "out.json", "--name", "Spot")["name"] == "Spot"
+    refused = refusal("robots", "import", "no.xml", *data, folder=folder, run=in_process)
+    assert "cannot read no.xml" in refused

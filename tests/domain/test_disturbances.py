@@ -102,8 +102,8 @@ def test_every_declared_size_is_a_field() -> None:
         ("limp:legs=1:angle=9", "choose one of: at_step, until_step, legs"),
         ("slope:degrees=80", "degrees must be a number from 0 to 30"),
         ("slope:degrees=nan", "degrees must be a number from 0 to 30"),
-        ("stuck:leg=2:joint=knee:angle_rad=0", "joint must be coxa, or femur, or tibia"),
-        ("stuck:leg=2:joint=tibia:angle_rad=1", "the tibia turns from -2.8 to 0 rad, not to 1"),
+        ("stuck:leg=2:joint=k/nee:angle_rad=0", "name of a joint, such as coxa, femur, tibia"),
+        ("stuck:leg=2:joint=knee:angle_rad=8", "angle_rad must be a number from -7 to 7 rad"),
         ("patch:from_m=1:to_m=1:friction=1", "to_m must be over from_m, 1"),
         ("push:impulse_ns=1:until=3", "leave out until_step"),
         ("sensor-noise:sd_m=-0.001", "sd_m must be a number from 0 to 0.05 m"),
@@ -114,6 +114,24 @@ def test_every_declared_size_is_a_field() -> None:
 def test_what_is_not_valid_is_refused_by_name(text: str, complaint: str) -> None:
     with pytest.raises(InvalidInput, match=complaint):
         parse_disturbance(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        (
+            "stuck:leg=2:joint=knee:angle_rad=0",
+            "leg 2 has no joint knee; its joints are: coxa, femur, tibia",
+        ),
+        (
+            "stuck:leg=2:joint=tibia:angle_rad=1",
+            "the tibia of leg 2 turns from -2.8 to 0 rad, not to 1",
+        ),
+    ],
+)
+def test_a_joint_is_one_of_the_robot_and_turns_within_its_limits(text: str, complaint: str) -> None:
+    with pytest.raises(InvalidInput, match=complaint):
+        parse_disturbance(text).check(Robot())
 
 
 @pytest.mark.parametrize("legs", ["1,4", 1, [], [True], [1.5], ["1"], None])

@@ -198,4 +198,6 @@ def test_an_id_alone_is_the_robot_too(stored: Robot) -> None:
 
 @pytest.mark.parametrize("made", [*PRESETS.values(), robot(BODY)], ids=lambda one: one.name)
 def test_a_robot_by_value_needs_no_other(made: Robot) -> None:
-    assert robot(by_value(made)) == made
+    value = by_value(made)
+    assert value is not None
+    assert robot(value) == made

@@ -12,6 +12,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,8 @@ import pytest
 
 from app.storage.disk_space import MB
 from app.storage.run import TABLE
+from hexapods.domain import robot_documents
+from hexapods.domain.robot import as_mapping, document_of, robot
 from tests.archive.exported import export_run
 from tests.promises.breaking_writes import OPERATIONS
 from tests.promises.length import at_length
@@ -153,6 +156,60 @@ def test_a_server_that_is_killed_leaves_no_half_run(
             table = server.client.get(f"/api/v1/trainings/{run_id}/q-table?format=npz")
             assert table.status_code == 200, table.text
     assert acknowledged
+
+
+@pytest.mark.timeout(60 + 30 * KILLS)
+def test_a_server_that_is_killed_leaves_no_half_robot(
+    launch: Callable[..., Served], tmp_path: Path
+) -> None:
+    chance = random.Random(32)
+    unlimited = {"HEXAPODS_STARTS_PER_MINUTE": "1000000"}
+    server, told = launch(**unlimited), RobotsTold()
+    for _ in range(KILLS):
+        thread = threading.Thread(target=store_repeatedly, args=(server.address, told))
+        seen = len(told.stored)
+        thread.start()
+        while len(told.stored) < seen + 5:
+            time.sleep(0.01)
+        time.sleep(chance.uniform(0, 0.3))
+        server.process.send_signal(signal.SIGKILL)
+        thread.join()
+        server.end(signal.SIGKILL)
+        server = launch(**unlimited)
+        ids = [one["id"] for one in server.client.get("/api/v1/robots?hidden=true").json()["items"]]
+        kept = told.stored - told.deleted
+        assert kept - {told.last} <= set(ids) <= kept | {told.last}
+        for robot_id in ids:
+            document = server.client.get(f"/api/v1/robots/{robot_id}/file").content
+            assert robot_documents.id_of(document) == robot_id
+        files = {path.name for path in tmp_path.glob("robots/*/*")}
+        assert files == {f"{robot_id}.json" for robot_id in ids}
+
+
+@dataclass
+class RobotsTold:
+    """Ids of robots that a server said it had stored and deleted; the last one that was asked."""
+
+    stored: set[str] = field(default_factory=set)
+    deleted: set[str] = field(default_factory=set)
+    last: str = ""
+
+
+def store_repeatedly(address: str, told: RobotsTold) -> None:
+    """Store robots, and delete every other one, until the server is gone."""
+    with httpx2.Client(base_url=address, timeout=60, trust_env=False) as client:
+        while True:
+            made = robot({"preset": "dog", "femur_m": 0.07 + 1e-6 * len(told.stored)})
+            told.last = robot_documents.id_of(document_of(made))
+            try:
+                answer = client.post("/api/v1/robots", json={"robot": as_mapping(made)})
+                assert answer.status_code in (200, 201), answer.text
+                told.stored.add(told.last)
+                if len(told.stored) % 4:
+                    client.delete(f"/api/v1/robots/{told.last}").raise_for_status()
+                    told.deleted.add(told.last)
+            except httpx2.TransportError:
+                return
 
 
 def all_ids(server: Served) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, String, cast, delete, func, insert, or_, select, update
 
@@ -27,8 +27,23 @@ from hexapods.files import is_disk_full, write_atomically
 
 UPLOAD_ENDING = ".upload"
 """Of the files that robots were read from."""
+FOUND_ENDING = ".found"
+"""Of what was found in them, in JSON."""
+_ENDINGS = (ENDING, UPLOAD_ENDING, FOUND_ENDING)
 _versions = itertools.count()
 _logger = logging.getLogger(__name__)
+
+
+class Origin(NamedTuple):
+    """The file that a robot was read from.
+
+    Attributes:
+        upload: the file.
+        found: what was found in it, in JSON.
+    """
+
+    upload: bytes
+    found: bytes
 
 
 class Robots:
@@ -112,22 +127,28 @@ class Robots:
         """
         return robot_documents.find(self.get(robot_id).id)
 
-    def upload(self, robot_id: str) -> bytes | None:
-        """Return the file that a stored robot was read from; None if it was made here."""
+    def origin(self, robot_id: str) -> Origin | None:
+        """Return the file that a stored robot was read from; None if it was made here.
+
+        Raises:
+            NotFound: if there is no such robot.
+        """
+        self.get(robot_id)
         try:
-            return self._path(robot_id, UPLOAD_ENDING).read_bytes()
+            upload = self._path(robot_id, UPLOAD_ENDING).read_bytes()
+            return Origin(upload, self._path(robot_id, FOUND_ENDING).read_bytes())
         except OSError:
             return None
 
     def add(
-        self, document: bytes, about: StoredRobot, upload: bytes | None = None
+        self, document: bytes, about: StoredRobot, origin: Origin | None = None
     ) -> tuple[StoredRobot, bool]:
         """Store a robot, unless it is stored already; then it is hidden no longer.
 
         Args:
             document: of the robot; validated.
             about: what is stored beside it.
-            upload: the file that it was read from.
+            origin: the file that it was read from, if it was.
 
         Returns:
             the robot as stored, and whether it is new.
@@ -142,19 +163,19 @@ class Robots:
                 return (self.change(stored.id, hidden=False) if stored.hidden else stored), False
             if distinct_name(about.name, self._names()) != about.name:
                 raise _name_taken(about.name)
-            with self.adding([(about, document)], upload) as new:
+            with self.adding([(about, document)], origin) as new:
                 self._database.write(lambda connection: self.insert(connection, new))
             return about, True
 
     @contextmanager
     def adding(
-        self, robots: Iterable[tuple[StoredRobot, bytes]], upload: bytes | None = None
+        self, robots: Iterable[tuple[StoredRobot, bytes]], origin: Origin | None = None
     ) -> Iterator[Sequence[StoredRobot]]:
         """Write the files of robots that are not stored, whose rows are inserted in the context.
 
         Args:
             robots: each with its document; its name is made distinct.
-            upload: the file that all of them were read from.
+            origin: the file that all of them were read from, if they were.
 
         Yields:
             those whose rows are to be inserted.
@@ -169,7 +190,7 @@ class Robots:
                     new[robot.id] = named, document
             try:
                 for robot, document in new.values():
-                    self._write_files(robot.id, document, upload)
+                    self._write_files(robot.id, document, origin)
                 yield [robot for robot, _ in new.values()]
             except StorageFailed:
                 raise  # it may have been committed; if it was not, the next start deletes the files
@@ -179,8 +200,10 @@ class Robots:
                 raise
             self._tell(robot for robot, _ in new.values())
 
-    def _write_files(self, robot_id: str, document: bytes, upload: bytes | None = None) -> None:
-        files = {ENDING: document} | ({} if upload is None else {UPLOAD_ENDING: upload})
+    def _write_files(self, robot_id: str, document: bytes, origin: Origin | None) -> None:
+        files = {ENDING: document}
+        if origin is not None:
+            files |= {UPLOAD_ENDING: origin.upload, FOUND_ENDING: origin.found}
         self._disk_space.check(sum(map(len, files.values())))
         try:
             for ending, data in files.items():
@@ -195,7 +218,7 @@ class Robots:
 
     def _remove_files(self, robot_id: str) -> None:
         # A file that stays is deleted by the next start.
-        for ending in (ENDING, UPLOAD_ENDING):
+        for ending in _ENDINGS:
             with suppress(OSError):
                 self._path(robot_id, ending).unlink()
 
@@ -238,6 +261,37 @@ class Robots:
             self._tell([changed])
             return changed
 
+    def replace(
+        self, robot_id: str, document: bytes, about: StoredRobot, origin: Origin
+    ) -> StoredRobot:
+        """Store a robot in the place of another, whose name it takes.
+
+        The other is deleted; one that runs use is kept, hidden, under another name.
+
+        Args:
+            robot_id: id of the other.
+            document: of the robot.
+            about: what is stored beside it.
+            origin: the file that both were read from.
+
+        Raises:
+            NotFound: if there is no such robot.
+            StorageFull: if there is too little disk space.
+        """
+        with self.lock:
+            old = self.get(robot_id)
+            if about.id == old.id:
+                fields = ("gait", "guesses", "repairs", "choices")
+                return self.change(old.id, **{name: getattr(about, name) for name in fields})
+            used = self._database.read(lambda connection: _users(connection, robot_id))
+            if used:
+                earlier = distinct_name(f"{old.name[:80]}, earlier", self._names())
+                self.change(old.id, name=earlier, hidden=True)
+            else:
+                self.delete(old.id)
+            stored, is_new = self.add(document, replace(about, name=old.name), origin)
+            return stored if is_new else self.change(stored.id, choices=about.choices)
+
     def delete(self, robot_id: str) -> None:
         """Delete a robot.
 
@@ -274,7 +328,7 @@ class Robots:
         orphans = [
             path
             for path in self._folder.iterdir()
-            if path.suffix not in (ENDING, UPLOAD_ENDING) or path.stem not in ids
+            if path.suffix not in _ENDINGS or path.stem not in ids
         ]
         for path in orphans:
             with suppress(OSError):

@@ -2,7 +2,7 @@
 import { announcement } from "../headline.js";
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { bodyIsOpen } from "../form.js";
+import { bodyIsOpen, robotsAreOpen } from "../form.js";
 import { page } from "../page-state.js";
 import { clickedCell, helpIsOpen, isPhone, nextTheme, present, share, theme, toastMessage } from "../page.js";
 import { card, closeLesson, openLesson } from "../lesson.js";
@@ -24,6 +24,7 @@ export const App = () => html`
   <main id="main" tabindex="-1"><${Main} /></main>
   <${Help} />
   <${BodyEditor} />
+  <${StoredRobots} />
   <${Toast} />
   <p class="sr-only" role="status">${announcement}</p>
 `;
@@ -88,6 +89,13 @@ const loadBodyEditor = () => withStyle("body-editor", import("./body-editor.js")
 
 const BodyEditor = () => (bodyIsOpen.value || loaded.value["editor of the body"]) && html`
   <${Loaded} name="editor of the body" load=${loadBodyEditor} />
+`;
+
+const loadStoredRobots = () =>
+  withStyle("stored-robots", import("./stored-robots.js")).then((own) => own.StoredRobots);
+
+const StoredRobots = () => (robotsAreOpen.value || loaded.value["list of robots"]) && html`
+  <${Loaded} name="list of robots" load=${loadStoredRobots} />
 `;
 
 const loadDesk = () => withStyle("presenter", import("./desk.js")).then(({ Desk }) => Desk);

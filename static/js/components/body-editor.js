@@ -1,23 +1,28 @@
 // The editor of the robot's body: a plan from above, the numbers of its legs and its torso, and what is known of it.
-import { useEffect } from "preact/hooks";
+import { useEffect, useRef } from "preact/hooks";
 import {
   addOne, body, cancel, canUndo, canUse, chooseLeg, chosenLeg, consequences, followBody, followerOf, goToMistake,
   isMirrored, isRefused, mistakes, noFewerLegs, noMoreLegs, objectionsAt, openingError, part, placeInWords,
   removeChosen, takeBetter, told, undo, useBody,
 } from "../body-editor.js";
+import { bodyName, canSave, followSaving, saveBody, unsaved } from "../body-saving.js";
 import { reachInWords } from "../body-words.js";
 import { bodyIsOpen } from "../form.js";
 import { count } from "../format.js";
 import { inWords } from "../preview.js";
+import { isOperator } from "../selectors.js";
+import { limitsOf } from "../settings.js";
 import { BodyFields } from "./body-fields.js";
 import { BodyPicture } from "./body-picture.js";
 import { BodyPlan } from "./body-plan.js";
-import { Dialog, Held, html, Icon } from "./elements.js";
+import { Dialog, html, Icon } from "./elements.js";
+import { Held } from "./problems.js";
 
 const TEXT = "input[type=text]";
 
 export function BodyEditor() {
   useEffect(followBody, []);
+  useEffect(followSaving, []);
   /** A text that is typed has its own undo. @param {KeyboardEvent & { target: Element }} event */
   const onKeyDown = (event) => {
     const isUndo = event.key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey) && !event.shiftKey;
@@ -36,16 +41,43 @@ export function BodyEditor() {
         : html`<div class="body-main"><${Opening} /></div>`}
       <div class="body-foot">
         <${Mistakes} />
+        ${bodyName.value !== null && html`<${Naming} />`}
         <div class="body-actions">
           <button class="quiet" aria-disabled=${canUndo.value ? undefined : "true"} onClick=${undo}
             title="Undo the last change (Ctrl Z)"><${Icon} name="undo" />Undo</button>
           <span class="space"></span>
+          ${isOperator.value && bodyName.value === null && html`
+            <button class="secondary" aria-disabled=${canUse.value ? undefined : "true"}
+              onClick=${() => canUse.value && (bodyName.value = "")}>Save as…</button>
+          `}
           <button class="quiet" onClick=${cancel}>Cancel</button>
           <button class="primary" aria-disabled=${canUse.value ? undefined : "true"} onClick=${useBody}
             aria-describedby=${Object.keys(mistakes.value).length ? "held-body" : undefined}>Use this body</button>
         </div>
       </div>
     <//>
+  `;
+}
+
+/** The name under which the body is saved. */
+function Naming() {
+  const field = useRef(/** @type {HTMLInputElement | null} */ (null));
+  useEffect(() => field.current?.focus(), []);
+  /** @param {Event} event */
+  const onSubmit = (event) => {
+    event.preventDefault();
+    saveBody();
+  };
+  return html`
+    <form class="body-naming" onSubmit=${onSubmit}>
+      <label for="body-name">Name</label>
+      <input type="text" id="body-name" ref=${field} value=${bodyName.value} autocomplete="off"
+        maxlength=${limitsOf("name").maximum} aria-invalid=${unsaved.value ? "true" : undefined}
+        aria-describedby=${unsaved.value ? "unsaved" : undefined}
+        onInput=${(/** @type {{ target: HTMLInputElement }} */ { target }) => (bodyName.value = target.value)} />
+      <button class="secondary" aria-disabled=${canSave.value ? undefined : "true"}>Save</button>
+      ${unsaved.value && html`<p id="unsaved" class="mistake" role="alert">${unsaved.value}</p>`}
+    </form>
   `;
 }
 

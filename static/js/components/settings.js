@@ -11,7 +11,9 @@ import {
   ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
-import { choicesOf, gaitTitle, labelOf, observationTitle, robotChoices, robotTitle, simulatorTitle } from "../titles.js";
+import {
+  choicesOf, gaitTitle, labelOf, observationTitle, robotChoices, robotTitle, simulatorTitle,
+} from "../titles.js";
 import { isAtLeast } from "../workspace.js";
 import { Beforehand } from "./beforehand.js";
 import { EditBody } from "./edit-body.js";

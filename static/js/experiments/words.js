@@ -38,7 +38,8 @@ function gaitsIn({ gaits = [] }) {
  */
 export function configInWords(config) {
   const { agents = [], steps = [], observations = [], robots = [], seeds, seed, tolerance, simulator } = config;
-  const robotName = (/** @type {RobotConfig} */ one) => customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own";
+  const robotName = (/** @type {RobotConfig} */ one) =>
+    customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own";
   return sentence([
     fewOf(agents.map(agentTitle), "agent"),
     config.experiment === "figure4" ? "" : `${[steps].flat().map(whole).join(", ")} steps of practice`,

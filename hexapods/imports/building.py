@@ -1,0 +1,386 @@
+"""Makes a `RobotModel` of a compiled file: every part is found in turn, and put together."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import mujoco
+import numpy as np
+
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.robot_model import (
+    ModelFoot,
+    ModelGeom,
+    ModelJoint,
+    ModelLink,
+    ModelMesh,
+    RobotModel,
+)
+from hexapods.domain.types import FloatArray
+from hexapods.imports.chain import Chain
+from hexapods.imports.choices import Choices
+from hexapods.imports.compiling import Compiled
+from hexapods.imports.directions import find_forward, find_gait, numbered
+from hexapods.imports.drawing import find_meshes
+from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
+from hexapods.imports.masses import Mass, find_masses
+from hexapods.imports.notes import Notes, quoted
+from hexapods.imports.posed import Posed, resting_pose
+from hexapods.imports.servos import Servo, angle_limits, find_servos, guessed_torque, limits_around
+from hexapods.imports.shapes import Shape, drop_touching, link_shapes, torso_shapes
+from hexapods.imports.skeleton import FoundLeg, find_skeleton
+from hexapods.imports.stance import Angles, Legged, find_stance, reaches_grid
+
+_UNLIMITED = (-np.pi, np.pi)
+_LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
+_SAME_PLACE_M = 1e-3
+_PLAIN_WORDS = frozenset({"", "joint", "jnt", "link", "leg", "j", "motor", "servo"})
+_MAX_JOINT_NAME = 24
+Names = list[tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a robot comes from.
+
+    Attributes:
+        name: a name for it.
+        file_format: format of the file.
+        file: path in the zip; None if it was given alone.
+    """
+
+    name: str
+    file_format: FileFormat
+    file: str | None
+
+
+def build(compiled: Compiled, origin: Origin, choices: Choices, notes: Notes) -> ImportedRobot:
+    """Make a robot of a compiled file.
+
+    Raises:
+        InvalidInput: if it is no robot with legs, or a choice is not possible.
+    """
+    keyframes = _keyframes(compiled.model)
+    rest = keyframes[_resting(keyframes)] if keyframes else compiled.model.qpos0
+    pose = resting_pose(compiled.model, rest)
+    skeleton = find_skeleton(compiled, pose, choices, notes)
+    posed = Posed(compiled, skeleton, pose)
+    names = [_names_of(compiled, leg) for leg in posed.legs]
+    posed.turn(find_forward(posed.mounts()[:, :2], names, choices, notes))
+    posed.order(numbered(_places(posed)))
+    return _Builder(posed, keyframes, origin, choices, notes).build()
+
+
+def _keyframes(model: mujoco.MjModel) -> dict[str, FloatArray]:
+    """Return `qpos` of each keyframe that is finite, by name."""
+    found = {}
+    for key in range(model.nkey):
+        qpos = np.array(model.key_qpos[key])
+        if np.isfinite(qpos).all():
+            found[model.key(key).name or f"keyframe {key + 1}"] = qpos
+    return found
+
+
+def _resting(keyframes: Mapping[str, FloatArray]) -> str:
+    return next((name for name in keyframes if "home" in name.lower()), next(iter(keyframes)))
+
+
+def _names_of(compiled: Compiled, leg: FoundLeg) -> list[str]:
+    """Return the names of a leg's joints and foot, and of all bodies up to the torso."""
+    bodies = []
+    body = leg.foot.body
+    while int(compiled.model.body_parentid[body]) != 0:
+        bodies.append(compiled.body_name(body))
+        body = int(compiled.model.body_parentid[body])
+    joints = [compiled.joint_name(joint) for joint in leg.joints]
+    return [*joints, *bodies, leg.foot.name]
+
+
+def _places(posed: Posed) -> FloatArray:
+    """Return where legs are around the body: their mounts, or their feet if mounts are on axes."""
+    mounts = posed.mounts()[:, :2]
+    apart = np.linalg.norm(mounts[:, None] - mounts[None], axis=2)
+    is_alone = (apart < _SAME_PLACE_M).sum() == len(mounts)
+    if is_alone and (np.linalg.norm(mounts, axis=1) > _SAME_PLACE_M).all():
+        return mounts
+    return np.array([posed.foot(leg)[:2] for leg in posed.legs])
+
+
+class _Builder:
+    def __init__(
+        self,
+        posed: Posed,
+        keyframes: Mapping[str, FloatArray],
+        origin: Origin,
+        choices: Choices,
+        notes: Notes,
+    ) -> None:
+        self._posed, self._origin, self._choices, self._notes = posed, origin, choices, notes
+        self._compiled = posed.compiled
+        self._keyframes = keyframes
+        self._joints = [joint for leg in posed.legs for joint in leg.joints]
+        self._limits = {joint: angle_limits(self._compiled, joint) for joint in self._joints}
+        self._chains = [self._chain(leg) for leg in posed.legs]
+        self._torso = torso_shapes(posed, self._span())
+
+    def build(self) -> ImportedRobot:
+        self._check_size()
+        legged = self._legged()
+        home = find_stance(legged, self._choices, self._notes)
+        reaches = reaches_grid(legged, home)
+        self._tell_of_reach(reaches)
+        links: dict[int | None, str] = {None: self._name_of_torso()}
+        links |= {joint: self._name_of_link(joint) for joint in self._joints}
+        masses = find_masses(self._posed, links, self._ends(), self._notes)
+        mass_kg = sum(mass.kg for mass in masses.values())
+        if not 0.001 <= mass_kg <= 10_000:
+            raise InvalidInput(f"it weighs {mass_kg:.3g} kg; a robot has from 0.001 to 10,000 kg")
+        guess_nm = guessed_torque(mass_kg, legged.length_m, len(self._chains))
+        servos = find_servos(self._compiled, self._joints, guess_nm, self._choices, self._notes)
+        origins: dict[int | None, FloatArray] = {None: np.zeros(3)}
+        origins |= {joint: self._posed.anchor(joint) for joint in self._joints}
+        meshes = find_meshes(self._posed, origins, self._notes)
+        model = self._model(links, masses, servos, meshes, home)
+        gait = find_gait(self._posed.mounts()[:, :2], self._choices, self._notes)
+        foot_heights = [float(self._foot_at(leg, home)[2]) for leg in range(len(home))]
+        return ImportedRobot(
+            model=model,
+            name=self._origin.name,
+            file_format=self._origin.file_format,
+            file=self._origin.file,
+            legs=tuple(
+                ImportedLeg(
+                    tuple(self._compiled.joint_name(joint) for joint in leg.joints), leg.foot.name
+                )
+                for leg in self._posed.legs
+            ),
+            feet=self._posed.skeleton.feet,
+            keyframes=tuple(self._keyframes),
+            gait=gait,
+            forward_deg=self._posed.turn_deg,
+            mass_kg=mass_kg,
+            body_height_m=-float(np.mean(foot_heights)),
+            reaches_grid=reaches,
+            guesses=tuple(self._notes.guesses),
+            repairs=tuple(self._notes.repairs),
+        )
+
+    def _chain(self, leg: FoundLeg) -> Chain:
+        limits = [self._limits[joint] or _UNLIMITED for joint in leg.joints]
+        return Chain(
+            np.array([self._posed.axis(joint) for joint in leg.joints]),
+            np.array([self._posed.anchor(joint) for joint in leg.joints]),
+            self._posed.foot(leg),
+            np.array(limits).T,
+        )
+
+    def _check_size(self) -> None:
+        for number, chain in enumerate(self._chains, start=1):
+            if not _LEAST_LEG_M <= chain.length_m <= _MOST_LEG_M:
+                raise InvalidInput(
+                    f"leg {number} (to {quoted(self._posed.legs[number - 1].foot.name)}) is "
+                    f"{chain.length_m:.3g} m long; a leg has from {_LEAST_LEG_M:g} to "
+                    f"{_MOST_LEG_M:g} m: is the file in millimetres?"
+                )
+
+    def _span(self) -> FloatArray:
+        """Return half sides of a box within the mounts."""
+        mounts = self._posed.mounts()
+        half = (mounts.max(axis=0) - mounts.min(axis=0)) / 2
+        thick = 0.1 * float(np.mean([chain.length_m for chain in self._chains]))
+        span: FloatArray = np.maximum(half, thick)
+        return span
+
+    def _legged(self) -> Legged:
+        model = self._compiled.model
+
+        def angles(qpos: FloatArray) -> Angles:
+            return [
+                np.array([qpos[model.jnt_qposadr[joint]] for joint in leg.joints])
+                for leg in self._posed.legs
+            ]
+
+        lowest = [shape.lowest_m(np.eye(3), np.zeros(3), np.zeros(3)) for shape in self._torso]
+        return Legged(
+            self._chains,
+            [leg.foot.radius_m for leg in self._posed.legs],
+            [
+                [self._compiled.joint_name(joint) for joint in leg.joints]
+                for leg in self._posed.legs
+            ],
+            min(lowest),
+            {name: angles(qpos) for name, qpos in self._keyframes.items()},
+            angles(model.qpos0),
+        )
+
+    def _tell_of_reach(self, reaches: bool) -> None:
+        short = [n for n, chain in enumerate(self._chains, start=1) if len(chain.axes) < 3]
+        if short:
+            numbers = ", ".join(map(str, short))
+            self._notes.guess(
+                f"legs {numbers} have two joints: their feet follow a grid only as far as they can"
+            )
+        elif not reaches:
+            self._notes.guess("at home not every foot reaches to all sides: take a small grid")
+        unlimited = [joint for joint in self._joints if self._limits[joint] is None]
+        if unlimited:
+            which = (
+                "all joints" if len(unlimited) == len(self._joints) else f"{len(unlimited)} joints"
+            )
+            self._notes.guess(f"{which} have no limits in the file: 90° to each side of home")
+
+    def _ends(self) -> dict[int | None, FloatArray]:
+        """Return two points of each link between which it lies, (2, 3)."""
+        half = np.array([0, 0, self._span()[2]])
+        ends: dict[int | None, FloatArray] = {None: np.array([-half, half])}
+        for leg, chain in zip(self._posed.legs, self._chains, strict=True):
+            points = [*chain.anchors, chain.foot]
+            for number, joint in enumerate(leg.joints):
+                ends[joint] = np.array(points[number : number + 2])
+        return ends
+
+    def _foot_at(self, leg: int, angles: Angles) -> FloatArray:
+        place: FloatArray = self._chains[leg].feet(angles[leg][None])[0]
+        return place
+
+    def _model(
+        self,
+        names: Mapping[int | None, str],
+        masses: Mapping[int | None, Mass],
+        servos: Mapping[int, Servo],
+        meshes: Mapping[int | None, ModelMesh],
+        home: Angles,
+    ) -> RobotModel:
+        torso = _link(names[None], -1, 0, masses[None], at=np.zeros(3), parent_at=np.zeros(3))
+        shapes = tuple(shape.as_geom(np.zeros(3)) for shape in self._torso)
+        links = [_with(torso, None, shapes, meshes.get(None))]
+        feet = []
+        kinds = joint_kinds(
+            [[self._compiled.joint_name(joint) for joint in leg.joints] for leg in self._posed.legs]
+        )
+        for number, (leg, chain) in enumerate(
+            zip(self._posed.legs, self._chains, strict=True), start=1
+        ):
+            parent, parent_at = 0, np.zeros(3)
+            all_shapes = self._shapes_of(leg, chain, home[number - 1])
+            for place, joint in enumerate(leg.joints):
+                at = chain.anchors[place]
+                mass = masses[joint]
+                link = _link(names[joint], parent, number, mass, at=at, parent_at=parent_at)
+                home_rad = float(home[number - 1][place])
+                turned = self._joint(
+                    joint, kinds[number - 1][place], chain.axes[place], home_rad, servos[joint]
+                )
+                geoms = tuple(shape.as_geom(at) for shape in all_shapes[place])
+                parent, parent_at = len(links), at
+                links.append(_with(link, turned, geoms, meshes.get(joint)))
+            feet.append(
+                ModelFoot(parent, _vector(chain.foot - parent_at), float(leg.foot.radius_m))
+            )
+        return RobotModel(tuple(links), tuple(feet))
+
+    def _joint(
+        self, joint: int, name: str, axis: FloatArray, home_rad: float, servo: Servo
+    ) -> ModelJoint:
+        low, high = self._limits[joint] or limits_around(home_rad)
+        return ModelJoint(
+            name,
+            _vector(axis),
+            (0.0, 0.0, 0.0),
+            (low, high),
+            min(max(home_rad, low), high) + 0.0,
+            servo.kp,
+            servo.kv,
+            servo.torque_nm,
+            servo.armature,
+            servo.damping,
+        )
+
+    def _shapes_of(self, leg: FoundLeg, chain: Chain, angles: FloatArray) -> list[list[Shape]]:
+        """Return the shapes of each link of a leg that touch nothing at home."""
+        foot = self._posed.foot(leg), leg.foot.radius_m
+        ground_m = float(chain.feet(angles[None])[0, 2]) - leg.foot.radius_m
+        found = []
+        turn, moved = np.eye(3), np.zeros(3)
+        origin = np.zeros(3)
+        for place, joint in enumerate(leg.joints):
+            at = chain.anchors[place]
+            moved = moved + turn @ (at - origin)
+            turn = turn @ _turned(chain.axes[place], float(angles[place]))
+            origin = at
+            is_last = place + 1 == len(leg.joints)
+            shapes = link_shapes(self._posed, joint, foot if is_last else None)
+            lowest = [shape.lowest_m(turn, at, moved) for shape in shapes]
+            found.append(drop_touching(shapes, lowest, ground_m, self._notes))
+        return found
+
+    def _name_of_torso(self) -> str:
+        return quoted(self._compiled.body_name(self._posed.skeleton.root))
+
+    def _name_of_link(self, joint: int) -> str:
+        body = int(self._compiled.model.jnt_bodyid[joint])
+        return quoted(self._compiled.body_name(body))
+
+
+def _vector(values: FloatArray) -> tuple[float, float, float]:
+    x, y, z = (float(one) + 0.0 for one in values)
+    return x, y, z
+
+
+def _turned(axis: FloatArray, angle: float) -> FloatArray:
+    """Return the rotation about an axis, (3, 3)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    rotation: FloatArray = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return rotation
+
+
+def _link(
+    name: str, parent: int, leg: int, mass: Mass, *, at: FloatArray, parent_at: FloatArray
+) -> ModelLink:
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = (mass.inertia + 0.0).tolist()
+    return ModelLink(
+        name,
+        parent,
+        leg,
+        _vector(at - parent_at),
+        (1.0, 0.0, 0.0, 0.0),
+        mass.kg,
+        _vector(mass.center_m - at),
+        (xx, yy, zz, xy, xz, yz),
+    )
+
+
+def _with(
+    link: ModelLink,
+    joint: ModelJoint | None,
+    geoms: tuple[ModelGeom, ...],
+    mesh: ModelMesh | None,
+) -> ModelLink:
+    return replace(link, joint=joint, geoms=geoms, mesh=mesh)
+
+
+def joint_kinds(names: Sequence[Sequence[str]]) -> Names:
+    """Return names of the joints of each leg that tell their kind, the same for all legs.
+
+    Of `FL_hip_joint` and `RR_hip_joint` it is `hip`: the words that all legs have in common.
+    Where there are none, or two joints would have one name, joints are numbered.
+    """
+    found: Names = []
+    for leg in names:
+        alike = [other for other in names if len(other) == len(leg)]
+        kinds = []
+        for place, name in enumerate(leg):
+            common = set.intersection(*({*_words(other[place])} for other in alike))
+            words = [word for word in _words(name) if word in common and word not in _PLAIN_WORDS]
+            kind = "_".join(words)[:_MAX_JOINT_NAME]
+            kinds.append(f"joint{kind}" if kind.isdecimal() else kind)
+        if not all(kinds) or len(set(kinds)) < len(kinds) or len(alike) < 2:
+            kinds = [f"joint{place}" for place in range(1, len(leg) + 1)]
+        found.append(tuple(kinds))
+    return found
+
+
+def _words(name: str) -> list[str]:
+    apart = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name)
+    return re.split(r"[^a-z0-9]+", apart.lower())

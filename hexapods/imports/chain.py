@@ -1,0 +1,85 @@
+"""Kinematics of one leg as a chain of hinges: product of exponentials, and damped least squares."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapods.domain.types import FloatArray
+
+_ROUNDS, _DAMPING, _MOST_RAD = 60, 0.02, 0.3
+_DIFFERENCE = 1e-6
+PRECISION = 1e-3
+"""A foot is in a place if it is as near, as a share of the leg's length."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """A leg in the body frame, all of its angles 0.
+
+    Attributes:
+        axes: unit vectors, (joints, 3).
+        anchors: points of the axes, (joints, 3) [m].
+        foot: centre of the foot, (3,) [m].
+        limits: lowest and highest angles, (2, joints) [rad].
+    """
+
+    axes: FloatArray
+    anchors: FloatArray
+    foot: FloatArray
+    limits: FloatArray
+
+    @property
+    def length_m(self) -> float:
+        """Sum of the distances between the joints, and to the foot."""
+        return float(np.linalg.norm(np.diff([*self.anchors, self.foot], axis=0), axis=1).sum())
+
+    def feet(self, angles: FloatArray) -> FloatArray:
+        """Return the centres of the foot at many angles.
+
+        Args:
+            angles: (k, joints) [rad].
+
+        Returns:
+            (k, 3) [m].
+        """
+        places = np.broadcast_to(self.foot, (len(angles), 3))
+        for joint in range(len(self.axes))[::-1]:
+            axis, anchor = self.axes[joint], self.anchors[joint]
+            out = places - anchor
+            cos, sin = np.cos(angles[:, joint, None]), np.sin(angles[:, joint, None])
+            along = np.outer(out @ axis, axis)
+            places = anchor + along + (out - along) * cos + np.cross(axis, out) * sin
+        return places
+
+    def jacobians(self, angles: FloatArray) -> FloatArray:
+        """Return the derivatives of the foot's place by the angles, (k, 3, joints)."""
+        count, joints = angles.shape
+        shifts = _DIFFERENCE * np.concatenate([np.eye(joints), -np.eye(joints)])
+        near = (angles[:, None] + shifts).reshape(-1, joints)
+        feet = self.feet(near).reshape(count, 2, joints, 3)
+        return np.moveaxis((feet[:, 0] - feet[:, 1]) / (2 * _DIFFERENCE), 1, 2)
+
+    def solve(self, targets: FloatArray, start: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Find angles within the limits at which the foot is nearest to some places.
+
+        Args:
+            targets: (k, 3) [m].
+            start: angles from which to search, (joints,) [rad].
+
+        Returns:
+            angles, (k, joints) [rad], and the distances that are left, (k,) [m].
+        """
+        low, high = self.limits
+        angles = np.clip(np.tile(start, (len(targets), 1)), low, high)
+        damping = (_DAMPING * self.length_m) ** 2 * np.eye(3)
+        for round_ in range(_ROUNDS):
+            off = targets - self.feet(angles)
+            if round_ and np.abs(off).max() < 1e-9:
+                break
+            jacobians = self.jacobians(angles)
+            # Less damping near the end, where it only slows down.
+            scale = np.minimum(1, np.linalg.norm(off, axis=1) / (0.1 * self.length_m)) ** 2 + 1e-6
+            square = jacobians @ jacobians.transpose(0, 2, 1) + scale[:, None, None] * damping
+            moves = jacobians.transpose(0, 2, 1) @ np.linalg.solve(square, off[:, :, None])
+            angles = np.clip(angles + np.clip(moves[:, :, 0], -_MOST_RAD, _MOST_RAD), low, high)
+        return angles, np.linalg.norm(targets - self.feet(angles), axis=1)

@@ -1,0 +1,243 @@
+"""Reads a robot's file in a child process with limits, since its parsers are not to be trusted.
+
+The child has a share of processor time and of memory, writes no file, works in an empty folder, and
+is killed with its group when its time is over. Its answer comes as JSON, and is validated here.
+"""
+
+import json
+import logging
+import os
+import signal
+import sys
+import tempfile
+import time
+import warnings
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput
+from hexapods.domain.records import from_json, to_json
+from hexapods.domain.text import message, visible
+from hexapods.imports.choices import AS_FOUND, Choices
+from hexapods.imports.imported import ImportedRobot
+from hexapods.imports.upload import MAX_UPLOAD_BYTES
+from hexapods.processes import Child, SetUp
+
+_SET_UP = SetUp(name="robot import", niceness=5)
+_MAX_ANSWER_BYTES = 16 << 20
+_MAX_ERROR = 1000
+_START_S = 30.0
+"""Time in which the child imports what it needs, where it is no fork of a process that has."""
+_CHECK_EVERY_S = 0.05
+_OPEN_FILES = 64
+_READY = b"ready"
+_logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What reading a file may take.
+
+    Attributes:
+        seconds: of the processor.
+        clock_seconds: on the clock, of which a busy machine gives a process only a part.
+        memory_bytes: beyond what the interpreter has with its modules.
+    """
+
+    seconds: float = 5.0
+    clock_seconds: float = 15.0
+    memory_bytes: int = 512 << 20
+
+
+LIMITS = Limits()
+
+
+def read_robot_file(
+    data: bytes,
+    file_name: str | None = None,
+    choices: Choices = AS_FOUND,
+    limits: Limits = LIMITS,
+) -> ImportedRobot:
+    """Read a robot from an MJCF or URDF file, alone or in a zip with meshes.
+
+    Args:
+        data: the file.
+        file_name: its name, for messages and as the robot's name if the file gives none.
+        choices: what a person decided; all else is found out.
+        limits: what it may take.
+
+    Raises:
+        InvalidInput: one sentence: what is wrong with the file or a choice, and what is valid.
+        OSError: if no process can be started.
+    """
+    if len(data) > MAX_UPLOAD_BYTES:
+        raise DamagedFile(
+            f"the file has {len(data):,} bytes; a robot has at most {MAX_UPLOAD_BYTES:,}"
+        )
+    with tempfile.TemporaryDirectory(prefix="robot-import-") as folder:
+        answer = _ask(
+            {
+                "folder": folder,
+                "file_name": visible(file_name or "robot.xml")[-200:],
+                "choices": to_json(choices),
+                "seconds": limits.seconds,
+                "memory_bytes": limits.memory_bytes,
+            },
+            data,
+            limits,
+        )
+    return _imported(answer)
+
+
+def _ask(head: dict[str, Any], data: bytes, limits: Limits) -> bytes:
+    """Return the answer of a child that reads the file.
+
+    Raises:
+        DamagedFile: if it took too long or too much, or ended without an answer.
+    """
+    child = Child(_answer_once, _SET_UP)
+    child.start()
+    try:
+        _wait(child, _START_S, limits, "starting the process that reads it")
+        with suppress(OSError):  # it has ended, which is seen next
+            child.pipe.recv_bytes(len(_READY))
+            child.pipe.send_bytes(json.dumps(head).encode())
+            child.pipe.send_bytes(data)
+        _wait(child, limits.clock_seconds, limits, "reading it")
+        return child.pipe.recv_bytes(_MAX_ANSWER_BYTES)
+    except (EOFError, OSError):
+        child.kill()
+        raise DamagedFile(_why_it_ended(child.end(), limits)) from None
+    finally:
+        child.kill()
+        child.end()
+        child.pipe.close()
+
+
+def _wait(child: Child, seconds: float, limits: Limits, what: str) -> None:
+    """Wait until the child has sent something.
+
+    Raises:
+        DamagedFile: if it does not in this time, or takes too much memory.
+        EOFError: if it has ended.
+    """
+    deadline_s = time.monotonic() + seconds
+    at_start = child.memory_bytes()
+    while not child.wait(_CHECK_EVERY_S):
+        if time.monotonic() > deadline_s:
+            raise DamagedFile(f"{what} takes longer than {seconds:g} s: simplify its meshes")
+        if child.memory_bytes() - at_start > limits.memory_bytes:
+            raise DamagedFile(_too_much_memory(limits.memory_bytes))
+    if not child.pipe.poll():
+        raise EOFError
+
+
+def _why_it_ended(code: int | None, limits: Limits) -> str:
+    if sys.platform != "win32" and code in (-signal.SIGXCPU, -signal.SIGKILL):
+        return f"reading it takes longer than {limits.seconds:g} s: simplify its meshes"
+    return (
+        "MuJoCo breaks down on the file: something in it, most likely a mesh, is not as its "
+        "format says"
+    )
+
+
+def _too_much_memory(most_bytes: int) -> str:
+    return f"reading it takes more than {most_bytes >> 20} MB: simplify its meshes"
+
+
+def _imported(answer: bytes) -> ImportedRobot:
+    """Validate the answer of a child."""
+    try:
+        told = json.loads(answer)
+        error = told.get("error")
+        if error is None:
+            return from_json(ImportedRobot, told["robot"])
+        kind = DamagedFile if told.get("is_damaged") else InvalidInput
+    except (ValueError, KeyError, AttributeError, TypeError, HexapodError) as problem:
+        _logger.warning("the process that reads robots gave no valid answer: %s", problem)
+        raise DamagedFile(f"the file makes no valid robot: {_cut(str(problem))}") from problem
+    raise kind(_cut(str(error)))
+
+
+def _cut(text: str) -> str:
+    line = " ".join(visible(message(text), "\n").split())
+    return line if len(line) <= _MAX_ERROR else f"{line[: _MAX_ERROR - 1]}…"
+
+
+def _answer_once(pipe: Connection) -> None:
+    """Be the child: read one file, and answer."""
+    # Here, so that the parent imports no parser of foreign files.
+    from hexapods.imports.compiling import silence_mujoco  # noqa: PLC0415
+    from hexapods.imports.reading import read_in_this_process  # noqa: PLC0415
+
+    silence_mujoco()
+    warnings.simplefilter("ignore")  # of NumPy and MuJoCo, on files that are refused or mended
+    pipe.send_bytes(_READY)
+    head = json.loads(pipe.recv_bytes())
+    _limit(head)
+    try:
+        data = pipe.recv_bytes()
+        choices = from_json(Choices, head["choices"])
+
+        def read() -> dict[str, Any]:
+            return {"robot": to_json(read_in_this_process(data, head["file_name"], choices))}
+
+        answer = json.dumps(_told(read, head["memory_bytes"])).encode()
+    except MemoryError:
+        answer = json.dumps({"error": _too_much_memory(head["memory_bytes"])}).encode()
+    pipe.send_bytes(answer)
+
+
+def _told(read: Callable[[], dict[str, Any]], memory_bytes: int) -> dict[str, Any]:
+    """Return what a file gives, or a sentence on why it gives nothing."""
+    try:
+        return read()
+    except DamagedFile as error:
+        return {"error": str(error), "is_damaged": True}
+    except HexapodError as error:
+        return {"error": str(error)}
+    except MemoryError:
+        return {"error": _too_much_memory(memory_bytes), "is_damaged": True}
+    except RecursionError:
+        return {"error": "it is nested too deeply", "is_damaged": True}
+    except Exception as error:  # of a file that nobody thought of; the limits hold all the same
+        return {
+            "error": f"the file cannot be understood ({type(error).__name__}: {error})",
+            "is_damaged": True,
+        }
+
+
+def _limit(head: dict[str, Any]) -> None:
+    """Limit this process, let it work in an empty folder, and forget its environment."""
+    os.chdir(head["folder"])
+    os.environ.clear()
+    os.environ["TMPDIR"] = head["folder"]
+    if sys.platform == "win32":
+        return
+    import resource  # noqa: PLC0415 - not on Windows
+
+    seconds = int(-(-head["seconds"] // 1))
+    for kind, most in (
+        (resource.RLIMIT_CPU, seconds),
+        (resource.RLIMIT_FSIZE, 0),
+        (resource.RLIMIT_CORE, 0),
+        (resource.RLIMIT_NOFILE, _OPEN_FILES),
+        *([(resource.RLIMIT_AS, _address_space() + head["memory_bytes"])] if _is_linux() else []),
+    ):
+        hard = resource.getrlimit(kind)[1]
+        least = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(kind, (least, least))
+
+
+def _is_linux() -> bool:
+    return sys.platform == "linux"
+
+
+def _address_space() -> int:
+    """Return the size of this process's address space; Linux only."""
+    pages = int(Path("/proc/self/statm").read_bytes().split()[0])
+    return pages * os.sysconf("SC_PAGE_SIZE")

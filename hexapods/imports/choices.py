@@ -1,0 +1,48 @@
+"""What a person may decide about a robot from a file, instead of what is guessed."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Le, MaxLen, MinLen
+
+from hexapods.domain.body import MAX_LEGS, MIN_LEGS
+from hexapods.domain.gait import AnyGait
+from hexapods.domain.records import Record
+
+MAX_NAMES = 100
+NameInFile = Annotated[str, MinLen(1), MaxLen(200)]
+Angle = Annotated[float, Ge(-7.0), Le(7.0)]
+
+
+@dataclass(frozen=True)
+class Choices(Record):
+    """What a person decides about a robot from a file; what is null is found out.
+
+    Attributes:
+        file: of several robots in a zip the path of the one that is meant.
+        forward: direction in which it walks, in the frame of its torso in the file: `x`, `-x`,
+            `y`, `-y`, or an angle anticlockwise from x [°].
+        feet: for each leg the name of its foot in the file: of a body or link, of a geom, or of a
+            site; in any order.
+        keyframe: name of the keyframe of the file in which it stands.
+        home_rad: angles of joints with which it stands, by their names in the file [rad]; each is
+            as given, the others are as found.
+        gait: which legs move together: the name of a gait, or groups of legs.
+        servo_torque_nm: largest torque of all servos [N·m].
+        servo_kp: position gain of all servos [N·m/rad].
+        servo_kv: velocity gain of all servos [N·m·s/rad].
+    """
+
+    file: NameInFile | None = None
+    forward: str | Annotated[float, Ge(-360.0), Le(360.0)] | None = None
+    feet: Annotated[tuple[NameInFile, ...], MinLen(MIN_LEGS), MaxLen(MAX_LEGS)] | None = None
+    keyframe: NameInFile | None = None
+    home_rad: Annotated[dict[NameInFile, Angle], MaxLen(MAX_NAMES)] | None = None
+    gait: AnyGait | None = None
+    servo_torque_nm: Annotated[float, Ge(0.001), Le(10_000.0)] | None = None
+    servo_kp: Annotated[float, Ge(0.01), Le(1_000_000.0)] | None = None
+    servo_kv: Annotated[float, Ge(0.0001), Le(100_000.0)] | None = None
+
+
+AS_FOUND = Choices()
+"""All is found out."""

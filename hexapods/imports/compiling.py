@@ -1,0 +1,184 @@
+"""Has MuJoCo turn a cleaned document into numbers, with repairs where it would refuse it."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from hexapods.domain.errors import DamagedFile
+from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.xml import Document
+
+LEAST_KG, _LEAST_INERTIA = 1e-6, 1e-9
+"""Of moving bodies, where the file has none."""
+_ATTEMPTS = 6
+_LINE = re.compile(r"line (\d+)")
+_ELEMENT_NAME = re.compile(r"Element name '([^']*)'")
+_EIGENVALUE_RATIO = 1e-9
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A model as MuJoCo compiled it; each body, joint and geom has a name.
+
+    Attributes:
+        model: the `MjModel`; none of its geoms collides.
+        collides: whether each geom collides in the file, (geoms,).
+        named_geoms: names of geoms that have one in the file.
+        given_kg: mass that the file gives each body, directly or by its shapes, (bodies,).
+    """
+
+    model: mujoco.MjModel
+    collides: list[bool]
+    named_geoms: frozenset[str]
+    has_inertial: list[bool]
+
+    def body_name(self, body: int) -> str:
+        """Return the name of a body."""
+        name: str = self.model.body(body).name
+        return name
+
+    def joint_name(self, joint: int) -> str:
+        """Return the name of a joint."""
+        name: str = self.model.joint(joint).name
+        return name
+
+    def geom_name(self, geom: int) -> str:
+        """Return the name of a geom."""
+        name: str = self.model.geom(geom).name
+        return name
+
+
+def silence_mujoco() -> None:
+    """Let MuJoCo neither print warnings nor write them to a file."""
+    log = mujoco.MjLogConfig.get()
+    log.logto_file = log.logto_console = False
+    log.set()
+
+
+def compile_document(document: Document, assets: Mapping[str, bytes], notes: Notes) -> Compiled:
+    """Compile a cleaned document.
+
+    Raises:
+        DamagedFile: if MuJoCo refuses it, naming element and line.
+    """
+    try:
+        spec = mujoco.MjSpec.from_string(document.text, assets=dict(assets))
+    except ValueError as error:
+        raise _refused(error, document) from error
+    _mend_inertias(spec, notes)
+    collides = [geom.contype != 0 or geom.conaffinity != 0 for geom in spec.geoms]
+    named = frozenset(geom.name for geom in spec.geoms if geom.name)
+    _name_all(spec)
+    for geom in spec.geoms:
+        # Then the convex hulls of meshes are not computed.
+        geom.contype = geom.conaffinity = 0
+    has_inertial = {body.name: bool(body.explicitinertial) for body in spec.bodies}
+    collides_by_name = {geom.name: does for geom, does in zip(spec.geoms, collides, strict=True)}
+    model = _compile(spec, document, notes)
+    return Compiled(
+        model,
+        [collides_by_name[model.geom(geom).name] for geom in range(model.ngeom)],
+        named,
+        [has_inertial[model.body(body).name] for body in range(model.nbody)],
+    )
+
+
+def _compile(spec: mujoco.MjSpec, document: Document, notes: Notes) -> mujoco.MjModel:
+    for _ in range(_ATTEMPTS):
+        try:
+            return spec.compile()
+        except ValueError as error:
+            if not _repaired(spec, str(error).lower(), notes):
+                raise _refused(error, document) from error
+    raise DamagedFile("MuJoCo cannot compile it, even after several repairs")
+
+
+def _repaired(spec: mujoco.MjSpec, problem: str, notes: Notes) -> bool:
+    """Change what MuJoCo complains of; False if nothing is known against it."""
+    if "mass and inertia of moving bodies" in problem and not spec.compiler.boundmass:
+        # Which bodies these are, and what they get, is told where masses are guessed.
+        spec.compiler.boundmass, spec.compiler.boundinertia = LEAST_KG, _LEAST_INERTIA
+        return True
+    if "balanceinertia" in problem and not spec.compiler.balanceinertia:
+        spec.compiler.balanceinertia = True
+        notes.repair("inertias that no body can have (A + B < C) were replaced by their mean")
+        return True
+    if "mesh" in problem and any(word in problem for word in ("volume", "orient", "inertia")):
+        changed = [one for one in spec.meshes if one.inertia != _CONVEX]
+        for mesh in changed:
+            mesh.inertia = _CONVEX
+        if changed:
+            notes.repair("meshes that are not closed count as their convex hulls for the mass")
+        return bool(changed)
+    if "key" in problem and "invalid" in problem and spec.keys:
+        for key in list(spec.keys):
+            spec.delete(key)
+        notes.repair("keyframes do not fit the joints, and were left out")
+        return True
+    return False
+
+
+_CONVEX = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+
+
+def _mend_inertias(spec: mujoco.MjSpec, notes: Notes) -> None:
+    """Replace inertias that are not positive by those of a ball of some size."""
+    mended = []
+    for body in spec.bodies:
+        if not body.explicitinertial or not np.isfinite(body.mass):
+            continue
+        full, diagonal = np.array(body.fullinertia), np.array(body.inertia)
+        if np.isfinite(full).all():
+            xx, yy, zz, xy, xz, yz = full
+            values = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        else:
+            values = np.sort(diagonal)
+        if body.mass > 0 and values[0] > _EIGENVALUE_RATIO * max(values[-1], 1e-12):
+            continue
+        if body.mass <= 0:
+            # As if it had no element <inertial>.
+            body.explicitinertial = False
+            body.mass = 0
+        else:
+            radius_m = 0.05
+            body.fullinertia = np.full(6, np.nan)
+            body.inertia = np.full(3, 0.4 * body.mass * radius_m**2)
+        mended.append(body.name)
+    if mended:
+        notes.repair(
+            f"the inertia of {listed(mended)} was not positive, and was replaced by that of a ball"
+        )
+
+
+def _name_all(spec: mujoco.MjSpec) -> None:
+    """Give each body, joint and geom a name; those of the file stay."""
+    for kind, elements in (("body", spec.bodies), ("joint", spec.joints), ("geom", spec.geoms)):
+        used = {one.name for one in elements}
+        for number, one in enumerate(elements):
+            if not one.name:
+                name = f"{kind} {number}"
+                while name in used:
+                    name += "'"
+                one.name = name
+                used.add(name)
+
+
+def _refused(error: ValueError, document: Document) -> DamagedFile:
+    """Return MuJoCo's complaint as a sentence, with the line of the original."""
+    text = str(error)
+    found, named = _LINE.search(text), _ELEMENT_NAME.search(text)
+    line = document.original_line(int(found[1])) if found else None
+    why = (
+        re.sub(r"^(XML )?Error: ?", "", text.split("\nElement", maxsplit=1)[0]).strip().rstrip(".")
+    )
+    place = f" in line {line}" if line else ""
+    name = f" ({quoted(named[1])})" if named and named[1] else ""
+    return DamagedFile(f"MuJoCo refuses the file{place}{name}: {_in_one_line(why)}")
+
+
+def _in_one_line(why: str) -> str:
+    line = " ".join(why.split())
+    return line if len(line) <= 200 else f"{line[:199]}…"

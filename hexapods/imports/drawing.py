@@ -1,0 +1,103 @@
+"""What is drawn of a robot: its own meshes, merged for each link and simplified."""
+
+import base64
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from hexapods.domain.robot_model import MAX_TRIANGLES, ModelMesh
+from hexapods.domain.text import counted
+from hexapods.domain.types import FloatArray
+from hexapods.imports.decimation import cluster
+from hexapods.imports.notes import Notes
+from hexapods.imports.posed import Posed
+from hexapods.imports.surfaces import Triangles
+
+_AIM = 0.7
+"""Triangles that are aimed at, as a share of the most."""
+MAX_BASE64 = 1_500_000
+"""Characters of all meshes together."""
+_LEAST = 60
+"""Triangles of a shape, however many there are."""
+
+
+def find_meshes(
+    posed: Posed, origins: Mapping[int | None, FloatArray], notes: Notes
+) -> dict[int | None, ModelMesh]:
+    """Return what is drawn of each link, in its frame; nothing for one without shapes.
+
+    Args:
+        posed: the robot.
+        origins: of the links' frames in the body frame, by joint; None for the torso.
+        notes: gets what is simplified.
+    """
+    geoms = {joint: _drawn(posed, joint) for joint in origins}
+    before = sum(posed.triangles(geom) for parts in geoms.values() for geom in parts)
+    aim = _AIM * MAX_TRIANGLES
+    while True:
+        simplified = _Simplified(posed, min(1.0, aim / max(before, 1)))
+        found = {
+            joint: merged
+            for joint, parts in geoms.items()
+            if (merged := _merged([simplified.surface(one) for one in parts], origins[joint]))
+        }
+        triangles = sum(mesh.triangles for mesh in found.values())
+        size = sum(len(mesh.vertices) + len(mesh.faces) for mesh in found.values())
+        if (triangles <= MAX_TRIANGLES and size <= MAX_BASE64) or aim < _LEAST:
+            break
+        aim *= 0.7
+    if triangles < 0.9 * before:
+        notes.repair(
+            f"what is drawn was simplified from {before:,} to {counted(triangles, 'triangle')}"
+        )
+    return found
+
+
+def _drawn(posed: Posed, joint: int | None) -> list[int]:
+    """Return the geoms that are drawn of a link: those that do not collide, or all."""
+    drawn = []
+    for body in posed.bodies_of(joint):
+        geoms = posed.geoms_of([body])
+        shown = [geom for geom in geoms if not posed.compiled.collides[geom]]
+        drawn += shown or geoms
+    return drawn
+
+
+class _Simplified:
+    """Surfaces with a share of their triangles; the same mesh is simplified once."""
+
+    def __init__(self, posed: Posed, share: float) -> None:
+        self._posed, self._share = posed, share
+        self._known: dict[int, Triangles] = {}
+
+    def surface(self, geom: int) -> Triangles:
+        """Return the surface of a geom in the body frame."""
+        key = self._posed.mesh_of(geom)
+        if key is None:
+            return self._posed.surface(geom)
+        if key not in self._known:
+            vertices, faces = self._posed.own_surface(geom)
+            most = max(int(self._share * len(faces)), _LEAST)
+            self._known[key] = cluster(vertices, faces, most)
+        return self._posed.placed(geom, self._known[key])
+
+
+def _merged(parts: Sequence[Triangles], origin: FloatArray) -> ModelMesh | None:
+    all_vertices, all_faces, start = [], [], 0
+    for vertices, faces in parts:
+        if len(faces) and np.isfinite(vertices).all():
+            all_vertices.append(vertices - origin)
+            all_faces.append(faces + start)
+            start += len(vertices)
+    if not start:
+        return None
+    corners = np.concatenate(all_faces).astype("<u4")
+    return ModelMesh(
+        _text(np.concatenate(all_vertices).astype("<f4").tobytes()),
+        _text(corners.tobytes()),
+        len(corners),
+    )
+
+
+def _text(data: bytes) -> str:
+    return base64.b64encode(data).decode("ascii")

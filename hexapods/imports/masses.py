@@ -1,0 +1,119 @@
+"""Mass, centre of mass and inertia of links, and guesses where the file gives none."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import FloatArray
+from hexapods.imports.compiling import LEAST_KG
+from hexapods.imports.notes import Notes, listed
+from hexapods.imports.posed import Posed
+
+_DENSITY = 500.0
+"""Of shapes whose mass is guessed [kg/m³]: half that of water, since robots are hollow."""
+_NO_MASS_KG = 1e-5
+_SHARE = 0.05
+"""Of the robot's mass, for a link of which nothing is known."""
+_LEAST_INERTIA = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Mass:
+    """Mass of a link.
+
+    Attributes:
+        kg: its mass.
+        center_m: its centre in the body frame, (3,).
+        inertia: about the centre, in the body frame, (3, 3) [kg·m²].
+    """
+
+    kg: float
+    center_m: FloatArray
+    inertia: FloatArray
+
+
+def find_masses(
+    posed: Posed,
+    links: Mapping[int | None, str],
+    ends: Mapping[int | None, FloatArray],
+    notes: Notes,
+) -> dict[int | None, Mass]:
+    """Return the mass of each link.
+
+    Args:
+        posed: the robot.
+        links: name of each link, by the joint that moves it; None for the torso.
+        ends: two points of each link, (2, 3), between which one without shapes lies.
+        notes: gets the guesses.
+
+    Raises:
+        InvalidInput: if no link has a mass or a shape.
+    """
+    found = {joint: _together(posed, posed.bodies_of(joint)) for joint in links}
+    # A body with two joints is two links, the first of which has nothing.
+    between = {joint for joint in links if joint is not None and not posed.bodies_of(joint)}
+    unknown = [
+        joint for joint, mass in found.items() if mass.kg < _NO_MASS_KG and joint not in between
+    ]
+    by_shapes = {}
+    for joint in unknown:
+        by_shapes[joint] = _of_shapes(posed, posed.geoms_of(posed.bodies_of(joint)))
+    known_kg = sum(mass.kg for joint, mass in found.items() if joint not in unknown)
+    shaped_kg = sum(mass.kg for mass in by_shapes.values() if mass is not None)
+    if known_kg < _NO_MASS_KG and shaped_kg <= 0:
+        raise InvalidInput(
+            "no link has a mass, nor a shape by which to guess one: give the links <inertial>"
+        )
+    for joint in unknown:
+        of_shapes = by_shapes[joint]
+        kg = _SHARE * (known_kg + shaped_kg)
+        found[joint] = of_shapes or _ball(kg, ends[joint].mean(axis=0), ends[joint])
+    for joint in between:
+        found[joint] = Mass(LEAST_KG, ends[joint][0], np.eye(3) * _LEAST_INERTIA)
+    if unknown:
+        names = listed(links[joint] for joint in unknown)
+        notes.guess(f"the file gives no mass for {names}: guessed by its shapes or by the others")
+    return found
+
+
+def _together(posed: Posed, bodies: Sequence[int]) -> Mass:
+    masses = posed.compiled.model.body_mass
+    parts = [
+        Mass(float(masses[body]), posed.center_of_mass(body), posed.inertia(body))
+        for body in bodies
+        if masses[body] > 0
+    ]
+    kg = sum(part.kg for part in parts)
+    if kg <= 0:
+        return Mass(0.0, np.zeros(3), np.zeros((3, 3)))
+    center = sum((part.kg * part.center_m for part in parts), np.zeros(3)) / kg
+    inertia = np.zeros((3, 3))
+    for part in parts:
+        out = part.center_m - center
+        inertia += part.inertia + part.kg * (out @ out * np.eye(3) - np.outer(out, out))
+    return Mass(kg, center, inertia + _LEAST_INERTIA * np.eye(3))
+
+
+def _of_shapes(posed: Posed, geoms: Sequence[int]) -> Mass | None:
+    """Return the mass of the boxes around shapes; None if there are none."""
+    colliding = [geom for geom in geoms if posed.compiled.collides[geom]]
+    parts = []
+    for geom in colliding or geoms:
+        vertices, _ = posed.surface(geom)
+        if len(vertices):
+            low, high = vertices.min(axis=0), vertices.max(axis=0)
+            # Round shapes and meshes fill about half of the box around them.
+            kg = 0.5 * _DENSITY * float(np.prod(high - low))
+            parts.append(_ball(kg, (low + high) / 2, np.array([low, high])))
+    kg = sum(part.kg for part in parts)
+    if kg <= 0:
+        return None
+    center = sum((part.kg * part.center_m for part in parts), np.zeros(3)) / kg
+    return Mass(kg, center, sum((part.inertia for part in parts), np.zeros((3, 3))))
+
+
+def _ball(kg: float, center: FloatArray, ends: FloatArray) -> Mass:
+    radius = max(float(np.linalg.norm(ends[1] - ends[0])) / 2, 0.005)
+    return Mass(kg, center, 0.4 * kg * radius**2 * np.eye(3))

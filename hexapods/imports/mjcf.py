@@ -1,0 +1,204 @@
+"""Keeps of an MJCF document what describes a body, and leaves out or refuses the rest.
+
+The elements and attributes that stay are listed: what MuJoCo adds in another version, or a plugin,
+gets through only if it is added here.
+"""
+
+import math
+import posixpath
+
+from hexapods.domain.errors import DamagedFile
+from hexapods.imports.mesh_files import MeshFiles
+from hexapods.imports.notes import Notes, quoted
+from hexapods.imports.xml import Element
+
+MAX_BODIES, MAX_JOINTS, MAX_GEOMS = 300, 300, 2000
+_MAX_NUMBER = 1e12
+_REFUSED = {
+    "include": "it includes another file, which is not followed: merge it into this one",
+    "replicate": "copies by <replicate> are not made: write the bodies themselves",
+    "composite": "a robot here is made of rigid bodies, not of <composite>",
+    "flexcomp": "a robot here is made of rigid bodies, not of <flexcomp>",
+    "flex": "a robot here is made of rigid bodies, not of <flex>",
+    "plugin": "plugins are not loaded: leave it out",
+    "extension": "plugins are not loaded: leave it out",
+    "attach": "other files are not attached: merge them into this one",
+    "model": "other files are not attached: merge them into this one",
+}
+_DROPPED_TYPES = ("plane", "hfield", "sdf")
+"""Of geoms; they are the ground, not the robot."""
+_ACTUATORS = ("motor", "position", "velocity", "intvelocity", "general", "damper", "cylinder")
+_KEPT: dict[str, frozenset[str]] = {
+    "mujoco": frozenset({"compiler", "default", "asset", "worldbody", "actuator", "keyframe"}),
+    "worldbody": frozenset({"body", "frame"}),
+    "body": frozenset({"body", "frame", "inertial", "joint", "freejoint", "geom", "site"}),
+    "frame": frozenset({"body", "frame", "joint", "freejoint", "geom", "site"}),
+    "asset": frozenset({"mesh"}),
+    "default": frozenset({"default", "joint", "geom", "site", "mesh", *_ACTUATORS}),
+    "actuator": frozenset(_ACTUATORS),
+    "keyframe": frozenset({"key"}),
+}
+"""Which children stay, by tag; of others none."""
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_ACTUATOR = _words(
+    "name class joint gear ctrlrange forcerange ctrllimited forcelimited kp gaintype biastype "
+    "gainprm biasprm"
+)
+_TURNED = _words("quat axisangle xyaxes zaxis euler")
+_PLACED = frozenset({"name", "class", "pos", *_TURNED})
+_ATTRIBUTES: dict[str, frozenset[str]] = {
+    "mujoco": frozenset({"model"}),
+    "compiler": _words(
+        "autolimits boundmass boundinertia settotalmass balanceinertia angle fitaabb eulerseq "
+        "coordinate inertiafromgeom inertiagrouprange"
+    ),
+    "default": frozenset({"class"}),
+    "body": _PLACED | {"childclass"},
+    "frame": _PLACED | {"childclass"},
+    "inertial": _TURNED | {"pos", "mass", "diaginertia", "fullinertia"},
+    "joint": _words(
+        "name class type pos axis limited range ref damping armature frictionloss "
+        "actuatorfrclimited actuatorfrcrange"
+    ),
+    "freejoint": frozenset({"name"}),
+    "geom": _PLACED
+    | _words("type size fromto contype conaffinity group mass density shellinertia mesh fitscale"),
+    "site": _PLACED | {"type", "size", "fromto"},
+    "mesh": _words("name class file vertex face scale refpos refquat inertia smoothnormal"),
+    "key": frozenset({"name", "qpos"}),
+    **dict.fromkeys(_ACTUATORS, _ACTUATOR),
+}
+_TEXTS = _words(
+    "name class childclass model mesh joint file type angle eulerseq coordinate autolimits limited "
+    "actuatorfrclimited balanceinertia fitaabb inertiafromgeom shellinertia inertia smoothnormal "
+    "ctrllimited forcelimited gaintype biastype"
+)
+"""Attributes that are no numbers."""
+
+
+def clean_mjcf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
+    """Keep of a document what describes a body; meshes get their names in `meshes`.
+
+    Raises:
+        DamagedFile: if it has what cannot be read here, or too much.
+    """
+    for element in root.all(*_REFUSED):
+        if element.tag == "model" and "file" not in element.attributes:
+            continue
+        raise DamagedFile(f"{element.place}: {_REFUSED[element.tag]}")
+    _tell_of_mechanisms(root, notes)
+    folder, strips = _mesh_folder(root)
+    _keep_known(root)
+    _check_counts(root)
+    _resolve_meshes(root, folder, strips, meshes)
+    compiler = Element("compiler", root.line, {"usethread": "false"})
+    root.children.insert(0, compiler)
+
+
+def _tell_of_mechanisms(root: Element, notes: Notes) -> None:
+    found = sorted(
+        {
+            element.tag
+            for section in root
+            if section.tag in ("equality", "tendon")
+            for element in section
+            if element.tag != "joint" or section.tag != "equality"
+        }
+    )
+    if found:
+        notes.repair(
+            f"left out what connects bodies beside joints ({', '.join(map(quoted, found))}): each "
+            "joint gets a servo of its own"
+        )
+
+
+def _mesh_folder(root: Element) -> tuple[str, bool]:
+    """Return the folder of meshes beside the document, and whether their paths are cut off."""
+    folder, strips = "", False
+    for compiler in root.all("compiler"):
+        folder = compiler.attributes.get("assetdir", folder)
+        folder = compiler.attributes.get("meshdir", folder)
+        strips = compiler.attributes.get("strippath", str(strips)).lower() == "true"
+    return folder, strips
+
+
+def _keep_known(root: Element) -> None:
+    for parent in [root, *root.all()]:
+        kept = _KEPT.get(parent.tag, frozenset())
+        parent.children = [one for one in parent.children if one.tag in kept and _stays(one)]
+        known = _ATTRIBUTES.get(parent.tag, frozenset())
+        parent.attributes = {n: v for n, v in parent.attributes.items() if n in known}
+    for element in [root, *root.all()]:
+        check_numbers(element, _TEXTS)
+
+
+def _stays(element: Element) -> bool:
+    if element.tag in ("geom", "site"):
+        return element.attributes.get("type") not in _DROPPED_TYPES
+    return True
+
+
+def check_numbers(element: Element, texts: frozenset[str]) -> None:
+    """Check that the numbers in an element's attributes are finite, and not absurdly large.
+
+    Args:
+        element: the element.
+        texts: names of attributes that are no numbers.
+
+    Raises:
+        DamagedFile: naming the element.
+    """
+    for name, value in element.attributes.items():
+        if name in texts:
+            continue
+        for word in value.split():
+            try:
+                number = float(word)
+            except ValueError as error:
+                raise DamagedFile(
+                    f"{element.place}: {name} must be numbers, not {quoted(word)!r}"
+                ) from error
+            if not (math.isfinite(number) and abs(number) <= _MAX_NUMBER):
+                raise DamagedFile(
+                    f"{element.place}: {name} must be finite numbers, not {quoted(word)}"
+                )
+
+
+def _check_counts(root: Element) -> None:
+    for tag, most in (("body", MAX_BODIES), ("joint", MAX_JOINTS), ("geom", MAX_GEOMS)):
+        count = sum(1 for _ in root.all(tag))
+        if count > most:
+            raise DamagedFile(f"it has {count:,} elements <{tag}>; a robot has at most {most:,}")
+
+
+def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles) -> None:
+    """Give meshes their names in the assets; remove those that are missing, and their geoms."""
+    lost: set[str | None] = set()
+    for asset in root.all("asset"):
+        kept = []
+        for mesh in asset:
+            wanted = mesh.attributes.get("file")
+            if wanted is not None:
+                ending = posixpath.splitext(posixpath.basename(wanted.replace("\\", "/")))[0]
+                mesh.attributes.setdefault("name", ending)
+                path = posixpath.basename(wanted) if strips else wanted
+                name = meshes.add(posixpath.join(folder, path))
+                if name is None:
+                    lost.add(mesh.attributes["name"])
+                    continue
+                mesh.attributes["file"] = name
+            kept.append(mesh)
+        asset.children = kept
+    if lost:
+        known = {mesh.attributes.get("name") for mesh in root.all("mesh")}
+        _remove_geoms(root, lost - known)
+
+
+def _remove_geoms(root: Element, lost: set[str | None]) -> None:
+    for parent in [root, *root.all()]:
+        parent.keep(lambda one: one.tag != "geom" or one.attributes.get("mesh") not in lost)

@@ -1,0 +1,115 @@
+"""Reads a robot from a file: the steps in a row, as they run in the child process."""
+
+import posixpath
+from collections.abc import Sequence
+
+from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.domain.text import MAX_NAME, visible
+from hexapods.imports.building import Origin, build
+from hexapods.imports.choices import Choices
+from hexapods.imports.compiling import compile_document
+from hexapods.imports.imported import ImportedRobot
+from hexapods.imports.mesh_files import MeshFiles
+from hexapods.imports.mjcf import clean_mjcf
+from hexapods.imports.notes import Notes, listed, quoted
+from hexapods.imports.upload import MAX_DOCUMENT_BYTES, Upload
+from hexapods.imports.urdf import check_expanded, clean_urdf
+from hexapods.imports.xml import Element, read_xml, write_xml
+
+_MAX_DOCUMENTS = 60
+_MAX_DOCUMENTS_BYTES = 16 << 20
+_ROOTS = ("mujoco", "robot")
+_NO_NAMES = ("mujoco model", "robot", "scene")
+
+
+def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> ImportedRobot:
+    """Read a robot without limits of time and memory: only for a process that has them.
+
+    Raises:
+        InvalidInput: naming what is wrong with the file or a choice.
+    """
+    notes = Notes()
+    upload = Upload(data, file_name)
+    path, root = _document(upload, choices, notes)
+    meshes = MeshFiles(upload, path, notes)
+    if root.tag == "mujoco":
+        clean_mjcf(root, meshes, notes)
+    else:
+        clean_urdf(root, meshes)
+    meshes.tell()
+    document = write_xml(root)
+    compiled = compile_document(document, meshes.assets, notes)
+    named = root.attributes.get("model" if root.tag == "mujoco" else "name", "")
+    file_format = "mjcf" if root.tag == "mujoco" else "urdf"
+    origin = Origin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]
+    return build(compiled, origin, choices, notes)
+
+
+def _name(named: str, path: str) -> str:
+    """Return the name that a file gives its robot, or its own without ending."""
+    stem = posixpath.splitext(posixpath.basename(path))[0]
+    for text in (named, stem):
+        shown = " ".join(visible(text).split())[:MAX_NAME].strip()
+        if shown and shown.lower() not in _NO_NAMES:
+            return shown
+    return "robot"
+
+
+def _document(upload: Upload, choices: Choices, notes: Notes) -> tuple[str, Element]:
+    """Return the document that describes the robot, and its path.
+
+    Raises:
+        DamagedFile: if there is none.
+    """
+    if not upload.is_zip:
+        path = upload.paths[0]
+        root = read_xml(upload.read(path, MAX_DOCUMENT_BYTES), path)
+        _check_root(root, path)
+        return path, root
+    paths = upload.documents
+    if choices.file is not None:
+        if choices.file not in paths:
+            raise InvalidInput(f"the zip has no {quoted(choices.file)!r}; it has: {listed(paths)}")
+        root = read_xml(upload.read(choices.file, MAX_DOCUMENT_BYTES), choices.file)
+        _check_root(root, choices.file)
+        return choices.file, root
+    return _best_document(upload, paths, notes)
+
+
+def _best_document(upload: Upload, paths: Sequence[str], notes: Notes) -> tuple[str, Element]:
+    """Return the robot with the most joints among the documents of a zip."""
+    robots: list[tuple[tuple[int, int, int, str], str, Element]] = []
+    problems: list[str] = []
+    total = 0
+    for path in sorted(paths, key=lambda path: (path.count("/"), len(path)))[:_MAX_DOCUMENTS]:
+        total += upload.size(path)
+        if total > _MAX_DOCUMENTS_BYTES:
+            break
+        try:
+            root = read_xml(upload.read(path, MAX_DOCUMENT_BYTES), path)
+        except DamagedFile as error:
+            problems.append(str(error))
+            continue
+        if root.tag not in _ROOTS:
+            continue
+        includes = sum(1 for _ in root.all("include"))
+        joints = sum(1 for _ in root.all("joint"))
+        rank = (min(includes, 1), -joints, len(path), path)
+        robots.append((rank, path, root))
+    if not robots:
+        raise DamagedFile(problems[0]) if problems else upload.without_robot()
+    _, path, root = min(robots, key=lambda robot: robot[0])
+    if len(robots) > 1:
+        others = listed(other for _, other, _ in robots if other != path)
+        notes.guess(f"of the documents in the zip the robot is {quoted(path)}, not: {others}")
+    if root.tag == "robot":
+        check_expanded(root)
+    return path, root
+
+
+def _check_root(root: Element, path: str) -> None:
+    if root.tag not in _ROOTS:
+        raise DamagedFile(
+            f"{quoted(path)} begins with <{quoted(root.tag)}>; an MJCF file begins with <mujoco>, a"
+            " URDF with <robot>"
+        )

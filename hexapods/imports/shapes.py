@@ -1,0 +1,156 @@
+"""What of a robot touches the ground beside its feet: simple shapes in place of meshes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from hexapods.domain.robot_model import GeomKind, ModelGeom
+from hexapods.domain.types import FloatArray
+from hexapods.imports.notes import Notes
+from hexapods.imports.posed import Posed
+
+_MOST_OF_TORSO, _MOST_OF_LINK = 8, 6
+_LEAST_M = 0.001
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A simple shape in the body frame; as `ModelGeom`.
+
+    Attributes:
+        rotation: (3, 3).
+    """
+
+    kind: GeomKind
+    size_m: FloatArray
+    at_m: FloatArray
+    rotation: FloatArray
+
+    def lowest_m(self, turn: FloatArray, origin: FloatArray, moved: FloatArray) -> float:
+        """Return its lowest height after a motion of its link: rotation, about a point, and to."""
+        center = moved + turn @ (self.at_m - origin)
+        along = np.abs((turn @ self.rotation)[2])
+        x, y, _z = self.size_m
+        drop = {
+            "sphere": x,
+            "capsule": x + y * along[2],
+            "cylinder": x * np.hypot(along[0], along[1]) + y * along[2],
+            "ellipsoid": float(np.linalg.norm(along * self.size_m)),
+            "box": float(along @ self.size_m),
+        }[self.kind]
+        return float(center[2] - drop)
+
+    def as_geom(self, origin: FloatArray) -> ModelGeom:
+        """Return it in the frame of a link whose origin is given in the body frame."""
+        x, y, z = (float(one) for one in self.size_m)
+        at = [float(one) + 0.0 for one in self.at_m - origin]
+        return ModelGeom(self.kind, (x, y, z), (at[0], at[1], at[2]), quaternion(self.rotation))
+
+
+def quaternion(rotation: FloatArray) -> tuple[float, float, float, float]:
+    """Return the unit quaternion (wxyz) of a rotation, (3, 3)."""
+    found = np.empty(4)
+    mujoco.mju_mat2Quat(found, np.ascontiguousarray(rotation, dtype=np.float64).reshape(9))
+    found /= np.linalg.norm(found)
+    w, x, y, z = (float(one) + 0.0 for one in found)
+    return w, x, y, z
+
+
+def torso_shapes(posed: Posed, span_m: FloatArray) -> list[Shape]:
+    """Return the torso's own shapes if they are simple and few, or a box around them.
+
+    Args:
+        posed: the robot.
+        span_m: half sides of a box for a torso without shapes, (3,).
+    """
+    geoms = _touching(posed, posed.geoms_of(_of_torso(posed)))
+    own = [_own(posed, geom) for geom in geoms if posed.compiled.collides[geom]]
+    simple = [shape for shape in own if shape is not None]
+    if simple and len(simple) == len(geoms) <= _MOST_OF_TORSO:
+        return simple
+    points = [posed.surface(geom)[0] for geom in geoms]
+    together = np.concatenate([*points, np.empty((0, 3))])
+    if len(together) == 0:
+        return [Shape("box", span_m, np.zeros(3), np.eye(3))]
+    low, high = together.min(axis=0), together.max(axis=0)
+    half = np.maximum((high - low) / 2, _LEAST_M)
+    return [Shape("box", half, (low + high) / 2, np.eye(3))]
+
+
+def link_shapes(posed: Posed, joint: int, foot: tuple[FloatArray, float] | None) -> list[Shape]:
+    """Return the shapes of a link, without the ball of its foot.
+
+    Args:
+        posed: the robot.
+        joint: that moves the link.
+        foot: centre and radius of the foot, if the link has one.
+    """
+    shapes = []
+    for geom in posed.geoms_of(posed.bodies_of(joint)):
+        if not posed.compiled.collides[geom]:
+            continue
+        shape = _own(posed, geom) or _around(posed, geom)
+        if shape is not None and not (foot is not None and _is_foot(shape, *foot)):
+            shapes.append(shape)
+    shapes.sort(key=lambda shape: -float(shape.size_m.max()))
+    return shapes[:_MOST_OF_LINK]
+
+
+def drop_touching(
+    shapes: Sequence[Shape], lowest_m: Sequence[float], ground_m: float, notes: Notes
+) -> list[Shape]:
+    """Leave out shapes that would touch the ground at home, where only feet do."""
+    kept = [one for one, low in zip(shapes, lowest_m, strict=True) if low > ground_m]
+    if len(kept) < len(shapes):
+        notes.repair("shapes of legs that would touch the ground before the feet were left out")
+    return kept
+
+
+def _of_torso(posed: Posed) -> list[int]:
+    """Return the torso's bodies without what hangs on locked joints, such as an arm."""
+    model = posed.compiled.model
+    locked = {int(model.jnt_bodyid[joint]) for joint in posed.skeleton.locked}
+    away: set[int] = set()
+    for body in posed.bodies_of(None):
+        if body in locked or int(model.body_parentid[body]) in away:
+            away.add(body)
+    return [body for body in posed.bodies_of(None) if body not in away]
+
+
+def _touching(posed: Posed, geoms: Sequence[int]) -> list[int]:
+    """Return the geoms that touch the ground; all if none does."""
+    colliding = [geom for geom in geoms if posed.compiled.collides[geom]]
+    return colliding or list(geoms)
+
+
+def _own(posed: Posed, geom: int) -> Shape | None:
+    """Return a geom that is simple already; None for a mesh."""
+    kind = posed.kind(geom)
+    if kind == "mesh":
+        return None
+    size = np.maximum(posed.compiled.model.geom_size[geom], 0)
+    used = {"sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3, "box": 3}[kind]
+    plain = np.array([*np.maximum(size[:used], _LEAST_M), 0, 0])[:3]
+    return Shape(kind, plain, posed.geom_center(geom), posed.geom_rotation(geom))  # type: ignore[arg-type]  # of the primitives
+
+
+def _around(posed: Posed, geom: int) -> Shape | None:
+    """Return a capsule along a mesh."""
+    box = np.array(posed.compiled.model.geom_aabb[geom])
+    center, half = box[:3], box[3:]
+    if not np.isfinite(box).all() or half.max() <= 0:
+        return None
+    long = int(half.argmax())
+    radius = max(float(np.delete(half, long).mean()), _LEAST_M)
+    rotation = posed.geom_rotation(geom)
+    # The axis of a capsule is z; a cyclic exchange of the axes keeps them right-handed.
+    turned = rotation[:, [(long + 1) % 3, (long + 2) % 3, long]]
+    size = np.array([radius, max(float(half[long]) - radius, _LEAST_M), 0])
+    return Shape("capsule", size, posed.geom_center(geom) + rotation @ center, turned)
+
+
+def _is_foot(shape: Shape, center: FloatArray, radius_m: float) -> bool:
+    near = float(np.linalg.norm(shape.at_m - center)) < 0.5 * radius_m
+    return near and shape.kind == "sphere"

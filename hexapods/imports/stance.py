@@ -1,0 +1,294 @@
+"""Finds how a robot stands: a keyframe of the file, or all angles 0, or a stance that is searched.
+
+A stance is good if the torso is clear of the ground, the feet are level, and each foot reaches the
+corners of a box around it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.types import FloatArray
+from hexapods.imports.chain import PRECISION, Chain
+from hexapods.imports.choices import Choices
+from hexapods.imports.notes import Notes, listed, quoted
+
+REACH_SHARE = 0.08
+"""How far each foot must reach from home, to each side and upward, as a share of its length."""
+_CLEARANCE_SHARE, _LEVEL_SHARE = 0.04, 0.15
+"""Of the length of a leg: the torso's height over the ground, and how uneven feet may stand."""
+_SAMPLES, _ROUNDS, _NEAR = 3000, 6, 400
+_HOMES = ("home", "stand", "standing", "init", "default")
+"""Usual names of keyframes in which a robot stands, the best first."""
+_WITHOUT_LIMIT_RAD = np.pi
+_SPRAWLING = 0.35
+"""A leg points outward if its foot is farther from the mount at the angles 0, of its length."""
+_SPRAWLED = ((0.45, 0.6), (0.55, 0.6), (0.35, 0.7), (0.6, 0.7), (0.3, 0.6))
+"""Postures of such legs: how far the foot is below its mount and out, of the leg's length."""
+_UPRIGHT = (0.75, 0.68, 0.6, 0.5, 0.85)
+"""Postures of other legs: how far the foot is below its mount."""
+_POSTURES = len(_UPRIGHT)
+_LEAST_UNDER = 0.15
+"""How far a foot is at least below the torso, of the leg's length."""
+_FOLLOWING_JOINTS = 3
+"""With so many a leg follows a grid."""
+Angles = list[FloatArray]
+"""Of each leg, (joints,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Legged:
+    """What a stance depends on.
+
+    Attributes:
+        chains: the legs.
+        radii_m: of their feet.
+        names: of their joints in the file.
+        torso_bottom_m: lowest point of the torso in the body frame.
+        keyframes: angles of the legs in each keyframe of the file.
+        at_rest: angles with which the file begins.
+    """
+
+    chains: Sequence[Chain]
+    radii_m: Sequence[float]
+    names: Sequence[Sequence[str]]
+    torso_bottom_m: float
+    keyframes: Mapping[str, Angles]
+    at_rest: Angles
+
+    @property
+    def length_m(self) -> float:
+        """Mean length of a leg."""
+        return float(np.mean([chain.length_m for chain in self.chains]))
+
+    def bottoms_m(self, angles: Angles) -> FloatArray:
+        """Return the height of the lowest point of each foot in the body frame, (legs,)."""
+        feet = [chain.feet(one[None])[0, 2] for chain, one in zip(self.chains, angles, strict=True)]
+        return np.array(feet) - self.radii_m
+
+
+def find_stance(legged: Legged, choices: Choices, notes: Notes) -> Angles:
+    """Return the angles with which the robot stands, leg by leg.
+
+    Raises:
+        InvalidInput: if the chosen ones are not possible.
+    """
+    angles = _level(legged, _found(legged, choices, notes), notes)
+    if choices.home_rad:
+        angles = _changed(legged, angles, choices.home_rad)
+    return angles
+
+
+def reaches_grid(legged: Legged, angles: Angles) -> bool:
+    """Whether each foot reaches its box from a stance."""
+    return not any(_unreached(chain, one) for chain, one in _pairs(legged, angles))
+
+
+def _pairs(legged: Legged, angles: Angles) -> list[tuple[Chain, FloatArray]]:
+    return list(zip(legged.chains, angles, strict=True))
+
+
+def _found(legged: Legged, choices: Choices, notes: Notes) -> Angles:
+    if choices.keyframe is not None:
+        if choices.keyframe not in legged.keyframes:
+            valid = listed(legged.keyframes) or "none"
+            raise InvalidInput(
+                f"the file has no keyframe {quoted(choices.keyframe)!r}; it has: {valid}"
+            )
+        return _within(legged, legged.keyframes[choices.keyframe])
+    tried: list[str] = []
+    for name in sorted(legged.keyframes, key=_suitability):
+        problem = _problem(legged, legged.keyframes[name])
+        if problem is None:
+            notes.guess(f"it stands as in keyframe {quoted(name)}")
+            return _within(legged, legged.keyframes[name])
+        tried.append(f"in keyframe {quoted(name)} {problem}")
+    problem = _problem(legged, legged.at_rest)
+    if problem is None:
+        notes.guess("it stands as the file begins, all angles 0")
+        return _within(legged, legged.at_rest)
+    tried.append(f"as the file begins {problem}")
+    notes.guess(f"it stands with bent knees, as was searched: {'; '.join(tried[:3])}")
+    return search(legged)
+
+
+def _suitability(name: str) -> int:
+    plain = name.lower()
+    found = [place for place, usual in enumerate(_HOMES) if usual in plain]
+    return min(found, default=len(_HOMES))
+
+
+def _within(legged: Legged, angles: Angles) -> Angles:
+    return [np.clip(one, *chain.limits) for chain, one in _pairs(legged, angles)]
+
+
+def _problem(legged: Legged, angles: Angles) -> str | None:
+    """Return why a stance is not good; None if it is."""
+    for (chain, one), names in zip(_pairs(legged, angles), legged.names, strict=True):
+        low, high = chain.limits
+        out = np.flatnonzero((one < low - 1e-3) | (one > high + 1e-3))
+        if len(out):
+            return f"joint {quoted(names[int(out[0])])} would be outside its limits"
+    bottoms = legged.bottoms_m(angles)
+    if np.ptp(bottoms) > _LEVEL_SHARE * legged.length_m:
+        return "the feet would not be level"
+    if legged.torso_bottom_m - bottoms.max() < _CLEARANCE_SHARE * legged.length_m:
+        return "the torso would touch the ground"
+    for number, (chain, one) in enumerate(_pairs(legged, angles)):
+        if _unreached(chain, one):
+            return f"the foot after {quoted(legged.names[number][-1])} could hardly move"
+    return None
+
+
+def _unreached(chain: Chain, angles: FloatArray) -> bool:
+    """Whether a foot does not reach its box; with two joints it reaches no box, only its height."""
+    if len(angles) < _FOLLOWING_JOINTS:
+        return False
+    angles = np.clip(angles, *chain.limits)
+    side = REACH_SHARE * chain.length_m
+    corners = [(x, y, 0) for x in (-1, 1) for y in (-1, 1)]
+    targets = chain.feet(angles[None])[0] + side * np.array([*corners, (0, 0, 1)])
+    _, off = chain.solve(targets, angles)
+    return bool((off > PRECISION * chain.length_m).any())
+
+
+def _level(legged: Legged, angles: Angles, notes: Notes) -> Angles:
+    """Move the feet up or down to one height, where they reach it."""
+    bottoms = legged.bottoms_m(angles)
+    if np.ptp(bottoms) < 1e-6:
+        return angles
+    moved, unreached = [], []
+    for number, (chain, one) in enumerate(_pairs(legged, angles)):
+        target = chain.feet(one[None])[0] + [0, 0, float(bottoms.mean() - bottoms[number])]
+        found, off = chain.solve(target[None], one)
+        moved.append(found[0])
+        # With two joints only the height matters.
+        left = abs(float(chain.feet(found)[0, 2] - target[2])) if len(one) < 3 else float(off[0])
+        if left > PRECISION * chain.length_m:
+            unreached.append(number + 1)
+    if unreached:
+        notes.guess(
+            f"at home the feet are not level: legs {', '.join(map(str, unreached))} do not reach "
+            "the height of the others"
+        )
+    elif np.ptp(bottoms) > 1e-3:
+        notes.repair(f"the feet stood up to {1000 * np.ptp(bottoms):.0f} mm uneven; now level")
+    return moved
+
+
+def _changed(legged: Legged, angles: Angles, chosen: Mapping[str, float]) -> Angles:
+    """Return a stance with some angles as a person decided."""
+    places = {
+        name: (leg, joint)
+        for leg, names in enumerate(legged.names)
+        for joint, name in enumerate(names)
+    }
+    changed = [one.copy() for one in angles]
+    for name, angle in chosen.items():
+        if name not in places:
+            raise InvalidInput(
+                f"no leg has a joint {quoted(name)!r}; the legs' joints are: {listed(places)}"
+            )
+        leg, joint = places[name]
+        low, high = legged.chains[leg].limits[:, joint]
+        if not low <= angle <= high:
+            raise InvalidInput(
+                f"joint {quoted(name)} of leg {leg + 1} must be from {low:.3g} to {high:.3g} rad, "
+                f"not {angle:g}"
+            )
+        changed[leg][joint] = angle
+    return changed
+
+
+def search(legged: Legged) -> Angles:
+    """Return a stance with bent knees, in which legs that mirror each other do so.
+
+    Of several postures the first from which all feet reach their boxes, or most.
+    """
+    fewest, found = len(legged.chains) + 1, list[FloatArray]()
+    for lower in range(_POSTURES):
+        angles = _posture(legged, lower)
+        unreached = sum(_unreached(chain, one) for chain, one in _pairs(legged, angles))
+        if unreached < fewest:
+            fewest, found = unreached, angles
+        if not unreached:
+            break
+    return found
+
+
+def _posture(legged: Legged, number: int) -> Angles:
+    rng = np.random.default_rng(0)
+    first: FloatArray | None = None
+    found = []
+    for chain in legged.chains:
+        is_alike = first is not None and len(first) == len(chain.axes)
+        wanted = _wanted(chain, legged.torso_bottom_m, number)
+        best = _best(chain, wanted, first if is_alike else None, rng)
+        first = best if first is None else first
+        found.append(best)
+    return found
+
+
+def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
+    """Return where a foot is to be from its mount, as shares of the leg's length, (3,).
+
+    Well below, and out as the leg points at the angles 0.
+
+    Args:
+        chain: the leg.
+        torso_bottom_m: lowest point of the torso.
+        number: of the posture; each is a bit lower than the one before, or wider.
+    """
+    mount = chain.anchors[0]
+    straight = (chain.foot - mount) / chain.length_m
+    least = (mount[2] - torso_bottom_m) / chain.length_m + _LEAST_UNDER
+    out = float(np.linalg.norm(straight[:2]))
+    if out > _SPRAWLING:
+        down, wide = _SPRAWLED[number]
+        at = wide * straight[:2] / out
+    else:
+        down = _UPRIGHT[number]
+        # Beside the mount, where hips are offset to the side.
+        at = np.array([0.85 * straight[0], 0.0])
+    return np.array([*at, -max(down, least)])
+
+
+def _best(
+    chain: Chain, wanted: FloatArray, like: FloatArray | None, rng: np.random.Generator
+) -> FloatArray:
+    """Return the angles of least cost: many at random, then nearer and nearer to the best."""
+    low, high = np.clip(chain.limits, -_WITHOUT_LIMIT_RAD, _WITHOUT_LIMIT_RAD)
+    angles = rng.uniform(low, high, (_SAMPLES, len(low)))
+    best: FloatArray = angles[int(_costs(chain, angles, wanted, like).argmin())]
+    spread = 0.25
+    for _ in range(_ROUNDS):
+        near = best + rng.normal(0, spread, (_NEAR, len(low)))
+        near = np.concatenate([best[None], np.clip(near, low, high)])
+        best = near[int(_costs(chain, near, wanted, like).argmin())]
+        spread *= 0.4
+    return best
+
+
+def _costs(
+    chain: Chain, angles: FloatArray, wanted: FloatArray, like: FloatArray | None
+) -> FloatArray:
+    """Return how bad a leg stands at some angles, (k,).
+
+    Good is: the foot where it is wanted, every direction easily reached, far from the limits,
+    small angles, and as the first leg stands.
+    """
+    length_m = chain.length_m
+    feet = (chain.feet(angles) - chain.anchors[0]) / length_m
+    costs: FloatArray = 3 * ((feet - wanted) ** 2).sum(axis=1)
+    if angles.shape[1] >= _FOLLOWING_JOINTS:
+        least = np.linalg.svd(chain.jacobians(angles) / length_m, compute_uv=False)[:, 2]
+        costs += 4 * np.maximum(0, 0.25 - least) ** 2
+    low, high = chain.limits
+    margin = np.minimum(angles - low, high - angles)
+    costs += 0.3 * (np.maximum(0, 0.35 - margin) ** 2).sum(axis=1)
+    costs += 0.004 * (angles**2).sum(axis=1)
+    if like is not None:
+        costs += 0.05 * ((np.abs(angles) - np.abs(like)) ** 2).sum(axis=1)
+    return costs

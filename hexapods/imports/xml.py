@@ -1,0 +1,180 @@
+"""Reads XML of strangers within bounds, and writes it with the line of each element kept.
+
+Entities, document types and processing of other files do not exist here: each is refused, or
+ignored by the parser. MuJoCo's own parser sees only what `Document.text` wrote.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from xml.parsers import expat
+from xml.sax.saxutils import quoteattr
+
+from hexapods.domain.errors import DamagedFile
+from hexapods.imports.notes import quoted
+
+MAX_ELEMENTS = 20_000
+MAX_DEPTH = 200
+MAX_ATTRIBUTES = 60
+MAX_ATTRIBUTE = 20_000
+"""Characters of an attribute."""
+MAX_NUMBERS = 1_000_000
+"""Characters of an attribute that holds the vertices or faces of a mesh."""
+_LISTS = frozenset({"vertex", "face", "normal", "texcoord"})
+MAX_NAME = 200
+
+
+@dataclass(eq=False)
+class Element:
+    """An element of a document; text between tags is not kept.
+
+    Attributes:
+        tag: its name.
+        line: its line in the document.
+        attributes: by name.
+        children: in order.
+    """
+
+    tag: str
+    line: int
+    attributes: dict[str, str] = field(default_factory=dict)
+    children: list["Element"] = field(default_factory=list)
+
+    def __iter__(self) -> Iterator["Element"]:
+        return iter(self.children)
+
+    def all(self, *tags: str) -> Iterator["Element"]:
+        """Iterate over all elements below this one that have one of these tags, in order."""
+        waiting = self.children[::-1]
+        while waiting:
+            one = waiting.pop()
+            if one.tag in tags or not tags:
+                yield one
+            waiting.extend(one.children[::-1])
+
+    def first(self, tag: str) -> "Element | None":
+        """Return the first child of this tag."""
+        return next((one for one in self.children if one.tag == tag), None)
+
+    def keep(self, keeps: Callable[["Element"], bool]) -> None:
+        """Remove the elements below this one that are not to be kept, with all below them."""
+        self.children = [one for one in self.children if keeps(one)]
+        for one in self.children:
+            one.keep(keeps)
+
+    @property
+    def place(self) -> str:
+        """Where it is, for messages: `<geom> "foot" in line 12`."""
+        name = self.attributes.get("name", "")
+        return f"<{quoted(self.tag)}>{f' {quoted(name)}' if name else ''} in line {self.line}"
+
+
+def read_xml(data: bytes, label: str) -> Element:
+    """Parse a document.
+
+    Args:
+        data: the document.
+        label: its name for messages.
+
+    Raises:
+        DamagedFile: if it is not well-formed, or exceeds a bound.
+    """
+    return _Reader(label).read(data)
+
+
+class _Reader:
+    def __init__(self, label: str) -> None:
+        self._label = quoted(label)
+        self._root: Element | None = None
+        self._open: list[Element] = []
+        self._count = 0
+        self._parser = expat.ParserCreate()
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.StartDoctypeDeclHandler = self._refuse_types
+        self._parser.EntityDeclHandler = self._refuse_types
+        self._parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
+
+    def read(self, data: bytes) -> Element:
+        try:
+            self._parser.Parse(data, True)
+        except expat.ExpatError as error:
+            why = expat.ErrorString(error.code)
+            raise DamagedFile(
+                f"{self._label} is no whole XML document: line {error.lineno}: {why}"
+            ) from error
+        except (ValueError, LookupError) as error:  # an encoding that does not exist
+            raise DamagedFile(f"{self._label} is no XML document: {error}") from error
+        if self._root is None:
+            raise DamagedFile(f"{self._label} has no element")
+        return self._root
+
+    def _problem(self, what: str) -> DamagedFile:
+        return DamagedFile(f"{self._label}, line {self._parser.CurrentLineNumber}: {what}")
+
+    def _refuse_types(self, *_: object) -> None:
+        raise self._problem("a document type or an entity is not read; write the text itself")
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._count += 1
+        if self._count > MAX_ELEMENTS:
+            raise self._problem(f"it has more than {MAX_ELEMENTS:,} elements")
+        if len(self._open) >= MAX_DEPTH:
+            raise self._problem(f"elements are nested more than {MAX_DEPTH} deep")
+        if len(attributes) > MAX_ATTRIBUTES:
+            raise self._problem(f"<{quoted(tag)}> has more than {MAX_ATTRIBUTES} attributes")
+        for name, value in attributes.items():
+            most = MAX_NUMBERS if name in _LISTS else MAX_ATTRIBUTE
+            most = MAX_NAME if name in ("name", "class") else most
+            if len(value) > most:
+                raise self._problem(
+                    f"{quoted(name)} of <{quoted(tag)}> has {len(value):,} characters; it may "
+                    f"have {most:,}"
+                )
+        element = Element(tag, self._parser.CurrentLineNumber, dict(attributes))
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self._root = element
+        self._open.append(element)
+
+    def _end(self, _: str) -> None:
+        self._open.pop()
+
+
+@dataclass(frozen=True)
+class Document:
+    """A document as MuJoCo reads it, each tag in a line of its own.
+
+    Attributes:
+        text: the document.
+        lines: line in the original of each line.
+    """
+
+    text: str
+    lines: tuple[int, ...]
+
+    def original_line(self, line: int) -> int | None:
+        """Return the line in the original of a line, from 1."""
+        return self.lines[line - 1] if 0 < line <= len(self.lines) else None
+
+
+def write_xml(root: Element) -> Document:
+    """Write a document."""
+    texts: list[str] = []
+    lines: list[int] = []
+
+    def write(element: Element) -> None:
+        pairs = "".join(
+            f" {name}={quoteattr(' '.join(value.split()))}"
+            for name, value in element.attributes.items()
+        )
+        texts.append(f"<{element.tag}{pairs}{'' if element.children else '/'}>")
+        lines.append(element.line)
+        for child in element.children:
+            write(child)
+        if element.children:
+            texts.append(f"</{element.tag}>")
+            lines.append(element.line)
+
+    write(root)
+    return Document("\n".join(texts), tuple(lines))

@@ -1,0 +1,123 @@
+// The robots that are stored: renamed, hidden and deleted, and new ones taken in from files.
+import { useState } from "preact/hooks";
+import { correct, corrected } from "../correction.js";
+import { robotsAreOpen } from "../form.js";
+import { isOperator } from "../selectors.js";
+import {
+  changeRobot, chooseStored, deleteRobot, dismissFile, fileOf, isChosen, refusals, storedRobots, taken, takeFiles,
+} from "../stored-robots.js";
+import { CorrectRobot } from "./correct-robot.js";
+import { Dialog, html, Icon } from "./elements.js";
+import { Told } from "./told.js";
+
+/** @import { Robot } from "../types.js" */
+/** @import { TakenFile } from "../stored-robots.js" */
+
+const ENDINGS = ".xml,.mjcf,.urdf,.zip,.json";
+
+export const StoredRobots = () => html`
+  <${Dialog} id="stored-robots" labelledBy="robots-title" isOpen=${robotsAreOpen}>
+    <div class="body-head">
+      <h2 id="robots-title">Your robots</h2>
+      <button class="quiet square" aria-label="Close" onClick=${() => (robotsAreOpen.value = false)}>✕</button>
+    </div>
+    <div class="robots-main">
+      ${isOperator.value && html`<${FromFile} />`}
+      ${taken.value.map((one) => html`<${Taken} key=${one.key} one=${one} />`)}
+      ${storedRobots.value.length
+        ? html`<ul class="robots-list">
+            ${storedRobots.value.map((robot) => html`<${Stored} key=${robot.id} robot=${robot} />`)}
+          </ul>`
+        : html`<p class="dim">None yet: edit a body and save it under a name, or take one in from a file.</p>`}
+    </div>
+  <//>
+`;
+
+/** A button and a place to drop files on. */
+function FromFile() {
+  const [isOver, setOver] = useState(false);
+  /** @param {DragEvent} event */
+  const onDrag = (event) => {
+    event.preventDefault();
+    setOver(event.type === "dragover");
+  };
+  /** @param {DragEvent} event */
+  const onDrop = (event) => {
+    event.preventDefault();
+    setOver(false);
+    takeFiles([...event.dataTransfer?.files ?? []]);
+  };
+  /** @param {{ target: HTMLInputElement }} event */
+  const onChange = ({ target }) => {
+    takeFiles([...target.files ?? []]);
+    // So that the same file can be chosen again.
+    target.value = "";
+  };
+  return html`
+    <div class=${`robots-drop ${isOver ? "over" : ""}`} onDragOver=${onDrag} onDragLeave=${onDrag} onDrop=${onDrop}>
+      <label class="file-button">
+        <${Icon} name="import" /><b>Robot from a file…</b>
+        <input class="sr-only" type="file" multiple accept=${ENDINGS} onChange=${onChange} />
+      </label>
+      <span class="dim">Drop it here: MJCF or URDF, a zip with its meshes, or a robot that was saved elsewhere.</span>
+    </div>
+  `;
+}
+
+/** What came of a file. @param {{ one: TakenFile }} props */
+const Taken = ({ one: { key, name, state, words, robot } }) => html`
+  <div class=${`notice taken ${state === "refused" ? "bad" : ""}`} role=${state === "refused" ? "alert" : "status"}>
+    <p>
+      ${state === "reading" && html`<span class="spinner" aria-hidden="true"></span>`} <b>${name}</b> ${words}
+    </p>
+    ${robot && html`
+      <${Told} title="Guessed" sentences=${robot.guesses} />
+      <${Told} title="Repaired" sentences=${robot.repairs} />
+    `}
+    ${state !== "reading" && html`
+      <button class="quiet square small" aria-label=${`Dismiss ${name}`} onClick=${() => dismissFile(key)}>✕</button>
+    `}
+  </div>
+`;
+
+/** @param {{ robot: Robot }} props */
+function Stored({ robot }) {
+  // A stored robot has its id as its name.
+  const { name: id, title, description, hidden, body } = robot;
+  const isCorrected = corrected.value === id;
+  const refused = refusals.value[id];
+  /** @param {{ target: HTMLInputElement }} event */
+  const onName = ({ target }) => {
+    const name = target.value.trim();
+    if (name && name !== title) changeRobot(id, { name });
+    else target.value = title;
+  };
+  return html`
+    <li class=${hidden ? "hidden-robot" : ""}>
+      <div class="robots-row">
+        <input type="text" aria-label=${`Name of ${title}`} value=${title} disabled=${!isOperator.value}
+          onChange=${onName} aria-invalid=${refused ? "true" : undefined}
+          aria-describedby=${refused ? `refused-${id}` : undefined} />
+        <button class="secondary compact" aria-pressed=${isChosen(robot)} onClick=${() => chooseStored(id)}>
+          ${isChosen(robot) ? "Chosen" : "Choose"}
+        </button>
+      </div>
+      <div class="robots-row">
+        <span class="dim">${hidden ? "Hidden; " : ""}${description}</span>
+        <span class="space"></span>
+        <a class="link" href=${fileOf(id)} download aria-label=${`Download ${title}`}>Download</a>
+        ${isOperator.value && !body && html`
+          <button class="link" aria-label=${`Correct ${title}`} aria-expanded=${isCorrected}
+            onClick=${() => correct(isCorrected ? null : id)}>Correct…</button>
+        `}
+        ${isOperator.value && html`
+          <button class="link" aria-label=${`${hidden ? "Show" : "Hide"} ${title}`}
+            onClick=${() => changeRobot(id, { hidden: !hidden })}>${hidden ? "Show" : "Hide"}</button>
+          <button class="link" aria-label=${`Delete ${title}`} onClick=${() => deleteRobot(id)}>Delete</button>
+        `}
+      </div>
+      ${isCorrected && html`<${CorrectRobot} />`}
+      ${refused && html`<p id=${`refused-${id}`} class="mistake" role="alert">${refused}</p>`}
+    </li>
+  `;
+}

@@ -1,0 +1,140 @@
+"""Damages files at random, as disks, networks and editors do, and as who means harm does."""
+
+import io
+import re
+import zipfile
+from collections.abc import Callable
+
+import numpy as np
+
+from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
+
+_NUMBERS = ("nan", "inf", "-0", "0", "-1", "1e308", "-1e308", "1e-308", "1e9", "99999999999")
+_NAMES = ("FL_hip_joint", "trunk", "../../etc/passwd", "package://a/b.stl", "x", "")
+_KINDS = ("true", "false", "mesh", "plane", "free", "ball", "hinge", "slide")
+_WORDS = (*_NUMBERS, *_NAMES, *_KINDS)
+_ATTRIBUTE = re.compile(rb'([\w:]+)="([^"]*)"')
+_NUMBER = re.compile(rb"-?\d+\.?\d*(?:e-?\d+)?")
+_ELEMENT = re.compile(rb"<(\w+)[^<>]*/>")
+Damage = Callable[[bytes, np.random.Generator], bytes]
+
+
+def originals() -> list[bytes]:
+    """Return the files that are damaged: valid MJCF, URDF, and zips with meshes."""
+    mesh = '<visual><geometry><mesh filename="package://bug/meshes/hull.stl"/></geometry></visual>'
+    asset = '<asset><mesh name="hull" file="hull.stl" scale="0.1 0.1 0.1"/></asset>'
+    drawn = '<geom type="mesh" mesh="hull" contype="0" conaffinity="0"/>'
+    hull = stl(box_triangles((0.4, 0.2, 0.1), cells=3))
+    return [
+        dog(keyframes={"home": HOME}).encode(),
+        bug().encode(),
+        zipped({"bug/urdf/bug.urdf": bug(torso=mesh), "bug/meshes/hull.stl": hull}),
+        zipped({"dog.xml": dog(sections=asset, on_torso=drawn), "hull.stl": hull}),
+    ]
+
+
+def flip_bits(data: bytes, rng: np.random.Generator) -> bytes:
+    changed = bytearray(data)
+    for at in rng.integers(0, len(data), rng.integers(1, 9)):
+        changed[at] ^= 1 << int(rng.integers(8))
+    return bytes(changed)
+
+
+def cut_off(data: bytes, rng: np.random.Generator) -> bytes:
+    return data[: int(rng.integers(0, len(data)))]
+
+
+def cut_out(data: bytes, rng: np.random.Generator) -> bytes:
+    start, end = sorted(int(at) for at in rng.integers(0, len(data), 2))
+    return data[:start] + data[end:]
+
+
+def repeat(data: bytes, rng: np.random.Generator) -> bytes:
+    start = int(rng.integers(0, len(data)))
+    end = min(len(data), start + int(rng.integers(1, 2000)))
+    return data[:end] + data[start:end] * int(rng.integers(1, 20)) + data[end:]
+
+
+def change_attributes(data: bytes, rng: np.random.Generator) -> bytes:
+    return _replaced(_ATTRIBUTE, data, rng, lambda found, word: found[1] + b'="' + word + b'"')
+
+
+def change_numbers(data: bytes, rng: np.random.Generator) -> bytes:
+    return _replaced(_NUMBER, data, rng, lambda _, word: word)
+
+
+def swap_attributes(data: bytes, rng: np.random.Generator) -> bytes:
+    found = list(_ATTRIBUTE.finditer(data))
+    if len(found) < 2:
+        return data
+    first, second = sorted(rng.choice(len(found), 2, replace=False).tolist())
+    one, other = found[first], found[second]
+    between = data[one.end(2) : other.start(2)]
+    swapped: bytes = data[: one.start(2)] + other[2] + between + one[2] + data[other.end(2) :]
+    return swapped
+
+
+def delete_elements(data: bytes, rng: np.random.Generator) -> bytes:
+    return _replaced(_ELEMENT, data, rng, lambda _, __: b"")
+
+
+def double_elements(data: bytes, rng: np.random.Generator) -> bytes:
+    return _replaced(_ELEMENT, data, rng, lambda found, _: found[0] * 2)
+
+
+def rename_elements(data: bytes, rng: np.random.Generator) -> bytes:
+    tags = [found[1] for found in _ELEMENT.finditer(data)]
+    other = tags[int(rng.integers(len(tags)))] if tags else b"geom"
+    return _replaced(_ELEMENT, data, rng, lambda found, _: found[0].replace(found[1], other, 1))
+
+
+def _replaced(
+    pattern: re.Pattern[bytes],
+    data: bytes,
+    rng: np.random.Generator,
+    by: Callable[[re.Match[bytes], bytes], bytes],
+) -> bytes:
+    """Replace one to four matches."""
+    found = list(pattern.finditer(data))
+    if not found:
+        return data
+    chosen = rng.choice(len(found), min(len(found), int(rng.integers(1, 5))), replace=False)
+    for number in sorted(chosen.tolist(), reverse=True):
+        one = found[number]
+        word = _WORDS[int(rng.integers(len(_WORDS)))].encode()
+        data = data[: one.start()] + by(one, word) + data[one.end() :]
+    return data
+
+
+IN_TEXT: tuple[Damage, ...] = (
+    change_attributes,
+    change_numbers,
+    swap_attributes,
+    delete_elements,
+    double_elements,
+    rename_elements,
+)
+ANYWHERE: tuple[Damage, ...] = (flip_bits, cut_off, cut_out, repeat)
+
+
+def damaged(count: int, rng: np.random.Generator) -> list[tuple[str, bytes]]:
+    """Return damaged files, and what was done to each."""
+    files = originals()
+    found = []
+    for number in range(count):
+        original = files[number % len(files)]
+        is_text = original.startswith(b"<")
+        kinds = (*IN_TEXT, *ANYWHERE) if is_text else (*ANYWHERE, _inside)
+        damage = kinds[int(rng.integers(len(kinds)))]
+        found.append((f"{damage.__name__} of file {number % len(files)}", damage(original, rng)))
+    return found
+
+
+def _inside(data: bytes, rng: np.random.Generator) -> bytes:
+    """Damage a member of a zip, so that the zip itself stays whole."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    name = list(members)[int(rng.integers(len(members)))]
+    kinds = (*IN_TEXT, *ANYWHERE) if members[name].startswith(b"<") else ANYWHERE
+    members[name] = kinds[int(rng.integers(len(kinds)))](members[name], rng)
+    return zipped(members)

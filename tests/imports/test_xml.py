@@ -1,0 +1,47 @@
+import re
+
+import pytest
+
+from hexapods.domain.errors import DamagedFile
+from hexapods.imports.xml import MAX_ATTRIBUTE, MAX_DEPTH, MAX_ELEMENTS, read_xml, write_xml
+
+LAUGHS = b'<!DOCTYPE a [<!ENTITY b "ha"><!ENTITY c "&b;&b;&b;">]><a name="&c;"/>'
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (LAUGHS, "line 1: a document type or an entity is not read"),
+        (b'<!DOCTYPE a SYSTEM "file:///etc/passwd"><a/>', "a document type or an entity"),
+        (b"<a>" * (MAX_DEPTH + 1), f"nested more than {MAX_DEPTH} deep"),
+        (b"<a>" + b"<b/>" * MAX_ELEMENTS, f"more than {MAX_ELEMENTS:,} elements"),
+        (b'<a pos="' + b"1 " * MAX_ATTRIBUTE + b'"/>', "pos of <a> has 40,000 characters"),
+        (b'<a name="' + b"x" * 300 + b'"/>', "name of <a> has 300 characters; it may have 200"),
+        (b"<a " + b" ".join(b'b%d="1"' % n for n in range(70)) + b"/>", "more than 60 attributes"),
+        (b"<a>\n<b>\n</a>", "line 3: mismatched tag"),
+        (b"\xff\xfe\x00", "is no whole XML document"),
+        (b'<?xml version="1.0" encoding="utf-99"?><a/>', "XML document"),
+        (b"", "is no whole XML document"),
+    ],
+)
+def test_what_exceeds_a_bound_is_refused(data: bytes, said: str) -> None:
+    with pytest.raises(DamagedFile, match=re.escape(said)):
+        read_xml(data, "robot.xml")
+
+
+def test_a_document_keeps_its_lines() -> None:
+    text = b"<?xml version='1.0'?>\n<!-- a\nrobot -->\n<a>\n\n  <b c='1'/> text\n</a>"
+
+    written = write_xml(read_xml(text, "robot.xml"))
+
+    assert written.text == '<a>\n<b c="1"/>\n</a>'
+    assert [written.original_line(line) for line in (1, 2, 3)] == [4, 6, 4]
+    assert written.original_line(4) is None
+
+
+def test_names_stay_text() -> None:
+    name = 'a" b="$(rm -rf /)" <&>'
+    element = read_xml(b'<a name="a&quot; b=&quot;$(rm -rf /)&quot; &lt;&amp;&gt;"/>', "robot.xml")
+
+    assert element.attributes == {"name": name}
+    assert read_xml(write_xml(element).text.encode(), "again").attributes == {"name": name}

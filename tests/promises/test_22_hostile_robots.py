@@ -1,0 +1,284 @@
+"""Promise 22: a hostile or damaged robot's file is refused in 5 s and 512 MB, and leaves nothing.
+
+In full: 1,000 damaged files, each refused with a sentence or read as a valid robot, and 50 hostile
+ones. The gate's shorter form damages 40. Limits of time and memory are those of the process that
+reads; only `make soak` measures the time, since others may keep a busy machine from its work.
+"""
+
+import io
+import os
+import stat
+import struct
+import time
+import zipfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+from hexapods.domain.errors import InvalidInput
+from hexapods.imports.child import read_robot_file
+from hexapods.imports.imported import ImportedRobot
+from tests.imports.damage import damaged
+from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
+from tests.promises.length import at_length
+
+DAMAGED = at_length(40, 1000)
+LONGEST_S = 5.0
+SURPRISED = "cannot be understood"
+"""What is said of an error that nobody thought of."""
+
+
+@pytest.fixture(autouse=True)
+def leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """Check that no file, no process and no open file is left."""
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with pytest.raises(InvalidInput):  # starts the fork server, which stays
+        read_robot_file(b"")
+    files = psutil.Process().num_fds()
+    yield tmp_path
+    assert list(tmp_path.iterdir()) == []
+    assert psutil.Process().num_fds() <= files
+    running = psutil.Process().children(recursive=True)
+    assert [one.name() for one in running if one.name() == "robot import"] == []
+
+
+def outcome(data: bytes, name: str = "robot.xml") -> ImportedRobot | str:
+    """Return the robot, or the sentence with which it is refused, after a check of it."""
+    began_s = time.monotonic()
+    try:
+        found: ImportedRobot | str = read_robot_file(data, name)
+    except InvalidInput as error:
+        found = str(error)
+        assert 10 < len(found) <= 1000
+        assert "\n" not in found
+        assert SURPRISED not in found
+    took_s = time.monotonic() - began_s
+    assert took_s < at_length(60, LONGEST_S)
+    return found
+
+
+@pytest.mark.timeout(at_length(300, 3600))
+def test_damaged_files_are_refused_or_read_as_valid_robots() -> None:
+    outcomes = [outcome(data) for _, data in damaged(DAMAGED, np.random.default_rng(22))]
+
+    refused = [one for one in outcomes if isinstance(one, str)]
+    # Some damage changes nothing that matters.
+    assert DAMAGED // 2 < len(refused) < DAMAGED
+
+
+def laughs() -> str:
+    entities = "".join(
+        f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' if n else '<!ENTITY l0 "ha">' for n in range(12)
+    )
+    return f'<!DOCTYPE mujoco [{entities}]><mujoco model="&l11;"/>'
+
+
+def with_section(section: str) -> bytes:
+    return dog(sections=section).encode()
+
+
+def nested_replicates(depth: int) -> bytes:
+    inner = '<geom size="0.1"/>'
+    for _ in range(depth):
+        inner = f'<replicate count="1000" offset="1 0 0">{inner}</replicate>'
+    return with_section(f"<worldbody>{inner}</worldbody>")
+
+
+def bomb() -> bytes:
+    """Return a zip that unpacks to 320 MB."""
+    buffer = io.BytesIO()
+    with (
+        zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive,
+        archive.open("robot.xml", "w") as member,
+    ):
+        for _ in range(40):
+            member.write(bytes(8_000_000))
+    return buffer.getvalue()
+
+
+def small_claim() -> bytes:
+    """Return a bomb whose directory says that it is small."""
+    data = bytearray(bomb())
+    at = data.index(b"PK\1\2")
+    data[at + 24 : at + 28] = struct.pack("<I", 100)
+    return bytes(data)
+
+
+def nested_zip() -> bytes:
+    return zipped({"inner.zip": zipped({"robot.xml": dog()})})
+
+
+def link(mode: int) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        info = zipfile.ZipInfo("robot.xml")
+        info.external_attr = mode << 16
+        archive.writestr(info, "/etc/passwd")
+    return buffer.getvalue()
+
+
+def with_mesh(content: bytes, ending: str = "stl", attributes: str = "") -> bytes:
+    asset = f'<asset><mesh name="m" file="m.{ending}" {attributes}/></asset>'
+    drawn = '<geom type="mesh" mesh="m"/>'
+    return zipped({"dog.xml": dog(sections=asset, on_torso=drawn), f"m.{ending}": content})
+
+
+def obj(lines: str) -> bytes:
+    return with_mesh(lines.encode(), "obj")
+
+
+def not_finite() -> bytes:
+    triangles = box_triangles((1, 1, 1))
+    triangles[0, 0, 0] = np.nan
+    return with_mesh(stl(triangles))
+
+
+def false_count(count: int) -> bytes:
+    content = bytearray(stl(box_triangles((1, 1, 1))))
+    content[80:84] = struct.pack("<I", count)
+    return with_mesh(bytes(content))
+
+
+def lies_about_members() -> bytes:
+    data = bytearray(zipped({"robot.xml": dog()}))
+    at = data.rindex(b"PK\5\6")
+    data[at + 8 : at + 12] = struct.pack("<2H", 65_535, 65_535)
+    return bytes(data)
+
+
+def overlapping() -> bytes:
+    """Return a zip whose directory lists one member under many names."""
+    data = bytearray(zipped({"robot.xml": "<mujoco/>" * 1000}))
+    start, end = data.index(b"PK\1\2"), data.rindex(b"PK\5\6")
+    entry = bytes(data[start:end])
+    entries = b"".join(
+        entry.replace(b"robot.xml", b"rob%02d.xml" % number) for number in range(100)
+    )
+    tail = bytearray(data[end:])
+    struct.pack_into("<2HI", tail, 8, 100, 100, len(entries))
+    return bytes(data[:start]) + entries + bytes(tail)
+
+
+HOSTILE: dict[str, Callable[[], bytes]] = {
+    "nothing": lambda: b"",
+    "zeros": lambda: bytes(1_000_000),
+    "no document": lambda: b"\x7fELF" + os.urandom(5000),
+    "a web page": lambda: b"<html><body>robot</body></html>",
+    "a billion laughs": lambda: laughs().encode(),
+    "an external entity": lambda: (
+        b'<!DOCTYPE mujoco [<!ENTITY f SYSTEM "file:///etc/passwd">]><mujoco model="&f;"/>'
+    ),
+    "an external document type": lambda: b'<!DOCTYPE r SYSTEM "http://127.0.0.1:9/r"><robot/>',
+    "a million elements": lambda: b"<mujoco>" + b"<geom/>" * 1_000_000 + b"</mujoco>",
+    "a deep document": lambda: b"<mujoco>" * 500_000,
+    "deep bodies": lambda: with_section(
+        "<worldbody>" + "<body>" * 250 + "</body>" * 250 + "</worldbody>"
+    ),
+    "a long attribute": lambda: b'<mujoco model="' + b"x" * 3_000_000 + b'"/>',
+    "many attributes": lambda: (
+        b"<mujoco " + b" ".join(b'a%d="1"' % n for n in range(200_000)) + b"/>"
+    ),
+    "an include": lambda: with_section('<include file="/etc/passwd"/>'),
+    "an include of itself": lambda: zipped(
+        {"robot.xml": '<mujoco><include file="robot.xml"/></mujoco>'}
+    ),
+    "an attached model": lambda: with_section('<asset><model file="/etc/passwd"/></asset>'),
+    "a billion geoms": lambda: nested_replicates(3),
+    "10^30 geoms": lambda: nested_replicates(10),
+    "a composite": lambda: with_section(
+        '<worldbody><body><composite type="cloth" count="9999 9999 1"/></body></worldbody>'
+    ),
+    "a flexcomp": lambda: with_section(
+        '<worldbody><flexcomp type="grid" count="999 999 999" name="f"/></worldbody>'
+    ),
+    "a plugin": lambda: with_section('<extension><plugin plugin="x"/></extension>'),
+    "3,000 bodies": lambda: with_section("<worldbody>" + "<body/>" * 3000 + "</worldbody>"),
+    "10,000 geoms": lambda: with_section(
+        "<worldbody><body>" + '<geom size="1"/>' * 10_000 + "</body></worldbody>"
+    ),
+    "a huge sphere of a mesh": lambda: with_section(
+        '<asset><mesh name="m" builtin="sphere" params="30"/></asset>'
+    ),
+    "a mesh of very many numbers": lambda: with_section(
+        '<asset><mesh name="m" vertex="' + "0 " * 2_000_000 + '"/></asset>'
+    ),
+    "numbers that are none": lambda: dog().replace("0.3", "nan").encode(),
+    "infinite numbers": lambda: dog().replace("0.3", "inf").encode(),
+    "huge numbers": lambda: dog().replace("0.3", "1e308").encode(),
+    "a leg of a kilometre": lambda: dog().replace('0 0 -0.2"', '0 0 -1000"').encode(),
+    "a leg of an atom": lambda: dog().replace("0 0 -0.2", "0 0 -1e-10").encode(),
+    "a joint without an axis": lambda: dog().replace('axis="1 0 0"', 'axis="0 0 0"').encode(),
+    "13 legs": lambda: dog(
+        {f"L{n}": (0.3 * np.cos(n / 2), 0.3 * np.sin(n / 2)) for n in range(13)}
+    ).encode(),
+    "a body without legs": lambda: b"<mujoco><worldbody><body/></worldbody></mujoco>",
+    "links in a circle": lambda: (
+        b'<robot><link name="r"/><link name="a"/><link name="b"/>'
+        b'<joint name="1" type="fixed"><parent link="a"/><child link="b"/></joint>'
+        b'<joint name="2" type="fixed"><parent link="b"/><child link="a"/></joint></robot>'
+    ),
+    "unexpanded xacro": lambda: b'<robot><link name="${base}"/></robot>',
+    "a mesh from the system": lambda: zipped(
+        {"bug.urdf": bug(torso=shape("/etc/passwd")), "a.stl": ""}
+    ),
+    "a mesh from above": lambda: zipped(
+        {"bug.urdf": bug(torso=shape("../../../etc/passwd")), "a.stl": ""}
+    ),
+    "a mesh from the network": lambda: zipped(
+        {"bug.urdf": bug(torso=shape("http://127.0.0.1:9/a.stl")), "a.stl": ""}
+    ),
+    "a mesh of too many triangles": lambda: false_count(2**32 - 1),
+    "a mesh of other triangles": lambda: false_count(1000),
+    "a mesh that is not finite": not_finite,
+    "a mesh of one triangle": lambda: with_mesh(stl(box_triangles((1, 1, 1))[:1])),
+    "a mesh without corners": lambda: obj("f 1 2 3\n" * 1000),
+    "a mesh with corners from nowhere": lambda: obj(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 999999999\nf -5 -6 -7\n"
+    ),
+    "a mesh that names files": lambda: obj("mtllib /etc/passwd\nv 0 0 0\n"),
+    "a bomb": bomb,
+    "a bomb that claims to be small": small_claim,
+    "a zip in a zip": nested_zip,
+    "a link": lambda: link(stat.S_IFLNK | 0o777),
+    "a device": lambda: link(stat.S_IFBLK | 0o777),
+    "a member above the zip": lambda: zipped({"../robot.xml": dog()}),
+    "a zip of too many members": lambda: zipped({f"{n}.stl": "" for n in range(3000)}),
+    "a zip that lies about its members": lies_about_members,
+    "one member under many names": overlapping,
+    "a zip that is cut short": lambda: zipped({"robot.xml": dog(keyframes={"home": HOME})})[:-40],
+}
+
+
+def shape(file: str) -> str:
+    return f'<visual><geometry><mesh filename="{file}"/></geometry></visual>'
+
+
+def test_there_are_fifty() -> None:
+    assert len(HOSTILE) >= 50
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_files_are_refused(name: str) -> None:
+    found = outcome(HOSTILE[name](), "robot.zip")
+
+    assert isinstance(found, str), name
+    assert "root:" not in found
+
+
+@pytest.mark.parametrize(
+    "section",
+    [
+        '<asset><texture name="t" builtin="flat" width="100000" height="100000"/></asset>',
+        '<asset><hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/></asset>',
+        '<size memory="900G" nuserdata="1000000000"/>',
+        '<sensor><user dim="1000000000"/></sensor>',
+        '<visual><global offwidth="1000000000" offheight="1000000000"/></visual>',
+    ],
+)
+def test_what_is_no_body_takes_no_memory(section: str) -> None:
+    found = outcome(with_section(section))
+
+    assert isinstance(found, ImportedRobot)
