@@ -1,6 +1,5 @@
-"""Pages of lessons and rooms: they lead to the dashboard, which shows them."""
+"""Links to lessons, and the dashboard on the stage of a room; its own page is in `app.api.pages`."""
 
-import posixpath
 from urllib.parse import quote
 
 from starlette.requests import Request
@@ -14,14 +13,14 @@ from app.storage.errors import NotFound
 
 
 def classroom_routes() -> list[BaseRoute]:
-    """Return the routes of links to lessons, `/l/ID`, and of rooms by any spelling, `/r/CODE`.
+    """Return the routes of links to lessons, `/l/ID`, and of the stages of rooms, `/r/CODE/`.
 
-    The page of an open room is `/r/CODE/`, where its stage serves the dashboard.
+    The stage of an open room serves the dashboard there; what is left is other spellings of its
+    code, and rooms that are not open.
     """
     return [
         Route("/l/{lesson_id}", _lesson, name="lesson_page"),
-        Route("/r/{code}", _room, name="room_page"),
-        Route("/r/{code}/", _room, name="room_page_folder"),
+        Route("/r/{code}/", _room, name="room_stage"),
     ]
 
 
@@ -46,10 +45,9 @@ def _room(request: Request) -> Response:
         return problem(404, f"{_capital(str(error))}.")
     if not room.is_open:
         return problem(410, f"The room {room.code} has ended; ask for the code of a new one.")
-    if request.url.path.endswith("/") and normalized(given) == given:
+    if normalized(given) == given:
         return problem(503, "The room is opening; try again.", headers={"Retry-After": "1"})
-    up = "../" if request.url.path.endswith("/") else ""
-    return RedirectResponse(posixpath.join(up, f"{room.code}/"), 303)
+    return RedirectResponse(f"../{room.code}/", 303)
 
 
 def _capital(text: str) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.archive.transfer import MAX_RUNS
+from app.classroom.lesson import MAX_CARDS
 from app.storage.run import KINDS, MAX_KEY_LENGTH, SORTS, STATES
 from hexapods.domain import disturbances
 from hexapods.domain.gait import NAMED_GAITS
@@ -113,6 +114,13 @@ VALID: Mapping[str, str] = {
     "part": "practice, or evaluation for the newest one; of a training",
     "settings": "an object with the agent's settings, by name",
     "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
+    "lesson": "the id of a lesson, or a lesson itself",
+    "card": f"the number of a card, from 0 to {MAX_CARDS - 1}",
+    "value": "an answer to the card's question",
+    "needs_approval": "true or false",
+    "frozen": "true or false",
+    "is_name_hidden": "true or false",
+    "is_approved": "true or false",
     "format": "a format that the description of the route names",
 }
 

@@ -27,6 +27,7 @@ CONTENTS = (
             "learners",
             "linear-model",
             "creatures",
+            "robot-files",
             "servos",
             "search",
             "explanations",

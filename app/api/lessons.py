@@ -46,7 +46,10 @@ def _lesson(request: Request, body: BodyDep) -> Lesson:
     responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
     openapi_extra={
         "requestBody": {
-            "content": {"application/json": {"schema": GIVEN_LESSON}, MEDIA_TYPE: {"schema": TEXT}},
+            "content": {
+                "application/json": {"schema": GIVEN_LESSON},
+                MEDIA_TYPE: {"schema": GIVEN_LESSON},
+            },
             "required": True,
         }
     },
@@ -87,7 +90,7 @@ def list_lessons(services: ServicesDep) -> Response:
     "/{lesson_id}",
     summary="Get a lesson (JSON, YAML)",
     response_model=LessonView,
-    responses=answers(200, {MEDIA_TYPE: TEXT}),
+    responses=answers(200, {MEDIA_TYPE: GIVEN_LESSON}),
 )
 def get_lesson(
     services: ServicesDep,

@@ -14,7 +14,6 @@ from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
-from app.api.robot_answers import grid_side_m
 from app.archive.transfer import MAX_RUNS
 from app.jobs.submissions import MAX_SETTINGS
 from app.storage.database.robots import Robots
@@ -65,6 +64,7 @@ from hexapods.runs.config import (
 )
 from hexapods.runs.gait_analysis import MAX_WINDOW_S
 from hexapods.runs.lane import LaneConfig
+from hexapods.runs.preview import usual_side_m
 from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from hexapods.shows.scene_spec import PAPERS_LANES
 
@@ -302,7 +302,7 @@ def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
         "hidden": False,
         "body": None,
         "robot": as_mapping(made),
-        "grid_side_m": grid_side_m(made),
+        "grid_side_m": usual_side_m(made, gait),
         "joints": [[joint.name for joint in legs.of_leg(number)] for number in numbers],
         "limits_rad": [[joint.limits_rad for joint in legs.of_leg(number)] for number in numbers],
         "azimuths_deg": [*made.azimuths_deg],

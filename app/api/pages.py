@@ -1,4 +1,4 @@
-"""The dashboard: its page and static files, compressed, with a content security policy."""
+"""The pages of the dashboard and of rooms, and their static files, compressed, with a policy."""
 
 import base64
 import hashlib
@@ -19,33 +19,42 @@ from app.api.compression import CompressedContent
 
 _INLINE_SCRIPT = re.compile(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", re.DOTALL)
 _IMPORT_MAP = re.compile(r'<script type="importmap">(.*?)</script>', re.DOTALL)
-_ENTRY = re.compile(r'<script type="module" src="([^"]+)"></script>')
+_ENTRY = re.compile(r'<script type="module" src="((?:\.\./)*)([^"]+)"></script>')
 # As all modules write it: at the start of a line, with a relative path in double quotes.
 _IMPORT = re.compile(r'^import [^"]*"(\.[^"]+)";', re.MULTILINE)
 
 
 def page_routes(folder: Path) -> list[BaseRoute]:
-    """Return the routes of the page at `/`, as it is now, and of its files under `/static/`.
+    """Return the routes of the pages, as they are now, and of their files under `/static/`.
 
     Args:
-        folder: folder of the dashboard, with its `index.html`.
+        folder: folder of the dashboard, with its `index.html` and the `room.html` of all rooms.
     """
-    page = with_preloads((folder / "index.html").read_text("utf-8"), folder)
-    policy = {"Content-Security-Policy": content_policy(page)}
-    index = CompressedContent(page.encode(), "text/html", policy)
+    index, room = (_page(folder / name, folder) for name in ("index.html", "room.html"))
     files = _Files(directory=folder)
 
     async def show(request: Request) -> Response:
         return index.response(request.scope)
+
+    async def show_room(request: Request) -> Response:
+        # Whether there is such a room, the page asks itself, and says so.
+        return room.response(request.scope)
 
     async def favicon(request: Request) -> Response:
         return await files.get_response("favicon.svg", request.scope)
 
     return [
         Route("/", show, name="dashboard"),
+        Route("/r/{code}", show_room, name="room_page"),
         Route("/favicon.ico", favicon, name="favicon"),
         Mount("/static", files, name="static"),
     ]
+
+
+def _page(file: Path, folder: Path) -> CompressedContent:
+    page = with_preloads(file.read_text("utf-8"), folder)
+    policy = {"Content-Security-Policy": content_policy(page)}
+    return CompressedContent(page.encode(), "text/html", policy)
 
 
 def content_policy(page: str) -> str:
@@ -63,7 +72,8 @@ def with_preloads(page: str, folder: Path) -> str:
     """Add a preload for each module, so that none waits until another imports it.
 
     Args:
-        page: the page's HTML, with an import map and one module as entry point.
+        page: the page's HTML, with an import map and one module as entry point; the module's path
+            may begin with `../`, as of a page that is not beside `static`.
         folder: folder of the dashboard, which the page knows as `static`.
     """
     entry = _ENTRY.search(page)
@@ -71,7 +81,7 @@ def with_preloads(page: str, folder: Path) -> str:
     if entry is None or packages is None:
         raise ValueError("The page has no import map, or no module as its entry point.")
     modules = [posixpath.normpath(path) for path in json.loads(packages[1])["imports"].values()]
-    modules += imported_modules(entry[1], folder)
+    modules += [entry[1] + path for path in imported_modules(entry[2], folder)]
     links = "".join(f'<link rel="modulepreload" href="{path}">\n' for path in modules)
     return page[: entry.start()] + links + page[entry.start() :]
 

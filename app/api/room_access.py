@@ -28,7 +28,7 @@ from app.storage.errors import NotFound
 WRONG_CODES, WRONG_CODES_PER_S = 60, 1.0
 """Of an address, which a class may share."""
 JOINS, JOINS_PER_S = 48, 0.2
-"""Of an address, likewise."""
+"""Of an address, likewise, to one room, which has places for more."""
 ROOMS = "/api/v1/rooms"
 PAGES = "/r"
 READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -38,7 +38,7 @@ _OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]
 _COOKIE = re.compile(rf"(?:__Host-)?{ROOM_NAME}_\d+_(?P<code>[{ALPHABET}]{{{CODE_LENGTH}}})")
 _DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
 """By the end of the path that is sent to, what the card must allow."""
-_LEAVE = "/participants/me"
+_LEAVE = "/me"
 _JOIN = "/participants"
 OPEN_TO_ALL = frozenset(
     {
@@ -119,6 +119,8 @@ class RoomAccess:
             if _TAUGHT.fullmatch(path_of(scope)):
                 return problem(403, "A lesson has its answers; participants see its cards alone.")
             if is_public or rest is not None or self._is_read_in_room(scope, seats):
+                return None
+            if self.is_open_to_all(scope):
                 return None
             return problem(403, "Participants see their room alone here; watching needs the token.")
         deed = _DEEDS.get(rest or "") if scope["method"] == "POST" else None

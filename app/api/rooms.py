@@ -214,7 +214,7 @@ def join_room(
     rooms = services.rooms
     if rooms.seat(normalized(code), cookie.value) is None:
         rooms.get(code).check_open()
-        if (wait_s := services.joins.take(client_of(scope))) > 0:
+        if (wait_s := services.joins.take(f"{normalized(code)} {client_of(scope)}")) > 0:
             raise Busy(_JOINS_USED_UP, whole_seconds(wait_s))
     joined = rooms.join(code, cookie.value)
     shown = {"name": joined.participant.name, "seed": joined.participant.seed}
@@ -223,7 +223,7 @@ def join_room(
     return response
 
 
-@router.delete("/{code}/participants/me", status_code=204, summary="Leave a room")
+@router.delete("/{code}/me", status_code=204, summary="Leave a room")
 def leave_room(
     services: ServicesDep, request: Request, code: CodePath, seed: SeatDep, response: Response
 ) -> None:

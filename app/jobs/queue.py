@@ -128,17 +128,20 @@ class RunQueue:
     def pop_ready(self) -> Run | None:
         """Remove and return the first run that waits for nothing but a core, None if none does.
 
-        If it is a participant's, the first of the participant who has had the fewest turns.
+        If it is a participant's, the first of the participant who has had the fewest turns; both
+        exchange their places, so that the runs of others keep theirs.
         """
         ready = [run for run in self._runs.values() if not run.waiting_for]
         if not ready:
             return None
-        owner = self._owner_of(ready[0].id)
-        if owner is None:
-            return self._runs.pop(ready[0].id)
+        first = ready[0]
+        if self._owner_of(first.id) is None:
+            return self._runs.pop(first.id)
         owned = [(one, run) for run in ready if (one := self._owner_of(run.id)) is not None]
         owner, run = min(owned, key=lambda pair: self._turns[pair[0]])
         self._turns[owner] += 1
+        places = {run.id: first, first.id: run}
+        self._runs = {one.id: one for one in (places.get(i, r) for i, r in self._runs.items())}
         return self._runs.pop(run.id)
 
     def push_front(self, run: Run) -> None:

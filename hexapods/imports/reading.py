@@ -97,11 +97,7 @@ def _best_document(upload: Upload, paths: Sequence[str], notes: Notes) -> tuple[
         rank = (min(includes, 1), -joints, len(path), path)
         robots.append((rank, path, root))
     if not robots:
-        raise DamagedFile(
-            problems[0]
-            if problems
-            else f"the zip has no MJCF or URDF document; it has: {listed(paths)}"
-        )
+        raise DamagedFile(problems[0]) if problems else upload.without_robot()
     _, path, root = min(robots, key=lambda robot: robot[0])
     if len(robots) > 1:
         others = listed(other for _, other, _ in robots if other != path)

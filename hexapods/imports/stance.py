@@ -251,7 +251,7 @@ def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
     else:
         down = _UPRIGHT[number]
         # Beside the mount, where hips are offset to the side.
-        at = np.array([0.7 * straight[0], 0.0])
+        at = np.array([0.85 * straight[0], 0.0])
     return np.array([*at, -max(down, least)])
 
 

@@ -63,16 +63,20 @@ class Upload:
             return [*self.paths]
         found = [path for path in self.paths if path.lower().endswith(_DOCUMENTS)]
         if not found:
-            if any(path.lower().endswith(".xacro") for path in self.paths):
-                raise DamagedFile(
-                    "the zip has a xacro file, which is not expanded here: run `xacro robot.xacro "
-                    "> robot.urdf`, and add the result"
-                )
-            raise DamagedFile(
-                f"the zip has no file that ends with {', '.join(_DOCUMENTS)}; it has: "
-                f"{listed(self.paths) or 'nothing'}"
-            )
+            raise self.without_robot()
         return found
+
+    def without_robot(self) -> DamagedFile:
+        """Return the error for a zip without a robot."""
+        if any(path.lower().endswith(".xacro") for path in self.paths):
+            return DamagedFile(
+                "the zip has xacro files, which are not expanded here: run `xacro robot.xacro > "
+                "robot.urdf`, and add the result"
+            )
+        return DamagedFile(
+            f"the zip has no MJCF or URDF document ({', '.join(_DOCUMENTS)}); it has: "
+            f"{listed(self.paths) or 'nothing'}"
+        )
 
     def size(self, path: str) -> int:
         """Return the size of a file as the zip's directory says."""

@@ -1,6 +1,7 @@
 // Written by `make page-types` from the API's response models (app/api/*answers.py).
 
 export type JsonValue = unknown;
+export type GivenJsonValue = unknown;
 
 /**
  * Value of an action, [pair, cell], in a state, which is the cell of each pair.
@@ -98,142 +99,8 @@ export interface Ask {
   text: string;
   /**
    * of which one is the answer, of kind `choice` alone; a name of an agent stands for the race that it wins.
-   *
-   * @maxItems 20
    */
-  choices:
-    | []
-    | [string]
-    | [string, string]
-    | [string, string, string]
-    | [string, string, string, string]
-    | [string, string, string, string, string]
-    | [string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string, string, string, string]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ]
-    | [
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string,
-        string
-      ];
+  choices: string[];
   /**
    * between which a number is.
    */
@@ -318,244 +185,7 @@ export interface Bounds {
   /**
    * the values of which one may be chosen.
    */
-  choices:
-    | [number | string | boolean]
-    | [number | string | boolean, number | string | boolean]
-    | [number | string | boolean, number | string | boolean, number | string | boolean]
-    | [number | string | boolean, number | string | boolean, number | string | boolean, number | string | boolean]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | [
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean,
-        number | string | boolean
-      ]
-    | null;
+  choices: [number | string | boolean, ...(number | string | boolean)[]] | null;
 }
 /**
  * The moment of another race at which a race branches off; until then both are the same.
@@ -592,49 +222,7 @@ export interface Card {
   /**
    * the tabs of the panel that are shown; null for those of the depth.
    */
-  show:
-    | []
-    | ["board" | "train" | "world" | "why" | "gait" | "table" | "what-if"]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | [
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if",
-        "board" | "train" | "world" | "why" | "gait" | "table" | "what-if"
-      ]
-    | null;
+  show: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if")[] | null;
   /**
    * its question.
    */
@@ -700,10 +288,8 @@ export interface PageState {
   camera: ("leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
   /**
    * parts of the page that are hidden.
-   *
-   * @maxItems 2
    */
-  hidden: [] | ["panel" | "card"] | ["panel" | "card", "panel" | "card"];
+  hidden: ("panel" | "card")[];
 }
 /**
  * What is revealed after the answers.
@@ -1694,17 +1280,7 @@ export interface LaneView {
  * runs computed beside it, which slows its wall clock.
  */
 export interface RaceResult {
-  /**
-   * @maxItems 6
-   */
-  lanes:
-    | []
-    | [LaneResult]
-    | [LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult]
-    | [LaneResult, LaneResult, LaneResult, LaneResult, LaneResult, LaneResult];
+  lanes: LaneResult[];
   recording_sha256?: string | null;
   shared_machine?: boolean;
 }
@@ -1952,13 +1528,7 @@ export interface ExperimentConfig {
  */
 export interface ExperimentResult {
   trials: TrialCounts;
-  /**
-   * @maxItems 1000
-   */
   claims: ClaimVerdict[];
-  /**
-   * @maxItems 128
-   */
   files: string[];
   shared_machine?: boolean;
   finding?: string;
@@ -2618,6 +2188,179 @@ export interface GaitOption {
   pairs: number[][];
 }
 /**
+ * A question, to which each participant gives one answer before the reveal.
+ */
+export interface GivenAsk {
+  /**
+   * of answer: one of the choices, a number, a point on a chart, or a curve.
+   */
+  kind: "choice" | "number" | "point" | "curve";
+  /**
+   * the question, in Markdown.
+   */
+  text: string;
+  /**
+   * of which one is the answer, of kind `choice` alone; a name of an agent stands for the race that it wins.
+   */
+  choices?: string[];
+  /**
+   * between which a number is.
+   */
+  minimum?: number | null;
+  /**
+   * between which a number is.
+   */
+  maximum?: number | null;
+  /**
+   * of the number; `m` and `cm` are compared with distances.
+   */
+  unit?: string | null;
+}
+/**
+ * What may be chosen for a setting; without any of it, all that is valid.
+ */
+export interface GivenBounds {
+  /**
+   * least number, inclusive.
+   */
+  minimum?: number | null;
+  /**
+   * greatest number, inclusive.
+   */
+  maximum?: number | null;
+  /**
+   * the values of which one may be chosen.
+   */
+  choices?: [number | string | boolean, ...(number | string | boolean)[]] | null;
+}
+/**
+ * A page of a lesson.
+ */
+export interface GivenCard {
+  /**
+   * by name the settings that may be changed, each with its bounds.
+   */
+  may?: {
+    [k: string]: GivenBounds;
+  };
+  title?: string | null;
+  /**
+   * in Markdown.
+   */
+  text: string;
+  /**
+   * what it opens of the page.
+   */
+  state?: GivenPageState | null;
+  /**
+   * the tabs of the panel that are shown; null for those of the depth.
+   */
+  show?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if")[] | null;
+  /**
+   * its question.
+   */
+  ask?: GivenAsk | null;
+  /**
+   * what the button runs, from the form of the state; null for nothing.
+   */
+  go?: ("training" | "race" | "what-if") | null;
+  /**
+   * what is revealed afterwards, or its text alone.
+   */
+  reveal?: GivenReveal | string | null;
+}
+/**
+ * A part of the page's state document; what is null stays as it is.
+ */
+export interface GivenPageState {
+  /**
+   * the open view.
+   */
+  view?: ("race" | "experiments" | "runs" | "compare") | null;
+  /**
+   * fields of the start that the page offers, by name: those of a training, settings of its agent (by themselves or in `settings`), `lanes` and `race_steps` of a race, `world` and `disturb`.
+   */
+  form?: {
+    [k: string]: GivenJsonValue;
+  } | null;
+  /**
+   * id of the run that is replayed.
+   */
+  run?: string | null;
+  /**
+   * id of the run whose robots walk along.
+   */
+  ghost?: string | null;
+  /**
+   * where the replay is held [s].
+   */
+  moment?: number | null;
+  /**
+   * of the replay of a race.
+   */
+  clock?: ("paper" | "wall" | "free") | null;
+  /**
+   * where the replay of a race ends.
+   */
+  end?: ("time-out" | "all") | null;
+  /**
+   * how much of the page is shown.
+   */
+  depth?: ("watch" | "try" | "study") | null;
+  /**
+   * the open tab of the panel.
+   */
+  tab?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
+  /**
+   * a second tab beside it.
+   */
+  pinned?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
+  /**
+   * its target: `leader`, `free`, or the number of a lane.
+   */
+  camera?: ("leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
+  /**
+   * parts of the page that are hidden.
+   */
+  hidden?: ("panel" | "card")[];
+}
+/**
+ * What is revealed after the answers.
+ */
+export interface GivenReveal {
+  /**
+   * in Markdown.
+   */
+  text?: string;
+  /**
+   * the right choice or number, where it does not follow from the runs.
+   */
+  answer?: number | string | null;
+}
+/**
+ * A lesson.
+ */
+export interface GivenLesson {
+  /**
+   * in plain text.
+   */
+  title: string;
+  /**
+   * of its texts, such as `en` or `de-AT`.
+   */
+  language?: string;
+  /**
+   * what is learned, each a line of plain text.
+   */
+  aims?: string[];
+  /**
+   * its pages, in order.
+   *
+   * @minItems 1
+   */
+  cards: [GivenCard, ...GivenCard[]];
+}
+/**
  * A group of legs.
  */
 export interface GroupPreview {
@@ -2746,28 +2489,12 @@ export interface LessonView {
   language: string;
   /**
    * what is learned, each a line of plain text.
-   *
-   * @maxItems 12
    */
-  aims:
-    | []
-    | [string]
-    | [string, string]
-    | [string, string, string]
-    | [string, string, string, string]
-    | [string, string, string, string, string]
-    | [string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string]
-    | [string, string, string, string, string, string, string, string, string, string, string, string];
+  aims: string[];
   /**
    * its pages, in order.
    *
    * @minItems 1
-   * @maxItems 60
    */
   cards: [Card, ...Card[]];
   /**

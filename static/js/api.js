@@ -1,12 +1,16 @@
-// Client of the server: its REST API, one function per request, and its stream of events.
+// Client of the server: its REST API, one function per request.
 import { computed, effect, untracked } from "@preact/signals";
 
 /** @import { Annotations, Curve, Curves, Disturbance, Explanation, GaitAnalysis, Kind, Options } from "./types.js" */
 /** @import { Estimate, Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage, StateTable } from "./types.js" */
 /** @import { Summary, Timeline, Trial, Verb, WhatIfAnswer } from "./types.js" */
 
-// All that a page asks for is below its own address, which tells the stage that it is about.
-const base = () => new URL("api/v1/", document.baseURI);
+/**
+ * Where the stage is, relative to the page: all that it asks for is below, which tells the stage that it is about.
+ * A page that is elsewhere says so in its HTML.
+ */
+export const root = () => document.documentElement.dataset.root ?? "";
+const base = () => new URL(`${root()}api/v1/`, document.baseURI);
 
 /** Where something is that the browser loads by itself. @param {string} path of the API */
 export const addressOf = (path) => new URL(path, base()).href;
@@ -210,7 +214,7 @@ const RETRY_MS = 500;
  * @param {unknown} body
  * @returns {Promise<any>}
  */
-async function start(path, body) {
+export async function start(path, body) {
   const key = { "Idempotency-Key": randomKey() };
   try {
     return await call("POST", path, body, key);
@@ -346,55 +350,3 @@ export const getTable = ({ training_id, step, first }) => {
   const query = new URLSearchParams({ first: `${first}`, ...(step === null ? {} : { step: `${step}` }) });
   return call("GET", `trainings/${encodeURIComponent(training_id)}/table?${query}`);
 };
-
-// ---- the stream of server-sent events
-
-const FIRST_WAIT_MS = 500;
-const LONGEST_WAIT_MS = 8000;
-
-/**
- * Open the stream, and open it again after every break with exponential back-off.
- * @param {string[]} names of events that are wanted
- * @param {(name: string, data: any) => void} onEvent
- * @param {(state: "connecting" | "live" | "reconnecting") => void} onState
- */
-export function openEvents(names, onEvent, onState) {
-  /** @type {EventSource | null} */
-  let source = null;
-  let wait = FIRST_WAIT_MS;
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
-
-  const open = () => {
-    clearTimeout(timer);
-    source?.close();
-    const opened = new EventSource(addressOf("events"));
-    source = opened;
-    for (const name of names) {
-      opened.addEventListener(name, ({ data }) => {
-        if (name === "snapshot") {
-          wait = FIRST_WAIT_MS;
-          onState("live");
-        }
-        onEvent(name, JSON.parse(data));
-      });
-    }
-    opened.onerror = () => {
-      // The browser's own retry gives up on some answers.
-      opened.close();
-      onState("reconnecting");
-      timer = setTimeout(open, wait);
-      wait = Math.min(2 * wait, LONGEST_WAIT_MS);
-    };
-  };
-
-  const openNow = () => {
-    if (source?.readyState === EventSource.CLOSED) open();
-  };
-  addEventListener("online", openNow);
-  document.addEventListener("visibilitychange", () => {
-    if (!document.hidden) openNow();
-  });
-  onState("connecting");
-  open();
-}

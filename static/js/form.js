@@ -197,16 +197,26 @@ export function chooseLearner(agent) {
   setFields({ agent, ...(isSet ? { lanes: lanes.map((lane) => (lane === before ? agent : lane)) } : {}) });
 }
 
+/** @param {RobotConfig} robot */
+const optionOf = (robot) => served().robots.find(({ name }) => name === robot);
+
 /**
- * Choose the robot. The gait that suits it is taken, unless another one was chosen that its legs can have.
+ * Choose the robot. The gait that suits it is taken, unless another one was chosen that its legs can have; and the foot
+ * grid that suits its size, where that of the robot before was one.
  * @param {RobotConfig} robot
  */
 export function chooseRobot(robot) {
-  const known = typeof robot === "string" ? served().robots.find(({ name }) => name === robot) : null;
+  const known = optionOf(robot);
   /** @type {GaitConfig[]} */
   const gaits = known?.gaits ?? [];
   const keeps = !known || (texts().peek().has("gait") && gaits.includes(form.value.gait));
-  setFields({ robot, ...(keeps ? {} : { gait: /** @type {FormValue} */ (known.gait) }) });
+  const usual = optionOf(form.value.robot)?.grid_side_m ?? served().robots[0].grid_side_m;
+  const isUsual = known && form.value.grid_side_m === usual;
+  setFields({
+    robot,
+    ...(keeps ? {} : { gait: /** @type {FormValue} */ (known.gait) }),
+    ...(isUsual ? { grid_side_m: known.grid_side_m } : {}),
+  });
 }
 
 /**

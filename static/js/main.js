@@ -1,10 +1,11 @@
 // Entry point: loads the options, opens the event stream, renders the page.
 import { effect, signal, untracked } from "@preact/signals";
 import { render } from "preact";
-import { getOptions, getStage, openEvents, RequestError } from "./api.js";
+import { getOptions, getStage, RequestError } from "./api.js";
 import { App } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
+import { openEvents } from "./events.js";
 import { openExperimentForm } from "./experiments/form.js";
 import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
 import { openForm } from "./form.js";

@@ -278,6 +278,12 @@ export function followHistory() {
 /** A link to the page as it is, or with only these fields set. @param {Partial<PageState>} [values] */
 export const linkTo = (values) => `${location.origin}${location.pathname}${values ? addressOf(values) : write()}`;
 
+/** The room of the page `/r/CODE`, and whether the page is for the projector. */
+export const ofRoom = () => ({
+  code: decodeURIComponent(location.pathname.split("/").at(-1) ?? ""),
+  isProjector: new URLSearchParams(location.search).has("projector"),
+});
+
 /** Write a link into the address bar. @param {string} address */
 export const showAddress = (address) => history.replaceState(history.state, "", address);
 

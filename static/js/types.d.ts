@@ -4,7 +4,10 @@ import type * as Api from "./api-types.js";
 
 export type {
   AgentOption as Agent,
+  Ask,
   BeliefView as Belief,
+  Bounds,
+  CardResultsView as CardResults,
   Change,
   ClaimView,
   Curve as ScoredCurve,
@@ -27,15 +30,28 @@ export type {
   GaitLane,
   GaitOption as Gait,
   Interval95 as Interval,
+  JoinedView as Joined,
   LaneResult,
+  LessonList,
+  LessonView,
+  ListedLesson,
   NarrativeSection,
+  NewLesson,
+  NewRoom,
   OptionsView as Options,
+  Person,
   PooledView,
   Preview,
   ReplayMark,
   ReplayView as ReplayPlan,
+  ResultEntry,
+  ResultsView as Results,
+  RoomState,
+  RoomView as Classroom,
   RobotOption as Robot,
   StoredRobotView as StoredRobot,
+  WholeRobotView as WholeRobot,
+  FoundView as Found,
   SceneActionValues as ActionValues,
   SceneLane,
   SceneView as Scene,
@@ -105,6 +121,15 @@ export type Page<Item> = Omit<Api.RunPage, "items"> & { items: Item[] };
 
 /** The name of a preset or the id of a stored robot, or an object with either and what differs from it. */
 export type RobotConfig = string | { preset?: string; id?: string; name?: string; [part: string]: unknown };
+/** What a person decides about a robot from a file. */
+export interface RobotChoices {
+  forward?: string | number;
+  feet?: string[];
+  keyframe?: string;
+  home_rad?: Record<string, number>;
+  servo_torque_nm?: number;
+  servo_kp?: number;
+}
 /** A gait by the legs between which forward is, and one of the others: groups are legs, or the name of a rule. */
 export interface GaitParts {
   right_leg: number;
@@ -174,3 +199,14 @@ export interface ExperimentValues {
   grid_side_m: number[];
   [field: string]: ExperimentValue;
 }
+
+// ---- lessons, as they are written: what is absent has its default
+
+/** All members may be absent or null, at any depth. */
+type Loose<Value> = Value extends (infer Item)[] ? Loose<Item>[]
+  : Value extends object ? { [Name in keyof Value]?: Loose<Value[Name]> | null } : Value;
+/** A card of a lesson, as it is sent and stored. */
+export type LessonCard = { text: string, may?: Record<string, Api.Bounds>, ask?: Api.Ask | null }
+  & Omit<Loose<Api.Card>, "text" | "may" | "ask">;
+/** A lesson, as it is sent. */
+export type LessonDocument = { title: string, language?: string, aims?: string[], cards: LessonCard[] };

@@ -90,7 +90,8 @@ def test_runs_and_events_are_not_compressed(api: Api) -> None:
 
 
 def test_changed_file_is_sent_anew(tmp_path: Path) -> None:
-    (tmp_path / "index.html").write_text(PAGE)
+    for name in ("index.html", "room.html"):
+        (tmp_path / name).write_text(PAGE)
     (tmp_path / "js").mkdir()
     (tmp_path / "js" / "main.js").write_text("first")
     (tmp_path / "favicon.svg").write_text("<svg/>")
@@ -141,6 +142,7 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
     scripts = [*(folder / "js").rglob("*.js")]
     opened = {path for script in scripts for path in imported_later(script, folder)}
     opened.add("static/js/offline/player.js")  # of files that play a replay offline
+    opened.add("static/js/room/main.js")  # of the page of rooms
     later = {path for one in opened for path in imported_modules(one, folder)} - {*modules}
 
     assert {folder.parent / path for path in (*modules, *later)} == {*scripts}
@@ -150,6 +152,18 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
         assert page.count(f'<link rel="modulepreload" href="{module}">') == 1
         assert api.client.get(f"/{module}").status_code == 200
     assert page.index("importmap") < page.index("modulepreload")
+
+
+def test_page_of_rooms_is_a_folder_deeper_and_preloads_its_own_modules(api: Api) -> None:
+    page = api.client.get("/r/NOROOM")
+    folder = assets.static_dir()
+    modules = imported_modules("static/js/room/main.js", folder)
+
+    assert page.status_code == 200
+    assert "static/js/components/app.js" not in modules
+    for module in modules:
+        assert page.text.count(f'<link rel="modulepreload" href="../{module}">') == 1
+    assert page.headers["content-security-policy"] == content_policy(page.text)
 
 
 def test_policy_allows_the_inline_scripts_of_the_page_as_sent(api: Api) -> None:

@@ -122,8 +122,11 @@ def test_a_single_document_has_no_other_files() -> None:
 @pytest.mark.parametrize(
     ("files", "said"),
     [
-        ({"readme.txt": ""}, "has no file that ends with .xml, .urdf, .mjcf; it has: readme.txt"),
-        ({"robot.xacro": ""}, "xacro file, which is not expanded here"),
+        (
+            {"readme.txt": ""},
+            "has no MJCF or URDF document (.xml, .urdf, .mjcf); it has: readme.txt",
+        ),
+        ({"robot.xacro": ""}, "xacro files, which are not expanded here"),
         ({}, "it has: nothing"),
     ],
 )

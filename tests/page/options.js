@@ -109,7 +109,7 @@ const SEARCH = {
   keeps_learning: false, steps_ahead: null, settings: {}, live_settings: {},
 };
 
-const BUILT_IN = { id: null, hidden: false, body: null };
+const BUILT_IN = { id: null, hidden: false, body: null, grid_side_m: 0.04 };
 /** @param {number} legs */
 const jointsOf = (legs) => Array.from({ length: legs }, () => ["coxa", "femur", "tibia"]);
 /** @param {number} legs @returns {[number, number][][]} */

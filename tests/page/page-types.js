@@ -10,18 +10,18 @@ const REMARK = "This interface was referenced by `Root`'s JSON-Schema\n \\* via 
 
 /**
  * A schema of OpenAPI 3.1 in the older form that the generator reads. Titles are left out, since it makes a type of
- * each.
+ * each, and the most items of a list, for which it lists every shorter one.
  * @param {any} schema
  * @returns {any}
  */
 function older(schema) {
   if (Array.isArray(schema)) return schema.map(older);
   if (schema === null || typeof schema !== "object") return schema;
-  const { title: _, prefixItems, $ref, properties, ...rest } = schema;
+  const { title: _, prefixItems, maxItems, $ref, properties, ...rest } = schema;
   return {
     ...Object.fromEntries(Object.entries(rest).map(([name, part]) => [name, older(part)])),
     ...($ref && { $ref: $ref.replace("#/components/schemas/", "#/definitions/") }),
-    ...(prefixItems && { items: prefixItems.map(older) }),
+    ...(prefixItems && { items: prefixItems.map(older), maxItems }),
     ...(properties && { properties: byName(properties) }),
   };
 }

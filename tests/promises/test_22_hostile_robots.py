@@ -60,6 +60,7 @@ def outcome(data: bytes, name: str = "robot.xml") -> ImportedRobot | str:
     return found
 
 
+@pytest.mark.timeout(at_length(300, 3600))
 def test_damaged_files_are_refused_or_read_as_valid_robots() -> None:
     outcomes = [outcome(data) for _, data in damaged(DAMAGED, np.random.default_rng(22))]
 

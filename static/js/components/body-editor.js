@@ -15,7 +15,8 @@ import { limitsOf } from "../settings.js";
 import { BodyFields } from "./body-fields.js";
 import { BodyPicture } from "./body-picture.js";
 import { BodyPlan } from "./body-plan.js";
-import { Dialog, Held, html, Icon } from "./elements.js";
+import { Dialog, html, Icon } from "./elements.js";
+import { Held } from "./problems.js";
 
 const TEXT = "input[type=text]";
 

@@ -1,12 +1,10 @@
-// The `html` template tag, and the elements that all views share: icons, glyphs, errors, bars, switches.
+// The `html` template tag, and the elements that all views share: icons, glyphs, bars, switches.
 import { effect, signal } from "@preact/signals";
 import htm from "htm";
 import { h } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import { dismissProblem, problems } from "../actions.js";
 import { listed } from "../format.js";
 import { connection, setEntry } from "../store.js";
-import { labelOf, messageOf } from "../titles.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
 /** @import { Gait } from "../types.js" */
@@ -105,21 +103,6 @@ function Leg({ azimuth }) {
   `;
 }
 
-/** An error, beside the control that caused it. @param {{ at: string }} props */
-export function Problem({ at }) {
-  const error = problems.value[at];
-  return html`
-    <div role="alert">
-      ${error && html`
-        <p class="problem">
-          <span>${messageOf(error)}</span>
-          <button class="quiet square small" aria-label="Dismiss" onClick=${() => dismissProblem(at)}>✕</button>
-        </p>
-      `}
-    </div>
-  `;
-}
-
 /** Why a field's text is not valid, beside the field. @param {{ id: string, children: ComponentChildren }} props */
 export const Mistake = ({ id, children }) =>
   children && html`<span class="mistake" role="alert" id=${id}>${children}</span>`;
@@ -135,24 +118,6 @@ export const UnknownParts = ({ parts }) =>
       <button class="link" onClick=${() => (parts.value = [])}>Dismiss</button>
     </div>
   `;
-
-/**
- * Why the button above is held: each field that is not valid, to go to, and what it must be.
- * @param {object} props
- * @param {string} props.id
- * @param {Record<string, string>} props.mistakes
- * @param {(field: string) => unknown} props.onField
- * @param {(field: string) => string} [props.nameOf]
- */
-export const Held = ({ id, mistakes, onField, nameOf = labelOf }) => html`
-  <ul class="held" id=${id}>
-    ${Object.entries(mistakes).map(([field, mistake]) => html`
-      <li key=${field}>
-        <button class="link" onClick=${() => onField(field)}>${nameOf(field)}</button>: ${mistake}
-      </li>
-    `)}
-  </ul>
-`;
 
 /** Estimated duration of a start, if that is long. `words`: signal. @param {{ words: ReadonlySignal<string> }} props */
 export const EstimateNote = ({ words }) => html`<p class="estimate dim" role="status">${words}</p>`;

@@ -14,9 +14,8 @@ import { agentOf, learners, placeOf } from "../settings.js";
 import { scene } from "../store.js";
 import { inFormWords } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
-import {
-  EstimateNote, goToField, Held, html, Icon, Loaded, Problem, ProgressBar, UnknownParts,
-} from "./elements.js";
+import { EstimateNote, goToField, html, Icon, Loaded, ProgressBar, UnknownParts } from "./elements.js";
+import { Held, Problem } from "./problems.js";
 
 /** @import { Run } from "../types.js" */
 

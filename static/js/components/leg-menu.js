@@ -9,7 +9,8 @@ import { isOperator } from "../selectors.js";
 import { scene } from "../store.js";
 import { positionInWords, scale } from "../time.js";
 import { openTab } from "../workspace.js";
-import { html, Problem } from "./elements.js";
+import { html } from "./elements.js";
+import { Problem } from "./problems.js";
 import { firstWish, legKinds } from "./world-controls.js";
 
 /** @import { Disturbance, Run } from "../types.js" */

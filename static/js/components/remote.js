@@ -5,7 +5,8 @@ import { isPlaying } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "../presentation.js";
 import { commonStage } from "../store.js";
-import { html, Icon, Problem, Segments } from "./elements.js";
+import { html, Icon, Segments } from "./elements.js";
+import { Problem } from "./problems.js";
 
 export function Remote() {
   const { card, shows_why, is_blank, code } = presentation.value;

@@ -16,7 +16,8 @@ import { isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
 import { isAtLeast } from "../workspace.js";
-import { html, Icon, Loaded, Problem } from "./elements.js";
+import { html, Icon, Loaded } from "./elements.js";
+import { Problem } from "./problems.js";
 
 /** @import { Message } from "../replay-frames.js" */
 /** @import { Scene } from "../types.js" */

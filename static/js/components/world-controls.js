@@ -13,8 +13,9 @@ import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";
-import { html, LegPicker, Problem } from "./elements.js";
+import { html, LegPicker } from "./elements.js";
 import { Description, NumberField, SettingRow, Slider } from "./fields.js";
+import { Problem } from "./problems.js";
 
 /** @import {
  *   Changed, Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run, RunConfig, SettingValue,

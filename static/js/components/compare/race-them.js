@@ -2,7 +2,8 @@
 import { pending } from "../../actions.js";
 import { isOperator } from "../../selectors.js";
 import { conditionsOfRace, obstacle, raceThem } from "../../table-race.js";
-import { html, Problem } from "../elements.js";
+import { html } from "../elements.js";
+import { Problem } from "../problems.js";
 
 /** @import { DamagedRun, Run } from "../../types.js" */
 

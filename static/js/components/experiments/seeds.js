@@ -7,7 +7,8 @@ import {
 } from "../../experiments/seeds.js";
 import { count, metres } from "../../format.js";
 import { isOperator } from "../../selectors.js";
-import { html, Problem } from "../elements.js";
+import { html } from "../elements.js";
+import { Problem } from "../problems.js";
 
 /** @import { Changed, Run, Setting, Summary, Toggled } from "../../types.js" */
 

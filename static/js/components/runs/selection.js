@@ -8,7 +8,8 @@ import {
 } from "../../run-selection.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
-import { html, Problem } from "../elements.js";
+import { html } from "../elements.js";
+import { Problem } from "../problems.js";
 
 /** @import { Changed } from "../../types.js" */
 

@@ -1,0 +1,70 @@
+// Before the room: its door for a stranger, a wrong code, and what all pages of a room share.
+import { useState } from "preact/hooks";
+import { html } from "../components/elements.js";
+import { connection } from "../store.js";
+import { busy, code, failures, join, refusal, room } from "./room.js";
+
+/** Why something failed, beside its button. @param {{ at: string }} props */
+export const Failure = ({ at }) => html`
+  <div role="alert">${failures.value[at] && html`<p class="problem">${failures.value[at]}</p>`}</div>
+`;
+
+export const Waiting = () => html`
+  <main class="door"><p role="status"><span class="spinner" aria-hidden="true"></span> Looking for the room…</p></main>
+`;
+
+/** Where there is no room of this code: why, and a field for another one. */
+export function Closed() {
+  const [typed, setTyped] = useState("");
+  const other = typed.replace(/[\s-]/g, "").toUpperCase();
+  return html`
+    <main class="door">
+      <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
+      <h1>No room ${code.length > 12 ? "of this code" : code}</h1>
+      <p role="alert">${refusal}</p>
+      <label for="other-code">Code on the projector</label>
+      <input id="other-code" class="code-field" type="text" maxlength="12" autocomplete="off"
+        autocapitalize="characters" spellcheck=${false} value=${typed}
+        onInput=${(/** @type {any} */ { target }) => setTyped(target.value)} />
+      <a class="primary as-button" href=${other || undefined} aria-disabled=${other ? undefined : "true"}>
+        Go to the room
+      </a>
+    </main>
+  `;
+}
+
+/** A stranger sees the lesson's title, and joins with one press. */
+export function Door() {
+  const { title, state, participants } = /** @type {any} */ (room.value);
+  if (state === "ended") {
+    return html`
+      <main class="door">
+        <h1>${title}</h1>
+        <p role="status">This room has ended. Ask your teacher for the code of a new one.</p>
+      </main>
+    `;
+  }
+  return html`
+    <main class="door">
+      <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
+      <h1>${title}</h1>
+      <p class="dim">Room <b class="code">${room.value?.code}</b>${participants > 0 && ` · ${participants} in it`}</p>
+      <button class="primary" disabled=${busy.value.join} onClick=${join}>Join</button>
+      <${Failure} at="join" />
+      <p class="dim">You get a name from a list and a robot of your own. No account is needed.</p>
+    </main>
+  `;
+}
+
+/** Whether the page hears of the room; nothing while it does. */
+export const Away = () => connection.value === "reconnecting" && html`
+  <p class="strip-note warn" role="status">
+    <span class="spinner" aria-hidden="true"></span> Reconnecting. Your name and your seed are kept.
+  </p>
+`;
+
+/** A text of a card, which the server makes of Markdown without HTML of its own. @param {{ text: string }} props */
+export const Prose = ({ text }) => html`<div class="prose" dangerouslySetInnerHTML=${{ __html: text }}></div>`;
+
+/** An address as a person types it. @param {string} address */
+export const shortAddress = (address) => address.replace(/^https?:\/\//, "");

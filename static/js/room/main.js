@@ -1,0 +1,30 @@
+// Entry point of a room's page: by role the phone of a participant, the teacher's cockpit, or the projector.
+import { effect } from "@preact/signals";
+import { render } from "preact";
+import { html } from "../components/elements.js";
+import { followTheme } from "../page.js";
+import { Cockpit } from "./cockpit.js";
+import { Phone } from "./phone.js";
+import { Projector } from "./projector.js";
+import { followOwnRun } from "./picture.js";
+import { followRoom, isProjector, isTeacher, refusal, room } from "./room.js";
+import { Closed, Waiting } from "./doors.js";
+
+function Page() {
+  if (room.value === null) return refusal.value ? html`<${Closed} />` : html`<${Waiting} />`;
+  if (isProjector) return html`<${Projector} />`;
+  return isTeacher.value ? html`<${Cockpit} />` : html`<${Phone} />`;
+}
+
+followTheme();
+document.documentElement.toggleAttribute("data-projector", isProjector);
+effect(() => {
+  const { title, code } = room.value ?? { title: "Room", code: "" };
+  document.title = [code, title, "Racing Hexapods"].filter(Boolean).join(" · ");
+});
+if (!isProjector) followOwnRun();
+followRoom();
+
+const root = /** @type {HTMLElement} */ (document.getElementById("app"));
+root.replaceChildren();
+render(html`<${Page} />`, root);

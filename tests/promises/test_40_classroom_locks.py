@@ -1,0 +1,190 @@
+"""Locks of a classroom: every route and websocket as a participant, against every card.
+
+The matrix is generated: routes from the app, cards from the built-in lessons. A participant changes
+nothing but by the routes of their own room that the card allows, reads no lesson, and sees nothing
+of another participant's run before the reveal.
+"""
+
+import json
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import pytest
+
+from app.classroom.lesson import Card
+from app.classroom.lessons import built_in
+from tests.browser.serving import Serving, serving
+from tests.promises.raw import Route, every_route, request_lines, send, status_of
+
+TOKEN = "a-token-for-tests"
+OPERATOR = f"Authorization: Bearer {TOKEN}"
+READS = {"GET", "HEAD", "WS"}
+CARDS = [
+    (lesson_id, number, card)
+    for lesson_id, lesson in built_in().items()
+    for number, card in enumerate(lesson.cards)
+]
+ROOM = "/api/v1/rooms/{code}"
+NEEDS = {f"{ROOM}/predictions": "ask", f"{ROOM}/runs": "go"}
+"""By path that is sent to, the field of a card that opens it."""
+ALWAYS = {("POST", f"{ROOM}/participants"), ("DELETE", f"{ROOM}/me")}
+LESSONS = "/api/v1/lessons"
+
+
+class Desk(NamedTuple):
+    """A room with two participants.
+
+    Attributes:
+        code: of the room.
+        cookie: header of a participant.
+        other_run: id of a run of the other one, which is not shown.
+    """
+
+    server: Serving
+    code: str
+    cookie: str
+    other_run: str
+
+    def call(self, method: str, path: str, *headers: str, body: Any = None) -> bytes:
+        """Send a request, and return the answer."""
+        content = b"" if body is None else json.dumps(body).encode()
+        lines = request_lines(Route(method, path), f"127.0.0.1:{self.server.port}")
+        lines = [line for line in lines if not line.startswith("Content-Length")]
+        if method not in READS:
+            lines += ["Content-Type: application/json", f"Content-Length: {len(content)}"]
+        if method == "WS":
+            lines.append("Sec-WebSocket-Protocol: viser-v0")
+        return send(self.server.port, *lines, *headers, body=content)
+
+    def status(self, method: str, path: str, *headers: str, body: Any = None) -> int:
+        """Return the status of an answer."""
+        return status_of(self.call(method, path, *headers, body=body))
+
+    def teach(self, method: str, path: str, body: Any) -> Any:
+        """Send a request of the teacher, and return the body of the answer."""
+        answer = self.call(method, path, OPERATOR, body=body)
+        assert status_of(answer) < 300, answer
+        return json.loads(answer.partition(b"\r\n\r\n")[2])
+
+    def own_path(self, path: str) -> str:
+        """Return a path with this room, and the other participant's run, in place of parameters."""
+        filled = path.replace("{code}", self.code).replace("{run_id}", self.other_run)
+        return filled.replace("{seed}", "0").replace("{lesson_id}", "one-run-proves-nothing")
+
+    def join(self) -> str:
+        """Join the room, and return the header of the cookie."""
+        answer = self.call("POST", f"/api/v1/rooms/{self.code}/participants", body={})
+        assert status_of(answer) == 201
+        head = answer.partition(b"\r\n\r\n")[0].decode().split("\r\n")
+        cookie = next(one for one in head if one.lower().startswith("set-cookie"))
+        return f"Cookie: {cookie.partition(': ')[2].partition(';')[0]}"
+
+
+def room_of(server: Serving, lesson: Any) -> Desk:
+    """Open a room with two participants, of whom the other has run something."""
+    desk = Desk(server, "", "", "")
+    code = desk.teach("POST", "/api/v1/rooms", {"lesson": lesson})["code"]
+    desk = desk._replace(code=code)
+    other = desk.join()
+    runs = [n for n, one in enumerate(built_in()[lesson].cards) if one.go == "training"]
+    desk.teach("PUT", f"/api/v1/rooms/{code}/card", {"card": runs[0]})
+    answer = desk.call("POST", f"/api/v1/rooms/{code}/runs", other, body={})
+    assert status_of(answer) == 202, answer
+    run = json.loads(answer.partition(b"\r\n\r\n")[2])["id"]
+    return desk._replace(cookie=desk.join(), other_run=run)
+
+
+@pytest.fixture(scope="module", params=["public", "token"])
+def server(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Serving]:
+    """A server where spectators need no token, and one where they do."""
+    data = tmp_path_factory.mktemp(request.param)
+    with serving(data, token=TOKEN, spectators=request.param) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def desks(server: Serving) -> dict[str, Desk]:
+    """A room of each built-in lesson."""
+    return {lesson_id: room_of(server, lesson_id) for lesson_id in built_in()}
+
+
+def may_change(route: Route, card: Card) -> bool:
+    """Whether a participant may send to a route while a card is shown."""
+    if (route.method, route.path) in ALWAYS:
+        return True
+    field = NEEDS.get(route.path) if route.method == "POST" else None
+    return field is not None and getattr(card, field) is not None
+
+
+@pytest.mark.parametrize(("lesson", "number", "card"), CARDS, ids=lambda one: str(one)[:30])
+def test_a_participant_may_do_what_the_card_allows_and_nothing_else(
+    desks: dict[str, Desk], lesson: str, number: int, card: Card
+) -> None:
+    desk = desks[lesson]
+    desk.teach("PUT", f"/api/v1/rooms/{desk.code}/card", {"card": number})
+    before = desk.teach("GET", f"/api/v1/rooms/{desk.code}", None)["people"]
+    for route in every_route():
+        if route.method in READS or route.path == f"{ROOM}/me":
+            continue
+        # No valid body: what is allowed gets to the validation of it.
+        status = desk.status(route.method, desk.own_path(route.path), desk.cookie, body=[])
+        if may_change(route, card):
+            assert status in (200, 422), (route, status)
+        else:
+            assert status == 403, (route, status)
+    assert desk.teach("GET", f"/api/v1/rooms/{desk.code}", None)["people"] == before
+
+
+def test_a_participant_reads_no_lesson_and_no_run_of_others(desks: dict[str, Desk]) -> None:
+    for desk in desks.values():
+        for route in every_route():
+            if route.method not in READS:
+                continue
+            path = desk.own_path(route.path)
+            status = desk.status(route.method, path, desk.cookie)
+            if "{run_id}" in route.path or route.path.startswith(LESSONS):
+                assert status == 403, route
+        for query in (f"/api/v1/runs/curves?id={desk.other_run}", f"/?x={desk.other_run}"):
+            assert desk.status("GET", query, desk.cookie) == 403
+        for path in ("/api/v1/runs", "/api/v1/trainings", f"/api/v1/rooms/{desk.code}/results"):
+            for prefix in ("", f"/r/{desk.code}"):
+                answer = desk.call("GET", f"{prefix}{path}", desk.cookie)
+                assert desk.other_run.encode() not in answer
+        for prefix in ("", f"/r/{desk.code}"):
+            events = desk.call("GET", f"{prefix}/api/v1/events", desk.cookie)
+            assert desk.other_run.encode() not in events
+
+
+def test_what_belongs_to_the_room_can_be_read(desks: dict[str, Desk]) -> None:
+    for desk in desks.values():
+        room = f"/r/{desk.code}"
+        for path in ("/", "/static/favicon.svg", "/api/v1/stage", "/api/v1/options"):
+            assert desk.status("GET", f"{room}{path}", desk.cookie) == 200, path
+        for path in ("", "/results"):
+            address = f"/api/v1/rooms/{desk.code}{path}"
+            assert desk.status("GET", address, desk.cookie) == 200
+            assert desk.status("GET", f"{room}{address}", desk.cookie) == 200
+        assert desk.status("WS", f"{room}/viewer/", desk.cookie) == 101
+
+
+def test_another_room_is_closed_to_a_participant(desks: dict[str, Desk]) -> None:
+    one, other = list(desks.values())[:2]
+    for path in ("predictions", "runs"):
+        address = f"/api/v1/rooms/{other.code}/{path}"
+        assert one.status("POST", address, one.cookie, body={}) == 403
+    address = f"/api/v1/rooms/{other.code}/me"
+    assert one.status("DELETE", address, one.cookie, body={}) == 403
+
+
+def test_after_the_reveal_others_are_seen(server: Serving) -> None:
+    lesson = next(iter(built_in()))
+    desk = room_of(server, lesson)
+    number = next(n for n, one in enumerate(built_in()[lesson].cards) if one.go == "training")
+    path = f"/r/{desk.code}/api/v1/trainings/{desk.other_run}"
+    assert desk.status("GET", path, desk.cookie) == 403
+    desk.teach("POST", f"/api/v1/rooms/{desk.code}/reveal", {"card": number})
+    assert desk.status("GET", path, desk.cookie) == 200
+    results = desk.call("GET", f"/api/v1/rooms/{desk.code}/results?card={number}", desk.cookie)
+    assert desk.other_run.encode() in results
