@@ -9,11 +9,10 @@ from app.storage.database.robots import Origin
 from app.storage.stored_robot import StoredRobot
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.gait import AnyGait, gait_as_json, resolve
-from hexapods.domain.grid import MAX_SIDE_M, MIN_SIDE_M
 from hexapods.domain.kinematics import legs_of
-from hexapods.domain.model_robot import usual_grid_side_m
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import Robot, legs_written_out, written_out
+from hexapods.domain.robot import legs_written_out, written_out
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.imports.imported import FileFormat, ImportedLeg
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
@@ -102,11 +101,6 @@ class WholeRobotView(StoredRobotView):
     found: FoundView | None
 
 
-def grid_side_m(made: Robot) -> float:
-    """Return the side of a foot grid that suits the size of a robot, within the limits [m]."""
-    return min(max(round(usual_grid_side_m(made), 3), MIN_SIDE_M), MAX_SIDE_M)
-
-
 def robot_view(stored: StoredRobot) -> dict[str, Any]:
     """Return a stored robot as a `StoredRobotView`.
 
@@ -133,7 +127,8 @@ def robot_view(stored: StoredRobot) -> dict[str, Any]:
 def whole_view(stored: StoredRobot, origin: Origin | None) -> dict[str, Any]:
     """Return a stored robot as a `WholeRobotView`; errors as of `robot_view`."""
     made = stored.robot
-    walk = WalkingProblem(gait=own_gait(made), robot=made, grid_side_m=grid_side_m(made))
+    gait = own_gait(made)
+    walk = WalkingProblem(gait=gait, robot=made, grid_side_m=usual_grid_side_m(made, gait))
     numbers = {name: value for name, value in written_out(made).items() if value is not None}
     return {
         **robot_view(stored),

@@ -19,6 +19,7 @@ from hexapods.domain.gait import read_gait as read_gait_of
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import PRESETS, Robot, as_mapping, document_of
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 from hexapods.runs.preview import Preview, preview
 
@@ -46,7 +47,9 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "--gait", help=f"gait: {', '.join(NAMED_GAITS)}, or JSON (default: the robot's own)"
     )
     showing.add_argument("--divisions", type=int, default=FootGrid.divisions)
-    showing.add_argument("--grid-side-m", type=float, default=FootGrid.side_m)
+    showing.add_argument(
+        "--grid-side-m", type=float, help="side of the foot grid (default: one that suits its size)"
+    )
     showing.add_argument("--json", action="store_true", help="print JSON")
     showing.set_defaults(run=show_robot)
     exporting = verbs.add_parser(
@@ -129,9 +132,8 @@ def show_robot(options: argparse.Namespace) -> int:
     """
     made = read_robot(options.robot)
     gait = own_gait(made) if options.gait is None else read_gait(options.gait)
-    walk = WalkingProblem(
-        gait=gait, robot=made, divisions=options.divisions, grid_side_m=options.grid_side_m
-    )
+    side_m = usual_grid_side_m(made, gait) if options.grid_side_m is None else options.grid_side_m
+    walk = WalkingProblem(gait=gait, robot=made, divisions=options.divisions, grid_side_m=side_m)
     known = preview(walk)
     if options.json:
         print(json.dumps({"robot": made.name, "gait": gait_as_json(gait), **to_json(known)}))

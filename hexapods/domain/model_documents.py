@@ -1,24 +1,19 @@
 """Robots from files by value, as in the documents of stored robots."""
 
-import base64
-import binascii
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
-import numpy as np
-
 from hexapods.domain.body import NO_NUMBERS, LegMount, Robot
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import from_json, to_json
-from hexapods.domain.robot_model import ModelMesh, RobotModel
+from hexapods.domain.robot_model import RobotModel
 
 NUMBERS = tuple(one.name for one in fields(Robot) if one.name not in NO_NUMBERS)
 _LEG = ("azimuth_deg", "radius_m", "z_m", "yaw_deg", "foot_out_m")
 _LARGEST = 1e6
-_COORDINATES, _VERTEX_BYTES = 3, 12
 
 
 def model_content(robot: ModelRobot) -> dict[str, Any]:
@@ -44,9 +39,6 @@ def read_model_content(content: Mapping[str, Any]) -> ModelRobot:
         legs = tuple(LegMount(**_numbers(leg, _LEG)) for leg in given.pop("legs"))
         # As JSON, of which a strict reader takes lists for tuples, and no texts for numbers.
         model = from_json(RobotModel, json.dumps(content["model"]).encode(), strict=True)
-        for link in model.links:
-            if link.mesh is not None:
-                _check_mesh(link.mesh)
         if len(legs) != len(model.feet):
             raise ValueError("it has other legs than its model")
         if {*content} != {"model", "robot"}:
@@ -71,24 +63,3 @@ def _numbers(given: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, floa
         if not abs(number) <= _LARGEST:
             raise InvalidInput(f"robot.{name} is too large: {number}")
     return {name: float(number) for name, number in given.items()}
-
-
-def _check_mesh(mesh: ModelMesh) -> None:
-    """Check that a mesh has the triangles that it says, of vertices that it has.
-
-    Raises:
-        ValueError: if it does not.
-    """
-    try:
-        vertices = base64.b64decode(mesh.vertices, validate=True)
-        faces = base64.b64decode(mesh.faces, validate=True)
-    except binascii.Error as error:
-        raise ValueError("a mesh is not in base64") from error
-    if len(vertices) % _VERTEX_BYTES or len(faces) != mesh.triangles * _VERTEX_BYTES:
-        raise ValueError("a mesh has other triangles than it says")
-    corners = np.frombuffer(faces, "<u4")
-    points = np.frombuffer(vertices, "<f4").reshape(-1, _COORDINATES)
-    if corners.size and int(corners.max()) >= len(points):
-        raise ValueError("a mesh has triangles of vertices that it does not have")
-    if not (np.abs(points) <= _LARGEST).all():
-        raise ValueError("a mesh has vertices that are nowhere")

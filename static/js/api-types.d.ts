@@ -1,6 +1,7 @@
 // Written by `make page-types` from the API's response models (app/api/*answers.py).
 
 export type JsonValue = unknown;
+export type GivenJsonValue = unknown;
 
 /**
  * Value of an action, [pair, cell], in a state, which is the cell of each pair.
@@ -1959,6 +1960,49 @@ export interface ExportOption {
   install: string | null;
 }
 /**
+ * What was found in the file of a robot, from which a person may choose otherwise.
+ */
+export interface FoundView {
+  file_format: "mjcf" | "urdf";
+  /**
+   * path in the zip of what was read; null if it was given alone.
+   */
+  file: string | null;
+  /**
+   * leg by leg: the names of the joints and of the foot in the file.
+   */
+  legs: ImportedLeg[];
+  /**
+   * names in the file of all that could be the foot of a leg.
+   */
+  feet: string[];
+  /**
+   * names of the file's keyframes.
+   */
+  keyframes: string[];
+  /**
+   * direction in which it walks, anticlockwise from x of its torso in the file.
+   */
+  forward_deg: number;
+  /**
+   * whether its feet reach a foot grid that suits its size.
+   */
+  reaches_grid: boolean;
+}
+/**
+ * A leg as it is called in the file.
+ */
+export interface ImportedLeg {
+  /**
+   * names of its joints, from the torso to the foot.
+   */
+  joints: string[];
+  /**
+   * name of its foot: of a geom, a site, or a body or link; fit for `Choices.feet`.
+   */
+  foot: string;
+}
+/**
  * Gait analysis of a race, lane by lane, or of a training; times are robot time [s].
  */
 export interface GaitAnalysis {
@@ -2144,6 +2188,179 @@ export interface GaitOption {
   pairs: number[][];
 }
 /**
+ * A question, to which each participant gives one answer before the reveal.
+ */
+export interface GivenAsk {
+  /**
+   * of answer: one of the choices, a number, a point on a chart, or a curve.
+   */
+  kind: "choice" | "number" | "point" | "curve";
+  /**
+   * the question, in Markdown.
+   */
+  text: string;
+  /**
+   * of which one is the answer, of kind `choice` alone; a name of an agent stands for the race that it wins.
+   */
+  choices?: string[];
+  /**
+   * between which a number is.
+   */
+  minimum?: number | null;
+  /**
+   * between which a number is.
+   */
+  maximum?: number | null;
+  /**
+   * of the number; `m` and `cm` are compared with distances.
+   */
+  unit?: string | null;
+}
+/**
+ * What may be chosen for a setting; without any of it, all that is valid.
+ */
+export interface GivenBounds {
+  /**
+   * least number, inclusive.
+   */
+  minimum?: number | null;
+  /**
+   * greatest number, inclusive.
+   */
+  maximum?: number | null;
+  /**
+   * the values of which one may be chosen.
+   */
+  choices?: [number | string | boolean, ...(number | string | boolean)[]] | null;
+}
+/**
+ * A page of a lesson.
+ */
+export interface GivenCard {
+  /**
+   * by name the settings that may be changed, each with its bounds.
+   */
+  may?: {
+    [k: string]: GivenBounds;
+  };
+  title?: string | null;
+  /**
+   * in Markdown.
+   */
+  text: string;
+  /**
+   * what it opens of the page.
+   */
+  state?: GivenPageState | null;
+  /**
+   * the tabs of the panel that are shown; null for those of the depth.
+   */
+  show?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if")[] | null;
+  /**
+   * its question.
+   */
+  ask?: GivenAsk | null;
+  /**
+   * what the button runs, from the form of the state; null for nothing.
+   */
+  go?: ("training" | "race" | "what-if") | null;
+  /**
+   * what is revealed afterwards, or its text alone.
+   */
+  reveal?: GivenReveal | string | null;
+}
+/**
+ * A part of the page's state document; what is null stays as it is.
+ */
+export interface GivenPageState {
+  /**
+   * the open view.
+   */
+  view?: ("race" | "experiments" | "runs" | "compare") | null;
+  /**
+   * fields of the start that the page offers, by name: those of a training, settings of its agent (by themselves or in `settings`), `lanes` and `race_steps` of a race, `world` and `disturb`.
+   */
+  form?: {
+    [k: string]: GivenJsonValue;
+  } | null;
+  /**
+   * id of the run that is replayed.
+   */
+  run?: string | null;
+  /**
+   * id of the run whose robots walk along.
+   */
+  ghost?: string | null;
+  /**
+   * where the replay is held [s].
+   */
+  moment?: number | null;
+  /**
+   * of the replay of a race.
+   */
+  clock?: ("paper" | "wall" | "free") | null;
+  /**
+   * where the replay of a race ends.
+   */
+  end?: ("time-out" | "all") | null;
+  /**
+   * how much of the page is shown.
+   */
+  depth?: ("watch" | "try" | "study") | null;
+  /**
+   * the open tab of the panel.
+   */
+  tab?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
+  /**
+   * a second tab beside it.
+   */
+  pinned?: ("board" | "train" | "world" | "why" | "gait" | "table" | "what-if") | null;
+  /**
+   * its target: `leader`, `free`, or the number of a lane.
+   */
+  camera?: ("leader" | "free" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8") | null;
+  /**
+   * parts of the page that are hidden.
+   */
+  hidden?: ("panel" | "card")[];
+}
+/**
+ * What is revealed after the answers.
+ */
+export interface GivenReveal {
+  /**
+   * in Markdown.
+   */
+  text?: string;
+  /**
+   * the right choice or number, where it does not follow from the runs.
+   */
+  answer?: number | string | null;
+}
+/**
+ * A lesson.
+ */
+export interface GivenLesson {
+  /**
+   * in plain text.
+   */
+  title: string;
+  /**
+   * of its texts, such as `en` or `de-AT`.
+   */
+  language?: string;
+  /**
+   * what is learned, each a line of plain text.
+   */
+  aims?: string[];
+  /**
+   * its pages, in order.
+   *
+   * @minItems 1
+   */
+  cards: [GivenCard, ...GivenCard[]];
+}
+/**
  * A group of legs.
  */
 export interface GroupPreview {
@@ -2223,6 +2440,10 @@ export interface LegPreview {
    * what it cannot reach of its grid, in a sentence; null if it reaches all.
    */
   out_of_reach: string | null;
+  /**
+   * whether its foot can go to any place near home; one of two joints cannot.
+   */
+  follows_grid: boolean;
   /**
    * all its numbers, as in a request: its place by `x_m` and `y_m`.
    */
@@ -2342,9 +2563,13 @@ export interface NarrativeSection {
 export interface NewLesson {
   id: string;
   /**
-   * address of the page with it.
+   * address of the page with it, for others if they can reach the server.
    */
   link: string;
+  /**
+   * of the link, an SVG image as a data URI.
+   */
+  qr_code: string;
 }
 /**
  * A room that was opened.
@@ -2566,9 +2791,17 @@ export interface RobotOption {
       | undefined;
   };
   /**
+   * side of a foot grid that suits its size.
+   */
+  grid_side_m: number;
+  /**
    * names of the joints of each leg, from the torso to the foot.
    */
   joints: string[][];
+  /**
+   * lowest and highest angle of each of them.
+   */
+  limits_rad: [number, number][][];
   /**
    * directions of its legs in its own frame, anticlockwise.
    */
@@ -2803,6 +3036,10 @@ export interface Preview {
    * largest grid side with which every action is always possible; likewise.
    */
   safe_side_m: number | null;
+  /**
+   * which legs cannot follow the grid, in a sentence; null if all can.
+   */
+  beside_grid: string | null;
   /**
    * groups to take instead; null if it does not tip, or tips with any.
    */
@@ -3537,4 +3774,8 @@ export interface WholeRobotView {
     [k: string]: unknown;
   };
   preview: Preview;
+  /**
+   * what was found in its file; null if it was made here.
+   */
+  found: FoundView | null;
 }

@@ -26,7 +26,7 @@ const pathOf = (/** @type {string} */ id) => `robots/${encodeURIComponent(id)}`;
 export const fileOf = (id) => `api/v1/${pathOf(id)}/file`;
 
 /** The options are asked for again, so that the form knows the robot. */
-async function refresh() {
+export async function refresh() {
   options.value = await getOptions();
 }
 
@@ -56,6 +56,9 @@ async function change(id, ask) {
 
 /** @type {(id: string, changes: Partial<Pick<StoredRobot, "name" | "hidden">>) => Promise<void>} */
 export const changeRobot = (id, changes) => change(id, () => call("PATCH", pathOf(id), changes));
+
+/** Choose a stored robot. @param {string} id */
+export const chooseStored = (id) => chooseRobot(id);
 
 /** A robot that the form has is replaced by the default one when it is deleted. @param {string} id */
 export const deleteRobot = (id) => change(id, async () => {

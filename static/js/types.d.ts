@@ -35,6 +35,7 @@ export type {
   LessonList,
   LessonView,
   ListedLesson,
+  ListedRoom,
   NarrativeSection,
   NewLesson,
   NewRoom,
@@ -50,6 +51,8 @@ export type {
   RoomView as Classroom,
   RobotOption as Robot,
   StoredRobotView as StoredRobot,
+  WholeRobotView as WholeRobot,
+  FoundView as Found,
   SceneActionValues as ActionValues,
   SceneLane,
   SceneView as Scene,
@@ -119,6 +122,15 @@ export type Page<Item> = Omit<Api.RunPage, "items"> & { items: Item[] };
 
 /** The name of a preset or the id of a stored robot, or an object with either and what differs from it. */
 export type RobotConfig = string | { preset?: string; id?: string; name?: string; [part: string]: unknown };
+/** What a person decides about a robot from a file. */
+export interface RobotChoices {
+  forward?: string | number;
+  feet?: string[];
+  keyframe?: string;
+  home_rad?: Record<string, number>;
+  servo_torque_nm?: number;
+  servo_kp?: number;
+}
 /** A gait by the legs between which forward is, and one of the others: groups are legs, or the name of a rule. */
 export interface GaitParts {
   right_leg: number;

@@ -109,7 +109,7 @@ def test_a_robot_from_a_file_is_imported_with_what_was_guessed(folder: Path) -> 
     assert said.returncode == 0, said.stderr
     assert "is robot spot (" in said.stdout
     assert "Guessed: " in said.stdout
-    assert told(folder, "show", "spot")["tips"] is False
+    assert told(folder, "show", "spot")["states"] == 25
     told(folder, "export", "spot", "--out", "out.xml")
     told(folder, "export", "spot", "--out", "out.json")
     told(folder, "delete", "spot")

@@ -1,11 +1,14 @@
 // The robots that are stored: renamed, hidden and deleted, and new ones taken in from files.
 import { useState } from "preact/hooks";
-import { chooseRobot, robotsAreOpen } from "../form.js";
+import { correct, corrected } from "../correction.js";
+import { robotsAreOpen } from "../form.js";
 import { isOperator } from "../selectors.js";
 import {
-  changeRobot, deleteRobot, dismissFile, fileOf, isChosen, refusals, storedRobots, taken, takeFiles,
+  changeRobot, chooseStored, deleteRobot, dismissFile, fileOf, isChosen, refusals, storedRobots, taken, takeFiles,
 } from "../stored-robots.js";
+import { CorrectRobot } from "./correct-robot.js";
 import { Dialog, html, Icon } from "./elements.js";
+import { Told } from "./told.js";
 
 /** @import { Robot } from "../types.js" */
 /** @import { TakenFile } from "../stored-robots.js" */
@@ -67,26 +70,21 @@ const Taken = ({ one: { key, name, state, words, robot } }) => html`
     <p>
       ${state === "reading" && html`<span class="spinner" aria-hidden="true"></span>`} <b>${name}</b> ${words}
     </p>
-    ${robot && html`<${Told} title="Guessed" sentences=${robot.guesses} />
-      <${Told} title="Repaired" sentences=${robot.repairs} />`}
+    ${robot && html`
+      <${Told} title="Guessed" sentences=${robot.guesses} />
+      <${Told} title="Repaired" sentences=${robot.repairs} />
+    `}
     ${state !== "reading" && html`
       <button class="quiet square small" aria-label=${`Dismiss ${name}`} onClick=${() => dismissFile(key)}>✕</button>
     `}
   </div>
 `;
 
-/** @param {{ title: string, sentences: string[] }} props */
-export const Told = ({ title, sentences }) => sentences.length > 0 && html`
-  <details class="told">
-    <summary>${title}: ${sentences.length}</summary>
-    <ul>${sentences.map((one) => html`<li key=${one}>${one}</li>`)}</ul>
-  </details>
-`;
-
 /** @param {{ robot: Robot }} props */
 function Stored({ robot }) {
   // A stored robot has its id as its name.
-  const { name: id, title, description, hidden } = robot;
+  const { name: id, title, description, hidden, body } = robot;
+  const isCorrected = corrected.value === id;
   const refused = refusals.value[id];
   /** @param {{ target: HTMLInputElement }} event */
   const onName = ({ target }) => {
@@ -100,7 +98,7 @@ function Stored({ robot }) {
         <input type="text" aria-label=${`Name of ${title}`} value=${title} disabled=${!isOperator.value}
           onChange=${onName} aria-invalid=${refused ? "true" : undefined}
           aria-describedby=${refused ? `refused-${id}` : undefined} />
-        <button class="secondary compact" aria-pressed=${isChosen(robot)} onClick=${() => chooseRobot(id)}>
+        <button class="secondary compact" aria-pressed=${isChosen(robot)} onClick=${() => chooseStored(id)}>
           ${isChosen(robot) ? "Chosen" : "Choose"}
         </button>
       </div>
@@ -108,12 +106,17 @@ function Stored({ robot }) {
         <span class="dim">${hidden ? "Hidden; " : ""}${description}</span>
         <span class="space"></span>
         <a class="link" href=${fileOf(id)} download aria-label=${`Download ${title}`}>Download</a>
+        ${isOperator.value && !body && html`
+          <button class="link" aria-label=${`Correct ${title}`} aria-expanded=${isCorrected}
+            onClick=${() => correct(isCorrected ? null : id)}>Correct…</button>
+        `}
         ${isOperator.value && html`
           <button class="link" aria-label=${`${hidden ? "Show" : "Hide"} ${title}`}
             onClick=${() => changeRobot(id, { hidden: !hidden })}>${hidden ? "Show" : "Hide"}</button>
           <button class="link" aria-label=${`Delete ${title}`} onClick=${() => deleteRobot(id)}>Delete</button>
         `}
       </div>
+      ${isCorrected && html`<${CorrectRobot} />`}
       ${refused && html`<p id=${`refused-${id}`} class="mistake" role="alert">${refused}</p>`}
     </li>
   `;

@@ -1,0 +1,10 @@
+// Sentences on a robot from a file, folded.
+import { html } from "./elements.js";
+
+/** @param {{ title: string, sentences: string[], isOpen?: boolean }} props */
+export const Told = ({ title, sentences, isOpen = false }) => sentences.length > 0 && html`
+  <details class="told" open=${isOpen}>
+    <summary>${title}: ${sentences.length}</summary>
+    <ul>${sentences.map((one) => html`<li key=${one}>${one}</li>`)}</ul>
+  </details>
+`;
