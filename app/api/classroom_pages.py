@@ -1,4 +1,4 @@
-"""Links to lessons, and the dashboard on the stage of a room; its own page is in `app.api.pages`."""
+"""Links to lessons, and the dashboard on the stage of a room, whose page is in `app.api.pages`."""
 
 from urllib.parse import quote
 

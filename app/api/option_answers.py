@@ -38,6 +38,7 @@ class RobotOption(Described):
             for one that is built in or from a file.
         grid_side_m: side of a foot grid that suits its size.
         joints: names of the joints of each leg, from the torso to the foot.
+        limits_rad: lowest and highest angle of each of them.
         azimuths_deg: directions of its legs in its own frame, anticlockwise.
         gait: a gait that suits it.
         gaits: names of the gaits that its legs can have.
@@ -50,6 +51,7 @@ class RobotOption(Described):
     robot: AnyRobot
     grid_side_m: float
     joints: list[list[str]]
+    limits_rad: list[list[tuple[float, float]]]
     azimuths_deg: list[float]
     gait: AnyGait
     gaits: list[str]

@@ -296,15 +296,15 @@ def _stored(stored: StoredRobot) -> dict[str, Any]:
 
 def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
     legs = legs_of(made)
+    numbers = range(1, len(legs) + 1)
     return {
         "id": made.id,
         "hidden": False,
         "body": None,
         "robot": as_mapping(made),
         "grid_side_m": usual_side_m(made, gait),
-        "joints": [
-            [joint.name for joint in legs.of_leg(number)] for number in range(1, len(legs) + 1)
-        ],
+        "joints": [[joint.name for joint in legs.of_leg(number)] for number in numbers],
+        "limits_rad": [[joint.limits_rad for joint in legs.of_leg(number)] for number in numbers],
         "azimuths_deg": [*made.azimuths_deg],
         "gait": gait_as_json(gait),
         "gaits": [name for name in NAMED_GAITS if _divides(name, made)],
@@ -393,6 +393,12 @@ def _replaced_parts() -> list[str]:
     return [value for value in values if isinstance(value, str)]
 
 
+def _usual_choices(kind: type[disturbances.Disturbance], field: str) -> dict[str, Any]:
+    """Return choices of a field on which limits depend: the joints of robots that are built in."""
+    of_field = [one.ranges for one in kind.ranges.values() if one.field == field]
+    return {"choices": [*of_field[0]], "choice_titles": [*of_field[0]]} if of_field else {}
+
+
 def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]]:
     """Return the fields of a kind of disturbance, its own before the steps."""
     declared = declared_fields(kind)  # type: ignore[arg-type]  # of a class, not of an instance
@@ -404,6 +410,7 @@ def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]
         ranges = kind.ranges.get(one.name)
         options[one.name] = {
             **_setting(setting),
+            **_usual_choices(kind, one.name),
             "short": short.get(one.name, one.name),
             "is_list": is_list,
             "is_required": is_required,

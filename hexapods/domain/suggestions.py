@@ -29,11 +29,14 @@ def usual_gait(robot: Robot) -> str | GaitSpec:
     return GaitSpec(spec.right_leg, spec.left_leg, groups=groups)
 
 
-def usual_grid_side_m(robot: ModelRobot, gait: str | GaitSpec) -> float:
+def usual_grid_side_m(robot: Robot, gait: str | GaitSpec) -> float:
     """Return the side of a foot grid that all legs of a robot reach with a margin [m].
 
-    It is as large as suits the size of the legs; the least that there is, if they reach none.
+    It is as large as suits the size of the legs of a robot from a file, else the usual one; the
+    least that there is, if they reach none.
     """
+    if not isinstance(robot, ModelRobot):
+        return FootGrid().side_m
     chains = leg_chains(robot.model, home_angles(robot.model))
     side_m, resolved = _GRID_SHARE * leg_length_m(chains), resolve(gait, robot.azimuths_deg)
     while side_m > MIN_SIDE_M:

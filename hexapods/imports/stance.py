@@ -15,8 +15,8 @@ from hexapods.imports.chain import PRECISION, Chain
 from hexapods.imports.choices import Choices
 from hexapods.imports.notes import Notes, listed, quoted
 
-REACH_SHARE = 0.08
-"""How far each foot must reach from home, to each side and upward, as a share of its length."""
+_REACH_SHARE, _LIFT_SHARE = 0.08, 0.12
+"""How far each foot must reach from home, to each side and upward, as shares of its length."""
 _CLEARANCE_SHARE, _LEVEL_SHARE = 0.04, 0.15
 """Of the length of a leg: the torso's height over the ground, and how uneven feet may stand."""
 _SAMPLES, _ROUNDS, _NEAR = 3000, 6, 400
@@ -147,9 +147,9 @@ def _unreached(chain: Chain, angles: FloatArray) -> bool:
     if len(angles) < _FOLLOWING_JOINTS:
         return False
     angles = np.clip(angles, *chain.limits)
-    side = REACH_SHARE * chain.length_m
-    corners = [(x, y, 0) for x in (-1, 1) for y in (-1, 1)]
-    targets = chain.feet(angles[None])[0] + side * np.array([*corners, (0, 0, 1)])
+    corners = [(x * _REACH_SHARE, y * _REACH_SHARE, 0) for x in (-1, 1) for y in (-1, 1)]
+    shares = np.array([*corners, (0, 0, _LIFT_SHARE)])
+    targets = chain.feet(angles[None])[0] + chain.length_m * shares
     _, off = chain.solve(targets, angles)
     return bool((off > PRECISION * chain.length_m).any())
 

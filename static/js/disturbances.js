@@ -1,6 +1,7 @@
 // Disturbances of robots and ground: conditions of a step, their words, and their text in links and commands.
 import { listed, sentence, whole } from "./format.js";
 import { parseSetting, quoted } from "./parse.js";
+import { kindFor, kindNamed, legIn } from "./kinds.js";
 import { builtPart } from "./robots.js";
 import { fieldBeside, mistakeIn } from "./settings.js";
 import { options } from "./store.js";
@@ -10,8 +11,7 @@ import { options } from "./store.js";
 
 const STEPS = ["at_step", "until_step"];
 
-/** @param {string} name */
-export const kindNamed = (name) => (options.value?.disturbances ?? []).find((kind) => kind.name === name);
+export { kindFor, kindNamed, legIn };
 
 /**
  * Whether a simulator knows a kind.
@@ -304,11 +304,12 @@ function parseField(text, field) {
 /**
  * A text as a disturbance, or why it is none.
  * @param {string} text
+ * @param {RobotConfig} [robot] to which it happens
  * @returns {Parsed<Disturbance>}
  */
-export function parseText(text) {
+export function parseText(text, robot) {
   const { kind: name, fields } = splitText(text);
-  const kind = kindNamed(name);
+  const kind = kindFor(name, robot, legIn(fields));
   if (!kind) return { mistake: `${quoted(name)} is nothing that can happen: choose one of these` };
   /** @type {Disturbance} */
   const found = { kind: name, at_step: 0 };

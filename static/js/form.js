@@ -138,11 +138,11 @@ export const wrong = computed(() => {
   for (const field of Object.keys({ ...commonDefaults(), agent: "", lanes: "" })) check(field, []);
   const { lanes } = form.value;
   Object.keys(laneSettings(lanes)).forEach((field) => check(field, lanes));
-  const { world, disturb, simulator } = form.value;
+  const { world, disturb, simulator, robot } = form.value;
   const impossible = disturbancesOf(world).find(({ kind }) => !isSimulated(kind, simulator));
   if (impossible) found.world ??= { text: world, mistake: unknownTo(simulator, impossible.kind) };
   for (const text of disturb) {
-    const mistake = mistakeInText(text, simulator);
+    const mistake = mistakeInText(text, simulator, robot);
     if (mistake) found[REPEATED] ??= { text, mistake };
   }
   return found;
@@ -161,9 +161,10 @@ export function unknownTo(simulator, kind) {
  * Why a text of a disturbance is not valid; null if it is.
  * @param {string} text
  * @param {string} simulator
+ * @param {RobotConfig} [robot]
  */
-export function mistakeInText(text, simulator) {
-  const { value, mistake } = parseText(text);
+export function mistakeInText(text, simulator, robot) {
+  const { value, mistake } = parseText(text, robot);
   return mistake ?? (isSimulated(value.kind, simulator) ? null : unknownTo(simulator, value.kind));
 }
 
@@ -285,8 +286,8 @@ const walkFields = () => ({ ...select(form.value, (field) => WALK_FIELDS.include
 
 /** The named world and the disturbances besides, unless there are none. */
 function worldFields() {
-  const { world, disturb } = form.value;
-  const disturbances = disturb.flatMap((text) => parseText(text).value ?? []);
+  const { world, disturb, robot } = form.value;
+  const disturbances = disturb.flatMap((text) => parseText(text, robot).value ?? []);
   return {
     ...(world === served().worlds[0].name ? {} : { world }),
     ...(disturbances.length ? { disturbances } : {}),

@@ -1,6 +1,7 @@
-// The first lesson: cards in the shape of a lesson's document, and how far this page is. Each may ask for a prediction,
-// which is revealed at time-out.
+// The lesson of this page, the first one or that of the address: its cards, and how far this page is. A card of the
+// first one may ask for a prediction, which is revealed at time-out.
 import { computed, signal } from "@preact/signals";
+import { asTexts, followLinkedLesson, linked } from "./linked-lesson.js";
 import { change, page } from "./page-state.js";
 import { storedText } from "./page.js";
 import { isTimedOut, standings } from "./race.js";
@@ -9,6 +10,7 @@ import { raceInView } from "./on-stage.js";
 import { agentOf, laneTitle } from "./settings.js";
 
 /** @import { PageState } from "./page-state.js" */
+/** @import { LessonCard } from "./types.js" */
 
 /**
  * `state`: what of the page the card opens. `ask`: a question whose answer is one of the lanes. `isForOperators`:
@@ -46,12 +48,29 @@ const CARDS = [
 const kept = storedText("lesson", "open");
 
 /** The cards of the lesson for who looks at this page. */
-export const cards = computed(() => CARDS.filter(({ isForOperators }) => isOperator.value || !isForOperators));
+export const cards = computed(() => (linked.value
+  ? linked.value.cards.map(asCard)
+  : CARDS.filter(({ isForOperators }) => isOperator.value || !isForOperators)));
+
+/** A card of the lesson that the address names; its texts are read in a dialog. */
+/** @type {(one: LessonCard, n: number) => Card} */
+function asCard({ title, ask, state }, n) {
+  const { form, ...others } = state ?? {};
+  const set = Object.entries(others).filter(([, value]) => value !== null);
+  return {
+    title: title ?? `Card ${n + 1}`, text: ask?.text ?? "",
+    state: { ...Object.fromEntries(set), ...(form && { form: asTexts(form) }) },
+  };
+}
+
+/** Show the lesson that the address names, from its open card on. */
+export const followLesson = () =>
+  followLinkedLesson(() => openCard(Math.min(page.card.peek() ?? 1, cards.peek().length)));
 
 /** The number of the open card, from 1; null where the lesson is hidden. At a first visit it is the first. */
 export const cardNumber = computed(() => {
   if (page.hidden.value.includes("card")) return null;
-  const number = page.card.value ?? (kept.value === "done" ? null : 1);
+  const number = page.card.value ?? (kept.value === "done" || page.lesson.value !== null ? null : 1);
   return number !== null && number <= cards.value.length ? number : null;
 });
 
@@ -75,7 +94,7 @@ export const openLesson = () => openCard(1);
 
 export const closeLesson = () => {
   kept.value = "done";
-  page.card.value = null;
+  change({ card: null, lesson: null });
 };
 
 // ---- the prediction

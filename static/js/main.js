@@ -10,6 +10,7 @@ import { openExperimentForm } from "./experiments/form.js";
 import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
+import { followLesson } from "./lesson.js";
 import { followHistory, page, reload } from "./page-state.js";
 import { followPresenter, followTheme } from "./page.js";
 import { followPresentation } from "./presentation.js";
@@ -81,6 +82,7 @@ const followTitle = () => effect(() => {
 });
 
 followHistory();
+followLesson();
 followTheme();
 followPresenter();
 followPresentation();

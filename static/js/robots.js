@@ -98,6 +98,20 @@ function bodyAzimuths(robot, presets) {
   return (presets.find(({ name }) => name === presetOf(robot)) ?? presets[0]).azimuths_deg;
 }
 
+/**
+ * How far the joints of a leg turn [rad], by their names; undefined where that is not known.
+ * @param {RobotConfig | undefined} robot
+ * @param {number} leg from 1
+ * @param {Robot[]} presets
+ * @returns {Record<string, [number, number]> | undefined}
+ */
+export function jointsOf(robot, leg, presets) {
+  const { joints = [], limits_rad = [] } = presets.find(({ name }) => name === presetOf(robot)) ?? presets[0] ?? {};
+  // A custom robot may have more legs than its preset; all of a preset's have the same joints.
+  const at = joints[leg - 1] ? leg - 1 : 0;
+  return joints[at] && Object.fromEntries(joints[at].map((name, number) => [name, limits_rad[at][number]]));
+}
+
 /** @type {(robot: RobotConfig | undefined, presets: Robot[]) => number} */
 export const numberOfLegs = (robot, presets) => bodyAzimuths(robot, presets).length;
 

@@ -35,6 +35,7 @@ export type {
   LessonList,
   LessonView,
   ListedLesson,
+  ListedRoom,
   NarrativeSection,
   NewLesson,
   NewRoom,

@@ -112,6 +112,8 @@ const SEARCH = {
 const BUILT_IN = { id: null, hidden: false, body: null, grid_side_m: 0.04 };
 /** @param {number} legs */
 const jointsOf = (legs) => Array.from({ length: legs }, () => ["coxa", "femur", "tibia"]);
+/** @param {number} legs @returns {[number, number][][]} */
+const limitsOf = (legs) => Array.from({ length: legs }, () => [[-1.2, 1.2], [-1.5, 1.5], [-2.8, 0]]);
 
 /** @type {Options} */
 export const OPTIONS = {
@@ -122,12 +124,14 @@ export const OPTIONS = {
   })),
   robots: [
     {
-      ...described("stiff", "Stiff"), ...BUILT_IN, joints: jointsOf(6), robot: { preset: "stiff" },
+      ...described("stiff", "Stiff"), ...BUILT_IN, joints: jointsOf(6), limits_rad: limitsOf(6),
+      robot: { preset: "stiff" },
       gait: "tripod", gaits: ["tripod", "wave"],
       azimuths_deg: [0, 60, 120, 180, 240, 300], built: { friction: 1 },
     },
     {
-      ...described("dog", "Dog"), ...BUILT_IN, joints: jointsOf(4), robot: { preset: "dog" }, gaits: ["wave"],
+      ...described("dog", "Dog"), ...BUILT_IN, joints: jointsOf(4), limits_rad: limitsOf(4),
+      robot: { preset: "dog" }, gaits: ["wave"],
       azimuths_deg: [-60, 60, 120, -120], built: { friction: 1 },
       gait: { right_leg: 1, left_leg: 2, groups: [[1, 3], [2, 4]] },
     },

@@ -4,7 +4,8 @@ import { readFileSync } from "node:fs";
 import { beforeEach, test } from "node:test";
 import {
   changesSomething, chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, inTime, inWords,
-  isSimulated, legStates, nothingOf, parseText, parseWorld, pressed, splitWorlds, textOf, withField, worldTitle,
+  isSimulated, kindFor, kindNamed, legStates, nothingOf, parseText, parseWorld, pressed, splitWorlds, textOf,
+  withField, worldTitle,
 } from "../../static/js/disturbances.js";
 import { azimuthsOf } from "../../static/js/robots.js";
 import { options } from "../../static/js/store.js";
@@ -191,4 +192,22 @@ test("legs are drawn from forward, of any robot", () => {
   // Those of a creature by its name.
   assert.deepEqual(azimuthsOf("dog", { right_leg: 1, left_leg: 2 }, OPTIONS), [-60, 60, 120, -120]);
   assert.equal(azimuthsOf({ preset: "dog" }, "tripod", { ...OPTIONS, gaits: [named] }).length, 4);
+});
+
+test("a joint is one of the robot's leg, and turns as far as that", () => {
+  const spot = {
+    ...OPTIONS.robots[1], name: "spot", joints: [["hip", "femur"], ["hip", "knee", "wrist"]],
+    limits_rad: /** @type {[number, number][][]} */ ([[[-1, 1], [-3, 3]], [[-1, 1], [0, 2], [-1, 0]]]),
+  };
+  options.value = { ...OPTIONS, robots: [...OPTIONS.robots, spot] };
+  const { joint, angle_rad } = kindFor("stuck", "spot", 2)?.fields ?? {};
+  assert.deepEqual(joint.choices, ["hip", "knee", "wrist"]);
+  assert.deepEqual(angle_rad.ranges?.ranges.wrist, [-1, 0]);
+  assert.deepEqual(kindFor("stuck", "stiff")?.fields.joint.choices, ["coxa", "femur", "tibia"]);
+  assert.equal(kindFor("limp", "spot"), kindNamed("limp"));
+
+  assert.equal(parseText("stuck:leg=2:joint=wrist:angle_rad=-0.5", "spot").value?.joint, "wrist");
+  assert.match(parseText("stuck:leg=2:joint=femur:angle_rad=0.5", "spot").mistake ?? "", /hip, knee/);
+  assert.match(parseText("stuck:leg=2:joint=wrist:angle_rad=0.5", "spot").mistake ?? "", /from −?-?1 to 0/);
+  assert.equal(parseText("stuck:leg=1:joint=femur:angle_rad=2.5", "spot").value?.angle_rad, 2.5);
 });

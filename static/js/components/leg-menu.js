@@ -126,17 +126,17 @@ const shortTitle = (name) => (kindNamed(name)?.title ?? name).replace(/ (legs?|j
 
 /**
  * What a press does, as a disturbance without its step.
- * @type {(at: Pick, kind: string, conditions: Disturbance[]) => Disturbance}
+ * @type {(at: Pick, kind: string, conditions: Disturbance[], robot: Run["config"]["robot"]) => Disturbance}
  */
-const meant = (at, kind, conditions) => /** @type {Disturbance} */ (at.what === "leg"
-  ? pressed(conditions, at.leg ?? 1, firstWish(kind)) : { ...firstWish(kind), kind });
+const meant = (at, kind, conditions, robot) => /** @type {Disturbance} */ (at.what === "leg"
+  ? pressed(conditions, at.leg ?? 1, firstWish(kind, robot, at.leg ?? 1)) : { ...firstWish(kind), kind });
 
 /** @param {{ run: Run, at: Pick }} props */
 function OfTraining({ run, at }) {
   const [kind, setKind] = useState(kindsFor(at)[0]);
   const next = (run.progress?.done ?? 0) + 1;
   const act = async () => {
-    await disturb(run, meant(at, kind, conditionsNow(run)));
+    await disturb(run, meant(at, kind, conditionsNow(run), run.config.robot));
     closeLegs();
   };
   return html`
@@ -157,7 +157,7 @@ function OfRace({ race, at }) {
   const known = stepShown.value === null ? null : scale.value;
   const moment = known ? positionInWords(known, known.picture) : `step ${from}`;
   const act = async () => {
-    const chosen = chosenWith([], meant(at, kind, before), before, config.robot);
+    const chosen = chosenWith([], meant(at, kind, before, config.robot), before, config.robot);
     if (await branchRace(race, from - 1, chosen)) closeLegs();
   };
   return html`

@@ -4,7 +4,7 @@ import { useRef, useState } from "preact/hooks";
 import { disturb } from "../live-changes.js";
 import { branchRace, pending } from "../actions.js";
 import {
-  chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, isSimulated,
+  chosenWith, conditionsAt, conditionsInWords, conditionsNow, disturbancesOf, isSimulated, kindFor,
   kindNamed, legStates, nothingOf, pressed, withUnit,
 } from "../disturbances.js";
 import { listed } from "../format.js";
@@ -17,7 +17,9 @@ import { html, LegPicker } from "./elements.js";
 import { Description, NumberField, SettingRow, Slider } from "./fields.js";
 import { Problem } from "./problems.js";
 
-/** @import { Changed, Disturbance, DisturbanceKind, FieldOption, Run, RunConfig, SettingValue } from "../types.js" */
+/** @import {
+ *   Changed, Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run, RunConfig, SettingValue,
+ * } from "../types.js" */
 /** @import { ComponentChildren } from "preact" */
 
 /** @typedef {{ kind: string, [field: string]: SettingValue }} Wish */
@@ -36,18 +38,23 @@ const NO_OWN_FIELDS = ["leg", "at_step", "until_step"];
 const ownFieldsOf = (kind) =>
   Object.entries(kind?.fields ?? {}).filter(([name, field]) => !field.is_list && !NO_OWN_FIELDS.includes(name));
 
-/** A kind with the first values of its own fields. @param {string} name */
-export function firstWish(name) {
-  const first = firstFields(name);
+/**
+ * A kind with the first values of its own fields, for a leg of a robot.
+ * @param {string} name
+ * @param {RobotConfig} [robot]
+ * @param {number} [leg]
+ */
+export function firstWish(name, robot, leg) {
+  const first = firstFields(name, robot, leg);
   return { kind: name, ...Object.fromEntries(ownFieldsOf(kindNamed(name)).map(([field]) => [field, first[field]])) };
 }
 
-/** @param {{ id: string, wish: Wish, onWish: (wish: Wish) => void }} props */
-const LegWish = ({ id, wish, onWish }) => html`
+/** @param {{ id: string, wish: Wish, onWish: (wish: Wish) => void, robot: RobotConfig }} props */
+const LegWish = ({ id, wish, onWish, robot }) => html`
   <div class="leg-wish">
     <label for=${`${id}-leg-kind`}>A press on a leg</label>
     <select id=${`${id}-leg-kind`} aria-describedby=${`${id}-leg-help`}
-      onChange=${(/** @type {Changed} */ { target }) => onWish(firstWish(target.value))}>
+      onChange=${(/** @type {Changed} */ { target }) => onWish(firstWish(target.value, robot))}>
       ${legKinds().map(({ name, title }) => html`
         <option value=${name} selected=${name === wish.kind}>${title}</option>
       `)}
@@ -58,10 +65,10 @@ const LegWish = ({ id, wish, onWish }) => html`
 
 /**
  * The joint and its angle, the share of the torque.
- * @param {{ id: string, wish: Wish, onWish: (wish: Wish) => void }} props
+ * @param {{ id: string, wish: Wish, onWish: (wish: Wish) => void, robot: RobotConfig }} props
  */
-function WishFields({ id, wish, onWish }) {
-  const kind = kindNamed(wish.kind);
+function WishFields({ id, wish, onWish, robot }) {
+  const kind = kindFor(wish.kind, robot);
   /** @param {string} name @param {SettingValue} value */
   const take = (name, value) => onWish(withinRanges(kind?.fields ?? {}, { ...wish, [name]: value }));
   return ownFieldsOf(kind).map(([name, setting]) => html`
@@ -78,11 +85,19 @@ function OwnField({ name, setting, ...rest }) {
     : html`<${SettingRow} name=${name} setting=${setting} ...${rest} isOfForm=${false} />`;
 }
 
-/** Values for what must be given: those of a named world, else the first valid ones. @param {string} kind */
-export function firstFields(kind) {
+/**
+ * Values for what must be given: those of a named world, else the first valid ones.
+ * @param {string} kind
+ * @param {RobotConfig} [robot]
+ * @param {number} [leg]
+ */
+export function firstFields(kind, robot, leg) {
+  const fields = kindFor(kind, robot, leg)?.fields ?? {};
   const example = served().worlds.flatMap(({ disturbances }) => disturbances).find((one) => one.kind === kind);
-  if (example) return example;
-  const needed = Object.entries(kindNamed(kind)?.fields ?? {}).filter(([, field]) => field.is_required);
+  const isFor = (/** @type {[string, FieldOption]} */ [name, { choices }]) =>
+    !choices.length || choices.includes(/** @type {any} */ (example)?.[name]);
+  if (example && Object.entries(fields).every(isFor)) return example;
+  const needed = Object.entries(fields).filter(([, field]) => field.is_required);
   return Object.fromEntries(needed.map(([name, field]) => [name, firstValue(field)]));
 }
 
@@ -276,7 +291,7 @@ function reasonAgainst(simulator) {
  */
 function WorldControls({ id, config, conditions, onDisturb, sentenceOf, children }) {
   const { robot, gait, simulator } = config;
-  const [wish, setWish] = useState(() => firstWish(legKinds()[0].name));
+  const [wish, setWish] = useState(() => firstWish(legKinds()[0].name, robot));
   const reason = reasonAgainst(simulator);
   /** @param {number} leg */
   const meant = (leg) => /** @type {Disturbance} */ (pressed(conditions, leg, wish));
@@ -291,11 +306,11 @@ function WorldControls({ id, config, conditions, onDisturb, sentenceOf, children
         <p id=${`${id}-words`} role="status">${sentenceOf(now)}</p>
         ${reason
           ? html`<p class="sentence">${reason}</p>`
-          : html`<${LegWish} id=${id} wish=${wish} onWish=${setWish} />`}
+          : html`<${LegWish} id=${id} wish=${wish} onWish=${setWish} robot=${robot} />`}
         ${children}
       </div>
     </div>
-    ${!reason && html`<${WishFields} id=${id} wish=${wish} onWish=${setWish} />`}
+    ${!reason && html`<${WishFields} id=${id} wish=${wish} onWish=${setWish} robot=${robot} />`}
     <${Sliders} kinds=${kindsWithSize().filter(isMain)} conditions=${conditions} config=${config}
       onDisturb=${onDisturb} />
     ${isAtLeast("study") && html`

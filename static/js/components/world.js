@@ -1,5 +1,5 @@
 // The form's worlds: those with a name as small pictures, and disturbances with their steps.
-import { adjectiveOf, kindNamed, legStates, shortName, splitText, textOf, withField } from "../disturbances.js";
+import { adjectiveOf, kindFor, legIn, legStates, shortName, splitText, textOf, withField } from "../disturbances.js";
 import { form, mistakeInText, setField, wrong } from "../form.js";
 import { azimuthsOf } from "../robots.js";
 import { fullTitle } from "../settings.js";
@@ -90,7 +90,7 @@ export function Disturbances() {
     const [what, name] = target.value.split(" ");
     const added = what === "world"
       ? (worlds.find((one) => one.name === name)?.disturbances ?? []).map((one) => textOf({ ...one, at_step }))
-      : [textOf({ kind: name, ...firstFields(name), at_step })];
+      : [textOf({ kind: name, ...firstFields(name, form.value.robot), at_step })];
     target.value = "";
     setDisturbances([...texts, ...added]);
   };
@@ -121,8 +121,8 @@ export function Disturbances() {
 /** @param {{ text: string, number: number, onText: (text: string) => unknown, onRemove: () => unknown }} props */
 function DisturbanceRow({ text, number, onText, onRemove }) {
   const { kind: name, fields } = splitText(text);
-  const kind = kindNamed(name);
-  const mistake = mistakeInText(text, form.value.simulator);
+  const kind = kindFor(name, form.value.robot, legIn(fields));
+  const mistake = mistakeInText(text, form.value.simulator, form.value.robot);
   const { robot, gait } = form.value;
   /** @param {string} field */
   const given = (field) => fields.find(([one]) => one === field || one === shortName(name, field))?.[1] ?? "";
