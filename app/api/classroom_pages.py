@@ -1,4 +1,4 @@
-"""Links to lessons, and the dashboard on the stage of a room; its own page is in `app.api.pages`."""
+"""Links to lessons, and the dashboard on the stage of a room; `app.api.pages` has its own page."""
 
 from urllib.parse import quote
 

@@ -118,9 +118,8 @@ class RoomAccess:
         if scope["type"] == "websocket" or scope["method"] in READ_METHODS:
             if _TAUGHT.fullmatch(path_of(scope)):
                 return problem(403, "A lesson has its answers; participants see its cards alone.")
-            if is_public or rest is not None or self._is_read_in_room(scope, seats):
-                return None
-            if self.is_open_to_all(scope):
+            is_readable = is_public or rest is not None or self.is_open_to_all(scope)
+            if is_readable or self._is_read_in_room(scope, seats):
                 return None
             return problem(403, "Participants see their room alone here; watching needs the token.")
         deed = _DEEDS.get(rest or "") if scope["method"] == "POST" else None

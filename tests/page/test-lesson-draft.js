@@ -6,7 +6,7 @@ import {
   pageAsState, removeCard, toSend,
 } from "../../static/js/lessons/draft.js";
 import { paragraphs } from "../../static/js/lessons/markdown.js";
-import { asTexts, isShown, linked } from "../../static/js/linked-lesson.js";
+import { asTexts, isShown, linked } from "../../static/js/lesson.js";
 import { change, read } from "../../static/js/page-state.js";
 import { setDepth } from "../../static/js/workspace.js";
 

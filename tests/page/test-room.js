@@ -110,7 +110,7 @@ test("a setting begins with the value of the card's form, and else with its defa
 
 test("of names the first that the card allows is chosen, where its form names none", () => {
   const [first, second] = OPTIONS.gaits.map(({ name }) => name);
-  const may = { gait: { choices: [second, first] } };
+  const may = /** @type {LessonCard["may"]} */ ({ gait: { choices: [second, first] } });
   assert.deepEqual(chosenSettings({ text: "", may }, 0), { gait: second });
   assert.deepEqual(chosenSettings({ text: "", may, state: { form: { gait: first } } }, 0), { gait: first });
 });
