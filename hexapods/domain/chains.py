@@ -19,6 +19,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hexapods.domain.errors import ImpossibleLegs
 from hexapods.domain.gait import Gait
@@ -34,6 +35,8 @@ _EXACT, _NEAR = 3e-6, 6e-3
 square of them. The joint targets of a step need less, since they are interpolated."""
 _CHUNK = 1500
 """Feet whose numbers stay in a processor's cache."""
+_FEW = 300
+"""Feet of a step, whose parameters are kept from one step to the next."""
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 """Indices of the other two of three axes."""
 _DAMPING = 0.1
@@ -96,7 +99,7 @@ class ChainLegs(Legs):
         offsets = np.zeros((3, len(self)))
         offsets[2] = lifts_m
         with np.errstate(all="ignore"):
-            turned = solver.solve(offsets, solver.parameters)
+            turned = solver.solve(offsets, solver.parameters_of(solver.parameters))
         for leg, of_leg in enumerate(turned.tolist(), start=1):
             if not math.isfinite(of_leg[0]):
                 raise ImpossibleLegs(
@@ -168,6 +171,7 @@ class ChainKinematics(FootKinematics):
         feet = np.array([chain.foot_m for chain in legs.standing])
         x, y = feet[:, 0], feet[:, 1]
         self._feet_m = feet.T[:, None]
+        self._kept = lru_cache(maxsize=16)(self._parameters_of)
         self.homes_m = np.stack(
             (x * self._cos - y * self._sin, x * self._sin + y * self._cos), axis=1
         )
@@ -215,11 +219,15 @@ class ChainKinematics(FootKinematics):
         with np.errstate(invalid="ignore", over="ignore"):
             for start in range(0, len(legs), _CHUNK):
                 part = slice(start, start + _CHUNK)
-                leg = legs[part]
-                parameters = self._solver.parameters.take(leg, 1)
+                which = legs[part].tobytes()
+                parameters = (self._kept if len(legs) <= _FEW else self._parameters_of)(which)
                 turned = self._solver.solve(offsets[:, part], parameters, near)
-                angles[part] = self._home_rad[leg] + turned
+                angles[part] = self._home_rad[legs[part]] + turned
         return angles.reshape(*shape, -1)
+
+    def _parameters_of(self, legs: bytes) -> "_Parameters":
+        """Return what `solve` needs of feet, by the indices of their legs."""
+        return self._solver.parameters_of(self._solver.parameters[:, np.frombuffer(legs, int)])
 
     def foot_offsets(self, angles: Sequence[float]) -> list[tuple[float, float, float]]:
         turned = self._chain_legs.turned(np.array([angles]))
@@ -229,6 +237,18 @@ class ChainKinematics(FootKinematics):
             (cos * one - sin * two, sin * one + cos * two, up)
             for one, two, up in zip(x, y, z, strict=True)
         ]
+
+
+class _Parameters(NamedTuple):
+    """What `ChainSolver.solve` needs of each foot: parts of the rows of its leg; see `_Rows`."""
+
+    to_first: FloatArray
+    stages: FloatArray
+    expansion: FloatArray
+    foot: FloatArray
+    squared_length: FloatArray
+    weights: FloatArray
+    is_flat: NDArray[np.bool_]
 
 
 class _Rows(NamedTuple):
@@ -287,7 +307,7 @@ class ChainSolver:
         axes = [size * np.linspace(low, high, _FITTED_PER_AXIS) for low, high in _FITTED_BOX]
         places = np.stack(np.meshgrid(*axes), axis=0).reshape(3, -1)
         with np.errstate(invalid="ignore", over="ignore"):
-            angles = self.solve(places, parameters[:, None])
+            angles = self.solve(places, self.parameters_of(parameters[:, None]))
         is_reached = np.isfinite(angles[:, 0])
         if is_reached.sum() < 4 * _MONOMIALS:
             return taylor
@@ -316,61 +336,74 @@ class ChainSolver:
         feet: FloatArray = in_body + self._origins_m
         return feet
 
-    def solve(
-        self, offsets: FloatArray, parameters: FloatArray, near: float = _EXACT
-    ) -> FloatArray:
+    def parameters_of(self, columns: FloatArray) -> _Parameters:
+        """Return what `solve` needs of feet, from the columns of their legs, (rows, ...)."""
+        rows, each = self._rows, columns.shape[1:]
+        length = columns[rows.length][0]
+        return _Parameters(
+            columns[rows.to_first].reshape(3, 3, *each),
+            self._stages(columns),
+            columns[rows.expansion].reshape(7, self.most, 3, *each),
+            columns[rows.foot],
+            length * length,
+            columns[rows.weights].reshape(3, 3, *each),
+            columns[rows.is_flat][0] > 0,
+        )
+
+    def solve(self, offsets: FloatArray, feet: _Parameters, near: float = _EXACT) -> FloatArray:
         """Return the angles of joints that move feet from where they stand.
 
         Args:
             offsets: of the feet in the body frame, (3, ...) [m].
-            parameters: of each foot those of its leg, (rows, ...); broadcasts with `offsets`.
+            feet: their parameters.
             near: error from which one more round suffices, relative to the length of the leg.
 
         Returns:
             Angles from the standing pose, (..., most) [rad]; NaN where a foot is out of reach.
         """
-        rows, each = self._rows, parameters.shape[1:]
-        to_first = parameters[rows.to_first].reshape(3, 3, *each)
-        moved = _product(to_first, offsets)
-        target = parameters[rows.foot] + moved
-        turned = _expanded(parameters[rows.expansion].reshape(7, self.most, 3, *each), moved)
-        squared_length = parameters[rows.length][0] * parameters[rows.length][0]
-        stages = self._stages(parameters)
+        moved = _product(feet.to_first, offsets)
+        target = feet.foot + moved
+        turned = _expanded(feet.expansion, moved)
         is_there = np.zeros(offsets.shape[1:], bool)
         for _ in range(_ROUNDS):
-            vectors = self._vectors(turned, stages)
+            vectors = self._vectors(turned, feet.stages)
             error, columns = target - vectors[:, -1], vectors[:, :-1]
             if self._is_any_flat:
-                weights = parameters[rows.weights].reshape(3, 3, *each)
-                error, columns = _product(weights, error), _product(weights[:, :, None], columns)
+                error = _product(feet.weights, error)
+                columns = _product(feet.weights[:, :, None], columns)
             squared = error * error
             missing = squared[0] + squared[1] + squared[2]
-            damping = _DAMPING * missing + _LEAST_DAMPING * squared_length
+            damping = _DAMPING * missing + _LEAST_DAMPING * feet.squared_length
             change = _damped_step(columns, error, damping)
             turned += np.where(is_there, 0.0, change)
-            is_there |= missing <= near * near * squared_length
+            is_there |= missing <= near * near * feet.squared_length
             if self._is_any_flat:
                 rests = sum(change[joint] * change[joint] for joint in range(self.most))
-                is_flat = parameters[rows.is_flat][0] > 0
-                is_there |= is_flat & (rests <= _RESTS * near * _RESTS * near)
+                is_there |= feet.is_flat & (rests <= _RESTS * near * _RESTS * near)
             if is_there.all():
                 break
         if not is_there.all() or self._is_any_flat:
-            is_reached = self._is_reached(turned, target, parameters, is_there)
-            turned = np.where(is_reached, turned, np.nan)
+            turned = np.where(self._is_reached(turned, target, feet, is_there), turned, np.nan)
         return np.ascontiguousarray(np.moveaxis(turned, 0, -1))
 
     def _is_reached(
-        self, turned: FloatArray, target: FloatArray, parameters: FloatArray, is_there: FloatArray
-    ) -> FloatArray:
+        self,
+        turned: FloatArray,
+        target: FloatArray,
+        feet: _Parameters,
+        is_there: NDArray[np.bool_],
+    ) -> NDArray[np.bool_]:
+        """Return which feet have arrived; of those that move in a surface, at their height."""
         if not self._is_any_flat:
             return is_there
-        rows, each = self._rows, parameters.shape[1:]
-        error = target - self._vectors(turned, self._stages(parameters))[:, -1]
-        to_first = parameters[rows.to_first].reshape(3, 3, *each)
-        height = to_first[0, 2] * error[0] + to_first[1, 2] * error[1] + to_first[2, 2] * error[2]
-        is_level = np.abs(height) <= _HEIGHT_ERROR * parameters[rows.length][0]
-        reached: FloatArray = np.where(parameters[rows.is_flat][0] > 0, is_level, is_there)
+        error = target - self._vectors(turned, feet.stages)[:, -1]
+        height = (
+            feet.to_first[0, 2] * error[0]
+            + feet.to_first[1, 2] * error[1]
+            + feet.to_first[2, 2] * error[2]
+        )
+        is_level = height * height <= _HEIGHT_ERROR * _HEIGHT_ERROR * feet.squared_length
+        reached: NDArray[np.bool_] = np.where(feet.is_flat, is_level, is_there)
         return reached
 
     def _stages(self, parameters: FloatArray) -> FloatArray:

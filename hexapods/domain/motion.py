@@ -18,8 +18,8 @@ from hexapods.domain.simulator import RECORDING_HZ
 from hexapods.domain.types import Action, FloatArray, IntArray
 
 _SWING_KNOTS, _SHIFT_KNOTS = 8, 5
-"""Places of a swing and of a shift for which costly inverse kinematics is solved: angles between are
-right to 0.2 mrad."""
+"""Places of a swing and of a shift for which costly inverse kinematics is solved: the angles
+between them are right to 0.2 mrad."""
 
 
 class StepPlan(NamedTuple):
