@@ -2,7 +2,9 @@
 
 A folder is packed into a zip, as a person would do it; after a colon follows the document in it, if
 there are several. Prints a line for each, with what was guessed and repaired below it, and ends
-with 1 if one is refused. With `--in-this-process` a profiler sees the import.
+with 1 if one is refused. With `--walk` each also walks in MuJoCo, on the grid that suits its size:
+50 steps by greedy and 100 by `linear-model`, which begins untrained. With `--in-this-process` a
+profiler sees the import.
 """
 
 import argparse
@@ -12,18 +14,25 @@ import time
 import zipfile
 from pathlib import Path
 
+import hexapods as hx
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import resolve
+from hexapods.domain.model_robot import model_robot
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.imports.child import read_robot_file
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import silence_mujoco
 from hexapods.imports.imported import ImportedRobot
 from hexapods.imports.reading import read_in_this_process
 
+_STEPS = 50
+
 
 def main() -> int:
     """Import all that is named on the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("files", nargs="+", metavar="FILE_OR_FOLDER[:DOCUMENT]")
+    parser.add_argument("--walk", action="store_true")
     parser.add_argument("--in-this-process", action="store_true")
     options = parser.parse_args()
     refused = 0
@@ -42,6 +51,8 @@ def main() -> int:
             print(f"{named}: refused: {error}")
             continue
         _print(named, robot, len(data), time.perf_counter() - began_s)
+        if options.walk:
+            _walk(robot)
     return min(refused, 1)
 
 
@@ -70,6 +81,23 @@ def _print(named: str, robot: ImportedRobot, size: int, took_s: float) -> None:
         print(f"  guess: {sentence}")
     for sentence in robot.repairs:
         print(f"  repair: {sentence}")
+
+
+def _walk(imported: ImportedRobot) -> None:
+    robot = model_robot(imported.model, imported.name)
+    side_m = usual_grid_side_m(robot, imported.gait)
+
+    def distance_m(agent: str, steps: int) -> float:
+        race = hx.race([agent], robot=robot, gait=imported.gait, grid_side_m=side_m, steps=steps)
+        return race.standings[0].total_distance_m
+
+    groups = len(resolve(imported.gait, robot.azimuths_deg).groups)
+    first, both = (distance_m("linear-model", steps) for steps in (_STEPS, 2 * _STEPS))
+    print(
+        f"  grid {side_m:.3f} m, law {_STEPS * side_m / (groups + 1):.2f} m, greedy "
+        f"{distance_m('greedy', _STEPS):.2f} m, linear-model 1-50 {first:.2f} m, 51-100 "
+        f"{both - first:.2f} m"
+    )
 
 
 if __name__ == "__main__":

@@ -59,11 +59,13 @@ class NewLesson(Answer):
     """A lesson that was stored.
 
     Attributes:
-        link: address of the page with it.
+        link: address of the page with it, for others if they can reach the server.
+        qr_code: of the link, an SVG image as a data URI.
     """
 
     id: str
     link: str
+    qr_code: str
 
 
 class NewRoom(Answer):

@@ -19,7 +19,19 @@ if TYPE_CHECKING:
     from markdown_it.token import Token
 
 CONTENTS = (
-    ("Start", ("page", "tutorial", "worlds", "replays", "comparing", "spectators", "exports")),
+    (
+        "Start",
+        (
+            "page",
+            "tutorial",
+            "worlds",
+            "replays",
+            "comparing",
+            "spectators",
+            "classroom",
+            "exports",
+        ),
+    ),
     ("Experiments", ("experiments", "figures", "python", "operations")),
     (
         "How it works",

@@ -10,6 +10,7 @@ from app.api.classroom_answers import LessonList, LessonView, NewLesson
 from app.api.contract import GIVEN_LESSON, TEXT, answers
 from app.api.deps import BodyDep, ServicesDep
 from app.api.formats import attachment, negotiated
+from app.api.spectators import page_address, qr_image
 from app.classroom.lesson import Lesson, adapter, html_of, read_lesson
 from app.classroom.lesson_file import MAX_BYTES, MEDIA_TYPE, read_file, write_file
 from app.classroom.lessons import FoundLesson
@@ -65,8 +66,9 @@ def add_lesson(
     services.card_starts.check(lesson, services.store)
     found = services.lessons.add(lesson)
     path = request.url_for("get_lesson", lesson_id=found.id).path
-    link = str(request.url_for("lesson_page", lesson_id=found.id))
-    return JSONResponse({"id": found.id, "link": link}, 201, {"Location": path})
+    link = page_address(request, services.settings, f"/l/{found.id}")
+    added = {"id": found.id, "link": link, "qr_code": qr_image(link)}
+    return JSONResponse(added, 201, {"Location": path})
 
 
 @router.get("", summary="List lessons", response_model=LessonList)

@@ -9,7 +9,7 @@ from fastapi import Request
 from app.api.deps import Services
 from app.api.lessons import lesson_view
 from app.api.room_stages import path_of_room
-from app.api.spectators import address_for_others, qr_code
+from app.api.spectators import page_address, qr_image
 from app.classroom.lesson import Card, html_of
 from app.classroom.lessons import FoundLesson
 from app.classroom.results import CardResults, Entry, RunResult
@@ -23,14 +23,7 @@ RoomRole = Literal["teacher", "participant", "spectator"]
 
 def room_address(request: Request, services: Services, code: str) -> str:
     """Return the address of a room's page: for others if they can reach the server."""
-    address = address_for_others(request, services.settings) or str(request.base_url)
-    root: str = request.scope.get("root_path", "")
-    return address.rstrip("/").removesuffix(root) + path_of_room(code)
-
-
-def qr_of(address: str) -> str:
-    """Return the QR code of an address as a data URI."""
-    return str(qr_code(address).svg_data_uri(border=2, light="#fff"))
+    return page_address(request, services.settings, path_of_room(code))
 
 
 def room_view(request: Request, services: Services, room: Room, seed: int | None) -> dict[str, Any]:
@@ -58,7 +51,7 @@ def room_view(request: Request, services: Services, room: Room, seed: int | None
         "people": _people(room, services.store) if is_teacher else [],
         "lesson": lesson_view(lesson) if is_teacher else None,
         "address": address,
-        "qr_code": qr_of(address),
+        "qr_code": qr_image(address),
     }
 
 

@@ -25,8 +25,9 @@ from app.api.fields import INTEGRAL, Body
 from app.api.formats import attachment, negotiated
 from app.api.rate_limit import whole_seconds
 from app.api.room_access import room_cookie
-from app.api.room_views import qr_of, results_view, room_address, room_view
+from app.api.room_views import results_view, room_address, room_view
 from app.api.runs import located
+from app.api.spectators import qr_image
 from app.api.starts import spectators_asker
 from app.classroom.lesson import CardNumber, read_lesson
 from app.classroom.names import normalized
@@ -158,7 +159,7 @@ async def open_room(
         if not ended.is_open:
             await services.room_stages.close(ended.code)
     address = room_address(request, services, room.code)
-    shown = {"code": room.code, "address": address, "qr_code": qr_of(address)}
+    shown = {"code": room.code, "address": address, "qr_code": qr_image(address)}
     location = request.url_for("get_room", code=room.code).path
     return JSONResponse(shown, 201, {"Location": location})
 

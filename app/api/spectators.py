@@ -33,13 +33,29 @@ def get_spectators(request: Request, services: ServicesDep, shared: StageDep) ->
     reason = _LOOPBACK_ONLY if is_public else _NEEDS_TOKEN
     answer = {
         "address": address,
-        "qr_code": None
-        if address is None
-        else qr_code(address).svg_data_uri(border=2, light="#fff"),
+        "qr_code": None if address is None else qr_image(address),
         "reason": reason if address is None else "",
         "watching": shared.hub.counters.viewers,
     }
     return JSONResponse(answer)
+
+
+def page_address(request: Request, settings: Settings, path: str) -> str:
+    """Return the address of a page of this server: for others if they can reach the server.
+
+    Args:
+        request: of who asks.
+        settings: of the server.
+        path: of the page, with a slash before it.
+    """
+    address = address_for_others(request, settings) or str(request.base_url)
+    root: str = request.scope.get("root_path", "")
+    return address.rstrip("/").removesuffix(root) + path
+
+
+def qr_image(address: str) -> str:
+    """Return the QR code of an address as a data URI."""
+    return str(qr_code(address).svg_data_uri(border=2, light="#fff"))
 
 
 def qr_code(address: str) -> segno.QRCode:

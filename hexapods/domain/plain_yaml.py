@@ -47,6 +47,18 @@ class _PlainLoader(NodeLoader):
     yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 - PyYAML's own, by first letter
 
 
+class _PlainDumper(yaml.SafeDumper):  # type: ignore[misc]  # as above
+    """Writes texts of several lines as blocks, and no aliases.
+
+    Quotes what this module or a reader of YAML 1.1 would take for something else than a text.
+    """
+
+    def ignore_aliases(self, data: Any) -> bool:
+        """Whether to write a value out each time."""
+        del data
+        return True
+
+
 for _name, _pattern, _first in (
     ("null", r"^(?:null|~|)$", ["n", "~", ""]),
     ("bool", r"^(?:true|false)$", ["t", "f"]),
@@ -57,7 +69,8 @@ for _name, _pattern, _first in (
         [*"-+.0123456789"],
     ),
 ):
-    _PlainLoader.add_implicit_resolver(f"{_TAG}{_name}", re.compile(_pattern), _first)
+    for _kind in (_PlainLoader, _PlainDumper):
+        _kind.add_implicit_resolver(f"{_TAG}{_name}", re.compile(_pattern), _first)
 
 
 def root_node(content: bytes, name: str, what: str, loader: type[NodeLoader] = NodeLoader) -> Any:
@@ -105,15 +118,6 @@ def write_plain(value: Any) -> str:
     return str(
         yaml.dump(value, Dumper=_PlainDumper, sort_keys=False, allow_unicode=True, width=100)
     )
-
-
-class _PlainDumper(yaml.SafeDumper):  # type: ignore[misc]  # as above
-    """Writes texts of several lines as blocks, and no aliases."""
-
-    def ignore_aliases(self, data: Any) -> bool:
-        """Whether to write a value out each time."""
-        del data
-        return True
 
 
 def _text(dumper: _PlainDumper, text: str) -> Any:

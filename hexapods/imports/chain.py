@@ -60,14 +60,15 @@ class Chain:
         return np.moveaxis((feet[:, 0] - feet[:, 1]) / (2 * _DIFFERENCE), 1, 2)
 
     def solve(self, targets: FloatArray, start: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Find angles within the limits at which the foot is nearest to some places.
+        """Find angles within the limits at which the foot is in some places.
 
         Args:
             targets: (k, 3) [m].
             start: angles from which to search, (joints,) [rad].
 
         Returns:
-            angles, (k, joints) [rad], and the distances that are left, (k,) [m].
+            angles, (k, joints) [rad], and the distances that are left, (k,) [m]; of a place out of
+            reach it need not be the least.
         """
         low, high = self.limits
         angles = np.clip(np.tile(start, (len(targets), 1)), low, high)

@@ -15,8 +15,8 @@ from hexapods.imports.chain import PRECISION, Chain
 from hexapods.imports.choices import Choices
 from hexapods.imports.notes import Notes, listed, quoted
 
-REACH_SHARE = 0.08
-"""How far each foot must reach from home, to each side and upward, as a share of its length."""
+_REACH_SHARE, _LIFT_SHARE = 0.08, 0.12
+"""How far each foot must reach from home, to each side and upward, as shares of its length."""
 _CLEARANCE_SHARE, _LEVEL_SHARE = 0.04, 0.15
 """Of the length of a leg: the torso's height over the ground, and how uneven feet may stand."""
 _SAMPLES, _ROUNDS, _NEAR = 3000, 6, 400
@@ -27,8 +27,10 @@ _SPRAWLING = 0.35
 """A leg points outward if its foot is farther from the mount at the angles 0, of its length."""
 _SPRAWLED = ((0.45, 0.6), (0.55, 0.6), (0.35, 0.7), (0.6, 0.7), (0.3, 0.6))
 """Postures of such legs: how far the foot is below its mount and out, of the leg's length."""
-_UPRIGHT = (0.75, 0.68, 0.6, 0.5, 0.85)
+_UPRIGHT = (0.65, 0.72, 0.58, 0.5, 0.8)
 """Postures of other legs: how far the foot is below its mount."""
+_ASTRIDE = 1.15
+"""How far such feet stand beside their mounts, relative to the hips' offsets: so none toppled."""
 _POSTURES = len(_UPRIGHT)
 _LEAST_UNDER = 0.15
 """How far a foot is at least below the torso, of the leg's length."""
@@ -147,9 +149,9 @@ def _unreached(chain: Chain, angles: FloatArray) -> bool:
     if len(angles) < _FOLLOWING_JOINTS:
         return False
     angles = np.clip(angles, *chain.limits)
-    side = REACH_SHARE * chain.length_m
-    corners = [(x, y, 0) for x in (-1, 1) for y in (-1, 1)]
-    targets = chain.feet(angles[None])[0] + side * np.array([*corners, (0, 0, 1)])
+    corners = [(x * _REACH_SHARE, y * _REACH_SHARE, 0) for x in (-1, 1) for y in (-1, 1)]
+    shares = np.array([*corners, (0, 0, _LIFT_SHARE)])
+    targets = chain.feet(angles[None])[0] + chain.length_m * shares
     _, off = chain.solve(targets, angles)
     return bool((off > PRECISION * chain.length_m).any())
 
@@ -250,8 +252,7 @@ def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
         at = wide * straight[:2] / out
     else:
         down = _UPRIGHT[number]
-        # Beside the mount, where hips are offset to the side.
-        at = np.array([0.85 * straight[0], 0.0])
+        at = np.array([_ASTRIDE * straight[0], 0.0])
     return np.array([*at, -max(down, least)])
 
 

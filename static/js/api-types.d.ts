@@ -2563,9 +2563,13 @@ export interface NarrativeSection {
 export interface NewLesson {
   id: string;
   /**
-   * address of the page with it.
+   * address of the page with it, for others if they can reach the server.
    */
   link: string;
+  /**
+   * of the link, an SVG image as a data URI.
+   */
+  qr_code: string;
 }
 /**
  * A room that was opened.

@@ -1,6 +1,6 @@
-// The first lesson: cards in the shape of a lesson's document, and how far this page is. Each may ask for a prediction,
-// which is revealed at time-out.
-import { computed, signal } from "@preact/signals";
+// The lesson of this page, the first one or that of the address: its cards, and how far this page is. A card of the
+// first one may ask for a prediction, which is revealed at time-out.
+import { computed, effect, signal } from "@preact/signals";
 import { change, page } from "./page-state.js";
 import { storedText } from "./page.js";
 import { isTimedOut, standings } from "./race.js";
@@ -8,7 +8,9 @@ import { isOperator } from "./selectors.js";
 import { raceInView } from "./on-stage.js";
 import { agentOf, laneTitle } from "./settings.js";
 
+/** @import { Signal } from "@preact/signals" */
 /** @import { PageState } from "./page-state.js" */
+/** @import { LessonCard, LessonView } from "./types.js" */
 
 /**
  * `state`: what of the page the card opens. `ask`: a question whose answer is one of the lanes. `isForOperators`:
@@ -46,12 +48,29 @@ const CARDS = [
 const kept = storedText("lesson", "open");
 
 /** The cards of the lesson for who looks at this page. */
-export const cards = computed(() => CARDS.filter(({ isForOperators }) => isOperator.value || !isForOperators));
+export const cards = computed(() => (linked.value
+  ? linked.value.cards.map(asCard)
+  : CARDS.filter(({ isForOperators }) => isOperator.value || !isForOperators)));
+
+/** A card of the lesson that the address names; its texts are read in a dialog. */
+/** @type {(one: LessonCard, n: number) => Card} */
+function asCard({ title, ask, state }, n) {
+  const { form, ...others } = state ?? {};
+  const set = Object.entries(others).filter(([, value]) => value !== null);
+  return {
+    title: title ?? `Card ${n + 1}`, text: ask?.text ?? "",
+    state: { ...Object.fromEntries(set), ...(form && { form: asTexts(form) }) },
+  };
+}
+
+/** Show the lesson that the address names, from its open card on. */
+export const followLesson = () =>
+  followLinkedLesson(() => openCard(Math.min(page.card.peek() ?? 1, cards.peek().length)));
 
 /** The number of the open card, from 1; null where the lesson is hidden. At a first visit it is the first. */
 export const cardNumber = computed(() => {
   if (page.hidden.value.includes("card")) return null;
-  const number = page.card.value ?? (kept.value === "done" ? null : 1);
+  const number = page.card.value ?? (kept.value === "done" || page.lesson.value !== null ? null : 1);
   return number !== null && number <= cards.value.length ? number : null;
 });
 
@@ -75,8 +94,50 @@ export const openLesson = () => openCard(1);
 
 export const closeLesson = () => {
   kept.value = "done";
-  page.card.value = null;
+  change({ card: null, lesson: null });
 };
+
+// ---- the lesson that the address names, in place of the first one: it presets the page and hides what its cards do
+// not show; that is courtesy, since only a room locks anything
+
+/** Null without one, and until the server has answered. @type {Signal<LessonView | null>} */
+export const linked = signal(null);
+/** Why the lesson of the address cannot be shown. */
+export const linkProblem = signal("");
+
+/** Its open card; null without one. @type {import("@preact/signals").ReadonlySignal<LessonCard | null>} */
+export const linkedCard = computed(() => linked.value?.cards[(page.card.value ?? 1) - 1] ?? null);
+
+/** Whether a tab of the panel is shown by the open card. @param {string} tab */
+export const isShown = (tab) => linkedCard.value?.show?.some((one) => one === tab) ?? true;
+
+/**
+ * The fields of a card's form as an address has them: lists with commas, of disturbances each by itself.
+ * @param {Record<string, any>} form
+ */
+export function asTexts({ settings = {}, ...form }) {
+  const pairs = Object.entries({ ...form, ...settings }).flatMap(([name, value]) => {
+    if (name === "disturb" && Array.isArray(value)) return value.map((one) => [name, String(one)]);
+    if (Array.isArray(value)) return [[name, value.join(",")]];
+    return [[name, value !== null && typeof value === "object" ? JSON.stringify(value) : String(value)]];
+  });
+  return new URLSearchParams(pairs);
+}
+
+/** Load the lesson that the address names, and tell once it is there. @param {() => unknown} onLoaded */
+export const followLinkedLesson = (onLoaded) => effect(() => {
+  const id = page.lesson.value;
+  linkProblem.value = "";
+  if (id === linked.peek()?.id) return;
+  linked.value = null;
+  if (id === null) return;
+  // Most visits have none.
+  import("./classroom-api.js").then(({ getLesson }) => getLesson(id)).then((lesson) => {
+    if (page.lesson.peek() !== id) return;
+    linked.value = lesson;
+    onLoaded();
+  }, ({ message }) => (linkProblem.value = message));
+});
 
 // ---- the prediction
 

@@ -5,11 +5,11 @@ import { getOptions, getStage, RequestError } from "./api.js";
 import { App } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
-import { openEvents } from "./events.js";
 import { openExperimentForm } from "./experiments/form.js";
 import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
+import { followLesson } from "./lesson.js";
 import { followHistory, page, reload } from "./page-state.js";
 import { followPresenter, followTheme } from "./page.js";
 import { followPresentation } from "./presentation.js";
@@ -17,7 +17,9 @@ import { announceOutcomes, headline, practiceTitle } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
-import { applyEvent, connection, eventNames, isLockedOut, options, robotChanges, role, version } from "./store.js";
+import {
+  applyEvent, connection, eventNames, isLockedOut, openEvents, options, robotChanges, role, version,
+} from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 
 const FIRST_RETRY_MS = 500;
@@ -81,6 +83,7 @@ const followTitle = () => effect(() => {
 });
 
 followHistory();
+followLesson();
 followTheme();
 followPresenter();
 followPresentation();

@@ -86,8 +86,8 @@ export const HIDEABLE = ["panel", "card"];
 
 /** The fields, in the order in which an address has them. */
 const FIELDS = {
-  /** The open view: race, experiments, runs or compare. */
-  view: { part: "hash", name: "view", initial: "race", ...oneOf(["race", "experiments", "runs", "compare"]),
+  /** The open view: race, experiments, runs, compare or lessons. */
+  view: { part: "hash", name: "view", initial: "race", ...oneOf(["race", "experiments", "runs", "compare", "lessons"]),
     isEntry: true },
   /** What was set of the next run, by field, as it was typed. */
   form: { part: "query", ...TEXTS },
@@ -111,6 +111,8 @@ const FIELDS = {
   camera: { part: "query", name: "camera", initial: "leader", ...CAMERA },
   /** What is hidden of the page. */
   hidden: { part: "query", name: "hidden", initial: /** @type {string[]} */ ([]), ...severalOf(HIDEABLE) },
+  /** Id of the lesson whose cards are shown; null for the first lesson. */
+  lesson: { part: "query", name: "lesson", initial: null, ...TEXT },
   /** The number of the lesson's card, from 1; null where no lesson is open. */
   card: { part: "query", name: "card", initial: null, ...WHOLE },
   /** Whether the page is presented: full screen, large type. */
@@ -286,6 +288,9 @@ export const ofRoom = () => ({
 
 /** Write a link into the address bar. @param {string} address */
 export const showAddress = (address) => history.replaceState(history.state, "", address);
+
+/** Leave this page for another of the server. @param {string} address */
+export const goTo = (address) => location.assign(address);
 
 /** Load the page anew. */
 export const reload = () => location.reload();

@@ -1,5 +1,6 @@
 // The workspace around the stage: its depths and tabs, and the panel. What a depth leaves out is hidden, not undone.
 import { computed } from "@preact/signals";
+import { isShown } from "./lesson.js";
 import { phase } from "./on-stage.js";
 import { change, DEPTHS, page, TABS } from "./page-state.js";
 import { isPhone, isWide, storedText } from "./page.js";
@@ -48,9 +49,9 @@ export const depth = computed(() => {
 /** Whether at least so much is shown. @param {Depth} one */
 export const isAtLeast = (one) => rankOf(depth.value) >= rankOf(one);
 
-/** The tabs that the present depth offers, by name. */
-export const tabs = computed(() =>
-  (isAtLeast("try") ? TABS.filter((one) => isAtLeast(KINDS[one].depth)) : [TABS[0]]));
+/** The tabs that the present depth offers, by name, and the card of a lesson does not hide. */
+export const tabs = computed(() => (isAtLeast("try")
+  ? TABS.filter((one) => isAtLeast(KINDS[one].depth) && (isShown(one) || one === page.tab.value)) : [TABS[0]]));
 
 /** @param {string} tab */
 export const tabTitle = (tab) => KINDS[tab].title;

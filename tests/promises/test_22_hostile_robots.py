@@ -26,7 +26,8 @@ from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
 from tests.promises.length import at_length
 
 DAMAGED = at_length(40, 1000)
-LONGEST_S = 5.0
+USUAL_S, LONGEST_S = 5.0, at_length(60.0, 20.0)
+"""Most of them, and any one: on a busy machine a process gets its 5 s of the processor later."""
 SURPRISED = "cannot be understood"
 """What is said of an error that nobody thought of."""
 
@@ -55,15 +56,16 @@ def outcome(data: bytes, name: str = "robot.xml") -> ImportedRobot | str:
         assert 10 < len(found) <= 1000
         assert "\n" not in found
         assert SURPRISED not in found
-    took_s = time.monotonic() - began_s
-    assert took_s < at_length(60, LONGEST_S)
+    assert time.monotonic() - began_s < LONGEST_S
     return found
 
 
 @pytest.mark.timeout(at_length(300, 3600))
 def test_damaged_files_are_refused_or_read_as_valid_robots() -> None:
+    began_s = time.monotonic()
     outcomes = [outcome(data) for _, data in damaged(DAMAGED, np.random.default_rng(22))]
 
+    assert time.monotonic() - began_s < DAMAGED * USUAL_S
     refused = [one for one in outcomes if isinstance(one, str)]
     # Some damage changes nothing that matters.
     assert DAMAGED // 2 < len(refused) < DAMAGED

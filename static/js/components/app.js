@@ -1,6 +1,6 @@
 // The page: header, the views and messages.
 import { announcement } from "../headline.js";
-import { effect } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { bodyIsOpen, robotsAreOpen } from "../form.js";
 import { page } from "../page-state.js";
@@ -18,6 +18,9 @@ import { TimeBar } from "./time-bar.js";
 
 /** @import { FunctionComponent } from "preact" */
 
+/** Whether a room was to be opened. */
+const roomIsWanted = signal(false);
+
 export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
   <${Header} />
@@ -25,6 +28,7 @@ export const App = () => html`
   <${Help} />
   <${BodyEditor} />
   <${StoredRobots} />
+  <${Room} />
   <${Toast} />
   <p class="sr-only" role="status">${announcement}</p>
 `;
@@ -98,6 +102,18 @@ const StoredRobots = () => (robotsAreOpen.value || loaded.value["list of robots"
   <${Loaded} name="list of robots" load=${loadStoredRobots} />
 `;
 
+const loadRoom = () => withStyle("lessons", import("./lessons/open-room.js")).then(({ OpenRoom }) => OpenRoom);
+
+/** Open the dialog that opens a room; its modules come with the first time. */
+const askForRoom = () => {
+  roomIsWanted.value = true;
+  import("../lessons/list.js").then((own) => own.askForRoom());
+};
+
+const Room = () => (roomIsWanted.value || loaded.value["dialog of rooms"] || page.view.value === "lessons") && html`
+  <${Loaded} name="dialog of rooms" load=${loadRoom} />
+`;
+
 const loadDesk = () => withStyle("presenter", import("./desk.js")).then(({ Desk }) => Desk);
 
 // ---- the views that are loaded when they are first opened: most visits do not
@@ -107,6 +123,7 @@ const LOADERS = {
   experiments: () => withStyle("experiments", import("./experiments/experiments.js")).then((own) => own.Experiments),
   runs: () => withStyle("runs", import("./runs/runs.js")).then((own) => own.Runs),
   compare: () => withStyle("runs", import("./compare/compare.js")).then((own) => own.Compare),
+  lessons: () => withStyle("lessons", import("./lessons/lessons.js")).then((own) => own.Lessons),
 };
 
 /** @param {{ name: string }} props */
@@ -174,6 +191,8 @@ function Menu() {
         ${isOperator.value && html`
           <button class="quiet" onClick=${item(() => (page.isRemote.value = true))}>Remote of the presentation</button>
         `}
+        <a href="#lessons" onClick=${item(() => {})}>Lessons</a>
+        ${isOperator.value && html`<button class="quiet" onClick=${item(askForRoom)}>Open a room…</button>`}
         ${card.value
           ? html`<button class="quiet" onClick=${item(closeLesson)}>Hide the lesson</button>`
           : html`<button class="quiet" onClick=${item(openLesson)}>The first lesson</button>`}

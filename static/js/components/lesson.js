@@ -1,14 +1,21 @@
 // The lesson's card below the time bar: a question or a task, one's own prediction, and the way to the next one.
+import { signal } from "@preact/signals";
 import {
-  card, cardNumber, cards, closeLesson, outcome, predict, predictable, prediction, turnCard,
+  card, cardNumber, cards, closeLesson, linked, linkProblem, outcome, predict, predictable, prediction, turnCard,
 } from "../lesson.js";
 import { listed } from "../format.js";
 import { isPhone } from "../page.js";
 import { isAtLeast } from "../workspace.js";
-import { html } from "./elements.js";
+import { html, Loaded, withStyle } from "./elements.js";
+
+/** Whether the card of the lesson that the address names is read in full. */
+export const readerIsOpen = signal(false);
+
+const loadReader = () => withStyle("card", import("./lesson-reader.js")).then(({ LessonReader }) => LessonReader);
 
 export function LessonCard() {
   const shown = card.value;
+  if (linkProblem.value) return html`<${NoLesson} />`;
   if (!shown) return null;
   const isLast = cardNumber.value === cards.value.length;
   return html`
@@ -17,6 +24,10 @@ export function LessonCard() {
       <p aria-live="polite"><b>${shown.title}${/[?.]$/.test(shown.title) ? "" : "."}</b>${" "}
         <span>${shown.ask && (outcome.value || isPhone.value) ? "" : shown.text}</span></p>
       ${shown.ask && html`<${Prediction} />`}
+      ${linked.value && html`
+        <button class="secondary compact" onClick=${() => (readerIsOpen.value = true)}>Read</button>
+        <${Loaded} name="card of the lesson" load=${loadReader} />
+      `}
       <button class="secondary compact" onClick=${() => turnCard(1)}>${isLast ? "Done" : "Next"}</button>
       ${isAtLeast("try") && html`
         <button class="quiet square small" aria-label="Hide the lesson" title="Hide the lesson" onClick=${closeLesson}>
@@ -26,6 +37,14 @@ export function LessonCard() {
     </section>
   `;
 }
+
+/** The address names a lesson that is not here. */
+const NoLesson = () => html`
+  <section class="card-bar" aria-label="Lesson">
+    <p role="alert">${linkProblem}</p>
+    <button class="secondary compact" onClick=${closeLesson}>Without a lesson</button>
+  </section>
+`;
 
 /** The lanes to choose from; then what was chosen, and at time-out what came of it. */
 export function Prediction() {

@@ -2,11 +2,12 @@
 import { signal } from "@preact/signals";
 import { DotStrip } from "../components/dot-strip.js";
 import { Dialog, html, Icon } from "../components/elements.js";
+import { Prose } from "../components/prose.js";
 import { resultsFile } from "../classroom-api.js";
 import { count, metres } from "../format.js";
 import { copy, isPhone, nextTheme, theme, toastMessage } from "../page.js";
 import { connection } from "../store.js";
-import { Failure, Prose, shortAddress } from "./doors.js";
+import { Failure, shortAddress } from "./doors.js";
 import { People } from "./people.js";
 import { busy, end, freeze, isRevealed, reveal, room, showCard, shownResults, spotlight } from "./room.js";
 import { axisOf } from "./scores.js";

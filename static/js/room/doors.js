@@ -63,8 +63,5 @@ export const Away = () => connection.value === "reconnecting" && html`
   </p>
 `;
 
-/** A text of a card, which the server makes of Markdown without HTML of its own. @param {{ text: string }} props */
-export const Prose = ({ text }) => html`<div class="prose" dangerouslySetInnerHTML=${{ __html: text }}></div>`;
-
 /** An address as a person types it. @param {string} address */
 export const shortAddress = (address) => address.replace(/^https?:\/\//, "");

@@ -1,0 +1,82 @@
+// The dialog that opens a room: which lesson, and then its code and the way to its cockpit.
+import { useEffect, useState } from "preact/hooks";
+import { addressOf } from "../../page-state.js";
+import { chosenLesson, isBusy, lessons, opened, openRoom, problem, roomIsOpen, rooms } from "../../lessons/list.js";
+import { count } from "../../format.js";
+import { Dialog, html } from "../elements.js";
+
+/** @import { NewRoom } from "../../types.js" */
+
+export function OpenRoom() {
+  const [needsApproval, setApproval] = useState(false);
+  useEffect(() => {
+    // The first lesson is as good as any to begin with.
+    if (chosenLesson.value === null && lessons.value?.length) chosenLesson.value = lessons.value[0].id;
+  }, [lessons.value]);
+  return html`
+    <${Dialog} isOpen=${roomIsOpen} id="open-room" labelledBy="open-room-title" style="open-room">
+      <div class="dialog-head">
+        <h2 id="open-room-title">${opened.value ? "The room is open" : "Open a room"}</h2>
+        <button class="quiet square" aria-label="Close" onClick=${() => (roomIsOpen.value = false)}>✕</button>
+      </div>
+      ${opened.value ? html`<${Opened} room=${opened.value} />` : html`
+        <p class="dim">A class joins by a code, without accounts. Each learner is one seed of one experiment.</p>
+        <${Choice} />
+        <label class="check">
+          <input type="checkbox" checked=${needsApproval} onChange=${() => setApproval(!needsApproval)} />
+          Show names and results of participants only after I approve each
+        </label>
+        <div role="alert">${problem.value && html`<p class="problem">${problem}</p>`}</div>
+        <button class="primary" aria-disabled=${isBusy.value || !chosenLesson.value ? "true" : undefined}
+          onClick=${() => chosenLesson.value && openRoom(needsApproval)}>Open the room</button>
+        ${rooms.value.length > 0 && html`<${OpenRooms} />`}
+      `}
+    <//>
+  `;
+}
+
+function Choice() {
+  if (lessons.value === null) return html`<p role="status">Loading the lessons…</p>`;
+  return html`
+    <fieldset class="lesson-choice">
+      <legend>Lesson</legend>
+      ${lessons.value.map(({ id, title, cards, is_built_in }) => html`
+        <label key=${id}>
+          <input type="radio" name="lesson" value=${id} checked=${chosenLesson.value === id}
+            onChange=${() => (chosenLesson.value = id)} />
+          <span>
+            <b>${title}</b><span class="dim">${count(cards, "card")}${is_built_in ? "" : " · made here"}</span>
+          </span>
+        </label>
+      `)}
+    </fieldset>
+    <p class="fine"><a href=${addressOf({ view: "lessons" })} onClick=${() => (roomIsOpen.value = false)}>
+      All lessons, and make one</a></p>
+  `;
+}
+
+/** @param {{ room: NewRoom }} props */
+const Opened = ({ room }) => html`
+  <div class="opened-room">
+    <img src=${room.qr_code} alt=${`QR code of ${room.address}`} />
+    <div>
+      <p class="room-code">${room.code}</p>
+      <p class="address">${room.address.replace(/^https?:\/\//, "")}</p>
+    </div>
+  </div>
+  <a class="primary button-link" href=${`r/${room.code}`}>Teach: open the cockpit</a>
+  <a class="secondary button-link" href=${`r/${room.code}?projector`} target="_blank">Open the projector</a>
+`;
+
+const OpenRooms = () => html`
+  <section aria-label="Rooms that are open">
+    <h3>Open rooms</h3>
+    <ul class="open-rooms">
+      ${rooms.value.map(({ code, title, participants }) => html`
+        <li key=${code}>
+          <a href=${`r/${code}`}><b>${code}</b> ${title}</a><span class="dim">${participants} in it</span>
+        </li>
+      `)}
+    </ul>
+  </section>
+`;

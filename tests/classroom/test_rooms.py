@@ -1,0 +1,81 @@
+"""Rooms: what is kept over a restart, also by PostgreSQL, and when an idle one is ended."""
+
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from sqlalchemy import text
+
+from app.classroom.lesson import read_lesson
+from app.classroom.rooms import IDLE, MAX_OPEN, Rooms
+from app.storage.database.store import RunStore
+from app.storage.errors import Busy, Conflict, NotFound
+from tests.postgresql import PostgresServer
+from tests.storage.stores import BACKENDS, database_url, opened
+
+LESSON = read_lesson(
+    {
+        "title": "x",
+        "cards": [
+            {"text": "a", "ask": {"kind": "number", "text": ""}},
+            {"text": "b", "ask": {"kind": "curve", "text": ""}},
+        ],
+    }
+)
+
+
+@pytest.fixture(params=BACKENDS)
+def store(
+    request: pytest.FixtureRequest, postgresql: PostgresServer, tmp_path: Path
+) -> Iterator[RunStore]:
+    with database_url(request.param, postgresql) as url, opened(tmp_path, url) as store:
+        yield store
+
+
+def test_all_is_there_after_a_restart(store: RunStore) -> None:
+    rooms = Rooms(store)
+    code = rooms.create(LESSON, needs_approval=True).code
+    one, other = rooms.join(code), rooms.join(code)
+    rooms.predict(code, 0, 0, 0.25)
+    rooms.show_card(code, 1)
+    rooms.predict(code, 1, 1, [[0, 0], [1, 0.5]])
+    rooms.reveal(code, 1)
+    rooms.freeze(code, True)
+    rooms.change_participant(code, 1, is_name_hidden=True, is_approved=True)
+    rooms.leave(code, 0)
+    before, after = rooms.get(code), Rooms(store).get(code)
+    assert after == before
+    assert after.predictions == {(0, 0): 0.25, (1, 1): [[0.0, 0.0], [1.0, 0.5]]}
+    again = Rooms(store)
+    assert again.seat(code, one.key) is None
+    seat = again.seat(code, other.key)
+    assert seat is not None
+    assert (seat.name, seat.seed) == (other.participant.name, 1)
+    again.end(code)
+    with pytest.raises(Conflict, match="has ended"):
+        Rooms(store).join(code)
+
+
+def test_a_damaged_row_is_left_out(store: RunStore) -> None:
+    rooms = Rooms(store)
+    good, bad = (rooms.create(LESSON).code for _ in range(2))
+    rooms.join(bad)
+    damage = text("""UPDATE rooms SET lesson = '{"title": 5}' WHERE code = :code""")
+    store.database.write(lambda connection: connection.execute(damage, {"code": bad}))
+    left = Rooms(store)
+    assert [room.code for room in left.all()] == [good]
+    with pytest.raises(NotFound):
+        left.get(bad)
+
+
+def test_an_idle_room_makes_place_for_another(store: RunStore) -> None:
+    now = datetime(2026, 11, 25, tzinfo=UTC)
+    rooms = Rooms(store, now=lambda: now)
+    codes = [rooms.create(LESSON).code for _ in range(MAX_OPEN)]
+    with pytest.raises(Busy, match="which is the most"):
+        rooms.create(LESSON)
+    now += IDLE - timedelta(minutes=1)
+    rooms.join(codes[0])
+    now += timedelta(minutes=2)
+    assert [room.code for room in rooms.idle_rooms()] == codes[1:]

@@ -1,0 +1,53 @@
+import numpy as np
+import pytest
+
+from hexapods.imports.chain import PRECISION, Chain
+
+
+@pytest.fixture
+def leg() -> Chain:
+    """Return a leg of a hexapod that stretches along x: coxa, femur and tibia."""
+    return Chain(
+        np.array([[0.0, 0, 1], [0, 1, 0], [0, 1, 0]]),
+        np.array([[0.1, 0, 0], [0.15, 0, 0], [0.23, 0, 0]]),
+        np.array([0.36, 0, 0]),
+        np.array([[-1.0, -1.5, -0.2], [1.0, 1.5, 2.5]]),
+    )
+
+
+def test_its_foot_goes_where_its_joints_turn_it(leg: Chain) -> None:
+    angles = np.array([[0, 0, 0], [np.pi / 2, 0, 0], [0, 0, np.pi / 2]])
+
+    feet = leg.feet(angles)
+
+    assert leg.length_m == pytest.approx(0.26)
+    assert feet == pytest.approx(np.array([[0.36, 0, 0], [0.1, 0.26, 0], [0.23, 0, -0.13]]))
+
+
+def test_its_derivatives_are_those_of_its_foot(leg: Chain) -> None:
+    angles = np.array([[0.2, -0.3, 1.0]])
+    small = np.array([1e-4, -2e-4, 3e-4])
+
+    moved = leg.feet(angles + small) - leg.feet(angles)
+
+    assert leg.jacobians(angles)[0] @ small == pytest.approx(moved[0], abs=1e-7)
+
+
+def test_angles_are_found_again(leg: Chain) -> None:
+    rng = np.random.default_rng(0)
+    start = np.array([0.0, -0.4, 1.4])
+    targets = leg.feet(start + rng.uniform(-0.3, 0.3, (50, 3)))
+
+    angles, off = leg.solve(targets, start)
+
+    assert off.max() < 1e-6
+    assert leg.feet(angles) == pytest.approx(targets, abs=1e-6)
+    low, high = leg.limits
+    assert ((angles >= low) & (angles <= high)).all()
+
+
+def test_what_is_out_of_reach_is_told(leg: Chain) -> None:
+    angles, off = leg.solve(np.array([[0.5, 0, 0], [0.2, 0, 0.3]]), np.array([0.0, -0.4, 1.4]))
+
+    assert (off > PRECISION * leg.length_m).all()
+    assert np.isfinite(angles).all()
