@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import tempfile
+import threading
 import time
 import warnings
 from collections.abc import Callable
@@ -35,6 +36,8 @@ _START_S = 30.0
 _CHECK_EVERY_S = 0.05
 _OPEN_FILES = 64
 _READY = b"ready"
+_TURNS = threading.BoundedSemaphore(2)
+"""Held while a file is read; others wait, since each may take much memory."""
 _logger = logging.getLogger(__name__)
 
 
@@ -78,7 +81,7 @@ def read_robot_file(
         raise DamagedFile(
             f"the file has {len(data):,} bytes; a robot has at most {MAX_UPLOAD_BYTES:,}"
         )
-    with tempfile.TemporaryDirectory(prefix="robot-import-") as folder:
+    with _TURNS, tempfile.TemporaryDirectory(prefix="robot-import-") as folder:
         answer = _ask(
             {
                 "folder": folder,
