@@ -31,7 +31,7 @@ from hexapods.processes import Child, SetUp
 _SET_UP = SetUp(name="robot import", niceness=5)
 _MAX_ANSWER_BYTES = 16 << 20
 _MAX_ERROR = 1000
-_START_S = 30.0
+_START_S = 60.0
 """Time in which the child imports what it needs, where it is no fork of a process that has."""
 _CHECK_EVERY_S = 0.05
 _OPEN_FILES = 64
@@ -52,7 +52,7 @@ class Limits:
     """
 
     seconds: float = 5.0
-    clock_seconds: float = 15.0
+    clock_seconds: float = 30.0
     memory_bytes: int = 512 << 20
 
 
