@@ -38,6 +38,7 @@ from hexapods.domain.kinematics import legs_of
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot, as_mapping, by_value
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS, counted
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
 from hexapods.experiments.config import (
@@ -64,7 +65,6 @@ from hexapods.runs.config import (
 )
 from hexapods.runs.gait_analysis import MAX_WINDOW_S
 from hexapods.runs.lane import LaneConfig
-from hexapods.runs.preview import usual_side_m
 from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from hexapods.shows.scene_spec import PAPERS_LANES
 
@@ -302,7 +302,7 @@ def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
         "hidden": False,
         "body": None,
         "robot": as_mapping(made),
-        "grid_side_m": usual_side_m(made, gait),
+        "grid_side_m": usual_grid_side_m(made, gait),
         "joints": [[joint.name for joint in legs.of_leg(number)] for number in numbers],
         "limits_rad": [[joint.limits_rad for joint in legs.of_leg(number)] for number in numbers],
         "azimuths_deg": [*made.azimuths_deg],

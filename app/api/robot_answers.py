@@ -12,9 +12,10 @@ from hexapods.domain.gait import AnyGait, gait_as_json, resolve
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import legs_written_out, written_out
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.imports.imported import FileFormat, ImportedLeg
 from hexapods.runs.config import WalkingProblem
-from hexapods.runs.preview import Preview, preview, usual_side_m
+from hexapods.runs.preview import Preview, preview
 
 
 class StoredLeg(Answer):
@@ -127,7 +128,7 @@ def whole_view(stored: StoredRobot, origin: Origin | None) -> dict[str, Any]:
     """Return a stored robot as a `WholeRobotView`; errors as of `robot_view`."""
     made = stored.robot
     gait = own_gait(made)
-    walk = WalkingProblem(gait=gait, robot=made, grid_side_m=usual_side_m(made, gait))
+    walk = WalkingProblem(gait=gait, robot=made, grid_side_m=usual_grid_side_m(made, gait))
     numbers = {name: value for name, value in written_out(made).items() if value is not None}
     return {
         **robot_view(stored),

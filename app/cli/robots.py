@@ -19,8 +19,9 @@ from hexapods.domain.gait import read_gait as read_gait_of
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import PRESETS, Robot, as_mapping, document_of
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
-from hexapods.runs.preview import Preview, preview, usual_side_m
+from hexapods.runs.preview import Preview, preview
 
 if TYPE_CHECKING:
     from app.storage.stored_robot import StoredRobot
@@ -131,7 +132,7 @@ def show_robot(options: argparse.Namespace) -> int:
     """
     made = read_robot(options.robot)
     gait = own_gait(made) if options.gait is None else read_gait(options.gait)
-    side_m = usual_side_m(made, gait) if options.grid_side_m is None else options.grid_side_m
+    side_m = usual_grid_side_m(made, gait) if options.grid_side_m is None else options.grid_side_m
     walk = WalkingProblem(gait=gait, robot=made, divisions=options.divisions, grid_side_m=side_m)
     known = preview(walk)
     if options.json:

@@ -3,7 +3,7 @@
 from hexapods.domain.body import Robot
 from hexapods.domain.errors import Unreachable
 from hexapods.domain.gait import GaitSpec, gait_spec, resolve
-from hexapods.domain.grid import MIN_SIDE_M, FootGrid
+from hexapods.domain.grid import MAX_SIDE_M, MIN_SIDE_M, FootGrid
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.model_geometry import home_angles, leg_chains
 from hexapods.domain.model_robot import ModelRobot, leg_length_m
@@ -36,13 +36,13 @@ def usual_grid_side_m(robot: Robot, gait: str | GaitSpec) -> float:
     least that there is, if they reach none.
     """
     if not isinstance(robot, ModelRobot):
-        return FootGrid().side_m
+        return FootGrid.side_m
     chains = leg_chains(robot.model, home_angles(robot.model))
     side_m, resolved = _GRID_SHARE * leg_length_m(chains), resolve(gait, robot.azimuths_deg)
     while side_m > MIN_SIDE_M:
         try:
             if check_reach(robot, resolved, FootGrid(_MARGIN * side_m)) is None:
-                return max(round(side_m, 3), MIN_SIDE_M)
+                return min(max(round(side_m, 3), MIN_SIDE_M), MAX_SIDE_M)
         except Unreachable:
             pass
         side_m *= _SMALLER

@@ -1,7 +1,7 @@
 """Has MuJoCo turn a cleaned document into numbers, with repairs where it would refuse it."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import mujoco
@@ -27,13 +27,13 @@ class Compiled:
         model: the `MjModel`; none of its geoms collides.
         collides: whether each geom collides in the file, (geoms,).
         named_geoms: names of geoms that have one in the file.
-        given_kg: mass that the file gives each body, directly or by its shapes, (bodies,).
+        undrawn: names of bodies of which a mesh is missing.
     """
 
     model: mujoco.MjModel
     collides: list[bool]
     named_geoms: frozenset[str]
-    has_inertial: list[bool]
+    undrawn: frozenset[str]
 
     def body_name(self, body: int) -> str:
         """Return the name of a body."""
@@ -58,8 +58,16 @@ def silence_mujoco() -> None:
     log.set()
 
 
-def compile_document(document: Document, assets: Mapping[str, bytes], notes: Notes) -> Compiled:
+def compile_document(
+    document: Document, assets: Mapping[str, bytes], undrawn: Collection[str], notes: Notes
+) -> Compiled:
     """Compile a cleaned document.
+
+    Args:
+        document: the document.
+        assets: its meshes, by the names that it has for them.
+        undrawn: names of bodies of which a mesh is missing.
+        notes: gets the repairs.
 
     Raises:
         DamagedFile: if MuJoCo refuses it, naming element and line.
@@ -75,14 +83,13 @@ def compile_document(document: Document, assets: Mapping[str, bytes], notes: Not
     for geom in spec.geoms:
         # Then the convex hulls of meshes are not computed.
         geom.contype = geom.conaffinity = 0
-    has_inertial = {body.name: bool(body.explicitinertial) for body in spec.bodies}
     collides_by_name = {geom.name: does for geom, does in zip(spec.geoms, collides, strict=True)}
     model = _compile(spec, document, notes)
     return Compiled(
         model,
         [collides_by_name[model.geom(geom).name] for geom in range(model.ngeom)],
         named,
-        [has_inertial[model.body(body).name] for body in range(model.nbody)],
+        frozenset(undrawn),
     )
 
 

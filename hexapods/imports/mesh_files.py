@@ -31,10 +31,12 @@ class MeshFiles:
 
     Attributes:
         assets: content by name.
+        undrawn: names of bodies or links of which a mesh is missing or cannot be read.
     """
 
     def __init__(self, upload: Upload, document: str, notes: Notes) -> None:
         self.assets: dict[str, bytes] = {}
+        self.undrawn: set[str] = set()
         self._upload, self._document, self._notes = upload, document, notes
         self._bytes = 0
         self._names: dict[tuple[str, str], str | None] = {}

@@ -38,7 +38,7 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Impor
         clean_urdf(root, meshes)
     meshes.tell()
     document = write_xml(root)
-    compiled = compile_document(document, meshes.assets, notes)
+    compiled = compile_document(document, meshes.assets, meshes.undrawn, notes)
     named = root.attributes.get("model" if root.tag == "mujoco" else "name", "")
     file_format = "mjcf" if root.tag == "mujoco" else "urdf"
     origin = Origin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]

@@ -27,8 +27,10 @@ _SPRAWLING = 0.35
 """A leg points outward if its foot is farther from the mount at the angles 0, of its length."""
 _SPRAWLED = ((0.45, 0.6), (0.55, 0.6), (0.35, 0.7), (0.6, 0.7), (0.3, 0.6))
 """Postures of such legs: how far the foot is below its mount and out, of the leg's length."""
-_UPRIGHT = (0.75, 0.68, 0.6, 0.5, 0.85)
+_UPRIGHT = (0.65, 0.72, 0.58, 0.5, 0.8)
 """Postures of other legs: how far the foot is below its mount."""
+_ASTRIDE = 1.15
+"""How far such feet stand beside their mounts, relative to the hips' offsets: so none toppled."""
 _POSTURES = len(_UPRIGHT)
 _LEAST_UNDER = 0.15
 """How far a foot is at least below the torso, of the leg's length."""
@@ -250,8 +252,7 @@ def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
         at = wide * straight[:2] / out
     else:
         down = _UPRIGHT[number]
-        # Beside the mount, where hips are offset to the side.
-        at = np.array([0.85 * straight[0], 0.0])
+        at = np.array([_ASTRIDE * straight[0], 0.0])
     return np.array([*at, -max(down, least)])
 
 

@@ -14,10 +14,8 @@ from hexapods.domain.gait import AnyGait, Gait, GaitSpec, gait_spec
 from hexapods.domain.grid import MAX_SIDE_M, FootGrid
 from hexapods.domain.kinematics import check_reach, legs_of, out_of_reach
 from hexapods.domain.legs import Legs
-from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.records import Record
 from hexapods.domain.robot import legs_written_out, written_out
-from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 
@@ -132,13 +130,6 @@ class Preview(Record):
     safe_side_m: float | None
     beside_grid: str | None
     better: BetterGroups | None
-
-
-def usual_side_m(robot: Robot, gait: str | GaitSpec) -> float:
-    """Return the side of the foot grid with which a robot begins [m]."""
-    if not isinstance(robot, ModelRobot):
-        return FootGrid.side_m
-    return min(usual_grid_side_m(robot, gait), MAX_SIDE_M)
 
 
 def preview(walk: WalkingProblem) -> Preview:

@@ -21,7 +21,7 @@ export function kindFor(name, robot, leg = 1) {
   const names = Object.keys(joints);
   /** @type {(own: string, field: FieldOption) => FieldOption} */
   const fitted = (own, field) => {
-    if (chosenIn.includes(own)) return { ...field, choices: names, choice_titles: names };
+    if (chosenIn.includes(own)) return { ...field, choices: names, choice_titles: names, valid: names.join(", or ") };
     return field.ranges ? { ...field, ranges: { ...field.ranges, ranges: joints } } : field;
   };
   const fields = Object.entries(kind.fields).map(([own, field]) => [own, fitted(own, field)]);

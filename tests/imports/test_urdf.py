@@ -160,7 +160,19 @@ def test_missing_and_unreadable_meshes_are_told() -> None:
 
     assert told(robot.repairs, "1 mesh is missing from the upload")
     assert told(robot.repairs, "1 mesh is left out, since only .stl and .obj are read")
-    assert robot.model.links[0].geoms[0].kind == "box"
+
+
+def test_a_link_of_which_a_mesh_is_missing_is_drawn_by_its_simple_shapes_too() -> None:
+    box = '<collision><geometry><box size="0.2 0.1 0.04"/></geometry></collision>'
+    small = '<visual><geometry><sphere radius="0.01"/></geometry></visual>'
+
+    whole, lacking = (
+        read(bug(torso=box + small + more)) for more in ("", MESH.format(file="hull.stl"))
+    )
+
+    assert np.ptp(decoded(whole.model.links[0].mesh)[0], axis=0).max() < 0.03
+    vertices, _ = decoded(lacking.model.links[0].mesh)
+    assert np.ptp(vertices, axis=0) == pytest.approx([0.1, 0.2, 0.04], abs=1e-6)
 
 
 def test_large_meshes_are_simplified() -> None:

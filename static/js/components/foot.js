@@ -15,7 +15,7 @@ import { scene } from "../store.js";
 import { inFormWords } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
 import { EstimateNote, goToField, html, Icon, Loaded, ProgressBar, UnknownParts } from "./elements.js";
-import { Held, Problem } from "./problems.js";
+import { Held, Problem } from "./fields.js";
 
 /** @import { Run } from "../types.js" */
 

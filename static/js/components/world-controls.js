@@ -14,8 +14,7 @@ import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { html, LegPicker } from "./elements.js";
-import { Description, NumberField, SettingRow, Slider } from "./fields.js";
-import { Problem } from "./problems.js";
+import { Description, NumberField, Problem, SettingRow, Slider } from "./fields.js";
 
 /** @import {
  *   Changed, Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run, RunConfig, SettingValue,

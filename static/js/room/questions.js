@@ -228,7 +228,7 @@ function usePen(heights, steps, onValue) {
   const lift = () => (last.current = null);
   const here = [knotsOf(steps)[chosen], heights?.[chosen] ?? 0];
   return [chosen, {
-    role: "slider", tabIndex: 0, onKeyDown,
+    role: "slider", tabindex: 0, onKeyDown,
     onPointerDown: stroke, onPointerMove: stroke, onPointerUp: lift, onPointerCancel: lift,
     "aria-label": "Your curve: left and right choose a step, up and down its distance",
     "aria-valuemin": LOWEST_M, "aria-valuemax": HIGHEST_M, "aria-valuenow": here[1], "aria-valuetext": inWords(here),
