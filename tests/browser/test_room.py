@@ -226,7 +226,7 @@ def draws_a_curve_by_keys(teacher: RoomPage, projector: RoomPage, pupil: RoomPag
     curve.focus()
     for key in ("ArrowRight", "PageUp", "ArrowUp", "ArrowRight", "PageUp"):
         pupil.page.keyboard.press(key)
-    expect(curve).to_have_attribute("aria-valuetext", "0.10 m after 25 steps")
+    expect(curve).to_have_attribute("aria-valuetext", "0.10\u00a0m after 25 steps")
     alpha = pupil.page.get_by_role("textbox", name=re.compile("Learning rate"))
     alpha.fill("0.95")
     pupil.sees("Must be from 0.1 to 0.9")
