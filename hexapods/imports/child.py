@@ -42,7 +42,7 @@ _logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class Limits:
+class ReadingLimits:
     """What reading a file may take.
 
     Attributes:
@@ -56,14 +56,14 @@ class Limits:
     memory_bytes: int = 512 << 20
 
 
-LIMITS = Limits()
+LIMITS = ReadingLimits()
 
 
 def read_robot_file(
     data: bytes,
     file_name: str | None = None,
     choices: Choices = AS_FOUND,
-    limits: Limits = LIMITS,
+    limits: ReadingLimits = LIMITS,
 ) -> ImportedRobot:
     """Read a robot from an MJCF or URDF file, alone or in a zip with meshes.
 
@@ -96,7 +96,7 @@ def read_robot_file(
     return _imported(answer)
 
 
-def _ask(head: dict[str, Any], data: bytes, limits: Limits) -> bytes:
+def _ask(head: dict[str, Any], data: bytes, limits: ReadingLimits) -> bytes:
     """Return the answer of a child that reads the file.
 
     Raises:
@@ -121,7 +121,7 @@ def _ask(head: dict[str, Any], data: bytes, limits: Limits) -> bytes:
         child.pipe.close()
 
 
-def _wait(child: Child, seconds: float, limits: Limits, what: str) -> None:
+def _wait(child: Child, seconds: float, limits: ReadingLimits, what: str) -> None:
     """Wait until the child has sent something.
 
     Raises:
@@ -139,7 +139,7 @@ def _wait(child: Child, seconds: float, limits: Limits, what: str) -> None:
         raise EOFError
 
 
-def _why_it_ended(code: int | None, limits: Limits) -> str:
+def _why_it_ended(code: int | None, limits: ReadingLimits) -> str:
     if sys.platform != "win32" and code in (-signal.SIGXCPU, -signal.SIGKILL):
         return f"reading it takes longer than {limits.seconds:g} s: simplify its meshes"
     return (

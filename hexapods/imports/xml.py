@@ -81,10 +81,10 @@ def read_xml(data: bytes, label: str, texts: Collection[str] = ()) -> Element:
     Raises:
         DamagedFile: if it is not well-formed, or exceeds a bound.
     """
-    return _Reader(label, texts).read(data)
+    return _DocumentReader(label, texts).read(data)
 
 
-class _Reader:
+class _DocumentReader:
     def __init__(self, label: str, texts: Collection[str]) -> None:
         self._label, self._texts = quoted(label), texts
         self._parts: list[str] | None = None
