@@ -23,7 +23,7 @@ _STARTS_NOTHING = re.compile(
 """Every other POST counts, so that a new route is limited unless it is added here."""
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
 _OF_RUN = re.compile(r"/api/v1/runs/[^/]+/([^/]+)")
-WHAT_IF = "/api/v1/what-if"
+WHAT_IF, ROBOTS = "/api/v1/what-if", "/api/v1/robots"
 QUESTIONS = frozenset({WHAT_IF, "/api/v1/robots/preview"})
 """Paths whose POST changes nothing, so that spectators may use it, too."""
 
@@ -31,9 +31,9 @@ QUESTIONS = frozenset({WHAT_IF, "/api/v1/robots/preview"})
 class RateLimit(HttpMiddleware):
     """Middleware that limits starts per minute, by client address and role.
 
-    Besides runs it counts imports, resumes, and what takes seconds to encode: a race's recorded
-    stream, pages that need no server, videos and logs. What-ifs of spectators have a limit of their
-    own; those of operators have none.
+    Besides runs it counts imports, changes of stored robots, resumes, and what takes seconds to
+    encode: a race's recorded stream, pages that need no server, videos and logs. What-ifs of
+    spectators have a limit of their own; those of operators have none.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings, what_ifs: RateLimiter) -> None:
@@ -114,7 +114,17 @@ def whole_seconds(wait_s: float) -> int:
     return max(1, math.ceil(wait_s))
 
 
+def is_reading_robot(scope: Scope) -> bool:
+    """Whether a request may have a robot's file read, in a process that takes seconds."""
+    path = path_of(scope)
+    return (scope["method"] == "POST" and path == ROBOTS) or (
+        scope["method"] == "PATCH" and path.startswith(f"{ROBOTS}/")
+    )
+
+
 def _starts_work(scope: Scope) -> bool:
+    if is_reading_robot(scope):
+        return True
     if scope["method"] == "POST" and _STARTS_NOTHING.fullmatch(path_of(scope)) is None:
         return True
     return is_encoding(scope)

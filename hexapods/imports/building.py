@@ -35,7 +35,7 @@ _UNLIMITED = (-np.pi, np.pi)
 _LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
 _SAME_PLACE_M = 1e-3
 _PLAIN_WORDS = frozenset({"", "joint", "jnt", "link", "leg", "j", "motor", "servo"})
-_MAX_JOINT_NAME = 24
+_MAX_JOINT_NAME, _MAX_KEYFRAMES = 24, 50
 Names = list[tuple[str, ...]]
 
 
@@ -72,9 +72,9 @@ def build(compiled: Compiled, origin: Origin, choices: Choices, notes: Notes) ->
 
 
 def _keyframes(model: mujoco.MjModel) -> dict[str, FloatArray]:
-    """Return `qpos` of each keyframe that is finite, by name."""
+    """Return `qpos` of each keyframe that is finite, by name; of very many the first."""
     found = {}
-    for key in range(model.nkey):
+    for key in range(min(model.nkey, _MAX_KEYFRAMES)):
         qpos = np.array(model.key_qpos[key])
         if np.isfinite(qpos).all():
             found[model.key(key).name or f"keyframe {key + 1}"] = qpos

@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import tempfile
+import threading
 import time
 import warnings
 from collections.abc import Callable
@@ -30,11 +31,13 @@ from hexapods.processes import Child, SetUp
 _SET_UP = SetUp(name="robot import", niceness=5)
 _MAX_ANSWER_BYTES = 16 << 20
 _MAX_ERROR = 1000
-_START_S = 30.0
+_START_S = 60.0
 """Time in which the child imports what it needs, where it is no fork of a process that has."""
 _CHECK_EVERY_S = 0.05
 _OPEN_FILES = 64
 _READY = b"ready"
+_TURNS = threading.BoundedSemaphore(2)
+"""Held while a file is read; others wait, since each may take much memory."""
 _logger = logging.getLogger(__name__)
 
 
@@ -49,7 +52,7 @@ class Limits:
     """
 
     seconds: float = 5.0
-    clock_seconds: float = 15.0
+    clock_seconds: float = 30.0
     memory_bytes: int = 512 << 20
 
 
@@ -78,7 +81,7 @@ def read_robot_file(
         raise DamagedFile(
             f"the file has {len(data):,} bytes; a robot has at most {MAX_UPLOAD_BYTES:,}"
         )
-    with tempfile.TemporaryDirectory(prefix="robot-import-") as folder:
+    with _TURNS, tempfile.TemporaryDirectory(prefix="robot-import-") as folder:
         answer = _ask(
             {
                 "folder": folder,

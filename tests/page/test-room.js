@@ -77,7 +77,7 @@ test("a score is told against all seeds, or against the answer of the lesson", (
   assert.equal(scoreInWords(entry({ quantile: 0.25, error: 8 }), makeAsk({ unit: "cm" })),
     "25 % of all robots went less far than you said; you were 8\u00a0cm from the typical one.");
   assert.equal(scoreInWords(entry({ share: 0.5 }, "greedy"), makeAsk({ kind: "choice" })),
-    "“greedy” won in 50 % of all races.");
+    "Greedy won in 50 % of all races.");
   assert.equal(scoreInWords(entry({ error: 0.1 }, []), makeAsk({ kind: "curve" })),
     "On average you were 10\u00a0cm from the typical curve.");
 });

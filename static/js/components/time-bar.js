@@ -11,7 +11,7 @@ import { scene, stage } from "../store.js";
 import { laneRows, markInWords, marks, positionInWords, scale, seekTo, toggleTime } from "../time.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, useWidth } from "./elements.js";
-import { Problem } from "./fields.js";
+import { Problem } from "./foot.js";
 import { widthOf } from "./line-labels.js";
 
 /** @import { Mark, Scale } from "../time.js" */

@@ -14,7 +14,8 @@ import { fieldBeside, kindOf, sliderOf, withinRanges } from "../settings.js";
 import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { html, LegPicker } from "./elements.js";
-import { Description, NumberField, Problem, SettingRow, Slider } from "./fields.js";
+import { Description, NumberField, SettingRow, Slider } from "./fields.js";
+import { Problem } from "./foot.js";
 
 /** @import {
  *   Changed, Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run, RunConfig, SettingValue,

@@ -11,7 +11,7 @@ import { addressOf, page } from "../../page-state.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { messageOf, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Icon, ProgressBar } from "../elements.js";
-import { Problem } from "../fields.js";
+import { Problem } from "../foot.js";
 import { editHere, EditorOf, isEdited } from "../runs/annotations.js";
 import { formIsOpen, unsayable } from "./dialog.js";
 import { FigureFour } from "./figure-four.js";
