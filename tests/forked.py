@@ -8,9 +8,11 @@ import multiprocessing
 import os
 import subprocess
 import sys
+import threading
+import traceback
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from multiprocessing import forkserver, process, resource_tracker
+from multiprocessing import forkserver, process, resource_tracker, util
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import IO
@@ -141,4 +143,45 @@ def _run(
     os.chdir(cwd)
     # Where its children look for modules.
     process.ORIGINAL_DIR = str(cwd)  # type: ignore[attr-defined]
+    vars(util)["spawnv_passfds"] = _start_interpreter
     sys.exit(main(arguments))
+
+
+_spawn_interpreter = util.spawnv_passfds
+
+
+def _start_interpreter(path: bytes, args: Sequence[str], passed: Sequence[int]) -> int:
+    """Start a Python interpreter, as `multiprocessing` asks for; fork it if it is a fork server.
+
+    The command's own fork server so has imported what its jobs need as soon as it starts, and what
+    an experiment's job imports when it first needs it, which takes a second of the processor.
+
+    Args:
+        path: of the interpreter.
+        args: its command line, of which the last one is the program.
+        passed: the descriptors that it gets beside the standard ones.
+    """
+    # Of other threads a fork would keep the locks.
+    if "forkserver" not in args[-1] or threading.active_count() > 1:
+        pid: int = _spawn_interpreter(path, args, passed)
+        return pid
+    sys.stdout.flush()
+    if (pid := os.fork()) != 0:
+        return pid
+    code = 1
+    try:
+        last = 2
+        for descriptor in sorted(passed):
+            os.closerange(last + 1, descriptor)
+            last = descriptor
+        os.closerange(last + 1, os.sysconf("SC_OPEN_MAX"))
+        # As of a new interpreter: the lock of the first is held, and its parts are the parent's.
+        vars(forkserver)["_forkserver"].__init__()
+        vars(resource_tracker)["_resource_tracker"].__init__()
+        exec(args[-1], {})  # `multiprocessing`'s own program
+    except SystemExit:
+        code = 0
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        os._exit(code)

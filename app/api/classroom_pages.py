@@ -7,7 +7,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.routing import BaseRoute, Route
 
 from app.api.deps import Services
-from app.api.problems import problem
+from app.api.problems import as_sentence, problem
 from app.classroom.names import normalized
 from app.storage.errors import NotFound
 
@@ -31,7 +31,7 @@ def _lesson(request: Request) -> Response:
     try:
         services.lessons.get(lesson_id)
     except NotFound as error:
-        return problem(404, f"{_capital(str(error))}.")
+        return problem(404, as_sentence(str(error)))
     query = request.scope["query_string"].decode("latin-1")
     return RedirectResponse(f"../?lesson={quote(lesson_id)}{'&' if query else ''}{query}", 303)
 
@@ -42,13 +42,9 @@ def _room(request: Request) -> Response:
     try:
         room = services.rooms.get(given)
     except NotFound as error:
-        return problem(404, f"{_capital(str(error))}.")
+        return problem(404, as_sentence(str(error)))
     if not room.is_open:
         return problem(410, f"The room {room.code} has ended; ask for the code of a new one.")
     if normalized(given) == given:
         return problem(503, "The room is opening; try again.", headers={"Retry-After": "1"})
     return RedirectResponse(f"../{room.code}/", 303)
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

@@ -80,6 +80,11 @@ def problem(
     return Response(json.dumps(body), status, headers, MEDIA_TYPE)
 
 
+def as_sentence(message: str) -> str:
+    """Return the message of an error as a sentence."""
+    return message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
+
+
 def install(app: FastAPI) -> None:
     """Register the exception handlers of an app."""
     app.add_exception_handler(HexapodError, hexapod_error)
@@ -90,8 +95,7 @@ def install(app: FastAPI) -> None:
 
 async def hexapod_error(request: Request, error: Exception) -> Response:
     """Return the problem that an error of the product is answered with."""
-    message = str(error)
-    sentence = message[:1].upper() + message[1:] + ("" if message.endswith((".", "!")) else ".")
+    sentence = as_sentence(str(error))
     status = next((code for kind, code in STATUSES.items() if isinstance(error, kind)), None)
     if status is None:
         return await _unexpected(request, error)

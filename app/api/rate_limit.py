@@ -56,7 +56,7 @@ class RateLimit(HttpMiddleware):
 
     def _refusal(self, scope: Scope) -> Response | None:
         if is_spectators_what_if(scope):
-            wait_s = self._what_ifs.take(client_of(scope))
+            wait_s = self._what_ifs.take(asker_of(scope))
             detail = what_ifs_used_up(self._what_ifs_per_minute, wait_s)
         elif _starts_work(scope):
             wait_s = self._buckets.take(f"{scope['state']['role']} {client_of(scope)}")
@@ -95,6 +95,13 @@ def is_spectators_what_if(scope: Scope) -> bool:
     # Of a participant of a room it is the run of the card.
     is_what_if = is_what_if or bool(scope["state"].get("asks_what_if"))
     return is_what_if and bool(scope["state"]["role"] == "spectator")
+
+
+def asker_of(scope: Scope) -> str:
+    """Return who is charged for a what-if: a participant, or an address, which many may share."""
+    if scope["state"].get("asks_what_if"):
+        return " ".join(f"{code} {seed}" for code, seed in scope["state"]["seats"])
+    return client_of(scope)
 
 
 def too_many(detail: str, wait_s: float) -> Response:

@@ -14,7 +14,7 @@ from starlette.responses import Response
 from starlette.types import Scope
 
 from app.api.cookies import ROOM_NAME, SessionCookie
-from app.api.problems import problem
+from app.api.problems import as_sentence, problem
 from app.api.rate_limit import is_question, too_many
 from app.api.stage_paths import path_of
 from app.classroom.names import ALPHABET, CODE_LENGTH, normalized
@@ -112,6 +112,7 @@ class RoomAccess:
     def _refuse_participant(
         self, scope: Scope, seats: tuple[Seat, ...], *, is_public: bool
     ) -> Response | None:
+        """Return the refusal of a participant's request: by default of all that is a change."""
         room = _OF_ROOM.fullmatch(path_of(scope))
         code = None if room is None else normalized(room["code"])
         rest = (room["rest"] or "") if room is not None and code in dict(seats) else None
@@ -123,15 +124,15 @@ class RoomAccess:
                 return None
             return problem(403, "Participants see their room alone here; watching needs the token.")
         deed = _DEEDS.get(rest or "") if scope["method"] == "POST" else None
+        leaves = (scope["method"], rest) == ("DELETE", _LEAVE)
+        refusal = None
         if deed is not None and code is not None:
             in_room = self._rooms.get(code)
             scope["state"]["asks_what_if"] = deed == "run" and in_room.shown.go == "what-if"
             refusal = in_room.refusal(deed)
-            return None if refusal is None else problem(403, f"{_capital(refusal)}.")
-        leaves = (scope["method"], rest) == ("DELETE", _LEAVE)
-        if leaves or self.is_open_to_all(scope):
-            return None
-        return problem(403, self._what_is_allowed(scope, seats[0][0]))
+        elif not (leaves or self.is_open_to_all(scope)):
+            refusal = self._what_is_allowed(scope, seats[0][0])
+        return None if refusal is None else problem(403, as_sentence(refusal))
 
     def _what_is_allowed(self, scope: Scope, code: str) -> str:
         room = self._rooms.get(code)
@@ -144,7 +145,7 @@ class RoomAccess:
         what = "This question" if is_question(scope) else "This"
         return (
             f"{what} is not open to participants of a room; the card that the room {code} shows "
-            f"allows {allowed}. DELETE {ROOMS}/{code}{_LEAVE} leaves the room."
+            f"allows {allowed}. DELETE {ROOMS}/{code}{_LEAVE} leaves the room"
         )
 
     def _is_read_in_room(self, scope: Scope, seats: tuple[Seat, ...]) -> bool:
@@ -195,7 +196,3 @@ def _runs_in(scope: Scope) -> Iterator[str]:
         yield found["run"]
     for _, value in parse_qsl(scope["query_string"].decode("latin-1")):
         yield from (one.strip() for one in value.split(","))
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

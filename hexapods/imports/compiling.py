@@ -1,7 +1,7 @@
 """Has MuJoCo turn a cleaned document into numbers, with repairs where it would refuse it."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import mujoco
@@ -27,13 +27,13 @@ class Compiled:
         model: the `MjModel`; none of its geoms collides.
         collides: whether each geom collides in the file, (geoms,).
         named_geoms: names of geoms that have one in the file.
-        given_kg: mass that the file gives each body, directly or by its shapes, (bodies,).
+        undrawn: names of bodies of which a mesh is missing.
     """
 
     model: mujoco.MjModel
     collides: list[bool]
     named_geoms: frozenset[str]
-    has_inertial: list[bool]
+    undrawn: frozenset[str]
 
     def body_name(self, body: int) -> str:
         """Return the name of a body."""
@@ -58,8 +58,16 @@ def silence_mujoco() -> None:
     log.set()
 
 
-def compile_document(document: Document, assets: Mapping[str, bytes], notes: Notes) -> Compiled:
+def compile_document(
+    document: Document, assets: Mapping[str, bytes], undrawn: Collection[str], notes: Notes
+) -> Compiled:
     """Compile a cleaned document.
+
+    Args:
+        document: the document.
+        assets: its meshes, by the names that it has for them.
+        undrawn: names of bodies of which a mesh is missing.
+        notes: gets the repairs.
 
     Raises:
         DamagedFile: if MuJoCo refuses it, naming element and line.
@@ -69,20 +77,20 @@ def compile_document(document: Document, assets: Mapping[str, bytes], notes: Not
     except ValueError as error:
         raise _refused(error, document) from error
     _mend_inertias(spec, notes)
+    _spare_volumes(spec)
     collides = [geom.contype != 0 or geom.conaffinity != 0 for geom in spec.geoms]
     named = frozenset(geom.name for geom in spec.geoms if geom.name)
     _name_all(spec)
     for geom in spec.geoms:
         # Then the convex hulls of meshes are not computed.
         geom.contype = geom.conaffinity = 0
-    has_inertial = {body.name: bool(body.explicitinertial) for body in spec.bodies}
     collides_by_name = {geom.name: does for geom, does in zip(spec.geoms, collides, strict=True)}
     model = _compile(spec, document, notes)
     return Compiled(
         model,
         [collides_by_name[model.geom(geom).name] for geom in range(model.ngeom)],
         named,
-        [has_inertial[model.body(body).name] for body in range(model.nbody)],
+        frozenset(undrawn),
     )
 
 
@@ -107,12 +115,7 @@ def _repaired(spec: mujoco.MjSpec, problem: str, notes: Notes) -> bool:
         notes.repair("inertias that no body can have (A + B < C) were replaced by their mean")
         return True
     if "mesh" in problem and any(word in problem for word in ("volume", "orient", "inertia")):
-        changed = [one for one in spec.meshes if one.inertia != _CONVEX]
-        for mesh in changed:
-            mesh.inertia = _CONVEX
-        if changed:
-            notes.repair("meshes that are not closed count as their convex hulls for the mass")
-        return bool(changed)
+        return _weigh_as_shells(spec, notes)
     if "key" in problem and "invalid" in problem and spec.keys:
         for key in list(spec.keys):
             spec.delete(key)
@@ -121,7 +124,28 @@ def _repaired(spec: mujoco.MjSpec, problem: str, notes: Notes) -> bool:
     return False
 
 
-_CONVEX = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+_SHELL = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+
+
+def _spare_volumes(spec: mujoco.MjSpec) -> None:
+    """Let MuJoCo compute no volume of meshes on which no mass depends: they may be open or flat."""
+    if int(spec.compiler.inertiafromgeom) == int(mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE):
+        return
+    weighed = {geom.meshname for geom in spec.geoms if not geom.parent.explicitinertial}
+    if int(spec.compiler.inertiafromgeom) == int(mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE):
+        weighed = set()
+    for mesh in spec.meshes:
+        if mesh.name not in weighed:
+            mesh.inertia = _SHELL
+
+
+def _weigh_as_shells(spec: mujoco.MjSpec, notes: Notes) -> bool:
+    changed = [one for one in spec.meshes if one.inertia != _SHELL]
+    for mesh in changed:
+        mesh.inertia = _SHELL
+    if changed:
+        notes.repair("some meshes enclose no volume: for the mass meshes count as thin shells")
+    return bool(changed)
 
 
 def _mend_inertias(spec: mujoco.MjSpec, notes: Notes) -> None:

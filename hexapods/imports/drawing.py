@@ -54,12 +54,15 @@ def find_meshes(
 
 
 def _drawn(posed: Posed, joint: int | None) -> list[int]:
-    """Return the geoms that are drawn of a link: those that do not collide, or all."""
-    drawn = []
+    """Return the geoms that are drawn of a link: those that do not collide.
+
+    All of a body's, if none of its are only drawn, or a mesh of it is missing.
+    """
+    drawn, compiled = [], posed.compiled
     for body in posed.bodies_of(joint):
         geoms = posed.geoms_of([body])
-        shown = [geom for geom in geoms if not posed.compiled.collides[geom]]
-        drawn += shown or geoms
+        shown = [geom for geom in geoms if not compiled.collides[geom]]
+        drawn += geoms if compiled.body_name(body) in compiled.undrawn else shown or geoms
     return drawn
 
 

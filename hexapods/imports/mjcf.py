@@ -196,9 +196,14 @@ def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles)
         asset.children = kept
     if lost:
         known = {mesh.attributes.get("name") for mesh in root.all("mesh")}
-        _remove_geoms(root, lost - known)
+        _remove_geoms(root, lost - known, meshes)
 
 
-def _remove_geoms(root: Element, lost: set[str | None]) -> None:
+def _remove_geoms(root: Element, lost: set[str | None], meshes: MeshFiles) -> None:
     for parent in [root, *root.all()]:
-        parent.keep(lambda one: one.tag != "geom" or one.attributes.get("mesh") not in lost)
+        kept = [
+            one for one in parent if one.tag != "geom" or one.attributes.get("mesh", "") not in lost
+        ]
+        if len(kept) < len(parent.children):
+            meshes.undrawn.add(parent.attributes.get("name", ""))
+        parent.children = kept

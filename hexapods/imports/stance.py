@@ -11,7 +11,7 @@ import numpy as np
 
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
-from hexapods.imports.chain import PRECISION, Chain
+from hexapods.imports.chain import PRECISION, LegChain
 from hexapods.imports.choices import Choices
 from hexapods.imports.notes import Notes, listed, quoted
 
@@ -27,8 +27,10 @@ _SPRAWLING = 0.35
 """A leg points outward if its foot is farther from the mount at the angles 0, of its length."""
 _SPRAWLED = ((0.45, 0.6), (0.55, 0.6), (0.35, 0.7), (0.6, 0.7), (0.3, 0.6))
 """Postures of such legs: how far the foot is below its mount and out, of the leg's length."""
-_UPRIGHT = (0.75, 0.68, 0.6, 0.5, 0.85)
+_UPRIGHT = (0.65, 0.72, 0.58, 0.5, 0.8)
 """Postures of other legs: how far the foot is below its mount."""
+_ASTRIDE = 1.15
+"""How far such feet stand beside their mounts, relative to the hips' offsets: so none toppled."""
 _POSTURES = len(_UPRIGHT)
 _LEAST_UNDER = 0.15
 """How far a foot is at least below the torso, of the leg's length."""
@@ -51,7 +53,7 @@ class Legged:
         at_rest: angles with which the file begins.
     """
 
-    chains: Sequence[Chain]
+    chains: Sequence[LegChain]
     radii_m: Sequence[float]
     names: Sequence[Sequence[str]]
     torso_bottom_m: float
@@ -86,7 +88,7 @@ def reaches_grid(legged: Legged, angles: Angles) -> bool:
     return not any(_unreached(chain, one) for chain, one in _pairs(legged, angles))
 
 
-def _pairs(legged: Legged, angles: Angles) -> list[tuple[Chain, FloatArray]]:
+def _pairs(legged: Legged, angles: Angles) -> list[tuple[LegChain, FloatArray]]:
     return list(zip(legged.chains, angles, strict=True))
 
 
@@ -142,7 +144,7 @@ def _problem(legged: Legged, angles: Angles) -> str | None:
     return None
 
 
-def _unreached(chain: Chain, angles: FloatArray) -> bool:
+def _unreached(chain: LegChain, angles: FloatArray) -> bool:
     """Whether a foot does not reach its box; with two joints it reaches no box, only its height."""
     if len(angles) < _FOLLOWING_JOINTS:
         return False
@@ -231,7 +233,7 @@ def _posture(legged: Legged, number: int) -> Angles:
     return found
 
 
-def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
+def _wanted(chain: LegChain, torso_bottom_m: float, number: int) -> FloatArray:
     """Return where a foot is to be from its mount, as shares of the leg's length, (3,).
 
     Well below, and out as the leg points at the angles 0.
@@ -250,13 +252,12 @@ def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
         at = wide * straight[:2] / out
     else:
         down = _UPRIGHT[number]
-        # Beside the mount, where hips are offset to the side.
-        at = np.array([0.85 * straight[0], 0.0])
+        at = np.array([_ASTRIDE * straight[0], 0.0])
     return np.array([*at, -max(down, least)])
 
 
 def _best(
-    chain: Chain, wanted: FloatArray, like: FloatArray | None, rng: np.random.Generator
+    chain: LegChain, wanted: FloatArray, like: FloatArray | None, rng: np.random.Generator
 ) -> FloatArray:
     """Return the angles of least cost: many at random, then nearer and nearer to the best."""
     low, high = np.clip(chain.limits, -_WITHOUT_LIMIT_RAD, _WITHOUT_LIMIT_RAD)
@@ -272,7 +273,7 @@ def _best(
 
 
 def _costs(
-    chain: Chain, angles: FloatArray, wanted: FloatArray, like: FloatArray | None
+    chain: LegChain, angles: FloatArray, wanted: FloatArray, like: FloatArray | None
 ) -> FloatArray:
     """Return how bad a leg stands at some angles, (k,).
 

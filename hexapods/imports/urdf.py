@@ -161,6 +161,8 @@ def _resolve_shapes(root: Element, meshes: MeshFiles) -> None:
             geometry = child.first("geometry")
             if child.tag == "inertial" or (geometry is not None and _is_read(geometry, meshes)):
                 kept.append(child)
+            elif child.tag == "visual":
+                meshes.undrawn.add(link.attributes["name"])
         link.children = kept
 
 

@@ -1,8 +1,7 @@
 // Disturbances of robots and ground: conditions of a step, their words, and their text in links and commands.
 import { listed, sentence, whole } from "./format.js";
 import { parseSetting, quoted } from "./parse.js";
-import { kindFor, kindNamed, legIn } from "./kinds.js";
-import { builtPart } from "./robots.js";
+import { builtPart, kindFor, kindNamed, legIn } from "./robots.js";
 import { fieldBeside, mistakeIn } from "./settings.js";
 import { options } from "./store.js";
 

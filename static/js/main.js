@@ -5,7 +5,6 @@ import { getOptions, getStage, RequestError } from "./api.js";
 import { App } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
-import { openEvents } from "./events.js";
 import { openExperimentForm } from "./experiments/form.js";
 import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
 import { openForm } from "./form.js";
@@ -18,7 +17,9 @@ import { announceOutcomes, headline, practiceTitle } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
-import { applyEvent, connection, eventNames, isLockedOut, options, robotChanges, role, version } from "./store.js";
+import {
+  applyEvent, connection, eventNames, isLockedOut, openEvents, options, robotChanges, role, version,
+} from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 
 const FIRST_RETRY_MS = 500;

@@ -1,5 +1,7 @@
-// The server's state as signals. Written by events, and by answers to requests that no event has overtaken.
+// The server's state as signals. Written by the events of its stream, and by answers to requests that no event has
+// overtaken.
 import { batch, computed, signal } from "@preact/signals";
+import { addressOf } from "./api.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { DamagedRun, Evaluation, EventBodies, Options, Rates, Run, Scene, Stage } from "./types.js" */
@@ -215,4 +217,64 @@ function without(map, key) {
   const left = new Map(map);
   left.delete(key);
   return left;
+}
+
+// ---- the stream of server-sent events
+
+const FIRST_WAIT_MS = 500;
+const LONGEST_WAIT_MS = 8000;
+
+/**
+ * Open the stream, and open it again after every break with exponential back-off.
+ * @param {string[]} names of events that are wanted
+ * @param {(name: string, data: any) => void} onEvent
+ * @param {(state: "connecting" | "live" | "reconnecting") => void} onState
+ * @param {string} [address] of the stream; that of the page's own stage without one
+ * @returns {() => void} closes it for good
+ */
+export function openEvents(names, onEvent, onState, address = addressOf("events")) {
+  /** @type {EventSource | null} */
+  let source = null;
+  let wait = FIRST_WAIT_MS;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+
+  const open = () => {
+    clearTimeout(timer);
+    source?.close();
+    const opened = new EventSource(address);
+    source = opened;
+    for (const name of names) {
+      opened.addEventListener(name, ({ data }) => {
+        if (name === "snapshot") {
+          wait = FIRST_WAIT_MS;
+          onState("live");
+        }
+        onEvent(name, JSON.parse(data));
+      });
+    }
+    opened.onerror = () => {
+      // The browser's own retry gives up on some answers.
+      opened.close();
+      onState("reconnecting");
+      timer = setTimeout(open, wait);
+      wait = Math.min(2 * wait, LONGEST_WAIT_MS);
+    };
+  };
+
+  let isOver = false;
+  const openNow = () => {
+    if (!isOver && source?.readyState === EventSource.CLOSED) open();
+  };
+  addEventListener("online", openNow);
+  document.addEventListener("visibilitychange", () => {
+    if (!document.hidden) openNow();
+  });
+  onState("connecting");
+  open();
+  return () => {
+    isOver = true;
+    clearTimeout(timer);
+    source?.close();
+  };
 }

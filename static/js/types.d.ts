@@ -207,7 +207,7 @@ export interface ExperimentValues {
 type Loose<Value> = Value extends (infer Item)[] ? Loose<Item>[]
   : Value extends object ? { [Name in keyof Value]?: Loose<Value[Name]> | null } : Value;
 /** A card of a lesson, as it is sent and stored. */
-export type LessonCard = { text: string, may?: Record<string, Api.Bounds>, ask?: Api.Ask | null }
+export type LessonCard = { text: string, may?: Record<string, Partial<Api.Bounds>>, ask?: Api.Ask | null }
   & Omit<Loose<Api.Card>, "text" | "may" | "ask">;
 /** A lesson, as it is sent. */
 export type LessonDocument = { title: string, language?: string, aims?: string[], cards: LessonCard[] };

@@ -1,6 +1,6 @@
 // The workspace around the stage: its depths and tabs, and the panel. What a depth leaves out is hidden, not undone.
 import { computed } from "@preact/signals";
-import { isShown } from "./linked-lesson.js";
+import { isShown } from "./lesson.js";
 import { phase } from "./on-stage.js";
 import { change, DEPTHS, page, TABS } from "./page-state.js";
 import { isPhone, isWide, storedText } from "./page.js";

@@ -246,7 +246,7 @@ def test_options_tell_what_can_happen(api: Api) -> None:
     assert (built["stiff"], built["slippery"]) == ({"friction": 1}, {"friction": 0.1})
     stuck = kinds["stuck"]["fields"]
     assert stuck["joint"]["choices"] == ["coxa", "femur", "tibia"]
-    assert (stuck["angle_rad"]["minimum"], stuck["angle_rad"]["maximum"]) == (-2.8, 1.9)
+    assert (stuck["angle_rad"]["minimum"], stuck["angle_rad"]["maximum"]) == (-7, 7)
     assert stuck["angle_rad"]["ranges"]["field"] == "joint"
     assert stuck["angle_rad"]["ranges"]["ranges"]["tibia"] == [-2.8, 0]
     assert slope["degrees"]["ranges"] is None

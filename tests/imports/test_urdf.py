@@ -154,13 +154,25 @@ def test_text_meshes_are_read() -> None:
 
 
 def test_missing_and_unreadable_meshes_are_told() -> None:
-    torso = "".join(MESH.format(file=f"package://bug/meshes/{name}") for name in ("a.stl", "b.dae"))
+    torso = "".join(MESH.format(file=f"package://bug/meshes/{name}") for name in ("a.stl", "b.3ds"))
 
-    robot = read(zipped({"bug.urdf": bug(torso=torso), "b.dae": "<COLLADA/>"}))
+    robot = read(zipped({"bug.urdf": bug(torso=torso), "b.3ds": "MM"}))
 
     assert told(robot.repairs, "1 mesh is missing from the upload")
-    assert told(robot.repairs, "1 mesh is left out, since only .stl and .obj are read")
-    assert robot.model.links[0].geoms[0].kind == "box"
+    assert told(robot.repairs, "1 mesh is left out, since only .stl, .obj, .dae are read")
+
+
+def test_a_link_of_which_a_mesh_is_missing_is_drawn_by_its_simple_shapes_too() -> None:
+    box = '<collision><geometry><box size="0.2 0.1 0.04"/></geometry></collision>'
+    small = '<visual><geometry><sphere radius="0.01"/></geometry></visual>'
+
+    whole, lacking = (
+        read(bug(torso=box + small + more)) for more in ("", MESH.format(file="hull.stl"))
+    )
+
+    assert np.ptp(decoded(whole.model.links[0].mesh)[0], axis=0).max() < 0.03
+    vertices, _ = decoded(lacking.model.links[0].mesh)
+    assert np.ptp(vertices, axis=0) == pytest.approx([0.1, 0.2, 0.04], abs=1e-6)
 
 
 def test_large_meshes_are_simplified() -> None:

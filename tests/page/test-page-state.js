@@ -41,7 +41,7 @@ test("a link is read as the state that wrote it, each field of it", () => {
   const changes = {
     form: new URLSearchParams("alpha=0,7&disturb=limp:legs%3D1,4&disturb=slope:degrees%3D8&steps="),
     run: "a", ghost: "b", moment: 2.25, clock: "free", end: "all", depth: "study", tab: "why", pinned: "gait",
-    camera: "2", hidden: ["panel", "card"], card: 3, isPresenting: true, isRemote: true,
+    camera: "2", hidden: ["panel", "card"], lesson: "l", card: 3, isPresenting: true, isRemote: true,
   };
   const ofViews = {
     experiments: { experiment: new URLSearchParams("alpha=0.1;0.3&name=A %26 B"), report: "c" },
@@ -113,7 +113,7 @@ test("a value that is none is told, with those that are valid where they are few
   assert.deepEqual(inVain("/?tab=chart"), ["tab=chart (valid: board, train, world, why, gait, table, what-if)"]);
   assert.deepEqual(inVain("/?camera=9"), ["camera=9 (valid: leader, free, 1 to 8)"]);
   assert.deepEqual(inVain("/?hidden=panel,stage"), ["hidden=panel,stage (valid: panel, card)"]);
-  assert.deepEqual(inVain("/#nothing"), ["view=nothing (valid: race, experiments, runs, compare)"]);
+  assert.deepEqual(inVain("/#nothing"), ["view=nothing (valid: race, experiments, runs, compare, lessons)"]);
   assert.equal(write(), "", "all is as it is without a link");
 });
 

@@ -123,7 +123,7 @@ const LOADERS = {
   experiments: () => withStyle("experiments", import("./experiments/experiments.js")).then((own) => own.Experiments),
   runs: () => withStyle("runs", import("./runs/runs.js")).then((own) => own.Runs),
   compare: () => withStyle("runs", import("./compare/compare.js")).then((own) => own.Compare),
-  lessons: () => withStyle("card", withStyle("lessons", import("./lessons/lessons.js"))).then((own) => own.Lessons),
+  lessons: () => withStyle("lessons", import("./lessons/lessons.js")).then((own) => own.Lessons),
 };
 
 /** @param {{ name: string }} props */

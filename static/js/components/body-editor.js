@@ -16,7 +16,7 @@ import { BodyFields } from "./body-fields.js";
 import { BodyPicture } from "./body-picture.js";
 import { BodyPlan } from "./body-plan.js";
 import { Dialog, html, Icon } from "./elements.js";
-import { Held } from "./problems.js";
+import { Held } from "./foot.js";
 
 const TEXT = "input[type=text]";
 

@@ -1,7 +1,7 @@
 // The foot of the panel: the primary button, the running work, what failed, and what a spectator can do.
 import {
-  canStart, missingLane, pause, pending, primaryAction, resume, resumeRun, runPrimaryAction, secondaryActions,
-  showOnStage, stop,
+  canStart, dismissProblem, missingLane, pause, pending, primaryAction, problems, resume, resumeRun,
+  runPrimaryAction, secondaryActions, showOnStage, stop,
 } from "../actions.js";
 import { raceEstimate } from "../estimate.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
@@ -12,10 +12,9 @@ import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../o
 import { isOperator } from "../selectors.js";
 import { agentOf, learners, placeOf } from "../settings.js";
 import { scene } from "../store.js";
-import { inFormWords } from "../titles.js";
+import { inFormWords, labelOf, messageOf } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
 import { EstimateNote, goToField, html, Icon, Loaded, ProgressBar, UnknownParts } from "./elements.js";
-import { Held, Problem } from "./problems.js";
 
 /** @import { Run } from "../types.js" */
 
@@ -210,3 +209,38 @@ function Spectator() {
     </section>
   `;
 }
+
+// ---- what went wrong, beside the control that it is about
+
+/** An error, beside the control that caused it. @param {{ at: string }} props */
+export function Problem({ at }) {
+  const error = problems.value[at];
+  return html`
+    <div role="alert">
+      ${error && html`
+        <p class="problem">
+          <span>${messageOf(error)}</span>
+          <button class="quiet square small" aria-label="Dismiss" onClick=${() => dismissProblem(at)}>✕</button>
+        </p>
+      `}
+    </div>
+  `;
+}
+
+/**
+ * Why the button above is held: each field that is not valid, to go to, and what it must be.
+ * @param {object} props
+ * @param {string} props.id
+ * @param {Record<string, string>} props.mistakes
+ * @param {(field: string) => unknown} props.onField
+ * @param {(field: string) => string} [props.nameOf]
+ */
+export const Held = ({ id, mistakes: held, onField, nameOf = labelOf }) => html`
+  <ul class="held" id=${id}>
+    ${Object.entries(held).map(([field, mistake]) => html`
+      <li key=${field}>
+        <button class="link" onClick=${() => onField(field)}>${nameOf(field)}</button>: ${mistake}
+      </li>
+    `)}
+  </ul>
+`;

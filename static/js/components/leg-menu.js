@@ -10,7 +10,7 @@ import { scene } from "../store.js";
 import { positionInWords, scale } from "../time.js";
 import { openTab } from "../workspace.js";
 import { html } from "./elements.js";
-import { Problem } from "./problems.js";
+import { Problem } from "./foot.js";
 import { firstWish, legKinds } from "./world-controls.js";
 
 /** @import { Disturbance, Run } from "../types.js" */

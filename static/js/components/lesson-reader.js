@@ -1,7 +1,6 @@
 // A card of the lesson that the address names, in full: its text, its question, and what is revealed.
 import { useEffect, useState } from "preact/hooks";
-import { cardNumber } from "../lesson.js";
-import { linked, linkedCard } from "../linked-lesson.js";
+import { cardNumber, linked, linkedCard } from "../lesson.js";
 import { Answer, draftOf } from "../room/questions.js";
 import { Dialog, html } from "./elements.js";
 import { readerIsOpen } from "./lesson.js";

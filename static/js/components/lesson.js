@@ -1,10 +1,9 @@
 // The lesson's card below the time bar: a question or a task, one's own prediction, and the way to the next one.
 import { signal } from "@preact/signals";
 import {
-  card, cardNumber, cards, closeLesson, outcome, predict, predictable, prediction, turnCard,
+  card, cardNumber, cards, closeLesson, linked, linkProblem, outcome, predict, predictable, prediction, turnCard,
 } from "../lesson.js";
 import { listed } from "../format.js";
-import { linked, linkProblem } from "../linked-lesson.js";
 import { isPhone } from "../page.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Loaded, withStyle } from "./elements.js";

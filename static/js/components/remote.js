@@ -6,7 +6,7 @@ import { page } from "../page-state.js";
 import { CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "../presentation.js";
 import { commonStage } from "../store.js";
 import { html, Icon, Segments } from "./elements.js";
-import { Problem } from "./problems.js";
+import { Problem } from "./foot.js";
 
 export function Remote() {
   const { card, shows_why, is_blank, code } = presentation.value;

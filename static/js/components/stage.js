@@ -17,7 +17,7 @@ import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, Loaded } from "./elements.js";
-import { Problem } from "./problems.js";
+import { Problem } from "./foot.js";
 
 /** @import { Message } from "../replay-frames.js" */
 /** @import { Scene } from "../types.js" */

@@ -11,8 +11,8 @@ import { scene, stage } from "../store.js";
 import { laneRows, markInWords, marks, positionInWords, scale, seekTo, toggleTime } from "../time.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, useWidth } from "./elements.js";
+import { Problem } from "./foot.js";
 import { widthOf } from "./line-labels.js";
-import { Problem } from "./problems.js";
 
 /** @import { Mark, Scale } from "../time.js" */
 /** @import { Changed, Scene } from "../types.js" */

@@ -15,7 +15,7 @@ import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { html, LegPicker } from "./elements.js";
 import { Description, NumberField, SettingRow, Slider } from "./fields.js";
-import { Problem } from "./problems.js";
+import { Problem } from "./foot.js";
 
 /** @import {
  *   Changed, Disturbance, DisturbanceKind, FieldOption, RobotConfig, Run, RunConfig, SettingValue,

@@ -1,20 +1,22 @@
 // Entry point of a room's page: by role the phone of a participant, the teacher's cockpit, or the projector.
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { html } from "../components/elements.js";
+import { html, Loaded } from "../components/elements.js";
 import { followTheme } from "../page.js";
-import { Cockpit } from "./cockpit.js";
 import { Phone } from "./phone.js";
-import { Projector } from "./projector.js";
 import { followOwnRun } from "./picture.js";
 import { followRoom, isProjector, isTeacher, refusal, room } from "./room.js";
 import { Closed, Waiting } from "./doors.js";
 
 function Page() {
   if (room.value === null) return refusal.value ? html`<${Closed} />` : html`<${Waiting} />`;
-  if (isProjector) return html`<${Projector} />`;
-  return isTeacher.value ? html`<${Cockpit} />` : html`<${Phone} />`;
+  if (isProjector) return html`<${Loaded} name="projector" load=${loadProjector} />`;
+  return isTeacher.value ? html`<${Loaded} name="cockpit" load=${loadCockpit} />` : html`<${Phone} />`;
 }
+
+// A class of phones needs neither.
+const loadProjector = () => import("./projector.js").then(({ Projector }) => Projector);
+const loadCockpit = () => import("./cockpit.js").then(({ Cockpit }) => Cockpit);
 
 followTheme();
 document.documentElement.toggleAttribute("data-projector", isProjector);

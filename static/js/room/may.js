@@ -36,7 +36,7 @@ function namesOf(name) {
  * @typedef {{ choices?: undefined, limits: Limits, isWhole: boolean }} Range
  */
 
-/** @type {(name: string, bounds: Bounds, card: LessonCard) => Choices | Range} */
+/** @type {(name: string, bounds: Partial<Bounds>, card: LessonCard) => Choices | Range} */
 function ruleOf(name, bounds, card) {
   const setting = settingOf(name, card);
   const names = namesOf(name);
@@ -48,7 +48,7 @@ function ruleOf(name, bounds, card) {
 }
 
 /** The limits of the card where it has any, else those of the setting. */
-/** @type {(bounds: Bounds, setting: SettingOption | null) => Limits} */
+/** @type {(bounds: Partial<Bounds>, setting: SettingOption | null) => Limits} */
 function limitsWithin(bounds, setting) {
   const minimum = bounds.minimum ?? setting?.minimum ?? null;
   const maximum = bounds.maximum ?? setting?.maximum ?? null;
@@ -59,7 +59,7 @@ function limitsWithin(bounds, setting) {
   };
 }
 
-/** The value with which a setting begins. @type {(name: string, bounds: Bounds, card: LessonCard) => any} */
+/** The value with which a setting begins. @type {(name: string, bounds: Partial<Bounds>, card: LessonCard) => any} */
 function initialOf(name, bounds, card) {
   const form = card.state?.form ?? {};
   const settings = /** @type {Record<string, unknown>} */ (form.settings ?? {});
@@ -80,7 +80,7 @@ export function chosenSettings(card, number) {
   return chosen.some(([, value]) => value === undefined) ? null : Object.fromEntries(chosen);
 }
 
-/** @param {string} name @param {Bounds} bounds @param {LessonCard} card @param {number} number */
+/** @param {string} name @param {Partial<Bounds>} bounds @param {LessonCard} card @param {number} number */
 function valueOf(name, bounds, card, number) {
   const draft = drafts.value[`${number} ${name}`];
   const rule = ruleOf(name, bounds, card);
@@ -105,7 +105,7 @@ export const May = ({ card, number, isDisabled }) => html`
   </fieldset>
 `;
 
-/** @param {{ name: string, bounds: Bounds, card: LessonCard, number: number }} props */
+/** @param {{ name: string, bounds: Partial<Bounds>, card: LessonCard, number: number }} props */
 function Setting({ name, bounds, card, number }) {
   const setting = settingOf(name, card);
   const label = setting ? fullTitle(setting) : sentence(options.value?.titles[name] ?? name);

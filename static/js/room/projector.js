@@ -9,6 +9,7 @@ import { Away, shortAddress } from "./doors.js";
 import { stepsOf } from "./chart.js";
 import { Picture } from "./picture.js";
 import { Axes, lineOf } from "./questions.js";
+import { agentOf } from "../settings.js";
 import { isRevealed, room, shownResults } from "./room.js";
 import { axisOf, predictedMetres, tally } from "./scores.js";
 
@@ -74,7 +75,7 @@ function Asked({ known, ask }) {
           ${tally(ask, isRevealed.value ? values : []).map(([choice, number]) => html`
             <li key=${choice} class=${isRevealed.value && shownResults.value?.answer === choice ? "right" : ""}
               style=${{ "--share": `${(100 * number) / most}%` }}>
-              <span>${choice}</span>${isRevealed.value && html`<b class="num">${number}</b>`}
+              <span>${agentOf(choice).title}</span>${isRevealed.value && html`<b class="num">${number}</b>`}
             </li>
           `)}
         </ul>

@@ -4,7 +4,7 @@ import { useRef, useState } from "preact/hooks";
 import { html } from "../components/elements.js";
 import { metres, whole } from "../format.js";
 import { parseNumber } from "../parse.js";
-import { rangeOf } from "../settings.js";
+import { agentOf, rangeOf } from "../settings.js";
 import { setEntry } from "../store.js";
 import { afterKey, drawn, HIGHEST_M, inWords, knotsOf, LOWEST_M, marksOf, placeOf, pointAt, stepsOf } from "./chart.js";
 
@@ -41,7 +41,8 @@ export function answerInWords({ kind, unit }, value) {
   if (kind === "number") return unit === "m" ? metres(value) : [value, unit].filter(Boolean).join("\u00a0");
   if (kind === "point") return inWords(value);
   if (kind === "curve") return `from ${metres(value[0][1])} to ${metres(value.at(-1)[1])}`;
-  return String(value);
+  // The name of an agent stands for its win.
+  return agentOf(String(value)).title;
 }
 
 /**
@@ -71,7 +72,7 @@ const Choice = ({ ask, locked, draft, onValue }) => html`
   <div class="choices" role="group" aria-label="Your prediction">
     ${(ask.choices ?? []).map((choice) => html`
       <button key=${choice} class="choice-chip" aria-pressed=${(locked ?? draft) === choice ? "true" : "false"}
-        disabled=${locked !== undefined} onClick=${() => onValue(choice)}>${choice}</button>
+        disabled=${locked !== undefined} onClick=${() => onValue(choice)}>${agentOf(choice).title}</button>
     `)}
   </div>
 `;
@@ -228,7 +229,7 @@ function usePen(heights, steps, onValue) {
   const lift = () => (last.current = null);
   const here = [knotsOf(steps)[chosen], heights?.[chosen] ?? 0];
   return [chosen, {
-    role: "slider", tabIndex: 0, onKeyDown,
+    role: "slider", tabindex: 0, onKeyDown,
     onPointerDown: stroke, onPointerMove: stroke, onPointerUp: lift, onPointerCancel: lift,
     "aria-label": "Your curve: left and right choose a step, up and down its distance",
     "aria-valuemin": LOWEST_M, "aria-valuemax": HIGHEST_M, "aria-valuenow": here[1], "aria-valuetext": inWords(here),

@@ -2,9 +2,8 @@
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getAnyRun, getOptions } from "../api.js";
 import * as api from "../classroom-api.js";
-import { openEvents } from "../events.js";
 import { ofRoom } from "../page-state.js";
-import { applyEvent, connection, eventNames, options, runs, setEntry } from "../store.js";
+import { applyEvent, connection, eventNames, openEvents, options, runs, setEntry } from "../store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../api.js" */

@@ -1,6 +1,7 @@
 // Scores of predictions in words, and the axes of dots.
 import { distanceApart, percentage } from "../format.js";
 import { largest } from "../scale.js";
+import { agentOf } from "../settings.js";
 
 /** @import { Ask, ResultEntry } from "../types.js" */
 
@@ -32,7 +33,7 @@ export function scoreInWords({ score, prediction }, ask) {
     const off = error ? ` It is ${errorInWords(error, ask.unit ?? "")} off.` : "";
     return is_right ? "You were right." : `That was not it.${off}`;
   }
-  if (share !== null) return `“${prediction}” won in ${percentage(share)} of all races.`;
+  if (share !== null) return `${agentOf(String(prediction)).title} won in ${percentage(share)} of all races.`;
   if (quantile !== null && error !== null) {
     const below = `${percentage(quantile)} of all robots went less far than you said`;
     return `${below}; you were ${errorInWords(error, ask.unit)} from the typical one.`;

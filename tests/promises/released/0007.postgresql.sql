@@ -118,9 +118,9 @@ CREATE TABLE public.trials (
     set_aside character varying COLLATE pg_catalog."C",
     compute_s double precision NOT NULL
 );
-INSERT INTO public.about VALUES ('b5e3ef7cb9b9215c', 1);
+INSERT INTO public.about VALUES ('c167d73ba18bd4ef', 1);
 INSERT INTO public.alembic_version VALUES ('0007');
-INSERT INTO public.artifacts VALUES ('0pmz0000a0001', 'q-table.npz', '33f77740fe59198bd0e1653cb35efdcf', 1024, '785b0751fc2c53dc14a4ce3d800e69ef9ce1009eb327ccf458afe09c242c26c9', '2026-11-25 14:02:36.779142+00');
+INSERT INTO public.artifacts VALUES ('0pmz0000a0001', 'q-table.npz', '51905ab280c3f2d06bf69e43f26475cf', 1024, '785b0751fc2c53dc14a4ce3d800e69ef9ce1009eb327ccf458afe09c242c26c9', '2026-11-25 14:24:59.789644+00');
 INSERT INTO public.evaluations VALUES ('0pmz0000a0001', 50, 0.125, 1);
 INSERT INTO public.evaluations VALUES ('0pmz0000a0001', 100, -0.25, 0.9);
 INSERT INTO public.runs VALUES ('0pmz0000a0002', 'training', 'training 0pmz0000a0002', 'failed', '{"gait": "left-right-origin", "robot": {"preset": "stiff"}, "simulator": "mujoco", "divisions": 2, "grid_side_m": 0.04, "disturbances": [], "tolerance": 0.0, "steps": 500, "seed": 0, "observation": "measured", "settings": {"alpha": 0.3, "gamma": 0.9, "epsilon_start": 1.0, "epsilon_end": 0.0}, "steps_per_episode": 50, "evaluate_every": 50, "pace": "max", "agent": "q-learning"}', '[]', '[]', '0pmz0000a0001', 0, 500, NULL, '[]', NULL, NULL, 'The physics diverged.', '2026-02-28 23:59:59.123456+00', NULL, NULL, NULL, '', '', NULL);

@@ -3,7 +3,7 @@ CREATE TABLE about (
 	id VARCHAR NOT NULL, owner BIGINT DEFAULT '0' NOT NULL, 
 	PRIMARY KEY (id)
 );
-INSERT INTO "about" VALUES('51146bc7d7e154b8',1);
+INSERT INTO "about" VALUES('0c86579bd03ed609',1);
 CREATE TABLE alembic_version (
 	version_num VARCHAR(32) NOT NULL, 
 	CONSTRAINT alembic_version_pkc PRIMARY KEY (version_num)
@@ -20,7 +20,7 @@ CREATE TABLE artifacts (
 	FOREIGN KEY(run_id) REFERENCES runs (id) ON DELETE CASCADE, 
 	UNIQUE (file)
 );
-INSERT INTO "artifacts" VALUES('0pmz0000a0001','q-table.npz','f442ae0ccc974511ff9f0323a5f7978f',1024,'785b0751fc2c53dc14a4ce3d800e69ef9ce1009eb327ccf458afe09c242c26c9','2026-11-25 14:02:36.332775');
+INSERT INTO "artifacts" VALUES('0pmz0000a0001','q-table.npz','92dcd4534071cb9219dd46a1390500bd',1024,'785b0751fc2c53dc14a4ce3d800e69ef9ce1009eb327ccf458afe09c242c26c9','2026-11-25 14:24:59.313254');
 CREATE TABLE evaluations (
 	run_id VARCHAR NOT NULL, 
 	step BIGINT NOT NULL, 

@@ -3,7 +3,7 @@ import { pending } from "../../actions.js";
 import { isOperator } from "../../selectors.js";
 import { conditionsOfRace, obstacle, raceThem } from "../../table-race.js";
 import { html } from "../elements.js";
-import { Problem } from "../problems.js";
+import { Problem } from "../foot.js";
 
 /** @import { DamagedRun, Run } from "../../types.js" */
 

@@ -16,9 +16,9 @@ import { connection, options, served } from "../../store.js";
 import { agentTitle, fieldTitle, simulatorTitle } from "../../titles.js";
 import { worldTitle } from "../../disturbances.js";
 import { Dialog, goToField, html, Icon, Segments, UnknownParts } from "../elements.js";
+import { Held, Problem } from "../foot.js";
 import { agentChoices, AllSettings, FIRST_SEED, placeSummary } from "./all-settings.js";
 import { attributesOf, CountInput, Help, MistakeOf, ValuesInput, settingBy } from "./form-fields.js";
-import { Held, Problem } from "../problems.js";
 
 /** @import { Changed } from "../../types.js" */
 /** @import { ComponentChildren } from "preact" */

@@ -11,6 +11,7 @@ import { addressOf, page } from "../../page-state.js";
 import { isActive, isOperator } from "../../selectors.js";
 import { messageOf, runTitle, simulatorTitle } from "../../titles.js";
 import { html, Icon, ProgressBar } from "../elements.js";
+import { Problem } from "../foot.js";
 import { editHere, EditorOf, isEdited } from "../runs/annotations.js";
 import { formIsOpen, unsayable } from "./dialog.js";
 import { FigureFour } from "./figure-four.js";
@@ -20,7 +21,6 @@ import { StateOf } from "./state-of.js";
 import { SweepTable } from "./sweep-table.js";
 import { TableOne } from "./table-one.js";
 import { Worlds } from "./worlds.js";
-import { Problem } from "../problems.js";
 
 /** @import { Run, State, Summary, Verb } from "../../types.js" */
 /** @import { ComponentChildren } from "preact" */

@@ -8,7 +8,7 @@ import {
 import { count, metres } from "../../format.js";
 import { isOperator } from "../../selectors.js";
 import { html } from "../elements.js";
-import { Problem } from "../problems.js";
+import { Problem } from "../foot.js";
 
 /** @import { Changed, Run, Setting, Summary, Toggled } from "../../types.js" */
 

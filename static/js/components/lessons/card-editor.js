@@ -25,7 +25,7 @@ export function CardEditor() {
           ${TABS.map((tab) => html`
             <label class="check" key=${tab}>
               <input type="checkbox" checked=${card.show?.includes(/** @type {any} */ (tab)) ?? true}
-                onChange=${() => changeCard({ show: /** @type {any} */ (toggled(card.show ?? null, tab)) })} />${tabTitle(tab)}
+                onChange=${() => changeCard({ show: toggled(card.show ?? null, tab) })} />${tabTitle(tab)}
             </label>
           `)}
         </div>
@@ -40,7 +40,7 @@ export function CardEditor() {
   `;
 }
 
-/** Null stands for all panels. @param {any} show @param {string} tab */
+/** Null stands for all panels. @param {any} show @param {string} tab @returns {any} */
 function toggled(show, tab) {
   const shown = show ?? TABS;
   const now = shown.includes(tab) ? shown.filter((/** @type {string} */ one) => one !== tab) : [...shown, tab];

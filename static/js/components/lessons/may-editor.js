@@ -41,7 +41,7 @@ function namesOf(name) {
 /** @param {{ card: LessonCard }} props */
 export function MayEditor({ card }) {
   const may = card.may ?? {};
-  const change = (/** @type {string} */ name, /** @type {Bounds | null} */ bounds) => {
+  const change = (/** @type {string} */ name, /** @type {Partial<Bounds> | null} */ bounds) => {
     const { [name]: _, ...others } = may;
     changeCard({ may: bounds === null ? others : { ...others, [name]: bounds } });
   };
@@ -52,7 +52,7 @@ export function MayEditor({ card }) {
       <legend>Settings that may be changed</legend>
       ${Object.entries(may).map(([name, bounds]) => html`
         <${One} key=${name} name=${name} bounds=${bounds} card=${card}
-          onBounds=${(/** @type {Bounds | null} */ now) => change(name, now)} />
+          onBounds=${(/** @type {Partial<Bounds> | null} */ now) => change(name, now)} />
       `)}
       <select aria-label="Open a setting" value="" onChange=${open}>
         <option value="">Open a setting…</option>

@@ -3,12 +3,14 @@ import { chosen, chosenCard, draft } from "../../lessons/draft.js";
 import { paragraphs } from "../../lessons/markdown.js";
 import { May } from "../../room/may.js";
 import { Answer } from "../../room/questions.js";
-import { html } from "../elements.js";
+import { useEffect } from "preact/hooks";
+import { html, withStyle } from "../elements.js";
 
 /** @import { Block, Inline } from "../../lessons/markdown.js" */
 
 export function Preview() {
   const card = chosenCard.value;
+  useEffect(() => { withStyle("card", Promise.resolve()); }, []);
   if (card === null) return null;
   const isAsked = card.ask && (card.ask.kind !== "choice" || (card.ask.choices ?? []).length > 0);
   return html`

@@ -9,7 +9,7 @@ import { outcomeInWords, titleOf, withResult } from "../../run-words.js";
 import { isOperator } from "../../selectors.js";
 import { describeRun } from "../../titles.js";
 import { html, Icon, ProgressBar } from "../elements.js";
-import { Problem } from "../problems.js";
+import { Problem } from "../foot.js";
 import { ReplayLink } from "../replay-link.js";
 import { Name, Notes, Tags } from "./annotations.js";
 import { DeleteButton, RunMenu } from "./menu.js";

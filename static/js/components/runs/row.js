@@ -6,9 +6,9 @@ import { openDetails, subjects } from "../../run-details.js";
 import { isSelected, setSelected } from "../../run-selection.js";
 import { outcomeInWords, titleOf } from "../../run-words.js";
 import { html } from "../elements.js";
+import { Problem } from "../foot.js";
 import { RunMenu } from "./menu.js";
 import { Thumbnail } from "./thumbnail.js";
-import { Problem } from "../problems.js";
 
 /** @import { Row } from "../../run-groups.js" */
 /** @import { AnyRun } from "../../runs.js" */

@@ -9,7 +9,7 @@ import {
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html } from "../elements.js";
-import { Problem } from "../problems.js";
+import { Problem } from "../foot.js";
 
 /** @import { Changed } from "../../types.js" */
 

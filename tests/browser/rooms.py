@@ -1,0 +1,57 @@
+"""Pages of a room as tests see them: of a participant, of the teacher, and the projector."""
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from playwright.sync_api import Browser, Locator, ViewportSize, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving
+from tests.conftest import new_page
+
+TOKEN = "for-the-teacher-of-the-class"
+PHONE: ViewportSize = {"width": 390, "height": 844}
+SCREEN: ViewportSize = {"width": 1920, "height": 1080}
+_KEPT = re.compile(r"^(\w+ \w+)\s*seed (\d+)$")
+
+
+class RoomPage(Dashboard):
+    """A page of a room, by the words that a person reads on it."""
+
+    def enter(self, server: Serving, code: str, query: str = "") -> None:
+        """Open the room; it is a page of its own."""
+        self.page.goto(f"{server.address}r/{code}{query}")
+
+    def press(self, name: str | re.Pattern[str]) -> None:
+        """Tap a button, as a thumb does."""
+        button = self.page.get_by_role("button", name=name, exact=isinstance(name, str))
+        expect(button).not_to_have_attribute("aria-disabled", "true")
+        button.tap()
+
+    def sees(self, words: str | re.Pattern[str]) -> None:
+        """Wait until the page has these words."""
+        expect(self.page.locator("body")).to_contain_text(words)
+
+    @property
+    def who(self) -> tuple[str, int]:
+        """Name and seed of the participant."""
+        head = self.page.get_by_role("banner").get_by_role("paragraph").first
+        expect(head).to_have_text(_KEPT)
+        found = _KEPT.match(head.inner_text().strip().replace("\n", " "))
+        assert found is not None
+        return found[1], int(found[2])
+
+    @property
+    def distance(self) -> Locator:
+        """How far the own robot went."""
+        return self.page.locator(".own-distance b")
+
+
+@contextmanager
+def phone(browser: Browser) -> Iterator[RoomPage]:
+    """A phone of somebody else, with cookies of its own, that must not complain."""
+    with new_page(browser, viewport=PHONE, has_touch=True, is_mobile=True) as page:
+        watched = RoomPage(page, has_3d=False)
+        yield watched
+        assert watched.complaints == []

@@ -1,0 +1,132 @@
+"""A lesson made on the page: exported, imported on another server, and taught there."""
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.rooms import TOKEN, RoomPage, phone
+from tests.browser.serving import Serving, serving
+from tests.conftest import new_page
+
+pytestmark = pytest.mark.timeout(400)
+
+SETTINGS = {"depth": "try", "tab": "train", "simulator": "kinematic", "steps": 100, "alpha": 0.5}
+
+
+def test_a_lesson_is_made_exported_imported_and_taught(
+    dashboard: Dashboard, server: Serving, flat_browser: Browser, tmp_path: Path
+) -> None:
+    file = tmp_path / "lesson.yaml"
+    dashboard.page.set_viewport_size({"width": 1440, "height": 900})
+    dashboard.open(server.link(**SETTINGS))
+    makes_a_lesson(dashboard)
+    exports_it(dashboard, file)
+    opens_its_link(dashboard)
+    with (
+        serving(tmp_path / "elsewhere", token=TOKEN) as elsewhere,
+        new_page(flat_browser) as page,
+    ):
+        other = Dashboard(page, has_3d=False)
+        other.open(f"{elsewhere.address}?token={TOKEN}")
+        code = imports_it(other, elsewhere, file)
+        with phone(flat_browser) as pupil:
+            pupil.enter(elsewhere, code)
+            is_taught(pupil)
+        assert other.complaints == []
+
+
+def lessons_of(dashboard: Dashboard) -> None:
+    dashboard.page.get_by_label("More", exact=True).click()
+    dashboard.page.get_by_role("link", name="Lessons").click()
+
+
+def makes_a_lesson(dashboard: Dashboard) -> None:
+    page = dashboard.page
+    lessons_of(dashboard)
+    expect(page.get_by_role("heading", name="Lessons", exact=True)).to_be_visible()
+    assert dashboard.violations_in_both_themes() == []
+    dashboard.button("New lesson").click()
+    dashboard.button("Save the lesson").click()
+    # What is not valid is told, with the field.
+    expect(page.get_by_role("alert").filter(has_text="title")).to_be_visible()
+    page.get_by_label("Title", exact=True).fill("Guess first")
+    page.get_by_label("Aims, one a line").fill("Guess.\nLook.")
+    page.get_by_label("Title of the card").fill("How far?")
+    page.get_by_label("Text, in Markdown").fill("It practises **100** steps.")
+    dashboard.button("Take the page as it is").click()
+    expect(page.get_by_text(re.compile("alpha 0.5"))).to_be_visible()
+    kinds = dashboard.group("Kind of the question")
+    kinds.get_by_role("button", name="Choice").click()
+    page.get_by_label("The question, in Markdown").fill("Will it walk?")
+    page.get_by_label(re.compile("^Answers to choose from")).fill("Yes\nNo")
+    dashboard.group("Go runs").get_by_role("button", name="Training").click()
+    page.get_by_label("Open a setting").select_option("alpha")
+    bounds = dashboard.group("Learning rate α")
+    bounds.get_by_label("From").fill("0.2")
+    bounds.get_by_label("to", exact=True).fill("0.8")
+    for tab in ("World", "Gait", "Table", "What if"):
+        page.get_by_role("checkbox", name=tab, exact=True).uncheck()
+    page.get_by_label("Revealed afterwards, in Markdown").fill("Most do.")
+    preview = page.get_by_role("region", name="As a phone shows it")
+    expect(preview).to_contain_text("It practises 100 steps.")
+    expect(preview.get_by_role("button", name="Yes")).to_be_visible()
+    expect(preview).to_contain_text("From 0.2 to 0.8")
+    assert dashboard.violations_in_both_themes() == []
+
+
+def exports_it(dashboard: Dashboard, file: Path) -> None:
+    page = dashboard.page
+    # The draft is the browser's until it is saved.
+    page.reload()
+    expect(page.get_by_label("Title", exact=True)).to_have_value("Guess first")
+    dashboard.button("Save the lesson").click()
+    expect(page.get_by_role("img", name=re.compile("^QR code of http.*/l/"))).to_be_visible()
+    with page.expect_download() as download:
+        page.get_by_role("link", name="YAML").click()
+    download.value.save_as(file)
+    assert "Guess first" in file.read_text("utf-8")
+
+
+def opens_its_link(dashboard: Dashboard) -> None:
+    page = dashboard.page
+    address = page.get_by_role("img", name=re.compile("^QR code of")).get_attribute("alt")
+    assert address is not None
+    dashboard.open(address.removeprefix("QR code of "))
+    reader = page.get_by_role("dialog", name="How far?")
+    expect(reader).to_contain_text("nothing is locked")
+    assert dashboard.violations_in_both_themes() == []
+    reader.get_by_role("button", name="Yes").click()
+    reader.get_by_role("button", name="Reveal").click()
+    expect(reader).to_contain_text("Most do.")
+    reader.get_by_role("button", name="To the page").click()
+    expect(page.get_by_role("tab")).to_have_text(["Board", "Train", "Why"])
+    expect(page.get_by_role("textbox", name=re.compile("Learning rate"))).to_have_value("0.5")
+    expect(dashboard.lesson).to_contain_text("Card 1 of 1")
+    dashboard.lesson.get_by_role("button", name="Done").click()
+    expect(page).not_to_have_url(re.compile("lesson="))
+
+
+def imports_it(other: Dashboard, elsewhere: Serving, file: Path) -> str:
+    page = other.page
+    lessons_of(other)
+    page.get_by_label("Import…").set_input_files(file)
+    expect(page.get_by_label("Title", exact=True)).to_have_value("Guess first")
+    other.button("Teach…").click()
+    other.button("Open the room").click()
+    code = page.locator(".room-code").inner_text()
+    page.get_by_role("link", name="Teach: open the cockpit").click()
+    expect(page).to_have_url(f"{elsewhere.address}r/{code}")
+    expect(other.button("Freeze all")).to_be_visible()
+    return code
+
+
+def is_taught(pupil: RoomPage) -> None:
+    pupil.press("Join")
+    pupil.press("Yes")
+    expect(pupil.page.get_by_label(re.compile("Learning rate")).first).to_have_value("0.5")
+    pupil.press("Lock my prediction, and go")
+    expect(pupil.distance).to_be_visible()
+    pupil.sees("α 0.5")
