@@ -180,6 +180,10 @@ class Robots:
         Yields:
             those whose rows are to be inserted.
         """
+        robots = list(robots)
+        if not robots:  # as of most imports, which need not wait for each other
+            yield []
+            return
         with self.lock:
             names, new = self._names(), dict[str, tuple[StoredRobot, bytes]]()
             ids = {one.id for one in self.stored(hidden=True)}
