@@ -18,6 +18,10 @@ from tests.in_parallel import FileByFile
 from tests.install_browser import HOW_TO_GET_ONE, find_browser
 from tests.postgresql import PostgresServer, postgres_server
 
+# Until all tests are collected: nothing is thrown away before, and to look for it takes a seventh
+# of that time.
+gc.disable()
+
 # One commit gives one verdict, and a busy machine is no failure.
 hypothesis.settings.register_profile("gate", derandomize=True, deadline=None)
 hypothesis.settings.load_profile("gate")
@@ -85,6 +89,7 @@ def pytest_collection_finish() -> None:
     """
     gc.collect()
     gc.freeze()
+    gc.enable()
     start_fork_server()
 
 

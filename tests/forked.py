@@ -147,7 +147,7 @@ def _run(
     sys.exit(main(arguments))
 
 
-_spawn_interpreter = util.spawnv_passfds  # type: ignore[attr-defined]
+_spawn_interpreter = util.spawnv_passfds
 
 
 def _start_interpreter(path: bytes, args: Sequence[str], passed: Sequence[int]) -> int:

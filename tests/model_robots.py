@@ -318,3 +318,8 @@ def with_meshes(model: RobotModel) -> RobotModel:
         elif link.leg and seen[link.leg] == 2:
             links[number] = replace(link, mesh=wedge(0.02, 0.03, -0.2))
     return replace(model, links=tuple(links))
+
+
+def gait_of(made: Robot) -> str:
+    """Return a gait of two groups for a robot with four or six legs."""
+    return {4: "trot", 6: "tripod"}[len(made.legs)]

@@ -13,7 +13,7 @@ from hexapods.domain.disturbances import Lost, Stuck
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.model_robot import model_robot
 from hexapods.domain.robot_model import RobotModel
-from hexapods.domain.suggestions import usual_gait, usual_grid_side_m
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.domain.world import World
 from hexapods.drawing.robot_mesh import RobotMesh, antenna_m
 from hexapods.exports.mcap_log import mcap_log
@@ -27,6 +27,7 @@ from hexapods.runs.recorded_walk import walk_of_lane
 from hexapods.runs.training import train
 from tests.model_robots import (
     four_joint_model,
+    gait_of,
     mixed_model,
     quadruped_model,
     two_joint_model,
@@ -44,7 +45,7 @@ MODELS = {
 
 def raced(model: RobotModel, *agents: str, steps: int = STEPS) -> hx.Race:
     made = model_robot(model, "own")
-    gait = usual_gait(made)
+    gait = gait_of(made)
     side_m = usual_grid_side_m(made, gait)
     return hx.race(list(agents), gait=gait, robot=made, steps=steps, grid_side_m=side_m)
 

@@ -16,7 +16,13 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.auth import PUBLIC_PATHS
 from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
-from app.api.rate_limit import export_load, is_encoding, is_spectators_what_if, too_many
+from app.api.rate_limit import (
+    export_load,
+    is_encoding,
+    is_reading_robot,
+    is_spectators_what_if,
+    too_many,
+)
 from app.api.stage_paths import path_of
 from app.limits.addresses import client_of
 from app.limits.connections import set_client
@@ -29,7 +35,8 @@ Work = Literal["probe", "what-if", "encoding", "download", "analysis", "other"]
 
 - `probe`: liveness and readiness, in milliseconds: a busy server is not taken for a dead one.
 - `what-if`: of spectators, each of which takes all cores: an operator's waits for one of them.
-- `encoding`: files of long runs that take up to minutes before their first byte.
+- `encoding`: files of long runs that take up to minutes before their first byte, and robots' files
+  that are read.
 - `download`: files that are computed chunk by chunk while a client reads them.
 - `analysis`: any other view of what a run recorded, which takes seconds if that is long.
 - `other`: listings, commands and files of the page, in milliseconds.
@@ -101,7 +108,7 @@ def work_of(scope: Scope) -> Work:
         return "probe"
     if is_spectators_what_if(scope):
         return "what-if"
-    if is_encoding(scope):
+    if is_encoding(scope) or is_reading_robot(scope):
         return "encoding"
     if scope["method"] not in _READ_METHODS:
         return "other"

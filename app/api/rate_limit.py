@@ -23,7 +23,7 @@ _STARTS_NOTHING = re.compile(
 """Every other POST counts, so that a new route is limited unless it is added here."""
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
 _OF_RUN = re.compile(r"/api/v1/runs/[^/]+/([^/]+)")
-WHAT_IF = "/api/v1/what-if"
+WHAT_IF, ROBOTS = "/api/v1/what-if", "/api/v1/robots"
 QUESTIONS = frozenset({WHAT_IF, "/api/v1/robots/preview"})
 """Paths whose POST changes nothing, so that spectators may use it, too."""
 
@@ -31,9 +31,9 @@ QUESTIONS = frozenset({WHAT_IF, "/api/v1/robots/preview"})
 class RateLimit(HttpMiddleware):
     """Middleware that limits starts per minute, by client address and role.
 
-    Besides runs it counts imports, resumes, and what takes seconds to encode: a race's recorded
-    stream, pages that need no server, videos and logs. What-ifs of spectators have a limit of their
-    own; those of operators have none.
+    Besides runs it counts imports, changes of stored robots, resumes, and what takes seconds to
+    encode: a race's recorded stream, pages that need no server, videos and logs. What-ifs of
+    spectators have a limit of their own; those of operators have none.
     """
 
     def __init__(self, app: ASGIApp, settings: Settings, what_ifs: RateLimiter) -> None:
@@ -56,7 +56,7 @@ class RateLimit(HttpMiddleware):
 
     def _refusal(self, scope: Scope) -> Response | None:
         if is_spectators_what_if(scope):
-            wait_s = self._what_ifs.take(client_of(scope))
+            wait_s = self._what_ifs.take(asker_of(scope))
             detail = what_ifs_used_up(self._what_ifs_per_minute, wait_s)
         elif _starts_work(scope):
             wait_s = self._buckets.take(f"{scope['state']['role']} {client_of(scope)}")
@@ -97,6 +97,13 @@ def is_spectators_what_if(scope: Scope) -> bool:
     return is_what_if and bool(scope["state"]["role"] == "spectator")
 
 
+def asker_of(scope: Scope) -> str:
+    """Return who is charged for a what-if: a participant, or an address, which many may share."""
+    if scope["state"].get("asks_what_if"):
+        return " ".join(f"{code} {seed}" for code, seed in scope["state"]["seats"])
+    return client_of(scope)
+
+
 def too_many(detail: str, wait_s: float) -> Response:
     """Return a 429 response whose Retry-After is the wait, rounded up to at least 1 s."""
     return problem(429, detail, headers={"Retry-After": str(whole_seconds(wait_s))})
@@ -107,7 +114,17 @@ def whole_seconds(wait_s: float) -> int:
     return max(1, math.ceil(wait_s))
 
 
+def is_reading_robot(scope: Scope) -> bool:
+    """Whether a request may have a robot's file read, in a process that takes seconds."""
+    path = path_of(scope)
+    return (scope["method"] == "POST" and path == ROBOTS) or (
+        scope["method"] == "PATCH" and path.startswith(f"{ROBOTS}/")
+    )
+
+
 def _starts_work(scope: Scope) -> bool:
+    if is_reading_robot(scope):
+        return True
     if scope["method"] == "POST" and _STARTS_NOTHING.fullmatch(path_of(scope)) is None:
         return True
     return is_encoding(scope)

@@ -23,7 +23,7 @@ from app.api.deps import EventListener, ReaderDep, ServicesDep
 from app.api.events import client_slot, stream_events
 from app.api.fields import INTEGRAL, Body
 from app.api.formats import attachment, negotiated
-from app.api.rate_limit import whole_seconds
+from app.api.rate_limit import asker_of, whole_seconds
 from app.api.room_access import room_cookie
 from app.api.room_views import results_view, room_address, room_view
 from app.api.runs import located
@@ -333,7 +333,7 @@ def start_run(
     starts, room = services.card_starts, services.rooms.check_run(code)
     given = starts.given(room.shown, settings)
     if room.shown.go == "what-if":
-        asker = spectators_asker(services, client_of(request.scope))
+        asker = spectators_asker(services, asker_of(request.scope))
         return JSONResponse(services.what_if.ask(starts.what_if(room.shown, given), asker))
     run = services.rooms.start(
         code,

@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 
 from app.storage.database.store import RunStore
 from app.storage.errors import Damaged, NotFound
-from app.storage.run import Run, world_of
+from app.storage.run import Run, robots_of, world_of
 from hexapods.agents.registry import keeps_learning
 from hexapods.domain.disturbances import as_text
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import PRESETS
+from hexapods.domain.robot import PRESETS, Robot, as_mapping
 from hexapods.domain.settings import Value, declared_fields
 from hexapods.experiments.config import ExperimentConfig, by_option, experiment_config, fields_of
 from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings
@@ -37,6 +37,9 @@ _INHERITED = ("robot", "simulator", "divisions", "grid_side_m", "observation")
 
 Arguments = dict[str, Any]
 """Plain values by argument of the library's functions."""
+
+
+_IMPORT = "import hexapods as hx"
 
 
 class RunCode(NamedTuple):
@@ -63,8 +66,10 @@ def run_code(run: Run, store: RunStore, address: str) -> RunCode:
         store: store of the trainings that it rests on.
         address: of this server, with a slash at its end.
     """
+    robots = _Robots(address)
+    robots.add(robots_of(run.config))
     if isinstance(run.config, ExperimentConfig):
-        return _experiment(run.config)
+        return robots.before(_experiment(run.config))
     practices = _Practices(store, address)
     if isinstance(run.config, TrainingConfig):
         practices.add(run)
@@ -72,8 +77,39 @@ def run_code(run: Run, store: RunStore, address: str) -> RunCode:
         for training_id in filter(None, run.lane_training_ids):
             practices.add_id(training_id)
         practices.add_race(run, run.config)
-    python = "\n\n".join(["import hexapods as hx", *practices.calls]) + "\n"
-    return RunCode(_lines(practices.commands), python)
+    for config in filter(None, practices.configs):
+        robots.add([config.robot])
+    python = "\n\n".join([_IMPORT, *practices.calls]) + "\n"
+    return robots.before(RunCode(_lines(practices.commands), python))
+
+
+class _Robots:
+    """Stored robots that a run needs, which are downloaded and made known first.
+
+    They are not written out: those from files have meshes.
+    """
+
+    def __init__(self, address: str) -> None:
+        self._address = address
+        self._names: dict[str, str] = {}
+
+    def add(self, robots: Iterable[Robot]) -> None:
+        """Add those of some robots that are stored."""
+        for one in robots:
+            if one.id is not None:
+                self._names[one.id] = as_mapping(one)["name"]
+
+    def before(self, code: RunCode) -> RunCode:
+        """Return the code with what makes the robots known before it."""
+        commands, calls = "", ""
+        for robot_id, name in self._names.items():
+            file, url = f"robot-{robot_id}.json", f"{self._address}api/v1/robots/{robot_id}/file"
+            commands += (
+                f"curl --fail --output {file} {shlex.quote(url)}\n"
+                f"hexapods robots import {file} --name {shlex.quote(name)}\n"
+            )
+            calls += f"\n\n# {url}\nhx.load_robot({file!r}, {name!r})"
+        return RunCode(commands + code.command, code.python.replace(_IMPORT, _IMPORT + calls, 1))
 
 
 class _Practices:
@@ -89,6 +125,11 @@ class _Practices:
         """Configs by id; None for a table that is a file."""
         self.commands: list[str] = []
         self.calls: list[str] = []
+
+    @property
+    def configs(self) -> Iterable[TrainingConfig | None]:
+        """Configs of the trainings so far; None for a table that is a file."""
+        return self._configs.values()
 
     def add_id(self, training_id: str) -> None:
         """Add a training whose table is needed; what cannot be practised again, as a file."""
@@ -179,7 +220,7 @@ class _Practices:
             )
             if name in _ALWAYS or value != _DEFAULTS[name] or is_inherited:
                 given[name] = value
-        if "robot" in given and config.robot in PRESETS.values():
+        if "robot" in given and config.robot.id is None and config.robot in PRESETS.values():
             given["robot"] = config.robot.name
         return given | _world(config)
 
@@ -331,7 +372,7 @@ def _experiment(config: ExperimentConfig) -> RunCode:
     program = "hexapods sweep" if name == "sweep" else f"hexapods experiment {name}"
     call = _call("experiment", repr(name), {"folder": f"{name}-results", **given})
     python = (
-        "import hexapods as hx\n\n"
+        f"{_IMPORT}\n\n"
         'if __name__ == "__main__":  # its trials have processes of their own\n'
         f"    experiment = {_indented(call)}\n"
         '    print(*experiment.settings, sep="\\n")\n'

@@ -1,6 +1,7 @@
 """Route of the address at which others watch, with its QR code; used by `serve --share`, too."""
 
 import socket
+from functools import lru_cache
 from urllib.parse import urlsplit
 
 import segno
@@ -53,6 +54,7 @@ def page_address(request: Request, settings: Settings, path: str) -> str:
     return address.rstrip("/").removesuffix(root) + path
 
 
+@lru_cache(maxsize=64)
 def qr_image(address: str) -> str:
     """Return the QR code of an address as a data URI."""
     return str(qr_code(address).svg_data_uri(border=2, light="#fff"))

@@ -1,6 +1,6 @@
 """The texts of lessons: Markdown without HTML, pictures and links that run scripts."""
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -38,6 +38,7 @@ def check_markdown(text: str, where: str) -> None:
             )
 
 
+@lru_cache(maxsize=2048)
 def as_html(text: str) -> str:
     """Return a text that was checked as HTML; what is left of HTML in it is shown as text."""
     return str(_parser(False).render(text))

@@ -182,7 +182,7 @@ def _newest(room: Room, store: RunStore, seed: int, card: int) -> RunResult | No
     """
     newest: RunResult | None = None
     for one in room.runs_of(seed, card):
-        result = _result(one, store)
+        result = _result(room, one, store)
         if result is not None and (
             newest is None or newest.state != "finished" or result.state == "finished"
         ):
@@ -190,14 +190,20 @@ def _newest(room: Room, store: RunStore, seed: int, card: int) -> RunResult | No
     return newest
 
 
-def _result(one: RoomRun, store: RunStore) -> RunResult | None:
+def _result(room: Room, one: RoomRun, store: RunStore) -> RunResult | None:
+    known: RunResult | None = room.finished.get(one.run_id)
+    if known is not None:
+        return known  # a run that has finished changes no more, and a class asks again and again
     try:
         run = store.find(one.run_id)
     except NotFound:
         return None  # deleted, or never stored
     if not isinstance(run, Run):
         return None
-    return RunResult(run.id, run.kind, run.state, dict(one.given), _outcome(run, store))
+    result = RunResult(run.id, run.kind, run.state, dict(one.given), _outcome(run, store))
+    if run.state == "finished":
+        room.finished[one.run_id] = result
+    return result
 
 
 def _outcome(run: Run, store: RunStore) -> Outcome:

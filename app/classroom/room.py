@@ -33,6 +33,7 @@ class Room:
         participants: by seed, those who left too.
         predictions: by seed and card.
         runs: by id, oldest first.
+        finished: of runs that have finished, what came of them, by id; it is filled as it is asked.
     """
 
     code: str
@@ -48,6 +49,7 @@ class Room:
     participants: dict[int, ParticipantRow] = field(default_factory=dict)
     predictions: dict[tuple[int, int], Any] = field(default_factory=dict)
     runs: dict[str, RoomRun] = field(default_factory=dict)
+    finished: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def is_open(self) -> bool:

@@ -54,7 +54,7 @@ class LegMount:
         return self.azimuth_deg if self.yaw_deg is None else self.yaw_deg
 
 
-class Servo(NamedTuple):
+class ServoStrength(NamedTuple):
     """What a position servo can do."""
 
     kp: float
@@ -190,10 +190,10 @@ class Robot:
                         f"the feet of legs {other} and {number} are in one place", [other, number]
                     )
 
-    def servo_of(self, leg: int, joint: str) -> Servo:  # noqa: ARG002 - a leg has equal servos
+    def servo_of(self, leg: int, joint: str) -> ServoStrength:  # noqa: ARG002 - a leg has equal servos
         """Return the servo of a joint, by its leg from 1 and its name."""
         names = ("servo_kp", "servo_kv", "servo_torque_nm")
-        return Servo(*(self.of_legs(name)[leg - 1] for name in names))
+        return ServoStrength(*(self.of_legs(name)[leg - 1] for name in names))
 
     @property
     def foot_radii_m(self) -> tuple[float, ...]:

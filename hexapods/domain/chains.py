@@ -1,58 +1,28 @@
-"""Legs that are any chain of hinges: numeric inverse kinematics, to a part in ten billion of a leg.
+"""Legs that are any chain of hinges, with numeric kinematics (`hexapods.domain.chain_solver`).
 
-Forward kinematics is a product of exponentials about the pose in which the robot stands. Each joint
-has a frame whose z axis is its own, so that its exponential turns two coordinates. The inverse
-begins with cubic polynomials that fit it near the standing pose, and goes on by least squares that
-are damped by the square of the error (Sugihara 2011, "Solvability-unconcerned inverse kinematics by
-the Levenberg-Marquardt method"). A foot that has arrived is left alone, and
-all operations are elementwise, so that no result depends on the others of a batch. A chain with
-more joints than it needs moves as little as it can from where it stands.
-
-A leg of two joints, or one whose joints move the foot in a surface only, cannot follow a grid: its
-foot goes to the nearest place of the right height.
+A chain with more joints than it needs moves as little as it can from where it stands. A leg of two
+joints, or one whose joints move the foot in a surface only, cannot follow a grid: its foot goes to
+the nearest place of the right height.
 """
 
 import math
 from collections.abc import Sequence
 from functools import lru_cache
-from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
+from hexapods.domain.chain_solver import EXACT, NEAR, ChainSolver, FootParameters
 from hexapods.domain.errors import ImpossibleLegs
 from hexapods.domain.gait import Gait
 from hexapods.domain.legs import FootKinematics, Joint, Legs
-from hexapods.domain.model_geometry import Chain, home_angles, leg_chains
+from hexapods.domain.model_geometry import home_angles, leg_chains
 from hexapods.domain.model_robot import ModelRobot
 from hexapods.domain.types import FloatArray
 
-_ROUNDS = 14
-"""Of the inverse kinematics, at most; within reach two or three suffice."""
-_EXACT, _NEAR = 3e-6, 6e-3
-"""Errors, relative to the length of the leg, from which one more round suffices: it leaves the
-square of them. The joint targets of a step need less, since they are interpolated."""
 _CHUNK = 1500
 """Feet whose numbers stay in a processor's cache."""
-_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
-"""Indices of the other two of three axes."""
-_DAMPING = 0.1
-"""Relative to the square of the error [rad²]."""
-_LEAST_DAMPING = 1e-12
-"""Relative to the square of the leg's length."""
-_FLAT = 0.03
-"""Ratio of the least to the largest singular value below which a foot moves in a surface only."""
-_HEIGHT_COUNTS = 8.0
-"""How much more the height counts than the place, of a foot that moves in a surface."""
-_HEIGHT_ERROR = 0.02
-"""Largest error of such a foot's height, relative to the length of its leg."""
-_RESTS = 1 / 30
-"""Change of a round at which such a foot has arrived [rad], relative to `_EXACT` or `_NEAR`."""
-_FITTED_BOX = np.array([(-0.2, 0.2), (-0.2, 0.2), (-0.05, 0.2)])
-"""Where the first angles are fitted, relative to the distance of the foot from the first joint."""
-_FITTED_PER_AXIS = 9
-_MONOMIALS = 19
-"""Of three numbers, of degrees 1 to 3."""
+_FEW = 300
+"""Feet of a step, whose parameters are kept from one step to the next."""
 
 
 class ChainLegs(Legs):
@@ -96,7 +66,7 @@ class ChainLegs(Legs):
         offsets = np.zeros((3, len(self)))
         offsets[2] = lifts_m
         with np.errstate(all="ignore"):
-            turned = solver.solve(offsets, solver.parameters)
+            turned = solver.solve(offsets, solver.parameters_of(solver.parameters))
         for leg, of_leg in enumerate(turned.tolist(), start=1):
             if not math.isfinite(of_leg[0]):
                 raise ImpossibleLegs(
@@ -161,13 +131,14 @@ class ChainKinematics(FootKinematics):
 
     is_costly = True
 
-    def __init__(self, legs: ChainLegs, solver: "ChainSolver", gait: Gait) -> None:
+    def __init__(self, legs: ChainLegs, solver: ChainSolver, gait: Gait) -> None:
         self.legs, self._solver, self._chain_legs = legs, solver, legs
         turn = math.radians(90 - gait.forward_deg)
         self._cos, self._sin = math.cos(turn), math.sin(turn)
         feet = np.array([chain.foot_m for chain in legs.standing])
         x, y = feet[:, 0], feet[:, 1]
         self._feet_m = feet.T[:, None]
+        self._kept = lru_cache(maxsize=16)(self._parameters_of)
         self.homes_m = np.stack(
             (x * self._cos - y * self._sin, x * self._sin + y * self._cos), axis=1
         )
@@ -194,14 +165,14 @@ class ChainKinematics(FootKinematics):
         return frames
 
     def solve(self, places: FloatArray, heights: FloatArray, frames: FloatArray) -> FloatArray:
-        return self._solve(places, heights, frames, _NEAR)
+        return self._solve(places, heights, frames, NEAR)
 
     def joint_angles(self, offsets: FloatArray) -> FloatArray:
         x, y, z = np.ascontiguousarray(np.moveaxis(offsets, -1, 0))
         frames = np.broadcast_to(
             self.frames.reshape(5, *(1 for _ in x.shape[:-1]), x.shape[-1]), (5, *x.shape)
         )
-        return self.in_pose_order(self._solve(np.array((x, y)), z, frames, _EXACT))
+        return self.in_pose_order(self._solve(np.array((x, y)), z, frames, EXACT))
 
     def _solve(
         self, places: FloatArray, heights: FloatArray, frames: FloatArray, near: float
@@ -215,11 +186,15 @@ class ChainKinematics(FootKinematics):
         with np.errstate(invalid="ignore", over="ignore"):
             for start in range(0, len(legs), _CHUNK):
                 part = slice(start, start + _CHUNK)
-                leg = legs[part]
-                parameters = self._solver.parameters.take(leg, 1)
+                which = legs[part].tobytes()
+                parameters = (self._kept if len(legs) <= _FEW else self._parameters_of)(which)
                 turned = self._solver.solve(offsets[:, part], parameters, near)
-                angles[part] = self._home_rad[leg] + turned
+                angles[part] = self._home_rad[legs[part]] + turned
         return angles.reshape(*shape, -1)
+
+    def _parameters_of(self, legs: bytes) -> FootParameters:
+        """Return what `solve` needs of feet, by the indices of their legs."""
+        return self._solver.parameters_of(self._solver.parameters[:, np.frombuffer(legs, int)])
 
     def foot_offsets(self, angles: Sequence[float]) -> list[tuple[float, float, float]]:
         turned = self._chain_legs.turned(np.array([angles]))
@@ -229,320 +204,6 @@ class ChainKinematics(FootKinematics):
             (cos * one - sin * two, sin * one + cos * two, up)
             for one, two, up in zip(x, y, z, strict=True)
         ]
-
-
-class _Rows(NamedTuple):
-    """Where the parameters of a chain are in the rows of an array."""
-
-    to_first: slice
-    """Rotation of the body frame to that of the first joint, (3, 3)."""
-    stages: slice
-    """Of each joint the rotation of the next joint's frame to its own, and the place of the next
-    joint's origin, or of the foot, (3, 4, joints)."""
-    expansion: slice
-    """Coefficients of `_monomials` that give the first angles, (7, joints, 3)."""
-    foot: slice
-    """The foot in the frame of the first joint where the leg stands, (3,)."""
-    length: slice
-    """Length of the leg from joint to joint [m]."""
-    weights: slice
-    """How much an error along the axes of the body counts, as a matrix of errors in the frame of
-    the first joint, (3, 3)."""
-    is_flat: slice
-    """1 for a foot that moves in a surface only, or 0."""
-
-
-class ChainSolver:
-    """Forward and inverse kinematics of the chains of a robot's legs, by angles from one pose.
-
-    Attributes:
-        most: the number of joints of the longest chain; shorter ones have more joints that do
-            nothing.
-        parameters: what `solve` needs of each leg, (rows, legs).
-        follows_grid: of each leg whether its foot can go to any place near where it is.
-    """
-
-    def __init__(self, chains: Sequence[Chain]) -> None:
-        self.most = most = max(len(chain.axes) for chain in chains)
-        sizes = 9, 12 * most, 21 * most, 3, 1, 9, 1
-        ends = np.cumsum((0, *sizes)).tolist()
-        self._rows = _Rows(*(slice(start, end) for start, end in pairwise(ends)))
-        columns = [_parameters(chain, most) for chain in chains]
-        self.parameters = np.array(columns).T
-        self.follows_grid = tuple(bool(column[-1] == 0) for column in columns)
-        self._is_any_flat = not all(self.follows_grid)
-        origins = np.array([chain.anchors_m[0] for chain in chains]).T
-        self._origins_m = origins[:, None]
-        fitted = [self._fitted(leg, chain) for leg, chain in enumerate(chains)]
-        self.parameters[self._rows.expansion] = np.array(fitted).T
-
-    def _fitted(self, leg: int, chain: Chain) -> FloatArray:
-        """Return coefficients of first angles by least squares around the standing pose.
-
-        Where too few places are within reach, they are those of the expansion.
-        """
-        parameters = self.parameters[:, leg]
-        taylor: FloatArray = parameters[self._rows.expansion]
-        size = float(np.linalg.norm(chain.foot_m - chain.anchors_m[0]))
-        axes = [size * np.linspace(low, high, _FITTED_PER_AXIS) for low, high in _FITTED_BOX]
-        places = np.stack(np.meshgrid(*axes), axis=0).reshape(3, -1)
-        with np.errstate(invalid="ignore", over="ignore"):
-            angles = self.solve(places, parameters[:, None])
-        is_reached = np.isfinite(angles[:, 0])
-        if is_reached.sum() < 4 * _MONOMIALS:
-            return taylor
-        to_first = parameters[self._rows.to_first].reshape(3, 3)
-        # Relative to the size, so that all coefficients are of one order.
-        terms = _monomials(to_first @ places[:, is_reached] / size)
-        terms = np.moveaxis(terms, -1, 0).reshape(-1, 21)[:, :_MONOMIALS]
-        found, *_ = np.linalg.lstsq(terms, angles[is_reached], rcond=None)
-        degrees = np.repeat((1, 2, 2, 3, 3, 3, 3), 3)[:_MONOMIALS]
-        coefficients = np.zeros((21, self.most))
-        coefficients[:_MONOMIALS] = found / size ** degrees[:, None]
-        return np.moveaxis(coefficients.reshape(7, 3, -1), 1, 2).ravel()
-
-    def feet_m(self, turned: FloatArray) -> FloatArray:
-        """Return the centres of the feet in the body frame, (3, k, legs).
-
-        Args:
-            turned: angles of the joints from the standing pose, (most, k, legs).
-        """
-        parameters = self.parameters[:, None]
-        vectors = self._vectors(turned, self._stages(parameters))
-        in_first = vectors[:, -1]
-        to_first = parameters[self._rows.to_first].reshape(3, 3, *parameters.shape[1:])
-        # Its inverse is its transpose.
-        in_body = to_first[0] * in_first[0] + to_first[1] * in_first[1] + to_first[2] * in_first[2]
-        feet: FloatArray = in_body + self._origins_m
-        return feet
-
-    def solve(
-        self, offsets: FloatArray, parameters: FloatArray, near: float = _EXACT
-    ) -> FloatArray:
-        """Return the angles of joints that move feet from where they stand.
-
-        Args:
-            offsets: of the feet in the body frame, (3, ...) [m].
-            parameters: of each foot those of its leg, (rows, ...); broadcasts with `offsets`.
-            near: error from which one more round suffices, relative to the length of the leg.
-
-        Returns:
-            Angles from the standing pose, (..., most) [rad]; NaN where a foot is out of reach.
-        """
-        rows, each = self._rows, parameters.shape[1:]
-        to_first = parameters[rows.to_first].reshape(3, 3, *each)
-        moved = _product(to_first, offsets)
-        target = parameters[rows.foot] + moved
-        turned = _expanded(parameters[rows.expansion].reshape(7, self.most, 3, *each), moved)
-        squared_length = parameters[rows.length][0] * parameters[rows.length][0]
-        stages = self._stages(parameters)
-        is_there = np.zeros(offsets.shape[1:], bool)
-        for _ in range(_ROUNDS):
-            vectors = self._vectors(turned, stages)
-            error, columns = target - vectors[:, -1], vectors[:, :-1]
-            if self._is_any_flat:
-                weights = parameters[rows.weights].reshape(3, 3, *each)
-                error, columns = _product(weights, error), _product(weights[:, :, None], columns)
-            squared = error * error
-            missing = squared[0] + squared[1] + squared[2]
-            damping = _DAMPING * missing + _LEAST_DAMPING * squared_length
-            change = _damped_step(columns, error, damping)
-            turned += np.where(is_there, 0.0, change)
-            is_there |= missing <= near * near * squared_length
-            if self._is_any_flat:
-                rests = sum(change[joint] * change[joint] for joint in range(self.most))
-                is_flat = parameters[rows.is_flat][0] > 0
-                is_there |= is_flat & (rests <= _RESTS * near * _RESTS * near)
-            if is_there.all():
-                break
-        if not is_there.all() or self._is_any_flat:
-            is_reached = self._is_reached(turned, target, parameters, is_there)
-            turned = np.where(is_reached, turned, np.nan)
-        return np.ascontiguousarray(np.moveaxis(turned, 0, -1))
-
-    def _is_reached(
-        self, turned: FloatArray, target: FloatArray, parameters: FloatArray, is_there: FloatArray
-    ) -> FloatArray:
-        if not self._is_any_flat:
-            return is_there
-        rows, each = self._rows, parameters.shape[1:]
-        error = target - self._vectors(turned, self._stages(parameters))[:, -1]
-        to_first = parameters[rows.to_first].reshape(3, 3, *each)
-        height = to_first[0, 2] * error[0] + to_first[1, 2] * error[1] + to_first[2, 2] * error[2]
-        is_level = np.abs(height) <= _HEIGHT_ERROR * parameters[rows.length][0]
-        reached: FloatArray = np.where(parameters[rows.is_flat][0] > 0, is_level, is_there)
-        return reached
-
-    def _stages(self, parameters: FloatArray) -> FloatArray:
-        return parameters[self._rows.stages].reshape(3, 4, self.most, *parameters.shape[1:])
-
-    def _vectors(self, turned: FloatArray, stages: FloatArray) -> FloatArray:
-        """Return how each joint moves the foot, and where that is, in the first joint's frame.
-
-        Args:
-            turned: angles of the joints, (most, ...).
-            stages: (3, 4, most, ...).
-
-        Returns:
-            (3, most + 1, ...); the last is the foot.
-        """
-        cos, sin, most = np.cos(turned), np.sin(turned), self.most
-        # Of each joint: from the next one's frame to its own, then turned about its z axis.
-        turns = np.empty((3, 4, *turned.shape))
-        turns[0] = cos * stages[0] - sin * stages[1]
-        turns[1] = sin * stages[0] + cos * stages[1]
-        turns[2] = stages[2]
-        vectors = np.empty((3, most + 1, *turned.shape[1:]))
-        for joint in reversed(range(most)):
-            turn = turns[:, :, joint]
-            if joint == most - 1:
-                vectors[:, most] = turn[:, 3]
-            else:
-                outer = vectors[:, joint + 1 :]
-                outer[...] = (
-                    turn[:, 0, None] * outer[0]
-                    + turn[:, 1, None] * outer[1]
-                    + turn[:, 2, None] * outer[2]
-                )
-                outer[:, -1] += turn[:, 3]
-            np.negative(vectors[1, most], out=vectors[0, joint])
-            vectors[1, joint], vectors[2, joint] = vectors[0, most], 0.0
-        return vectors
-
-
-def _product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
-    """Return matrices times vectors, elementwise over the last axes, (3, ...)."""
-    product: FloatArray = (
-        matrix[:, 0] * vector[0] + matrix[:, 1] * vector[1] + matrix[:, 2] * vector[2]
-    )
-    return product
-
-
-def _expanded(expansion: FloatArray, moved: FloatArray) -> FloatArray:
-    """Return angles by polynomials of an offset, (most, ...).
-
-    Args:
-        expansion: coefficients, (7, most, 3, ...).
-        moved: the offset in the frame of the first joint, (3, ...).
-    """
-    terms = expansion * _monomials(moved)[:, None]
-    sums: FloatArray = terms[0]
-    for group in range(1, 7):
-        sums = sums + terms[group]
-    angles: FloatArray = sums[:, 0] + sums[:, 1] + sums[:, 2]
-    return angles
-
-
-def _monomials(moved: FloatArray) -> FloatArray:
-    """Return the monomials of three numbers up to degree 3, (7, 3, ...); the last two are 0.
-
-    They are x y z; xx yy zz; xy yz zx; xxx yyy zzz; xxy yyz zzx; xxz yyx zzy; xyz.
-    """
-    found = np.zeros((7, *moved.shape))
-    after = moved.take(_NEXT, 0)
-    found[0] = moved
-    squares = np.multiply(moved, moved, out=found[1])
-    np.multiply(moved, after, out=found[2])
-    np.multiply(squares, moved, out=found[3])
-    np.multiply(squares, after, out=found[4])
-    np.multiply(squares, moved.take(_LAST, 0), out=found[5])
-    np.multiply(found[2, 0], moved[2], out=found[6, 0])
-    return found
-
-
-def _damped_step(columns: FloatArray, error: FloatArray, damping: FloatArray) -> FloatArray:
-    """Return Jᵀ (J Jᵀ + damping)⁻¹ error, (most, n), by the cofactors of the symmetric matrix.
-
-    Args:
-        columns: J, (3, most, n).
-        error: (3, n).
-        damping: (n,).
-    """
-    diagonals, others = columns * columns, columns * columns.take(_NEXT, 0)
-    diagonal, other = diagonals[:, 0] + damping, others[:, 0]  # xx yy zz; xy yz zx
-    for joint in range(1, columns.shape[1]):
-        diagonal, other = diagonal + diagonals[:, joint], other + others[:, joint]
-    next_diagonal, last_diagonal = diagonal.take(_NEXT, 0), diagonal.take(_LAST, 0)
-    next_other, last_other = other.take(_NEXT, 0), other.take(_LAST, 0)
-    cofactors = next_diagonal * last_diagonal - next_other * next_other
-    mixed = next_other * last_other - other * last_diagonal
-    determinant = diagonal[0] * cofactors[0] + other[0] * mixed[0] + other[2] * mixed[2]
-    solved = (
-        cofactors * error
-        + mixed * error.take(_NEXT, 0)
-        + mixed.take(_LAST, 0) * error.take(_LAST, 0)
-    )
-    solved = solved / determinant
-    parts = columns * solved[:, None]
-    step: FloatArray = parts[0] + parts[1] + parts[2]
-    return step
-
-
-def _parameters(chain: Chain, most: int) -> FloatArray:
-    """Return what `ChainSolver` needs of a leg, in the order of `_Rows`."""
-    count = len(chain.axes)
-    frames = [_frame_about(axis) for axis in chain.axes]  # columns are the axes of each joint
-    origins = [*chain.anchors_m, chain.foot_m]
-    stages = np.zeros((3, 4, most))
-    for joint in range(most):
-        stages[:, :3, joint] = np.eye(3)
-        if joint < count:
-            if joint + 1 < count:
-                stages[:, :3, joint] = frames[joint].T @ frames[joint + 1]
-            stages[:, 3, joint] = frames[joint].T @ (origins[joint + 1] - origins[joint])
-    to_first = frames[0].T
-    arms = chain.foot_m - chain.anchors_m
-    columns = np.cross(chain.axes, arms)  # (joints, 3), in the body frame
-    length = float(np.linalg.norm(np.diff(origins, axis=0), axis=1).sum())
-    singular = np.linalg.svd(columns.T, compute_uv=False)
-    is_flat = count < 3 or singular[2] < _FLAT * singular[0]
-    weights = np.diag((1.0, 1.0, _HEIGHT_COUNTS if is_flat else 1.0)) @ to_first.T
-    return np.concatenate(
-        (
-            to_first.ravel(),
-            stages.ravel(),
-            _expansion(chain, columns @ to_first.T, to_first, most, is_flat=is_flat).ravel(),
-            to_first @ (chain.foot_m - origins[0]),
-            [length],
-            weights.ravel(),
-            [float(is_flat)],
-        )
-    )
-
-
-def _expansion(
-    chain: Chain, columns: FloatArray, to_first: FloatArray, most: int, *, is_flat: bool
-) -> FloatArray:
-    """Return the second-order expansion of the inverse about the standing pose, (7, most, 3).
-
-    J q + ½ H(q, q) = u is solved by q = A u − ½ A H(A u, A u), A the pseudoinverse of J. A foot
-    that moves in a surface has none: it begins where it stands.
-    """
-    expansion = np.zeros((7, most, 3))
-    if is_flat:
-        return expansion
-    count = len(columns)
-    inverse = np.linalg.pinv(columns.T)  # (joints, 3)
-    axes = chain.axes @ to_first.T
-    bend = np.empty((count, count, 3))
-    for one in range(count):
-        for other in range(count):
-            bend[one, other] = np.cross(axes[min(one, other)], columns[max(one, other)])
-    second = -0.5 * np.einsum("jc,abc,ax,by->jxy", inverse, bend, inverse, inverse)
-    expansion[0, :count] = inverse
-    for axis in range(3):
-        after = (axis + 1) % 3
-        expansion[1, :count, axis] = second[:, axis, axis]
-        expansion[2, :count, axis] = second[:, axis, after] + second[:, after, axis]
-    return expansion
-
-
-def _frame_about(axis: FloatArray) -> FloatArray:
-    """Return a rotation whose z axis is a unit vector, (3, 3)."""
-    aside = np.eye(3)[int(np.argmin(np.abs(axis)))]
-    x = np.cross(aside, axis)
-    x /= np.linalg.norm(x)
-    return np.stack((x, np.cross(axis, x), axis), axis=1)
 
 
 @lru_cache(maxsize=64)

@@ -21,7 +21,7 @@ class Chain(NamedTuple):
     """Centre of the foot, (3,)."""
 
 
-class Frame(NamedTuple):
+class LinkFrame(NamedTuple):
     """The frame of a link in the body frame: its rotation (3, 3) and its origin (3,) [m]."""
 
     rotation: FloatArray
@@ -39,7 +39,7 @@ def home_angles(model: RobotModel) -> dict[int, list[float]]:
     return {leg: [joint.home_rad for joint in model.joints_of(leg)] for leg in legs}
 
 
-def link_frames(model: RobotModel, angles: Mapping[int, Sequence[float]]) -> list[Frame]:
+def link_frames(model: RobotModel, angles: Mapping[int, Sequence[float]]) -> list[LinkFrame]:
     """Return the frame of each link.
 
     Args:
@@ -47,16 +47,16 @@ def link_frames(model: RobotModel, angles: Mapping[int, Sequence[float]]) -> lis
         angles: of the joints, by leg from 1 [rad].
     """
     left = {leg: list(of_leg) for leg, of_leg in angles.items()}
-    frames: list[Frame] = []
+    frames: list[LinkFrame] = []
     for link in model.links:
-        frame = Frame(quaternion_matrix(link.wxyz), np.array(link.at_m, float))
+        frame = LinkFrame(quaternion_matrix(link.wxyz), np.array(link.at_m, float))
         if link.parent >= 0:
             parent = frames[link.parent]
-            frame = Frame(parent.rotation @ frame.rotation, parent.point(frame.origin_m))
+            frame = LinkFrame(parent.rotation @ frame.rotation, parent.point(frame.origin_m))
         if link.joint is not None:
             turn = rotation_about(np.array(link.joint.axis, float), left[link.leg].pop(0))
             anchor = np.array(link.joint.anchor_m, float)
-            frame = Frame(frame.rotation @ turn, frame.point(anchor - turn @ anchor))
+            frame = LinkFrame(frame.rotation @ turn, frame.point(anchor - turn @ anchor))
         frames.append(frame)
     return frames
 

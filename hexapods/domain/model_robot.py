@@ -9,10 +9,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from hexapods.domain.body import LegMount, Robot, Servo
+from hexapods.domain.body import LegMount, Robot, ServoStrength
 from hexapods.domain.model_geometry import (
     Chain,
-    Frame,
+    LinkFrame,
     home_angles,
     leg_chains,
     link_frames,
@@ -56,9 +56,9 @@ class ModelRobot(Robot):
 
     model: RobotModel = field(kw_only=True)
 
-    def servo_of(self, leg: int, joint: str) -> Servo:
+    def servo_of(self, leg: int, joint: str) -> ServoStrength:
         of_joint = next(one for one in self.model.joints_of(leg) if one.name == joint)
-        return Servo(
+        return ServoStrength(
             *(
                 getattr(of_joint, name) * (getattr(self, name) / largest)
                 for name, largest in zip(_SERVO, self._largest, strict=True)
@@ -146,7 +146,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
 
 
 def torso_half_size_m(
-    model: RobotModel, frames: Sequence[Frame], standing_m: float
+    model: RobotModel, frames: Sequence[LinkFrame], standing_m: float
 ) -> tuple[float, float, float]:
     """Return half the size of the box about the torso's centre that holds its geoms [m].
 
@@ -169,7 +169,7 @@ def torso_half_size_m(
     return max(x, 0.01), max(y, 0.01), max(min(z, _MOST_OF_HEIGHT * standing_m), 0.002)
 
 
-def geom_half_size_m(geom: ModelGeom, frame: Frame) -> Any:
+def geom_half_size_m(geom: ModelGeom, frame: LinkFrame) -> Any:
     """Return half the size of the box along the body's axes that holds a geom, (3,) [m]."""
     first, second, third = geom.size_m
     sizes = {

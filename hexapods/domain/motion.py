@@ -17,8 +17,9 @@ from hexapods.domain.robot import Robot
 from hexapods.domain.simulator import RECORDING_HZ
 from hexapods.domain.types import Action, FloatArray, IntArray
 
-_SWING_KNOTS, _SHIFT_KNOTS = 8, 8
-"""Places of a swing and of a shift for which costly inverse kinematics is solved."""
+_SWING_KNOTS, _SHIFT_KNOTS = 8, 5
+"""Places of a swing and of a shift for which costly inverse kinematics is solved: the angles
+between them are right to 0.2 mrad."""
 
 
 class StepPlan(NamedTuple):
@@ -54,9 +55,10 @@ class StepMotion:
         wanted = np.arange(total) if substeps is None else substeps
         swing, shift = _phases(robot, wanted)
         self._swing, swing = _knots(swing, _SWING_KNOTS, self.kinematics)
-        self._shift, shift = _knots(shift, _SHIFT_KNOTS, self.kinematics)
-        self._samples = _samples(robot, gait, self.kinematics, swing, shift)
-        self._counts = len(swing), len(shift)
+        # Feet move along a line in the shift, along which angles are smoother than in time.
+        self._shift, shares = _knots(ease(shift), _SHIFT_KNOTS, self.kinematics)
+        self._samples = _samples(robot, gait, self.kinematics, swing, shares)
+        self._counts = len(swing), len(shares)
 
     def plan(self, start: Feet, action: Action) -> StepPlan:
         """Plan a step from the feet's offsets, by the kinematic law."""
@@ -187,7 +189,7 @@ def _samples(
     gait: Gait,
     kinematics: FootKinematics,
     swing_times: FloatArray,
-    shift_times: FloatArray,
+    shift_shares: FloatArray,
 ) -> _Samples:
     """Sample the trajectory of a step: easing by half a cosine, lifting by half a sine.
 
@@ -196,14 +198,14 @@ def _samples(
         gait: for the groups.
         kinematics: of the feet under this gait.
         swing_times: phases of the swing, 0 to 1.
-        shift_times: phases of the shift, 0 to 1.
+        shift_shares: how far the feet have come in the shift, 0 to 1.
     """
     count = len(kinematics.legs)
     # In the samples of each group there is room for the legs of the largest; a smaller one repeats
     # some of its own there, which command nothing.
     all_legs, groups, size = np.arange(count), len(gait.groups), max(gait.sizes)
-    swing, shift = len(swing_times), len(shift_times)
-    swing_phase, shift_phase = np.repeat(swing_times, size), np.repeat(shift_times, count)
+    swing, shift = len(swing_times), len(shift_shares)
+    swing_phase, shift_share = np.repeat(swing_times, size), np.repeat(shift_shares, count)
     zeros = np.zeros(count)
     legs, order = [], []
     for group in gait.groups:
@@ -221,12 +223,12 @@ def _samples(
     return _Samples(
         kinematics.mirrored(np.array(gait.mirror, float))[..., sample_legs],
         np.stack([group_of + part * 2 * groups for part in range(4)]),
-        np.concatenate((zeros, ease(swing_phase), ease(shift_phase))),
+        np.concatenate((zeros, ease(swing_phase), shift_share)),
         np.concatenate(
             (
                 zeros,
                 robot.step_height_m * np.sin(np.pi * swing_phase),
-                np.zeros_like(shift_phase),
+                np.zeros_like(shift_share),
             )
         ),
         np.array(order),

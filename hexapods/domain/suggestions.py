@@ -1,32 +1,18 @@
-"""Gait and foot grid with which a robot from a file begins: they suit its legs."""
+"""The foot grid with which a robot from a file begins: it suits its legs."""
 
 from hexapods.domain.body import Robot
 from hexapods.domain.errors import Unreachable
-from hexapods.domain.gait import GaitSpec, gait_spec, resolve
+from hexapods.domain.gait import GaitSpec, resolve
 from hexapods.domain.grid import MAX_SIDE_M, MIN_SIDE_M, FootGrid
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.model_geometry import home_angles, leg_chains
 from hexapods.domain.model_robot import ModelRobot, leg_length_m
-from hexapods.domain.support import Support
 
-_BY_LEGS = {4: "trot", 6: "tripod"}
 _GRID_SHARE = 0.2
 """Side of the grid of robots that walk well, relative to the distance of foot and first joint."""
 _MARGIN = 1.25
 """How much larger than its grid a leg's reach is."""
 _SMALLER = 0.8
-
-
-def usual_gait(robot: Robot) -> str | GaitSpec:
-    """Return a gait for a robot by its number of legs, else one with which it stands.
-
-    Four legs trot and six walk as tripods, whether they stand meanwhile or not.
-    """
-    if len(robot.legs) in _BY_LEGS:
-        return _BY_LEGS[len(robot.legs)]
-    spec = gait_spec("one-by-one")
-    groups = Support(robot, resolve(spec, robot.azimuths_deg)).steadiest_groups()
-    return GaitSpec(spec.right_leg, spec.left_leg, groups=groups)
 
 
 def usual_grid_side_m(robot: Robot, gait: str | GaitSpec) -> float:

@@ -17,7 +17,7 @@ from hexapods.domain.robot_model import (
     RobotModel,
 )
 from hexapods.domain.types import FloatArray
-from hexapods.imports.chain import Chain
+from hexapods.imports.chain import LegChain
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import Compiled
 from hexapods.imports.directions import find_forward, find_gait, numbered
@@ -26,8 +26,14 @@ from hexapods.imports.imported import FileFormat, ImportedLeg, ImportedRobot
 from hexapods.imports.masses import Mass, find_masses
 from hexapods.imports.notes import Notes, quoted
 from hexapods.imports.posed import Posed, resting_pose
-from hexapods.imports.servos import Servo, angle_limits, find_servos, guessed_torque, limits_around
-from hexapods.imports.shapes import Shape, drop_touching, link_shapes, torso_shapes
+from hexapods.imports.servos import (
+    FoundServo,
+    angle_limits,
+    find_servos,
+    guessed_torque,
+    limits_around,
+)
+from hexapods.imports.shapes import GroundShape, drop_touching, link_shapes, torso_shapes
 from hexapods.imports.skeleton import FoundLeg, find_skeleton
 from hexapods.imports.stance import Angles, Legged, find_stance, reaches_grid
 
@@ -35,12 +41,12 @@ _UNLIMITED = (-np.pi, np.pi)
 _LEAST_LEG_M, _MOST_LEG_M = 0.01, 5.0
 _SAME_PLACE_M = 1e-3
 _PLAIN_WORDS = frozenset({"", "joint", "jnt", "link", "leg", "j", "motor", "servo"})
-_MAX_JOINT_NAME = 24
+_MAX_JOINT_NAME, _MAX_KEYFRAMES = 24, 50
 Names = list[tuple[str, ...]]
 
 
 @dataclass(frozen=True)
-class Origin:
+class FileOrigin:
     """Where a robot comes from.
 
     Attributes:
@@ -54,7 +60,7 @@ class Origin:
     file: str | None
 
 
-def build(compiled: Compiled, origin: Origin, choices: Choices, notes: Notes) -> ImportedRobot:
+def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes) -> ImportedRobot:
     """Make a robot of a compiled file.
 
     Raises:
@@ -72,9 +78,9 @@ def build(compiled: Compiled, origin: Origin, choices: Choices, notes: Notes) ->
 
 
 def _keyframes(model: mujoco.MjModel) -> dict[str, FloatArray]:
-    """Return `qpos` of each keyframe that is finite, by name."""
+    """Return `qpos` of each keyframe that is finite, by name; of very many the first."""
     found = {}
-    for key in range(model.nkey):
+    for key in range(min(model.nkey, _MAX_KEYFRAMES)):
         qpos = np.array(model.key_qpos[key])
         if np.isfinite(qpos).all():
             found[model.key(key).name or f"keyframe {key + 1}"] = qpos
@@ -111,7 +117,7 @@ class _Builder:
         self,
         posed: Posed,
         keyframes: Mapping[str, FloatArray],
-        origin: Origin,
+        origin: FileOrigin,
         choices: Choices,
         notes: Notes,
     ) -> None:
@@ -165,9 +171,9 @@ class _Builder:
             repairs=tuple(self._notes.repairs),
         )
 
-    def _chain(self, leg: FoundLeg) -> Chain:
+    def _chain(self, leg: FoundLeg) -> LegChain:
         limits = [self._limits[joint] or _UNLIMITED for joint in leg.joints]
-        return Chain(
+        return LegChain(
             np.array([self._posed.axis(joint) for joint in leg.joints]),
             np.array([self._posed.anchor(joint) for joint in leg.joints]),
             self._posed.foot(leg),
@@ -247,7 +253,7 @@ class _Builder:
         self,
         names: Mapping[int | None, str],
         masses: Mapping[int | None, Mass],
-        servos: Mapping[int, Servo],
+        servos: Mapping[int, FoundServo],
         meshes: Mapping[int | None, ModelMesh],
         home: Angles,
     ) -> RobotModel:
@@ -280,7 +286,7 @@ class _Builder:
         return RobotModel(tuple(links), tuple(feet))
 
     def _joint(
-        self, joint: int, name: str, axis: FloatArray, home_rad: float, servo: Servo
+        self, joint: int, name: str, axis: FloatArray, home_rad: float, servo: FoundServo
     ) -> ModelJoint:
         low, high = self._limits[joint] or limits_around(home_rad)
         return ModelJoint(
@@ -296,7 +302,9 @@ class _Builder:
             servo.damping,
         )
 
-    def _shapes_of(self, leg: FoundLeg, chain: Chain, angles: FloatArray) -> list[list[Shape]]:
+    def _shapes_of(
+        self, leg: FoundLeg, chain: LegChain, angles: FloatArray
+    ) -> list[list[GroundShape]]:
         """Return the shapes of each link of a leg that touch nothing at home."""
         foot = self._posed.foot(leg), leg.foot.radius_m
         ground_m = float(chain.feet(angles[None])[0, 2]) - leg.foot.radius_m

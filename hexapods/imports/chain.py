@@ -13,7 +13,7 @@ PRECISION = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Chain:
+class LegChain:
     """A leg in the body frame, all of its angles 0.
 
     Attributes:

@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import tempfile
+import threading
 import time
 import warnings
 from collections.abc import Callable
@@ -30,16 +31,18 @@ from hexapods.processes import Child, SetUp
 _SET_UP = SetUp(name="robot import", niceness=5)
 _MAX_ANSWER_BYTES = 16 << 20
 _MAX_ERROR = 1000
-_START_S = 30.0
+_START_S = 60.0
 """Time in which the child imports what it needs, where it is no fork of a process that has."""
 _CHECK_EVERY_S = 0.05
 _OPEN_FILES = 64
 _READY = b"ready"
+_TURNS = threading.BoundedSemaphore(2)
+"""Held while a file is read; others wait, since each may take much memory."""
 _logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class Limits:
+class ReadingLimits:
     """What reading a file may take.
 
     Attributes:
@@ -49,18 +52,18 @@ class Limits:
     """
 
     seconds: float = 5.0
-    clock_seconds: float = 15.0
+    clock_seconds: float = 30.0
     memory_bytes: int = 512 << 20
 
 
-LIMITS = Limits()
+LIMITS = ReadingLimits()
 
 
 def read_robot_file(
     data: bytes,
     file_name: str | None = None,
     choices: Choices = AS_FOUND,
-    limits: Limits = LIMITS,
+    limits: ReadingLimits = LIMITS,
 ) -> ImportedRobot:
     """Read a robot from an MJCF or URDF file, alone or in a zip with meshes.
 
@@ -78,7 +81,7 @@ def read_robot_file(
         raise DamagedFile(
             f"the file has {len(data):,} bytes; a robot has at most {MAX_UPLOAD_BYTES:,}"
         )
-    with tempfile.TemporaryDirectory(prefix="robot-import-") as folder:
+    with _TURNS, tempfile.TemporaryDirectory(prefix="robot-import-") as folder:
         answer = _ask(
             {
                 "folder": folder,
@@ -93,7 +96,7 @@ def read_robot_file(
     return _imported(answer)
 
 
-def _ask(head: dict[str, Any], data: bytes, limits: Limits) -> bytes:
+def _ask(head: dict[str, Any], data: bytes, limits: ReadingLimits) -> bytes:
     """Return the answer of a child that reads the file.
 
     Raises:
@@ -118,7 +121,7 @@ def _ask(head: dict[str, Any], data: bytes, limits: Limits) -> bytes:
         child.pipe.close()
 
 
-def _wait(child: Child, seconds: float, limits: Limits, what: str) -> None:
+def _wait(child: Child, seconds: float, limits: ReadingLimits, what: str) -> None:
     """Wait until the child has sent something.
 
     Raises:
@@ -136,7 +139,7 @@ def _wait(child: Child, seconds: float, limits: Limits, what: str) -> None:
         raise EOFError
 
 
-def _why_it_ended(code: int | None, limits: Limits) -> str:
+def _why_it_ended(code: int | None, limits: ReadingLimits) -> str:
     if sys.platform != "win32" and code in (-signal.SIGXCPU, -signal.SIGKILL):
         return f"reading it takes longer than {limits.seconds:g} s: simplify its meshes"
     return (

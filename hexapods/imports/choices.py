@@ -11,6 +11,7 @@ from hexapods.domain.records import Record
 
 MAX_NAMES = 100
 NameInFile = Annotated[str, MinLen(1), MaxLen(200)]
+Direction = Annotated[str, MinLen(1), MaxLen(20)]
 Angle = Annotated[float, Ge(-7.0), Le(7.0)]
 
 
@@ -34,7 +35,7 @@ class Choices(Record):
     """
 
     file: NameInFile | None = None
-    forward: str | Annotated[float, Ge(-360.0), Le(360.0)] | None = None
+    forward: Direction | Annotated[float, Ge(-360.0), Le(360.0)] | None = None
     feet: Annotated[tuple[NameInFile, ...], MinLen(MIN_LEGS), MaxLen(MAX_LEGS)] | None = None
     keyframe: NameInFile | None = None
     home_rad: Annotated[dict[NameInFile, Angle], MaxLen(MAX_NAMES)] | None = None

@@ -77,6 +77,7 @@ def compile_document(
     except ValueError as error:
         raise _refused(error, document) from error
     _mend_inertias(spec, notes)
+    _spare_volumes(spec)
     collides = [geom.contype != 0 or geom.conaffinity != 0 for geom in spec.geoms]
     named = frozenset(geom.name for geom in spec.geoms if geom.name)
     _name_all(spec)
@@ -114,12 +115,7 @@ def _repaired(spec: mujoco.MjSpec, problem: str, notes: Notes) -> bool:
         notes.repair("inertias that no body can have (A + B < C) were replaced by their mean")
         return True
     if "mesh" in problem and any(word in problem for word in ("volume", "orient", "inertia")):
-        changed = [one for one in spec.meshes if one.inertia != _CONVEX]
-        for mesh in changed:
-            mesh.inertia = _CONVEX
-        if changed:
-            notes.repair("meshes that are not closed count as their convex hulls for the mass")
-        return bool(changed)
+        return _weigh_as_shells(spec, notes)
     if "key" in problem and "invalid" in problem and spec.keys:
         for key in list(spec.keys):
             spec.delete(key)
@@ -128,7 +124,28 @@ def _repaired(spec: mujoco.MjSpec, problem: str, notes: Notes) -> bool:
     return False
 
 
-_CONVEX = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+_SHELL = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+
+
+def _spare_volumes(spec: mujoco.MjSpec) -> None:
+    """Let MuJoCo compute no volume of meshes on which no mass depends: they may be open or flat."""
+    if int(spec.compiler.inertiafromgeom) == int(mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE):
+        return
+    weighed = {geom.meshname for geom in spec.geoms if not geom.parent.explicitinertial}
+    if int(spec.compiler.inertiafromgeom) == int(mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE):
+        weighed = set()
+    for mesh in spec.meshes:
+        if mesh.name not in weighed:
+            mesh.inertia = _SHELL
+
+
+def _weigh_as_shells(spec: mujoco.MjSpec, notes: Notes) -> bool:
+    changed = [one for one in spec.meshes if one.inertia != _SHELL]
+    for mesh in changed:
+        mesh.inertia = _SHELL
+    if changed:
+        notes.repair("some meshes enclose no volume: for the mass meshes count as thin shells")
+    return bool(changed)
 
 
 def _mend_inertias(spec: mujoco.MjSpec, notes: Notes) -> None:

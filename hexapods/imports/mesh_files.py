@@ -1,7 +1,7 @@
 """Mesh files as MuJoCo reads them: binary STL and OBJ, not too large.
 
-Text STL becomes binary, and an STL with very many triangles is simplified, both before MuJoCo sees
-them. Other formats cannot be read.
+Text STL and COLLADA become binary STL, and very many triangles are simplified, all before MuJoCo
+sees them. Other formats cannot be read.
 """
 
 import posixpath
@@ -12,6 +12,7 @@ import numpy as np
 from hexapods.domain.errors import DamagedFile
 from hexapods.domain.text import counted
 from hexapods.domain.types import FloatArray
+from hexapods.imports.collada import read_collada
 from hexapods.imports.decimation import cluster
 from hexapods.imports.notes import Notes, listed, quoted
 from hexapods.imports.upload import MAX_MESH_BYTES, Upload
@@ -19,7 +20,9 @@ from hexapods.imports.upload import MAX_MESH_BYTES, Upload
 MAX_MESHES = 300
 MAX_ALL_BYTES = 96 << 20
 """Of all meshes that are used."""
-FORMATS = (".stl", ".obj")
+FORMATS = (".stl", ".obj", ".dae")
+_MOST_BYTES = {".dae": 16 << 20}
+"""Numbers as text take several times as much memory."""
 _SIMPLIFIED_ABOVE = 50_000
 """Triangles of an STL; MuJoCo reads at most 200,000."""
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -68,7 +71,7 @@ class MeshFiles:
         """Tell which meshes are missing or cannot be read."""
         for names, what in (
             (self._missing, "missing from the upload (put them into a zip with the document)"),
-            (self._unreadable, f"left out, since only {' and '.join(FORMATS)} are read"),
+            (self._unreadable, f"left out, since only {', '.join(FORMATS)} are read"),
         ):
             kinds = sorted(set(names))
             if kinds:
@@ -87,12 +90,12 @@ class MeshFiles:
         content = self._content(path, ending)
         if content is None:
             return None
-        name = f"mesh{len(self.assets)}{ending}"
+        name = f"mesh{len(self.assets)}{'.obj' if ending == '.obj' else '.stl'}"
         self.assets[name] = content
         return name
 
     def _content(self, path: str, ending: str) -> bytes | None:
-        content = self._upload.read(path, MAX_MESH_BYTES)
+        content = self._upload.read(path, _MOST_BYTES.get(ending, MAX_MESH_BYTES))
         self._bytes += len(content)
         if self._bytes > MAX_ALL_BYTES:
             raise DamagedFile(f"its meshes have more than {MAX_ALL_BYTES:,} bytes together")
@@ -101,7 +104,16 @@ class MeshFiles:
                 f"{quoted(path)} is a pointer of Git LFS, not the mesh: `git lfs pull` gets it"
             )
             return None
-        return content if ending == ".obj" else _plain_stl(content, path, self._notes)
+        if ending == ".obj":
+            return content
+        if ending == ".stl":
+            return _plain_stl(content, path, self._notes)
+        try:
+            corners = read_collada(content, posixpath.basename(path))
+        except DamagedFile as error:
+            self._notes.repair(f"a mesh was left out: {error}")
+            return None
+        return _simplified(corners, path, self._notes)
 
 
 def _plain_stl(content: bytes, path: str, notes: Notes) -> bytes:
@@ -110,8 +122,15 @@ def _plain_stl(content: bytes, path: str, notes: Notes) -> bytes:
     is_text = corners is None
     if corners is None:
         corners = _text_corners(content, path)
+    if len(corners) <= _SIMPLIFIED_ABOVE and not is_text:
+        return content
+    return _simplified(corners, path, notes)
+
+
+def _simplified(corners: FloatArray, path: str, notes: Notes) -> bytes:
+    """Return triangles as binary STL, fewer if they are very many."""
     if len(corners) <= _SIMPLIFIED_ABOVE:
-        return _as_stl(corners) if is_text else content
+        return _as_stl(corners)
     if not np.isfinite(corners).all():
         raise DamagedFile(f"mesh {quoted(path)} has a number that is not finite")
     numbers = np.arange(3 * len(corners)).reshape(-1, 3)

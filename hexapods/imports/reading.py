@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.text import MAX_NAME, visible
-from hexapods.imports.building import Origin, build
+from hexapods.imports.building import FileOrigin, build
 from hexapods.imports.choices import Choices
 from hexapods.imports.compiling import compile_document
 from hexapods.imports.imported import ImportedRobot
@@ -41,7 +41,7 @@ def read_in_this_process(data: bytes, file_name: str, choices: Choices) -> Impor
     compiled = compile_document(document, meshes.assets, meshes.undrawn, notes)
     named = root.attributes.get("model" if root.tag == "mujoco" else "name", "")
     file_format = "mjcf" if root.tag == "mujoco" else "urdf"
-    origin = Origin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]
+    origin = FileOrigin(_name(named, path), file_format, path if upload.is_zip else None)  # type: ignore[arg-type]
     return build(compiled, origin, choices, notes)
 
 

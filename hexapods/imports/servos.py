@@ -30,7 +30,7 @@ _GUESSED_RAD = np.pi / 2
 
 
 @dataclass(frozen=True)
-class Servo:
+class FoundServo:
     """A servo; as in `ModelJoint`."""
 
     torque_nm: float
@@ -64,7 +64,7 @@ def guessed_torque(mass_kg: float, leg_length_m: float, legs: int) -> float:
 
 def find_servos(
     compiled: Compiled, joints: Sequence[int], guess_nm: float, choices: Choices, notes: Notes
-) -> dict[int, Servo]:
+) -> dict[int, FoundServo]:
     """Return the servo of each joint.
 
     Args:
@@ -92,7 +92,7 @@ def find_servos(
         dof = int(compiled.model.jnt_dofadr[joint])
         armature = float(compiled.model.dof_armature[dof])
         raised += armature < _ARMATURE_SHARE * torque
-        servos[joint] = Servo(
+        servos[joint] = FoundServo(
             torque,
             kp,
             choices.servo_kv or _KV_SHARE * kp,

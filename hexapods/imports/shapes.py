@@ -16,7 +16,7 @@ _LEAST_M = 0.001
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class GroundShape:
     """A simple shape in the body frame; as `ModelGeom`.
 
     Attributes:
@@ -58,7 +58,7 @@ def quaternion(rotation: FloatArray) -> tuple[float, float, float, float]:
     return w, x, y, z
 
 
-def torso_shapes(posed: Posed, span_m: FloatArray) -> list[Shape]:
+def torso_shapes(posed: Posed, span_m: FloatArray) -> list[GroundShape]:
     """Return the torso's own shapes if they are simple and few, or a box around them.
 
     Args:
@@ -73,13 +73,15 @@ def torso_shapes(posed: Posed, span_m: FloatArray) -> list[Shape]:
     points = [posed.surface(geom)[0] for geom in geoms]
     together = np.concatenate([*points, np.empty((0, 3))])
     if len(together) == 0:
-        return [Shape("box", span_m, np.zeros(3), np.eye(3))]
+        return [GroundShape("box", span_m, np.zeros(3), np.eye(3))]
     low, high = together.min(axis=0), together.max(axis=0)
     half = np.maximum((high - low) / 2, _LEAST_M)
-    return [Shape("box", half, (low + high) / 2, np.eye(3))]
+    return [GroundShape("box", half, (low + high) / 2, np.eye(3))]
 
 
-def link_shapes(posed: Posed, joint: int, foot: tuple[FloatArray, float] | None) -> list[Shape]:
+def link_shapes(
+    posed: Posed, joint: int, foot: tuple[FloatArray, float] | None
+) -> list[GroundShape]:
     """Return the shapes of a link, without the ball of its foot.
 
     Args:
@@ -99,8 +101,8 @@ def link_shapes(posed: Posed, joint: int, foot: tuple[FloatArray, float] | None)
 
 
 def drop_touching(
-    shapes: Sequence[Shape], lowest_m: Sequence[float], ground_m: float, notes: Notes
-) -> list[Shape]:
+    shapes: Sequence[GroundShape], lowest_m: Sequence[float], ground_m: float, notes: Notes
+) -> list[GroundShape]:
     """Leave out shapes that would touch the ground at home, where only feet do."""
     kept = [one for one, low in zip(shapes, lowest_m, strict=True) if low > ground_m]
     if len(kept) < len(shapes):
@@ -125,7 +127,7 @@ def _touching(posed: Posed, geoms: Sequence[int]) -> list[int]:
     return colliding or list(geoms)
 
 
-def _own(posed: Posed, geom: int) -> Shape | None:
+def _own(posed: Posed, geom: int) -> GroundShape | None:
     """Return a geom that is simple already; None for a mesh."""
     kind = posed.kind(geom)
     if kind == "mesh":
@@ -133,10 +135,10 @@ def _own(posed: Posed, geom: int) -> Shape | None:
     size = np.maximum(posed.compiled.model.geom_size[geom], 0)
     used = {"sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3, "box": 3}[kind]
     plain = np.array([*np.maximum(size[:used], _LEAST_M), 0, 0])[:3]
-    return Shape(kind, plain, posed.geom_center(geom), posed.geom_rotation(geom))  # type: ignore[arg-type]  # of the primitives
+    return GroundShape(kind, plain, posed.geom_center(geom), posed.geom_rotation(geom))  # type: ignore[arg-type]  # of the primitives
 
 
-def _around(posed: Posed, geom: int) -> Shape | None:
+def _around(posed: Posed, geom: int) -> GroundShape | None:
     """Return a capsule along a mesh."""
     box = np.array(posed.compiled.model.geom_aabb[geom])
     center, half = box[:3], box[3:]
@@ -148,9 +150,9 @@ def _around(posed: Posed, geom: int) -> Shape | None:
     # The axis of a capsule is z; a cyclic exchange of the axes keeps them right-handed.
     turned = rotation[:, [(long + 1) % 3, (long + 2) % 3, long]]
     size = np.array([radius, max(float(half[long]) - radius, _LEAST_M), 0])
-    return Shape("capsule", size, posed.geom_center(geom) + rotation @ center, turned)
+    return GroundShape("capsule", size, posed.geom_center(geom) + rotation @ center, turned)
 
 
-def _is_foot(shape: Shape, center: FloatArray, radius_m: float) -> bool:
+def _is_foot(shape: GroundShape, center: FloatArray, radius_m: float) -> bool:
     near = float(np.linalg.norm(shape.at_m - center)) < 0.5 * radius_m
     return near and shape.kind == "sphere"

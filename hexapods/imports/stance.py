@@ -11,7 +11,7 @@ import numpy as np
 
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import FloatArray
-from hexapods.imports.chain import PRECISION, Chain
+from hexapods.imports.chain import PRECISION, LegChain
 from hexapods.imports.choices import Choices
 from hexapods.imports.notes import Notes, listed, quoted
 
@@ -53,7 +53,7 @@ class Legged:
         at_rest: angles with which the file begins.
     """
 
-    chains: Sequence[Chain]
+    chains: Sequence[LegChain]
     radii_m: Sequence[float]
     names: Sequence[Sequence[str]]
     torso_bottom_m: float
@@ -88,7 +88,7 @@ def reaches_grid(legged: Legged, angles: Angles) -> bool:
     return not any(_unreached(chain, one) for chain, one in _pairs(legged, angles))
 
 
-def _pairs(legged: Legged, angles: Angles) -> list[tuple[Chain, FloatArray]]:
+def _pairs(legged: Legged, angles: Angles) -> list[tuple[LegChain, FloatArray]]:
     return list(zip(legged.chains, angles, strict=True))
 
 
@@ -144,7 +144,7 @@ def _problem(legged: Legged, angles: Angles) -> str | None:
     return None
 
 
-def _unreached(chain: Chain, angles: FloatArray) -> bool:
+def _unreached(chain: LegChain, angles: FloatArray) -> bool:
     """Whether a foot does not reach its box; with two joints it reaches no box, only its height."""
     if len(angles) < _FOLLOWING_JOINTS:
         return False
@@ -233,7 +233,7 @@ def _posture(legged: Legged, number: int) -> Angles:
     return found
 
 
-def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
+def _wanted(chain: LegChain, torso_bottom_m: float, number: int) -> FloatArray:
     """Return where a foot is to be from its mount, as shares of the leg's length, (3,).
 
     Well below, and out as the leg points at the angles 0.
@@ -257,7 +257,7 @@ def _wanted(chain: Chain, torso_bottom_m: float, number: int) -> FloatArray:
 
 
 def _best(
-    chain: Chain, wanted: FloatArray, like: FloatArray | None, rng: np.random.Generator
+    chain: LegChain, wanted: FloatArray, like: FloatArray | None, rng: np.random.Generator
 ) -> FloatArray:
     """Return the angles of least cost: many at random, then nearer and nearer to the best."""
     low, high = np.clip(chain.limits, -_WITHOUT_LIMIT_RAD, _WITHOUT_LIMIT_RAD)
@@ -273,7 +273,7 @@ def _best(
 
 
 def _costs(
-    chain: Chain, angles: FloatArray, wanted: FloatArray, like: FloatArray | None
+    chain: LegChain, angles: FloatArray, wanted: FloatArray, like: FloatArray | None
 ) -> FloatArray:
     """Return how bad a leg stands at some angles, (k,).
 

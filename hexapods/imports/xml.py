@@ -4,7 +4,7 @@ Entities, document types and processing of other files do not exist here: each i
 ignored by the parser. MuJoCo's own parser sees only what `Document.text` wrote.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
@@ -25,19 +25,21 @@ MAX_NAME = 200
 
 @dataclass(eq=False)
 class Element:
-    """An element of a document; text between tags is not kept.
+    """An element of a document.
 
     Attributes:
         tag: its name.
         line: its line in the document.
         attributes: by name.
         children: in order.
+        text: what is in it, of the tags whose text is kept.
     """
 
     tag: str
     line: int
     attributes: dict[str, str] = field(default_factory=dict)
     children: list["Element"] = field(default_factory=list)
+    text: str = ""
 
     def __iter__(self) -> Iterator["Element"]:
         return iter(self.children)
@@ -68,28 +70,33 @@ class Element:
         return f"<{quoted(self.tag)}>{f' {quoted(name)}' if name else ''} in line {self.line}"
 
 
-def read_xml(data: bytes, label: str) -> Element:
+def read_xml(data: bytes, label: str, texts: Collection[str] = ()) -> Element:
     """Parse a document.
 
     Args:
         data: the document.
         label: its name for messages.
+        texts: tags of elements whose text is kept.
 
     Raises:
         DamagedFile: if it is not well-formed, or exceeds a bound.
     """
-    return _Reader(label).read(data)
+    return _DocumentReader(label, texts).read(data)
 
 
-class _Reader:
-    def __init__(self, label: str) -> None:
-        self._label = quoted(label)
+class _DocumentReader:
+    def __init__(self, label: str, texts: Collection[str]) -> None:
+        self._label, self._texts = quoted(label), texts
+        self._parts: list[str] | None = None
         self._root: Element | None = None
         self._open: list[Element] = []
         self._count = 0
         self._parser = expat.ParserCreate()
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
+        if texts:
+            self._parser.buffer_text = True
+            self._parser.CharacterDataHandler = self._read_text
         self._parser.StartDoctypeDeclHandler = self._refuse_types
         self._parser.EntityDeclHandler = self._refuse_types
         self._parser.SetParamEntityParsing(expat.XML_PARAM_ENTITY_PARSING_NEVER)
@@ -136,9 +143,17 @@ class _Reader:
         else:
             self._root = element
         self._open.append(element)
+        self._parts = [] if tag in self._texts else None
+
+    def _read_text(self, text: str) -> None:
+        if self._parts is not None:
+            self._parts.append(text)
 
     def _end(self, _: str) -> None:
-        self._open.pop()
+        element = self._open.pop()
+        if self._parts is not None:
+            element.text = "".join(self._parts)
+            self._parts = None
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from hexapods.domain.body import Servo
+from hexapods.domain.body import ServoStrength
 from hexapods.domain.disturbances import (
     Disturbance,
     Friction,
@@ -119,7 +119,7 @@ def _stuck(stuck: Stuck, target: _Target) -> None:
     set_servo(servo, target.robot.servo_of(stuck.leg, stuck.joint))
 
 
-def set_servo(servo: mujoco.MjsActuator, gains: Servo) -> None:
+def set_servo(servo: mujoco.MjsActuator, gains: ServoStrength) -> None:
     """Give an actuator the gains and the torque of a position servo."""
     servo.gainprm[0] = gains.kp
     servo.biasprm[1:3] = -gains.kp, -gains.kv

@@ -39,7 +39,7 @@ export const eventsOf = (code) => addressOf(`${pathOf(code)}/events`);
 /** @type {(code: string) => Promise<Joined>} */
 export const joinRoom = (code) => call("POST", `${pathOf(code)}/participants`, {});
 /** @type {(code: string) => Promise<null>} */
-export const leaveRoom = (code) => call("DELETE", `${pathOf(code)}/participants/me`);
+export const leaveRoom = (code) => call("DELETE", `${pathOf(code)}/me`);
 /** @type {(code: string, card: number, value: unknown) => Promise<unknown>} */
 export const predict = (code, card, value) => call("POST", `${pathOf(code)}/predictions`, { card, value });
 /** Run what the card runs; a what-if is answered at once. */

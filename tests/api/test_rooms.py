@@ -314,6 +314,31 @@ def test_names_are_hidden_and_participants_approved(school: Class) -> None:
     refused(one.call("PATCH", path, json={"is_approved": True}), 403)
 
 
+def test_a_class_behind_one_address_may_ask_what_ifs(school: Class) -> None:
+    code = school.room({"title": "x", "cards": [LESSON["cards"][3]]})
+    pupils = [school.joined(code) for _ in range(3)]
+    for _ in range(12):
+        for pupil in pupils:
+            assert pupil.call("POST", f"/rooms/{code}/runs", json={}).status_code == 200
+    spectator = school.pupil()
+    assert (
+        spectator.call("POST", "/what-if", json={"gait": "tripod", "steps": 5}).status_code == 200
+    )
+
+
+def test_the_session_of_a_teacher_holds_in_the_room(school: Class) -> None:
+    code = school.room()
+    client = school.pupil().client
+    assert client.get(f"/?token={TOKEN}").status_code == 303
+    for prefix in ("", f"/r/{code}"):
+        assert client.get(f"{prefix}/api/v1/rooms/{code}").json()["role"] == "teacher"
+        answer = client.put(f"{prefix}/api/v1/rooms/{code}/card", json={"card": 1})
+        assert answer.status_code == 200
+    # Who has the token is teacher, whatever rooms this browser has joined.
+    assert client.post(f"/api/v1/rooms/{code}/participants", json={}).status_code == 201
+    assert client.get(f"/api/v1/rooms/{code}").json()["role"] == "teacher"
+
+
 def test_a_room_has_a_page_and_an_end(school: Class) -> None:
     code = school.room()
     client = school.pupil().client

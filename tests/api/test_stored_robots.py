@@ -1,7 +1,10 @@
 """Stored robots over REST: stored, chosen, renamed, hidden, deleted and taken elsewhere."""
 
+import contextlib
+import io
 import json
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -199,4 +202,21 @@ def test_the_archive_of_a_run_brings_its_robot_to_another_server(
     answer = other.call("POST", "/import", content=data)
     assert answer.status_code == 201, answer.text
     assert [one["id"] for one in other.get("/robots")["items"]] == [rex["id"]]
+    api.call("DELETE", f"/trainings/{run['id']}")
+
+
+def test_the_code_of_a_run_makes_its_robot_known_first(
+    api: Api, rex: dict[str, Any], tmp_path: Path
+) -> None:
+    run = api.finished(api.train(gait="trot", robot={"id": rex["id"]}))
+    code, file = api.get(f"/runs/{run['id']}/code"), f"robot-{rex['id']}.json"
+    download, stored, trained = code["command"].replace("\\\n", "").splitlines()
+    assert download.startswith(f"curl --fail --output {file} ")
+    assert stored == f"hexapods robots import {file} --name Rex"
+    assert rex["id"] in trained
+    (tmp_path / file).write_bytes(api.call("GET", f"/robots/{rex['id']}/file").content)
+    told = io.StringIO()
+    with contextlib.chdir(tmp_path), contextlib.redirect_stdout(told):
+        exec(compile(code["python"], "the program", "exec"), {"__name__": "__main__"})
+    assert run["result"]["q_table_sha256"] in told.getvalue()
     api.call("DELETE", f"/trainings/{run['id']}")

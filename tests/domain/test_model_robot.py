@@ -15,7 +15,7 @@ from hexapods.domain.model_robot import model_robot
 from hexapods.domain.posture import has_fallen
 from hexapods.domain.robot import PRESETS, Robot, changed_model
 from hexapods.domain.robot_model import ModelMesh, RobotModel
-from hexapods.domain.suggestions import usual_gait, usual_grid_side_m
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.domain.support import Support
 from hexapods.domain.tolerance import build_tolerance
 from hexapods.runs.config import WalkingProblem
@@ -91,9 +91,8 @@ def test_feet_of_other_heights_stand_on_one_plane() -> None:
         pytest.param(mixed_model(), "tripod", id="mixed"),
     ],
 )
-def test_it_begins_with_a_gait_and_a_grid_with_which_it_walks(model: RobotModel, gait: str) -> None:
+def test_it_begins_with_a_grid_on_which_it_walks(model: RobotModel, gait: str) -> None:
     made = model_robot(model, "own")
-    assert usual_gait(made) == gait
     side_m = usual_grid_side_m(made, gait)
     known = preview(WalkingProblem(gait=gait, robot=made, grid_side_m=side_m))
 

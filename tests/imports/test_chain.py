@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from hexapods.imports.chain import PRECISION, Chain
+from hexapods.imports.chain import PRECISION, LegChain
 
 
 @pytest.fixture
-def leg() -> Chain:
+def leg() -> LegChain:
     """Return a leg of a hexapod that stretches along x: coxa, femur and tibia."""
-    return Chain(
+    return LegChain(
         np.array([[0.0, 0, 1], [0, 1, 0], [0, 1, 0]]),
         np.array([[0.1, 0, 0], [0.15, 0, 0], [0.23, 0, 0]]),
         np.array([0.36, 0, 0]),
@@ -15,7 +15,7 @@ def leg() -> Chain:
     )
 
 
-def test_its_foot_goes_where_its_joints_turn_it(leg: Chain) -> None:
+def test_its_foot_goes_where_its_joints_turn_it(leg: LegChain) -> None:
     angles = np.array([[0, 0, 0], [np.pi / 2, 0, 0], [0, 0, np.pi / 2]])
 
     feet = leg.feet(angles)
@@ -24,7 +24,7 @@ def test_its_foot_goes_where_its_joints_turn_it(leg: Chain) -> None:
     assert feet == pytest.approx(np.array([[0.36, 0, 0], [0.1, 0.26, 0], [0.23, 0, -0.13]]))
 
 
-def test_its_derivatives_are_those_of_its_foot(leg: Chain) -> None:
+def test_its_derivatives_are_those_of_its_foot(leg: LegChain) -> None:
     angles = np.array([[0.2, -0.3, 1.0]])
     small = np.array([1e-4, -2e-4, 3e-4])
 
@@ -33,7 +33,7 @@ def test_its_derivatives_are_those_of_its_foot(leg: Chain) -> None:
     assert leg.jacobians(angles)[0] @ small == pytest.approx(moved[0], abs=1e-7)
 
 
-def test_angles_are_found_again(leg: Chain) -> None:
+def test_angles_are_found_again(leg: LegChain) -> None:
     rng = np.random.default_rng(0)
     start = np.array([0.0, -0.4, 1.4])
     targets = leg.feet(start + rng.uniform(-0.3, 0.3, (50, 3)))
@@ -46,7 +46,7 @@ def test_angles_are_found_again(leg: Chain) -> None:
     assert ((angles >= low) & (angles <= high)).all()
 
 
-def test_what_is_out_of_reach_is_told(leg: Chain) -> None:
+def test_what_is_out_of_reach_is_told(leg: LegChain) -> None:
     angles, off = leg.solve(np.array([[0.5, 0, 0], [0.2, 0, 0.3]]), np.array([0.0, -0.4, 1.4]))
 
     assert (off > PRECISION * leg.length_m).all()

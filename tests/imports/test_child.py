@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 from hexapods.domain.errors import DamagedFile, InvalidInput
-from hexapods.imports.child import Limits, read_robot_file
+from hexapods.imports.child import ReadingLimits, read_robot_file
 from hexapods.imports.choices import Choices
 from tests.imports.robots import HOME, box_triangles, bug, dog, read, stl, zipped
 
@@ -77,7 +77,7 @@ def test_what_takes_too_long_is_given_up(temporary: Path) -> None:
     began_s = time.monotonic()
 
     with pytest.raises(DamagedFile, match=r"longer than 0\.01 s"):
-        read_robot_file(bug().encode(), limits=Limits(clock_seconds=0.01))
+        read_robot_file(bug().encode(), limits=ReadingLimits(clock_seconds=0.01))
 
     assert time.monotonic() - began_s < 30
     assert children() == []
@@ -93,7 +93,7 @@ def test_what_takes_too_much_memory_is_given_up(temporary: Path) -> None:
     data = zipped({"bug.urdf": bug(torso=shapes), "a.stl": mesh, "b.stl": mesh})
 
     with pytest.raises(DamagedFile, match="more than 48 MB"):
-        read_robot_file(data, limits=Limits(memory_bytes=48 << 20))
+        read_robot_file(data, limits=ReadingLimits(memory_bytes=48 << 20))
 
     assert children() == []
     assert list(temporary.iterdir()) == []

@@ -154,12 +154,12 @@ def test_text_meshes_are_read() -> None:
 
 
 def test_missing_and_unreadable_meshes_are_told() -> None:
-    torso = "".join(MESH.format(file=f"package://bug/meshes/{name}") for name in ("a.stl", "b.dae"))
+    torso = "".join(MESH.format(file=f"package://bug/meshes/{name}") for name in ("a.stl", "b.3ds"))
 
-    robot = read(zipped({"bug.urdf": bug(torso=torso), "b.dae": "<COLLADA/>"}))
+    robot = read(zipped({"bug.urdf": bug(torso=torso), "b.3ds": "MM"}))
 
     assert told(robot.repairs, "1 mesh is missing from the upload")
-    assert told(robot.repairs, "1 mesh is left out, since only .stl and .obj are read")
+    assert told(robot.repairs, "1 mesh is left out, since only .stl, .obj, .dae are read")
 
 
 def test_a_link_of_which_a_mesh_is_missing_is_drawn_by_its_simple_shapes_too() -> None:

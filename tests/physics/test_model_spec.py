@@ -31,7 +31,7 @@ from hexapods.domain.kinematics import legs_of
 from hexapods.domain.model_robot import ModelRobot, model_robot
 from hexapods.domain.robot import PRESETS, Robot, changed_model
 from hexapods.domain.robot_model import RobotModel
-from hexapods.domain.suggestions import usual_gait, usual_grid_side_m
+from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.domain.tolerance import build_tolerance
 from hexapods.domain.types import Action
 from hexapods.domain.world import World
@@ -40,6 +40,7 @@ from hexapods.physics.mjcf import compile_model, compile_visual_model
 from hexapods.physics.mujoco_simulator import MujocoSimulator
 from tests.model_robots import (
     four_joint_model,
+    gait_of,
     mixed_model,
     model_of,
     quadruped_model,
@@ -51,7 +52,7 @@ AS_BUILT_IN = {"step_height_m": 0.03, "swing_s": 0.2, "shift_s": 0.12}
 
 
 def simulator_of(made: ModelRobot, *disturbances: Disturbance, **more: Any) -> MujocoSimulator:
-    gait = usual_gait(made)
+    gait = gait_of(made)
     grid = FootGrid(usual_grid_side_m(made, gait))
     world = World(disturbances)
     return MujocoSimulator(made, resolve(gait, made.azimuths_deg), grid, world=world, **more)
@@ -105,7 +106,7 @@ def test_it_walks_as_far_as_the_built_in_one(gait: str) -> None:
 )
 def test_robots_of_any_chains_walk(model: RobotModel, least_m: float) -> None:
     made = model_robot(model, "own")
-    gait = usual_gait(made)
+    gait = gait_of(made)
     side_m = usual_grid_side_m(made, gait)
     race = hx.race(["greedy", "linear-model"], gait=gait, robot=made, steps=30, grid_side_m=side_m)
     greedy, learner = race.recording

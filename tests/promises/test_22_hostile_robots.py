@@ -26,7 +26,7 @@ from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
 from tests.promises.length import at_length
 
 DAMAGED = at_length(40, 1000)
-USUAL_S, LONGEST_S = 5.0, at_length(60.0, 20.0)
+USUAL_S, LONGEST_S = 5.0, at_length(120.0, 40.0)
 """Most of them, and any one: on a busy machine a process gets its 5 s of the processor later."""
 SURPRISED = "cannot be understood"
 """What is said of an error that nobody thought of."""

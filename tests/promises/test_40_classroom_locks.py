@@ -17,6 +17,7 @@ from app.classroom.lessons import built_in
 from tests.browser.serving import Serving, serving
 from tests.promises.length import at_length
 from tests.promises.raw import Route, every_route, request_lines, send, status_of
+from tests.timeouts import LONG_S
 
 TOKEN = "a-token-for-tests"
 OPERATOR = f"Authorization: Bearer {TOKEN}"
@@ -69,6 +70,18 @@ class Desk(NamedTuple):
         answer = self.call(method, path, OPERATOR, body=body)
         assert status_of(answer) < 300, answer
         return json.loads(answer.partition(b"\r\n\r\n")[2])
+
+    def snapshot(self, path: str, header: str) -> str:
+        """Return the first event of a stream, a snapshot with the newest runs."""
+        name, _, value = header.partition(": ")
+        with (
+            httpx2.Client(base_url=self.server.address, trust_env=False, verify=False) as client,
+            client.stream("GET", path, headers={name: value}) as answer,
+        ):
+            if answer.status_code == 403:
+                return ""
+            assert answer.status_code == 200
+            return next(line for line in answer.iter_lines() if line.startswith("data: "))
 
     def own_path(self, path: str) -> str:
         """Return a path with this room, and the other participant's run, in place of parameters."""
@@ -164,9 +177,10 @@ def test_a_participant_reads_no_lesson_and_no_run_of_others(desks: dict[str, Des
             for prefix in ("", f"/r/{desk.code}"):
                 answer = desk.call("GET", f"{prefix}{path}", desk.cookie)
                 assert desk.other_run.encode() not in answer
-        for prefix in ("", f"/r/{desk.code}"):
-            events = desk.call("GET", f"{prefix}/api/v1/events", desk.cookie)
-            assert desk.other_run.encode() not in events
+        of_room = f"/api/v1/rooms/{desk.code}/events"
+        for path in ("/api/v1/events", f"/r/{desk.code}/api/v1/events", of_room):
+            assert desk.other_run not in desk.snapshot(path, desk.cookie)
+            assert desk.other_run in desk.snapshot(path, OPERATOR)
 
 
 def test_what_belongs_to_the_room_can_be_read(desks: dict[str, Desk]) -> None:
@@ -200,3 +214,30 @@ def test_after_the_reveal_others_are_seen(server: Serving) -> None:
     assert desk.status("GET", path, desk.cookie) == 200
     results = desk.call("GET", f"/api/v1/rooms/{desk.code}/results?card={number}", desk.cookie)
     assert desk.other_run.encode() in results
+
+
+def test_events_tell_of_own_runs_alone(server: Serving) -> None:
+    desk = room_of(server, "one-run-proves-nothing")
+    other, path = desk.join(), f"/api/v1/rooms/{desk.code}/runs"
+
+    def start(cookie: str) -> str:
+        answer = desk.call("POST", path, cookie, body={})
+        return str(json.loads(answer.partition(b"\r\n\r\n")[2])["id"])
+
+    name, _, value = desk.cookie.partition(": ")
+    with (
+        httpx2.Client(
+            base_url=server.address, trust_env=False, verify=False, timeout=LONG_S
+        ) as client,
+        client.stream("GET", f"/r/{desk.code}/api/v1/events", headers={name: value}) as answer,
+    ):
+        lines = answer.iter_lines()
+        assert "snapshot" in next(lines)
+        runs = start(other), start(desk.cookie)
+        told = []
+        for line in lines:
+            told.append(line)
+            if runs[1] in line and '"state": "finished"' in line:
+                break
+    assert not [line for line in told if runs[0] in line]
+    assert any(line == "event: room" for line in told)

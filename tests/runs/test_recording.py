@@ -1,6 +1,7 @@
 """Recordings: stored steps, interpolation of poses, and encoding as a file."""
 
 import io
+from collections.abc import Sequence
 from itertools import count
 
 import numpy as np
@@ -30,13 +31,16 @@ from tests.runs.sample_lanes import lane, qpos, step
 START = np.array(qpos(0), np.float32)
 
 
-def a_race(steps: int) -> list[LaneRecording]:
-    """Record the paper's three lanes on MuJoCo, with a briefly trained learner."""
+AGENTS = ("q-learning", "greedy", "two-step")
+"""Those of the paper."""
+
+
+def a_race(steps: int, agents: Sequence[str] = AGENTS) -> list[LaneRecording]:
+    """Record a race on MuJoCo, of a briefly trained learner and two that learn nothing."""
     practice = training_config(gait="left-right-origin", simulator="kinematic", steps=200)
     learner = build_learner(practice)
     for _ in train(learner, practice):
         pass
-    agents = ("q-learning", "greedy", "two-step")
     config = RaceConfig(
         gait="left-right-origin", steps=steps, lanes=tuple(LaneConfig(agent=a) for a in agents)
     )
@@ -89,7 +93,7 @@ def test_race_round_trips_through_a_file_without_pickle(
     with np.load(io.BytesIO(as_file(race)), allow_pickle=False) as file:
         back = race_recording(dict(file))
 
-    assert [lane.agent for lane in back] == ["q-learning", "greedy", "two-step"]
+    assert [lane.agent for lane in back] == list(AGENTS)
     for lane_before, lane_after in zip(race, back, strict=True):
         assert np.array_equal(lane_before.rest_qpos, lane_after.rest_qpos)
         assert lane_after.failure is None

@@ -23,7 +23,8 @@ from tests.runs.test_recording import a_race, assert_same
 from tests.storage.stores import copy_new_database, opened, race
 
 STEPS = 30
-AGENTS = ("q-learning", "greedy", "two-step")
+AGENTS = ("q-learning", "wave", "random-walk")
+"""None that searches, which takes most of the time of a race."""
 
 
 @pytest.fixture
@@ -37,7 +38,7 @@ def store(tmp_path: Path) -> Iterator[RunStore]:
 @pytest.fixture(scope="module")
 def raced() -> list[LaneRecording]:
     """A race in memory, to which all that was stored and read is compared."""
-    return a_race(STEPS)
+    return a_race(STEPS, AGENTS)
 
 
 @pytest.fixture(autouse=True)

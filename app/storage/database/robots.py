@@ -264,9 +264,10 @@ class Robots:
     def replace(
         self, robot_id: str, document: bytes, about: StoredRobot, origin: Origin
     ) -> StoredRobot:
-        """Store a robot in the place of another, whose name it takes.
+        """Store a robot in the place of another, whose name it takes, at once.
 
-        The other is deleted; one that runs use is kept, hidden, under another name.
+        The other is deleted; one that runs use is kept, hidden, under another name. A robot that
+        is stored already keeps its name.
 
         Args:
             robot_id: id of the other.
@@ -283,14 +284,30 @@ class Robots:
             if about.id == old.id:
                 fields = ("gait", "guesses", "repairs", "choices")
                 return self.change(old.id, **{name: getattr(about, name) for name in fields})
-            used = self._database.read(lambda connection: _users(connection, robot_id))
-            if used:
-                earlier = distinct_name(f"{old.name[:80]}, earlier", self._names())
-                self.change(old.id, name=earlier, hidden=True)
-            else:
-                self.delete(old.id)
-            stored, is_new = self.add(document, replace(about, name=old.name), origin)
-            return stored if is_new else self.change(stored.id, choices=about.choices)
+            earlier = distinct_name(f"{old.name[:80]}, earlier", self._names())
+            is_used = False
+
+            def work(connection: Connection) -> None:
+                nonlocal is_used
+                is_used = _users(connection, old.id) > 0
+                is_old = ROBOTS.c.id == old.id
+                if is_used:
+                    connection.execute(update(ROBOTS).where(is_old).values(name=earlier, hidden=1))
+                else:
+                    connection.execute(delete(ROBOTS).where(is_old))
+                if new:
+                    self.insert(connection, [replace(about, name=old.name)])
+                else:
+                    shown = update(ROBOTS).where(ROBOTS.c.id == about.id).values(hidden=0)
+                    connection.execute(shown)
+
+            with self.adding([(about, document)], origin) as new:
+                self._database.write(work)
+            if not is_used:
+                self._remove_files(old.id)
+                robot_documents.forget([old.id])
+            self._tell(self.stored(hidden=True))
+            return self.get(about.id)
 
     def delete(self, robot_id: str) -> None:
         """Delete a robot.
