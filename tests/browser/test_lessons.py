@@ -52,6 +52,8 @@ def makes_a_lesson(dashboard: Dashboard) -> None:
     dashboard.button("Save the lesson").click()
     # What is not valid is told, with the field.
     expect(page.get_by_role("alert").filter(has_text="title")).to_be_visible()
+    assert [complaint.partition(" ")[0] for complaint in dashboard.complaints] == ["422"]
+    dashboard.complaints.clear()
     page.get_by_label("Title", exact=True).fill("Guess first")
     page.get_by_label("Aims, one a line").fill("Guess.\nLook.")
     page.get_by_label("Title of the card").fill("How far?")
@@ -83,7 +85,7 @@ def exports_it(dashboard: Dashboard, file: Path) -> None:
     page.reload()
     expect(page.get_by_label("Title", exact=True)).to_have_value("Guess first")
     dashboard.button("Save the lesson").click()
-    expect(page.get_by_role("img", name=re.compile("^QR code of http.*/l/"))).to_be_visible()
+    expect(page.get_by_role("img", name=re.compile("^QR code of http"))).to_be_visible()
     with page.expect_download() as download:
         page.get_by_role("link", name="YAML").click()
     download.value.save_as(file)
@@ -103,7 +105,7 @@ def opens_its_link(dashboard: Dashboard) -> None:
     expect(reader).to_contain_text("Most do.")
     reader.get_by_role("button", name="To the page").click()
     expect(page.get_by_role("tab")).to_have_text(["Board", "Train", "Why"])
-    expect(page.get_by_role("textbox", name=re.compile("Learning rate"))).to_have_value("0.5")
+    expect(page.get_by_role("spinbutton", name=re.compile("Learning rate"))).to_have_value("0.5")
     expect(dashboard.lesson).to_contain_text("Card 1 of 1")
     dashboard.lesson.get_by_role("button", name="Done").click()
     expect(page).not_to_have_url(re.compile("lesson="))

@@ -301,3 +301,31 @@ def test_the_page_of_a_room_is_light(flat_browser: Browser, school: Serving) -> 
         expect(stranger.button("Join")).to_be_visible()
         assert sum(sizes) < 125_000
         assert len(sizes) <= 50
+
+
+def test_a_class_goes_on_when_its_server_comes_back(flat_browser: Browser, tmp_path: Path) -> None:
+    """Where watching needs the token, too: a code is all that a pupil needs."""
+    private: dict[str, Any] = {"token": TOKEN, "spectators": "token"}
+    with new_page(flat_browser, viewport=PHONE, has_touch=True, is_mobile=True) as page:
+        pupil = RoomPage(page, has_3d=False)
+        with serving(tmp_path, **private) as first, first.api(TOKEN) as api:
+            code = api.post("rooms", json={"lesson": LESSON}).raise_for_status().json()["code"]
+            pupil.enter(first, code)
+            pupil.press("Join")
+            who = pupil.who
+            page.get_by_label("Your prediction").fill("0.3")
+            pupil.press("Lock my prediction, and go")
+            distance = pupil.distance.inner_text()
+            assert pupil.complaints == []
+            first.kill()
+            pupil.sees("Reconnecting. Your name and your seed are kept.")
+            is_accessible(pupil)
+        with serving(tmp_path, port=first.port, **private) as second, second.api(TOKEN) as api:
+            expect(page.get_by_text("Reconnecting")).to_have_count(0)
+            api.post(f"rooms/{code}/reveal", json={}).raise_for_status()
+            pupil.sees("Rank 1 of 1 seed")
+            assert pupil.who == who
+            expect(pupil.distance).to_have_text(distance)
+            page.reload()
+            assert pupil.who == who
+            pupil.sees("0.30 m")

@@ -103,6 +103,7 @@ test("a setting begins with the value of the card's form, and else with its defa
   const card = (form) => ({ text: "", state: { form: { agent, ...form } }, may: { [NAME]: {} } });
   assert.deepEqual(chosenSettings(card({}), 0), { [NAME]: SETTING.default });
   assert.deepEqual(chosenSettings(card({ [NAME]: 0.25 }), 0), { [NAME]: 0.25 });
+  assert.deepEqual(chosenSettings(card({ [NAME]: "0.25" }), 0), { [NAME]: 0.25 }, "as it was typed on the page");
   assert.deepEqual(chosenSettings(card({ settings: { [NAME]: 0.35 } }), 0), { [NAME]: 0.35 });
   assert.equal(givenInWords({ [NAME]: 0.25 }, card({})),
     `${SETTING.symbol ?? SETTING.title.toLowerCase()}\u00a00.25`);

@@ -15,8 +15,10 @@ const needsAnswer = (card) => Boolean(card.ask) && ownAnswer.value === undefined
 /** Whether the card runs what has been run already: the same settings give the same run. */
 /** @type {(card: LessonCard, settings: Record<string, unknown> | null) => boolean} */
 function isSameAgain({ may }, settings) {
-  if (ownRun.value === null || ownRun.value.state === "failed") return false;
-  const given = ownEntry.value?.run?.given ?? {};
+  if (ownRun.value === null || ownRun.value.state !== "finished") return false;
+  const { id = null, given = {} } = ownEntry.value?.run ?? {};
+  // What it was given comes with the results, soon after its end.
+  if (id !== ownRun.value.id) return true;
   return Object.keys(may ?? {}).every((name) => given[name] === settings?.[name]);
 }
 

@@ -82,10 +82,10 @@ export function chosenSettings(card, number) {
 
 /** @param {string} name @param {Partial<Bounds>} bounds @param {LessonCard} card @param {number} number */
 function valueOf(name, bounds, card, number) {
-  const draft = drafts.value[`${number} ${name}`];
+  // A card's form has values as they were typed.
+  const chosen = drafts.value[`${number} ${name}`] ?? initialOf(name, bounds, card);
   const rule = ruleOf(name, bounds, card);
-  if (draft === undefined) return initialOf(name, bounds, card);
-  return rule.choices ? draft : parseNumber(String(draft), rule.limits, rule.isWhole).value;
+  return rule.choices ? chosen : parseNumber(String(chosen), rule.limits, rule.isWhole).value;
 }
 
 /** Settings in words: "α 0.3, 500 steps". @type {(given: Record<string, any>, card: LessonCard) => string} */

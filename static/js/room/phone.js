@@ -149,7 +149,8 @@ function ClassDots() {
   const own = ownEntry.value?.run ?? null;
   const { low, high } = axisOf(distances_m);
   const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
-  const rank = own?.rank ? `Rank ${own.rank} of ${distances_m.length} seeds` : count(distances_m.length, "seed");
+  const all = count(distances_m.length, "seed");
+  const rank = own?.rank ? `Rank ${own.rank} of ${all}` : all;
   return html`
     <h2>${rank}</h2>
     <${DotStrip} label=${`${rank}, from ${metres(distances_m[0])} to ${metres(distances_m.at(-1))}`} size=${1.6}

@@ -87,6 +87,8 @@ export async function refreshResults() {
 const AGAIN_MS = 1500;
 /** A class acts within the same seconds: who watches all of it asks at most so often. */
 const SOON_MS = 400;
+/** Phones of a class hear of the same event at once, and spread their questions over so long. */
+const SPREAD_MS = 1500;
 
 /**
  * A function that acts soon, and once for all calls until then.
@@ -99,7 +101,7 @@ function soon(act) {
     timer ??= setTimeout(() => {
       timer = undefined;
       act();
-    }, SOON_MS);
+    }, SOON_MS + (isTeacher.peek() ? 0 : Math.random() * SPREAD_MS));
   };
 }
 
