@@ -20,7 +20,7 @@ Curve = Sequence[tuple[float, float]]
 """A learning curve: (step, distance [m]) by step."""
 
 
-class Outcome(NamedTuple):
+class WalkOutcome(NamedTuple):
     """What came of a participant's run.
 
     Attributes:
@@ -74,7 +74,7 @@ def check_answer(ask: Ask, value: Any) -> Any:
     return [list(one) for one in points]
 
 
-def scorer(card: Card, outcomes: Sequence[Outcome]) -> Callable[[Any], Score]:
+def scorer(card: Card, outcomes: Sequence[WalkOutcome]) -> Callable[[Any], Score]:
     """Return the function that scores an answer to the question of a card.
 
     Args:
@@ -111,7 +111,7 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _choice_score(value: Any, answer: Any, outcomes: Sequence[Outcome]) -> Score:
+def _choice_score(value: Any, answer: Any, outcomes: Sequence[WalkOutcome]) -> Score:
     races = [one.winners for one in outcomes if one.winners]
     won = [1 / len(winners) if value in winners else 0.0 for winners in races]
     # Where no race has an agent of this name, the choices are no agents.
@@ -122,7 +122,7 @@ def _choice_score(value: Any, answer: Any, outcomes: Sequence[Outcome]) -> Score
 
 
 def _number_score(
-    value: float, answer: Any, metres: float | None, outcomes: Sequence[Outcome]
+    value: float, answer: Any, metres: float | None, outcomes: Sequence[WalkOutcome]
 ) -> Score:
     if isinstance(answer, int | float):
         return Score(is_right=value == answer, error=abs(value - answer))

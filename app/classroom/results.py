@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from app.classroom.answers import Outcome, Score, scorer
+from app.classroom.answers import Score, WalkOutcome, scorer
 from app.classroom.lesson import Ask
 from app.classroom.room import Room
 from app.storage.database.room_rows import RoomRun
@@ -39,7 +39,7 @@ class RunResult(NamedTuple):
     kind: Kind
     state: State
     given: dict[str, Any]
-    outcome: Outcome
+    outcome: WalkOutcome
     rank: int | None = None
 
 
@@ -122,7 +122,7 @@ def as_csv(results: Sequence[CardResults]) -> str:
     for result in results:
         for one in result.entries:
             run, score = one.run, one.score or Score()
-            outcome = Outcome(None) if run is None else run.outcome
+            outcome = WalkOutcome(None) if run is None else run.outcome
             prediction = one.prediction
             if not isinstance(prediction, str | float | int | None):
                 prediction = json.dumps(prediction)
@@ -206,14 +206,14 @@ def _result(room: Room, one: RoomRun, store: RunStore) -> RunResult | None:
     return result
 
 
-def _outcome(run: Run, store: RunStore) -> Outcome:
+def _outcome(run: Run, store: RunStore) -> WalkOutcome:
     match run.result:
         case TrainingResult(distance_m=distance_m):
             curve = [(row["step"], row["distance_m"]) for row in store.curves.get(run.id)]
-            return Outcome(distance_m, curve=[(x, y) for x, y in curve if is_finite(y)])
+            return WalkOutcome(distance_m, curve=[(x, y) for x, y in curve if is_finite(y)])
         case RaceResult(lanes=lanes):
             learner = next((n for n, one in enumerate(run.lane_training_ids) if one), 0)
             figures = [lane.clocks.paper for lane in lanes]
             winners = [lane.agent for lane in lanes if lane.clocks.paper.rank == 1]
-            return Outcome(figures[learner].finished_distance_m, tuple(dict.fromkeys(winners)))
-    return Outcome(None)
+            return WalkOutcome(figures[learner].finished_distance_m, tuple(dict.fromkeys(winners)))
+    return WalkOutcome(None)
