@@ -196,7 +196,7 @@ _FIELD_TITLES = {
     "gait": "Gait",
     "gaits": "Gaits",
     "robot": "Robot",
-    "robots": "RobotStore",
+    "robots": "Robots",
     "simulator": "Simulator",
     "observations": "Observation",
     "agent": "Learner",
