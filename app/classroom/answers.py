@@ -9,7 +9,6 @@ import numpy as np
 
 from app.classroom.lesson import Ask, Card
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.experiments.statistics import iqm, quantile_of
 
 MAX_POINTS = 200
 """Points of a drawn curve."""
@@ -129,6 +128,9 @@ def _number_score(
     distances = [one.distance_m for one in outcomes if one.distance_m is not None]
     if metres is None or not distances:
         return Score()
+    # SciPy, which it imports, takes a second, and most servers score no answers.
+    from hexapods.experiments.statistics import iqm, quantile_of  # noqa: PLC0415
+
     mean_m = float(iqm(np.array(distances)))
     return Score(
         quantile=quantile_of(value * metres, distances), error=abs(value - mean_m / metres)
@@ -137,6 +139,8 @@ def _number_score(
 
 def _mean_curve(curves: Sequence[Curve]) -> Mapping[float, float]:
     """Return the interquartile mean of several curves, at the steps that all have."""
+    from hexapods.experiments.statistics import iqm  # noqa: PLC0415 - as above
+
     by_step = [dict(curve) for curve in curves]
     steps = set.intersection(*(set(one) for one in by_step)) if by_step else set()
     return {step: float(iqm(np.array([one[step] for one in by_step]))) for step in sorted(steps)}

@@ -5,7 +5,7 @@ import io
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from app.classroom.answers import Score, WalkOutcome, scorer
 from app.classroom.lesson import Ask
@@ -16,8 +16,10 @@ from app.storage.errors import NotFound
 from app.storage.json_text import is_finite
 from app.storage.run import Kind, Run, State
 from hexapods.domain.text import text_cell
-from hexapods.experiments.statistics import Interval, iqm_interval
 from hexapods.runs.results import RaceResult, TrainingResult
+
+if TYPE_CHECKING:
+    from hexapods.experiments.statistics import Interval
 
 _SEED_OF_INTERVALS = 0
 MEDIA_TYPE = "text/csv"
@@ -90,7 +92,7 @@ class CardResults:
     finished: int
     entries: list[Entry]
     distances_m: list[float]
-    interval: Interval | None
+    interval: "Interval | None"
     answer: float | str | None
 
 
@@ -170,9 +172,16 @@ def _card_results(
         finished=len(ended),
         entries=entries,
         distances_m=ranked if is_open else [],
-        interval=iqm_interval((tuple(ranked),), _SEED_OF_INTERVALS) if is_open and ranked else None,
+        interval=_interval(ranked) if is_open and ranked else None,
         answer=room.lesson.cards[card].revealed.answer if is_open else None,
     )
+
+
+def _interval(distances_m: Sequence[float]) -> "Interval":
+    # SciPy, which it imports, takes a second, and most servers have no rooms.
+    from hexapods.experiments.statistics import iqm_interval  # noqa: PLC0415
+
+    return iqm_interval((tuple(distances_m),), _SEED_OF_INTERVALS)
 
 
 def _newest(room: Room, store: RunStore, seed: int, card: int) -> RunResult | None:
