@@ -8,6 +8,7 @@ from starlette.routing import BaseRoute, Route
 
 from app.api.compression import CompressedContent
 from app.api.deps import Services
+from app.api.problem_pages import prefers_html
 from app.api.problems import as_sentence, problem
 from app.classroom.names import normalized
 from app.storage.errors import NotFound
@@ -28,8 +29,10 @@ def classroom_routes(page: CompressedContent) -> list[BaseRoute]:
         response = page.response(request.scope)
         try:
             services.rooms.get(request.path_params["code"])
-        except NotFound:
-            # The page asks for the room itself, and says so.
+        except NotFound as error:
+            if not prefers_html(request.headers):
+                return problem(404, as_sentence(str(error)))
+            # The page asks for the room itself, and has a field for another code.
             response.status_code = 404
         return response
 

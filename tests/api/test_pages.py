@@ -154,7 +154,7 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
 
 
 def test_page_of_rooms_is_a_folder_deeper_and_preloads_its_own_modules(api: Api) -> None:
-    page = api.client.get("/r/NOROOM")
+    page = api.client.get("/r/NOROOM", headers={"Accept": "text/html"})
     folder = assets.static_dir()
     modules = imported_modules("static/js/room/main.js", folder)
 
