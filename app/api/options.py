@@ -16,7 +16,7 @@ from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
 from app.archive.transfer import MAX_RUNS
 from app.jobs.submissions import MAX_SETTINGS
-from app.storage.database.robots import Robots
+from app.storage.database.robots import RobotStore
 from app.storage.stored_robot import StoredRobot
 from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
 from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
@@ -84,7 +84,7 @@ def get_options(services: ServicesDep, request: Request) -> Response:
 
 
 @lru_cache(maxsize=2)
-def _content(agents: tuple[str, ...], robots: Robots, version: int) -> CompressedContent:
+def _content(agents: tuple[str, ...], robots: RobotStore, version: int) -> CompressedContent:
     """Return the answer compressed: it is most of what a first visit transfers, and no secret.
 
     Args:

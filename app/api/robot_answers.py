@@ -5,7 +5,7 @@ from datetime import datetime
 from typing import Any
 
 from app.api.answers import Answer
-from app.storage.database.robots import Origin
+from app.storage.database.robots import RobotOrigin
 from app.storage.stored_robot import StoredRobot
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.gait import AnyGait, gait_as_json, resolve
@@ -124,7 +124,7 @@ def robot_view(stored: StoredRobot) -> dict[str, Any]:
     }
 
 
-def whole_view(stored: StoredRobot, origin: Origin | None) -> dict[str, Any]:
+def whole_view(stored: StoredRobot, origin: RobotOrigin | None) -> dict[str, Any]:
     """Return a stored robot as a `WholeRobotView`; errors as of `robot_view`."""
     made = stored.robot
     gait = own_gait(made)

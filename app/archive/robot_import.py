@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from app.storage.database.robots import Origin
+from app.storage.database.robots import RobotOrigin
 from app.storage.database.store import RunStore
 from app.storage.stored_robot import StoredRobot, distinct_name
 from hexapods.domain import robot_documents
@@ -65,7 +65,7 @@ def import_robot(
         about, document = _of_file(imported, AS_FOUND, file)
         own = name if name is not None else _distinct(store, check_name(imported.name[:MAX_NAME]))
         about = replace(about, name=_named(store, own or None))
-        return store.robots.add(document, about, Origin(data, _found(imported)))
+        return store.robots.add(document, about, RobotOrigin(data, _found(imported)))
     content = _json(data)
     if "format" in content:
         made, document = parse_document(data), data
@@ -100,7 +100,9 @@ def correct_robot(store: RunStore, robot_id: str, choices: Choices) -> StoredRob
         raise InvalidInput(f"{stored.name} is from no file here: there is nothing to read again")
     imported = read_robot_file(origin.upload, stored.file, choices)
     about, document = _of_file(imported, choices, stored.file)
-    return store.robots.replace(robot_id, document, about, Origin(origin.upload, _found(imported)))
+    return store.robots.replace(
+        robot_id, document, about, RobotOrigin(origin.upload, _found(imported))
+    )
 
 
 def _of_file(

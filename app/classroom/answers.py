@@ -9,7 +9,6 @@ import numpy as np
 
 from app.classroom.lesson import Ask, Card
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.experiments.statistics import iqm, quantile_of
 
 MAX_POINTS = 200
 """Points of a drawn curve."""
@@ -20,7 +19,7 @@ Curve = Sequence[tuple[float, float]]
 """A learning curve: (step, distance [m]) by step."""
 
 
-class Outcome(NamedTuple):
+class WalkOutcome(NamedTuple):
     """What came of a participant's run.
 
     Attributes:
@@ -74,7 +73,7 @@ def check_answer(ask: Ask, value: Any) -> Any:
     return [list(one) for one in points]
 
 
-def scorer(card: Card, outcomes: Sequence[Outcome]) -> Callable[[Any], Score]:
+def scorer(card: Card, outcomes: Sequence[WalkOutcome]) -> Callable[[Any], Score]:
     """Return the function that scores an answer to the question of a card.
 
     Args:
@@ -111,7 +110,7 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _choice_score(value: Any, answer: Any, outcomes: Sequence[Outcome]) -> Score:
+def _choice_score(value: Any, answer: Any, outcomes: Sequence[WalkOutcome]) -> Score:
     races = [one.winners for one in outcomes if one.winners]
     won = [1 / len(winners) if value in winners else 0.0 for winners in races]
     # Where no race has an agent of this name, the choices are no agents.
@@ -122,13 +121,16 @@ def _choice_score(value: Any, answer: Any, outcomes: Sequence[Outcome]) -> Score
 
 
 def _number_score(
-    value: float, answer: Any, metres: float | None, outcomes: Sequence[Outcome]
+    value: float, answer: Any, metres: float | None, outcomes: Sequence[WalkOutcome]
 ) -> Score:
     if isinstance(answer, int | float):
         return Score(is_right=value == answer, error=abs(value - answer))
     distances = [one.distance_m for one in outcomes if one.distance_m is not None]
     if metres is None or not distances:
         return Score()
+    # SciPy, which it imports, takes a second, and most servers score no answers.
+    from hexapods.experiments.statistics import iqm, quantile_of  # noqa: PLC0415
+
     mean_m = float(iqm(np.array(distances)))
     return Score(
         quantile=quantile_of(value * metres, distances), error=abs(value - mean_m / metres)
@@ -137,6 +139,8 @@ def _number_score(
 
 def _mean_curve(curves: Sequence[Curve]) -> Mapping[float, float]:
     """Return the interquartile mean of several curves, at the steps that all have."""
+    from hexapods.experiments.statistics import iqm  # noqa: PLC0415 - as above
+
     by_step = [dict(curve) for curve in curves]
     steps = set.intersection(*(set(one) for one in by_step)) if by_step else set()
     return {step: float(iqm(np.array([one[step] for one in by_step]))) for step in sorted(steps)}

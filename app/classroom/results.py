@@ -5,9 +5,9 @@ import io
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from app.classroom.answers import Outcome, Score, scorer
+from app.classroom.answers import Score, WalkOutcome, scorer
 from app.classroom.lesson import Ask
 from app.classroom.room import Room
 from app.storage.database.room_rows import RoomRun
@@ -16,8 +16,10 @@ from app.storage.errors import NotFound
 from app.storage.json_text import is_finite
 from app.storage.run import Kind, Run, State
 from hexapods.domain.text import text_cell
-from hexapods.experiments.statistics import Interval, iqm_interval
 from hexapods.runs.results import RaceResult, TrainingResult
+
+if TYPE_CHECKING:
+    from hexapods.experiments.statistics import Interval
 
 _SEED_OF_INTERVALS = 0
 MEDIA_TYPE = "text/csv"
@@ -39,7 +41,7 @@ class RunResult(NamedTuple):
     kind: Kind
     state: State
     given: dict[str, Any]
-    outcome: Outcome
+    outcome: WalkOutcome
     rank: int | None = None
 
 
@@ -90,7 +92,7 @@ class CardResults:
     finished: int
     entries: list[Entry]
     distances_m: list[float]
-    interval: Interval | None
+    interval: "Interval | None"
     answer: float | str | None
 
 
@@ -122,7 +124,7 @@ def as_csv(results: Sequence[CardResults]) -> str:
     for result in results:
         for one in result.entries:
             run, score = one.run, one.score or Score()
-            outcome = Outcome(None) if run is None else run.outcome
+            outcome = WalkOutcome(None) if run is None else run.outcome
             prediction = one.prediction
             if not isinstance(prediction, str | float | int | None):
                 prediction = json.dumps(prediction)
@@ -170,9 +172,16 @@ def _card_results(
         finished=len(ended),
         entries=entries,
         distances_m=ranked if is_open else [],
-        interval=iqm_interval((tuple(ranked),), _SEED_OF_INTERVALS) if is_open and ranked else None,
+        interval=_interval(ranked) if is_open and ranked else None,
         answer=room.lesson.cards[card].revealed.answer if is_open else None,
     )
+
+
+def _interval(distances_m: Sequence[float]) -> "Interval":
+    # SciPy, which it imports, takes a second, and most servers have no rooms.
+    from hexapods.experiments.statistics import iqm_interval  # noqa: PLC0415
+
+    return iqm_interval((tuple(distances_m),), _SEED_OF_INTERVALS)
 
 
 def _newest(room: Room, store: RunStore, seed: int, card: int) -> RunResult | None:
@@ -206,14 +215,14 @@ def _result(room: Room, one: RoomRun, store: RunStore) -> RunResult | None:
     return result
 
 
-def _outcome(run: Run, store: RunStore) -> Outcome:
+def _outcome(run: Run, store: RunStore) -> WalkOutcome:
     match run.result:
         case TrainingResult(distance_m=distance_m):
             curve = [(row["step"], row["distance_m"]) for row in store.curves.get(run.id)]
-            return Outcome(distance_m, curve=[(x, y) for x, y in curve if is_finite(y)])
+            return WalkOutcome(distance_m, curve=[(x, y) for x, y in curve if is_finite(y)])
         case RaceResult(lanes=lanes):
             learner = next((n for n, one in enumerate(run.lane_training_ids) if one), 0)
             figures = [lane.clocks.paper for lane in lanes]
             winners = [lane.agent for lane in lanes if lane.clocks.paper.rank == 1]
-            return Outcome(figures[learner].finished_distance_m, tuple(dict.fromkeys(winners)))
-    return Outcome(None)
+            return WalkOutcome(figures[learner].finished_distance_m, tuple(dict.fromkeys(winners)))
+    return WalkOutcome(None)

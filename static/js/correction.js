@@ -2,7 +2,6 @@
 import { signal } from "@preact/signals";
 import { call } from "./api.js";
 import { form } from "./form.js";
-import { listed } from "./format.js";
 import { chooseStored, refresh } from "./stored-robots.js";
 import { messageOf } from "./titles.js";
 
@@ -47,7 +46,8 @@ function fieldsOf({ choices, groups, found }) {
   const { forward, feet, keyframe, home_rad, servo_torque_nm, servo_kp } = /** @type {RobotChoices} */ (choices ?? {});
   return {
     forward: String(forward ?? ""), keyframe: keyframe ?? "",
-    feet: feet ?? found?.legs.map(({ foot }) => foot) ?? [],
+    // In the order of the file.
+    feet: found?.feet.filter((one) => (feet ?? found.legs.map(({ foot }) => foot)).includes(one)) ?? [],
     angles: Object.entries(home_rad ?? {}).map(([joint, angle]) => `${joint}=${angle}`).join(", "),
     groups: groups.map((legs) => legs.join("+")).join(", "),
     torque: String(servo_torque_nm ?? ""), gain: String(servo_kp ?? ""),
@@ -139,6 +139,3 @@ export async function readAgain() {
   }
   isReading.value = false;
 }
-
-/** The feet that are chosen, in words. */
-export const feetInWords = () => listed(fields.value?.feet ?? []);

@@ -135,7 +135,7 @@ def test_spectator_has_read_access_only(shared: Serve) -> None:
     for method, path in without_stream(every_route(client)):
         status = answer(client, method, path, {})
         if is_open_by_code(method, path):
-            assert status == 404, (method, path)
+            assert status in (200, 404), (method, path)
         elif method in SAFE | {"WS"} or path in QUESTIONS:
             assert status != 401, (method, path)
         else:
@@ -151,7 +151,7 @@ def test_reading_needs_the_token_if_so_configured(serve: Serve) -> None:
     for method, path in every_route(client):
         status = answer(client, method, path, {})
         if is_open_by_code(method, path):
-            assert status == 404, (method, path)
+            assert status in (200, 404), (method, path)
         elif path in is_open and method in SAFE:
             assert status in (200, 503), (method, path)
         else:

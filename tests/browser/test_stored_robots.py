@@ -136,6 +136,7 @@ def test_a_file_is_dropped_corrected_and_trained(
     forward = robots.get_by_label("Forward")
     expect(forward).to_have_value("")
     assert dashboard.violations_in_both_themes() == []
+    expect(robots.get_by_role("checkbox", checked=True)).to_have_count(4)
     forward.select_option("-x")
     robots.get_by_label("Largest torque, N·m").fill("lots")
     again = robots.get_by_role("button", name="Read it again")

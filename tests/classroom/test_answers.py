@@ -2,10 +2,10 @@
 
 import pytest
 
-from app.classroom.answers import Outcome, scorer
+from app.classroom.answers import WalkOutcome, scorer
 from app.classroom.lesson import Card, read_lesson
 
-OUTCOMES = [Outcome(0.1 * n, curve=[(50, 0.0), (100, 0.1 * n)]) for n in range(1, 6)]
+OUTCOMES = [WalkOutcome(0.1 * n, curve=[(50, 0.0), (100, 0.1 * n)]) for n in range(1, 6)]
 """Distances 0.1 to 0.5 m; their interquartile mean is 0.3 m."""
 
 
@@ -39,7 +39,7 @@ def test_a_choice_among_agents_has_its_share_of_the_races() -> None:
     races = [("greedy",), ("greedy", "q-learning"), ("q-learning",), ("beam",)]
     score = scorer(
         card({"kind": "choice", "choices": ["greedy", "q-learning", "beam", "wave"]}),
-        [Outcome(0.1, winners) for winners in races],
+        [WalkOutcome(0.1, winners) for winners in races],
     )
     shares = [score(one).share for one in ("greedy", "q-learning", "beam", "wave")]
     assert shares == [0.375, 0.375, 0.25, 0]

@@ -10,7 +10,7 @@ from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.migration import migrate
 from app.storage.database.ownership import Ownership, claim
-from app.storage.database.robots import Robots
+from app.storage.database.robots import RobotStore
 from app.storage.database.sqlite_file import SUFFIXES, check_file, create_file
 from app.storage.database.store import RunStore
 from app.storage.disk_space import RESERVE_FILE, DiskSpace
@@ -67,7 +67,7 @@ def open_store(
                 store = RunStore(
                     database,
                     ArtifactFiles(files, disk_space),
-                    Robots(database, robots, disk_space),
+                    RobotStore(database, robots, disk_space),
                 )
                 _recover(store)
                 with store.robots.known(), ownership.watched():

@@ -14,7 +14,7 @@ from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import BUSY_S, Database, decode_leniently, postgresql_engine
 from app.storage.database.migration import check_current
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
-from app.storage.database.robots import Robots
+from app.storage.database.robots import RobotStore
 from app.storage.database.schema import ABOUT, METADATA
 from app.storage.database.sqlite_file import check_file
 from app.storage.database.store import RunStore
@@ -37,7 +37,7 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
             database = stack.enter_context(closing(Database(_empty_engine())))
         disk_space, name = DiskSpace(settings.data), database_id or "none"
         files = ArtifactFiles(settings.data / ARTIFACTS_FOLDER / name, disk_space)
-        robots = Robots(database, settings.data / ROBOTS_FOLDER / name, disk_space)
+        robots = RobotStore(database, settings.data / ROBOTS_FOLDER / name, disk_space)
         stack.enter_context(robots.known())
         yield RunStore(database, files, robots)
 

@@ -34,7 +34,7 @@ _versions = itertools.count()
 _logger = logging.getLogger(__name__)
 
 
-class Origin(NamedTuple):
+class RobotOrigin(NamedTuple):
     """The file that a robot was read from.
 
     Attributes:
@@ -46,7 +46,7 @@ class Origin(NamedTuple):
     found: bytes
 
 
-class Robots:
+class RobotStore:
     """Stores robots. Thread-safe.
 
     A document is written before its row, and deleted after it: a crash leaves at most a file
@@ -127,7 +127,7 @@ class Robots:
         """
         return robot_documents.find(self.get(robot_id).id)
 
-    def origin(self, robot_id: str) -> Origin | None:
+    def origin(self, robot_id: str) -> RobotOrigin | None:
         """Return the file that a stored robot was read from; None if it was made here.
 
         Raises:
@@ -136,12 +136,12 @@ class Robots:
         self.get(robot_id)
         try:
             upload = self._path(robot_id, UPLOAD_ENDING).read_bytes()
-            return Origin(upload, self._path(robot_id, FOUND_ENDING).read_bytes())
+            return RobotOrigin(upload, self._path(robot_id, FOUND_ENDING).read_bytes())
         except OSError:
             return None
 
     def add(
-        self, document: bytes, about: StoredRobot, origin: Origin | None = None
+        self, document: bytes, about: StoredRobot, origin: RobotOrigin | None = None
     ) -> tuple[StoredRobot, bool]:
         """Store a robot, unless it is stored already; then it is hidden no longer.
 
@@ -169,7 +169,7 @@ class Robots:
 
     @contextmanager
     def adding(
-        self, robots: Iterable[tuple[StoredRobot, bytes]], origin: Origin | None = None
+        self, robots: Iterable[tuple[StoredRobot, bytes]], origin: RobotOrigin | None = None
     ) -> Iterator[Sequence[StoredRobot]]:
         """Write the files of robots that are not stored, whose rows are inserted in the context.
 
@@ -180,6 +180,10 @@ class Robots:
         Yields:
             those whose rows are to be inserted.
         """
+        robots = list(robots)
+        if not robots:  # as of most imports, which need not wait for each other
+            yield []
+            return
         with self.lock:
             names, new = self._names(), dict[str, tuple[StoredRobot, bytes]]()
             ids = {one.id for one in self.stored(hidden=True)}
@@ -200,7 +204,7 @@ class Robots:
                 raise
             self._tell(robot for robot, _ in new.values())
 
-    def _write_files(self, robot_id: str, document: bytes, origin: Origin | None) -> None:
+    def _write_files(self, robot_id: str, document: bytes, origin: RobotOrigin | None) -> None:
         files = {ENDING: document}
         if origin is not None:
             files |= {UPLOAD_ENDING: origin.upload, FOUND_ENDING: origin.found}
@@ -262,7 +266,7 @@ class Robots:
             return changed
 
     def replace(
-        self, robot_id: str, document: bytes, about: StoredRobot, origin: Origin
+        self, robot_id: str, document: bytes, about: StoredRobot, origin: RobotOrigin
     ) -> StoredRobot:
         """Store a robot in the place of another, whose name it takes, at once.
 

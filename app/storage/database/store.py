@@ -33,7 +33,7 @@ from app.storage.database.queries import (
     fetch_run_row,
     has_public_id,
 )
-from app.storage.database.robots import Robots
+from app.storage.database.robots import RobotStore
 from app.storage.database.room_rows import RoomRows, Seat
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import RUNS
@@ -79,7 +79,7 @@ class RunStore:
         rooms: rooms of classes, with their participants, predictions and runs.
     """
 
-    def __init__(self, database: Database, files: ArtifactFiles, robots: Robots) -> None:
+    def __init__(self, database: Database, files: ArtifactFiles, robots: RobotStore) -> None:
         self.database, self.files, self.robots = database, files, robots
         self._progress = ProgressCache()
         self._artifacts = Artifacts(database, files)

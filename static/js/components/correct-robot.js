@@ -65,12 +65,16 @@ function Forward({ found, forward }) {
 
 /** @param {{ found: Found, feet: string[] }} props */
 const Feet = ({ found, feet }) => html`
-  <div class="field wide">
-    <label for="correct-feet">Feet: a leg for each that is chosen</label>
-    <select id="correct-feet" multiple size=${Math.min(found.feet.length, MOST_ROWS)} onChange=${onFeet}>
-      ${found.feet.map((foot) => html`<option value=${foot} selected=${feet.includes(foot)}>${foot}</option>`)}
-    </select>
-  </div>
+  <fieldset class="field wide">
+    <legend>Feet: a leg for each that is chosen</legend>
+    <div class="checks">
+      ${found.feet.map((foot) => html`
+        <label class="check" key=${foot}>
+          <input type="checkbox" checked=${feet.includes(foot)} onChange=${() => toggleFoot(foot)} />${foot}
+        </label>
+      `)}
+    </div>
+  </fieldset>
 `;
 
 /** @param {{ found: Found, keyframe: string, angles: string }} props */
@@ -90,8 +94,6 @@ const Stance = ({ found, keyframe, angles }) => html`
   </div>
 `;
 
-const MOST_ROWS = 8;
-
 /** @param {{ id: string, label: string, name: "torque" | "gain", value: string }} props */
 const Servo = ({ id, label, name, value }) => html`
   <div class="field">
@@ -102,5 +104,9 @@ const Servo = ({ id, label, name, value }) => html`
 
 /** @param {Exclude<keyof Fields, "feet">} name */
 const onText = (name) => (/** @type {{ target: HTMLInputElement }} */ { target }) => setCorrection(name, target.value);
-const onFeet = (/** @type {{ target: HTMLSelectElement }} */ { target }) =>
-  setCorrection("feet", [...target.selectedOptions].map(({ value }) => value));
+
+/** In the order of the file. @param {string} foot */
+function toggleFoot(foot) {
+  const [chosen, known] = [fields.peek()?.feet ?? [], whole.peek()?.found?.feet ?? []];
+  setCorrection("feet", known.filter((one) => chosen.includes(one) !== (one === foot)));
+}
