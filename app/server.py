@@ -198,7 +198,7 @@ def _add_routes(app: FastAPI, agents: tuple[str, ...]) -> None:
     app.router.routes += [
         *viewer_routes(_serve_viewer),
         *pages.page_routes(assets.static_dir()),
-        *classroom_pages.classroom_routes(),
+        *classroom_pages.classroom_routes(pages.page_content("room.html", assets.static_dir())),
         *guide_routes(assets.docs_dir()),
     ]
 

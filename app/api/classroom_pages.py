@@ -1,4 +1,4 @@
-"""Links to lessons, and the dashboard on the stage of a room, whose page is in `app.api.pages`."""
+"""Pages of the classroom: the page of a room, links to lessons, the dashboard on a room's stage."""
 
 from urllib.parse import quote
 
@@ -6,20 +6,39 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.routing import BaseRoute, Route
 
+from app.api.compression import CompressedContent
 from app.api.deps import Services
+from app.api.problem_pages import prefers_html
 from app.api.problems import as_sentence, problem
 from app.classroom.names import normalized
 from app.storage.errors import NotFound
 
 
-def classroom_routes() -> list[BaseRoute]:
-    """Return the routes of links to lessons, `/l/ID`, and of the stages of rooms, `/r/CODE/`.
+def classroom_routes(page: CompressedContent) -> list[BaseRoute]:
+    """Return the routes of links to lessons, `/l/ID`, and of rooms, `/r/CODE` and `/r/CODE/`.
 
-    The stage of an open room serves the dashboard there; what is left is other spellings of its
-    code, and rooms that are not open.
+    The stage of an open room serves the dashboard at `/r/CODE/`; what is left of it is other
+    spellings of the code, and rooms that are not open.
+
+    Args:
+        page: of a room, the same for all.
     """
+
+    def show_room(request: Request) -> Response:
+        services: Services = request.app.state.services
+        response = page.response(request.scope)
+        try:
+            services.rooms.get(request.path_params["code"])
+        except NotFound as error:
+            if not prefers_html(request.headers):
+                return problem(404, as_sentence(str(error)))
+            # The page asks for the room itself, and has a field for another code.
+            response.status_code = 404
+        return response
+
     return [
         Route("/l/{lesson_id}", _lesson, name="lesson_page"),
+        Route("/r/{code}", show_room, name="room_page"),
         Route("/r/{code}/", _room, name="room_stage"),
     ]
 

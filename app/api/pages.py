@@ -1,4 +1,4 @@
-"""The pages of the dashboard and of rooms, and their static files, compressed, with a policy."""
+"""The dashboard: its page and static files, compressed, with a content security policy."""
 
 import base64
 import hashlib
@@ -25,34 +25,30 @@ _IMPORT = re.compile(r'^import [^"]*"(\.[^"]+)";', re.MULTILINE)
 
 
 def page_routes(folder: Path) -> list[BaseRoute]:
-    """Return the routes of the pages, as they are now, and of their files under `/static/`.
+    """Return the routes of the page at `/`, as it is now, and of its files under `/static/`.
 
     Args:
-        folder: folder of the dashboard, with its `index.html` and the `room.html` of all rooms.
+        folder: folder of the dashboard, with its `index.html`.
     """
-    index, room = (_page(folder / name, folder) for name in ("index.html", "room.html"))
+    index = page_content("index.html", folder)
     files = _Files(directory=folder)
 
     async def show(request: Request) -> Response:
         return index.response(request.scope)
-
-    async def show_room(request: Request) -> Response:
-        # Whether there is such a room, the page asks itself, and says so.
-        return room.response(request.scope)
 
     async def favicon(request: Request) -> Response:
         return await files.get_response("favicon.svg", request.scope)
 
     return [
         Route("/", show, name="dashboard"),
-        Route("/r/{code}", show_room, name="room_page"),
         Route("/favicon.ico", favicon, name="favicon"),
         Mount("/static", files, name="static"),
     ]
 
 
-def _page(file: Path, folder: Path) -> CompressedContent:
-    page = with_preloads(file.read_text("utf-8"), folder)
+def page_content(name: str, folder: Path) -> CompressedContent:
+    """Return a page of the dashboard's folder with its preloads and its policy."""
+    page = with_preloads((folder / name).read_text("utf-8"), folder)
     policy = {"Content-Security-Policy": content_policy(page)}
     return CompressedContent(page.encode(), "text/html", policy)
 

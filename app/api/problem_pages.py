@@ -23,7 +23,7 @@ class ProblemPages(HttpMiddleware):
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, and rewrite its answer if it is a problem document."""
-        is_page = _prefers_html(Headers(scope=scope))
+        is_page = prefers_html(Headers(scope=scope))
         start: Message | None = None
         body = b""
 
@@ -46,7 +46,8 @@ class ProblemPages(HttpMiddleware):
         await self._app(scope, receive, send_page)
 
 
-def _prefers_html(headers: Headers) -> bool:
+def prefers_html(headers: Headers) -> bool:
+    """Whether a person asks for a page, by the headers of the request."""
     return headers.get("accept", "").lstrip().startswith("text/html")
 
 

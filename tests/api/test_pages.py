@@ -90,8 +90,7 @@ def test_runs_and_events_are_not_compressed(api: Api) -> None:
 
 
 def test_changed_file_is_sent_anew(tmp_path: Path) -> None:
-    for name in ("index.html", "room.html"):
-        (tmp_path / name).write_text(PAGE)
+    (tmp_path / "index.html").write_text(PAGE)
     (tmp_path / "js").mkdir()
     (tmp_path / "js" / "main.js").write_text("first")
     (tmp_path / "favicon.svg").write_text("<svg/>")
@@ -155,11 +154,12 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
 
 
 def test_page_of_rooms_is_a_folder_deeper_and_preloads_its_own_modules(api: Api) -> None:
-    page = api.client.get("/r/NOROOM")
+    page = api.client.get("/r/NOROOM", headers={"Accept": "text/html"})
     folder = assets.static_dir()
     modules = imported_modules("static/js/room/main.js", folder)
 
-    assert page.status_code == 200
+    assert page.status_code == 404
+    assert page.headers["content-type"].startswith("text/html")
     assert "static/js/components/app.js" not in modules
     for module in modules:
         assert page.text.count(f'<link rel="modulepreload" href="../{module}">') == 1
