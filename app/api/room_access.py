@@ -86,13 +86,13 @@ class RoomAccess:
             seats: which participants the client is.
             is_public: whether spectators may watch.
         """
-        code = _code_of(scope)
-        if code is not None and code not in dict(seats):
+        codes = _codes_in(scope).difference(dict(seats))
+        if codes:
             wait_s = self._wrong_codes.wait_s(client_of(scope))
             if wait_s > 0:
                 detail = "Too many wrong codes of rooms came from this address; try again later."
                 return too_many(detail, wait_s)
-            if not self._is_room(code):
+            if not all(map(self._is_room, codes)):
                 self._wrong_codes.take(client_of(scope))
         if any(self._rooms.is_hidden(one, seats) for one in _runs_in(scope)):
             return problem(403, "This run is a participant's; it is shown after the reveal.")
@@ -182,11 +182,12 @@ def _room_cookies(headers: Headers, is_secure: bool) -> Iterator[tuple[str, Sess
                 yield found["code"], cookie
 
 
-def _code_of(scope: Scope) -> str | None:
-    """Return the code of the room that a request names; None if it names none."""
-    path: str = scope["path"]
-    found = _PAGE_OF_ROOM.fullmatch(path) or _OF_ROOM.fullmatch(path_of(scope))
-    return None if found is None else normalized(found["code"])
+def _codes_in(scope: Scope) -> set[str]:
+    """Return the codes of rooms that a request names, but for that of the stage it is below."""
+    # Below the path of a stage is what is there, with a room or without one.
+    page = None if scope["root_path"] else _PAGE_OF_ROOM.fullmatch(scope["path"])
+    found = page, _OF_ROOM.fullmatch(path_of(scope))
+    return {normalized(one["code"]) for one in found if one is not None}
 
 
 def _runs_in(scope: Scope) -> Iterator[str]:

@@ -161,9 +161,9 @@ def read_lesson(data: Any) -> Lesson:
         InvalidInput: naming the field, and what is valid: for unknown fields, values of another
             type or size, HTML in a text, and bounds outside of the setting's.
     """
-    if not is_finite(data):
-        raise InvalidInput("a lesson has no NaN and no infinite numbers; give finite ones")
     try:
+        if not is_finite(data):
+            raise InvalidInput("a lesson has no NaN and no infinite numbers; give finite ones")
         # As JSON, where strict types have lists for tuples.
         lesson = adapter().validate_json(json.dumps(data), strict=True)
     except (TypeError, RecursionError):

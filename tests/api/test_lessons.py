@@ -137,6 +137,14 @@ def test_what_is_no_file_of_a_lesson_is_refused(api: Api, text: str, words: str)
     assert words.lower() in problem["detail"].lower()
 
 
+def test_a_lesson_that_is_nested_too_deeply_is_refused(api: Api) -> None:
+    for nested in ("[" * 900 + "]" * 900, '{"title":' * 900 + "1" + "}" * 900):
+        answer = api.call(
+            "POST", "/lessons", content=nested, headers={"Content-Type": "application/json"}
+        )
+        refused(answer, 422)
+
+
 def test_a_link_that_looks_like_a_script_is_text() -> None:
     lesson = read_lesson(card(text="[x](javascript:alert(1)) and [y](JaVaScRiPt:alert(1))"))
     assert "href" not in html_of(lesson.cards[0])["text"]

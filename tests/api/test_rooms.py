@@ -368,6 +368,16 @@ def test_codes_cannot_be_guessed(serve: Callable[..., Api]) -> None:
     assert int(answer.headers["retry-after"]) >= 1
 
 
+def test_codes_cannot_be_guessed_from_inside_a_room(serve: Callable[..., Api]) -> None:
+    api = serve(token=TOKEN)
+    answer = api.call("POST", "/rooms", json={}, headers={"Authorization": f"Bearer {TOKEN}"})
+    code, client = answer.json()["code"], api.client
+    inside = f"/r/{code}/api/v1/rooms"
+    statuses = [client.get(f"{inside}/WRONG{n % 9}").status_code for n in range(WRONG_CODES)]
+    assert statuses == [404] * WRONG_CODES
+    refused(client.get(f"{inside}/WRONG1"), 429, "wrong codes")
+
+
 def test_one_address_cannot_fill_a_room(school: Class) -> None:
     code = school.room()
     pupil = school.joined(code)

@@ -19,13 +19,17 @@ from tests.forked import start_hexapods
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
+_DATA = "HEXAPODS_DATA"
 Run = Callable[..., subprocess.CompletedProcess[str]]
 
 
 def hexapods(*arguments: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
-    """Run a command to its end, with additional environment variables."""
+    """Run a command to its end, with additional environment variables.
+
+    Its data folder is one of the test's, not the user's.
+    """
     with tempfile.TemporaryFile("w+", encoding="utf-8") as errors:
-        env = {"PATH": "/usr/bin:/bin", **variables}
+        env = {"PATH": "/usr/bin:/bin", _DATA: str(folder / "data"), **variables}
         process = start_hexapods(arguments, env, errors, folder)
         assert process.stdout is not None
         with process.stdout as printed:
@@ -45,7 +49,7 @@ def in_process(*arguments: str, folder: Path, **variables: str) -> subprocess.Co
     ):
         for name in [name for name in os.environ if name.startswith("HEXAPODS_")]:
             patch.delenv(name)
-        for name, value in variables.items():
+        for name, value in {_DATA: str(folder / "data"), **variables}.items():
             patch.setenv(name, value)
         patch.chdir(folder)
         patch.setattr(sys, "path", [*sys.path])
