@@ -7,15 +7,18 @@ import { raceInView, shownRun } from "./on-stage.js";
 import {
   firstTimedOut, isTimedOut, LEVEL_M, shownEarlyEnd, shownTime, standings, timeline, timeSpent,
 } from "./race.js";
+import { isActive } from "./selectors.js";
 import { agentOf } from "./settings.js";
-import { connection } from "./store.js";
+import { connection, scene } from "./store.js";
 import { curve } from "./training.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Standing } from "./race.js" */
-/** @import { Disturbance, TimelineLane } from "./types.js" */
+/** @import { Disturbance, Run, TimelineLane } from "./types.js" */
 
 // ---- announcements for screen readers, each made once: results, failures, a lost connection
+
+const LOST = "Connection lost, reconnecting";
 
 /** The text of the page's live region. */
 export const announcement = signal("");
@@ -55,7 +58,8 @@ export function announceOutcomes() {
     if (run?.state === "failed") announcement.value = `The ${run.kind} failed: ${run.error ?? ""}`;
   });
   effect(() => {
-    if (connection.value === "reconnecting") announcement.value = "Connection lost, reconnecting";
+    if (connection.value === "reconnecting") announcement.value = LOST;
+    else if (connection.value === "live" && announcement.peek() === LOST) announcement.value = "Connected again";
   });
 }
 
@@ -131,6 +135,8 @@ function earlyEndOf(rows, end, steps) {
 
 /** @type {Record<string, string>} */
 const EARLY_END_VERBS = { Stopped: "was stopped", Failed: "failed", Interrupted: "was interrupted" };
+/** The same of a run's state; null of one that was not ended early. @param {string} state */
+const earlyEndVerb = (state) => EARLY_END_VERBS[sentence(state)] ?? null;
 
 /**
  * By what the lanes are ranked, and once they are, when: in one sentence.
@@ -326,6 +332,16 @@ export function practiceReason(epsilon) {
   return `${whole(100 * epsilon)} of 100 steps are still random (ε\u00a0${shown}): it finds out which moves pay.`;
 }
 
+/**
+ * How a practice has ended: "The training was stopped at step 26 of 500."
+ * @param {Run} training that is computed no longer
+ */
+function endOfPractice({ state, progress: { done, total } }) {
+  const verb = earlyEndVerb(state);
+  if (!verb) return `It has practised ${count(done, "step")}.`;
+  return `The training ${verb} at step ${whole(done)} of ${whole(total)}.`;
+}
+
 /** The training on stage: how far it walks and what it does, by its newest evaluation that is shown. */
 const practice = computed(() => {
   const training = shownRun.value?.kind === "training" ? shownRun.value : null;
@@ -335,6 +351,10 @@ const practice = computed(() => {
   if (!newest?.step) {
     const first = training.config.evaluate_every;
     return { title: `${title} practises`, reason: first ? `Its first test is at step ${whole(first)}.` : null };
+  }
+  // The last picture of one that has ended: nothing is found out any more.
+  if (!isActive(training) && scene.value?.ended) {
+    return { title: `${title} walked ${metres(newest.distance_m)} in its last test`, reason: endOfPractice(training) };
   }
   return {
     title: `${title} walks ${metres(newest.distance_m)} so far`,

@@ -44,13 +44,13 @@ const time_s = () => (ownStage.value ? replayTime.value : scene.value?.time_s ??
 /** @param {Run} run @param {boolean} isComputing @returns {Scale | null} */
 function ofPractice(run, isComputing) {
   const { duration_s = null, computed_s = 0 } = scene.value ?? {};
-  const { done } = run.progress;
-  const unit_s = duration_s ? duration_s / (isComputing ? run.config.steps : done || 1) : computed_s / (done || 1);
-  if (!unit_s) return null;
-  return {
-    unit: "step", unit_s, end: isComputing ? run.config.steps : Math.max(done, 1),
-    picture: Math.min(time_s() / unit_s, done), computed: done, isComputing,
-  };
+  if (!duration_s) return null;
+  const { steps } = run.config;
+  const unit_s = duration_s / steps;
+  // Of one that has ended there is what is recorded: a crash loses the last of the steps that were done.
+  const made = isComputing ? run.progress.done : Math.round(computed_s / unit_s);
+  const end = isComputing ? steps : Math.max(made, 1);
+  return { unit: "step", unit_s, end, picture: Math.min(time_s() / unit_s, made), computed: made, isComputing };
 }
 
 /** @param {boolean} isComputing @returns {Scale | null} */

@@ -132,3 +132,22 @@ test("practice is told by its newest test that is shown, and before the first by
   assert.equal(practiceTitle.value, "Learner walks 0.12\u00a0m so far");
   assert.match(reason.value ?? "", /^90 of 100 steps are still random/);
 });
+
+test("the last picture of a practice that has ended says how it ended, and nothing of what it still does", () => {
+  const run = makeRun({ state: "stopped", progress: { done: 120, total: 500 } });
+  const end = (/** @type {object} */ changes, isEnded = true) => applyEvent("snapshot", {
+    runs: [{ ...run, ...changes }], stage: makeStage({ run_id: run.id }),
+    scene: {
+      run_id: run.id, kind: "training", phase: "practice", ended: isEnded, lanes: [makeSceneLane({ step: 120 })],
+    },
+  });
+  end({});
+  applyEvent("evaluation", { run_id: run.id, step: 100, distance_m: 0.31, epsilon: 0.8 });
+  assert.deepEqual([practiceTitle.value, reason.value],
+    ["Learner walked 0.31\u00a0m in its last test", "The training was stopped at step 120 of 500."]);
+  end({ state: "finished", progress: { done: 500, total: 500 } });
+  assert.equal(reason.value, "It has practised 500 steps.");
+  // Played again it is at an earlier moment.
+  end({}, false);
+  assert.equal(practiceTitle.value, "Learner walks 0.31\u00a0m so far");
+});

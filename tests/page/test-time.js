@@ -72,9 +72,14 @@ test("a practice is told in steps: all of them while it is computed, then those 
   show(run, { time_s: 20, duration_s: 250, computed_s: 100 });
   assert.deepEqual(scale.value,
     { unit: "step", unit_s: 0.5, end: 500, picture: 40, computed: 200, isComputing: true });
-  show({ ...run, state: "stopped" }, { time_s: 20, duration_s: 100, computed_s: 100 });
+  // The server's duration stays that of the steps that were ordered.
+  show({ ...run, state: "stopped" }, { time_s: 20, duration_s: 250, computed_s: 100 });
   assert.deepEqual(scale.value,
     { unit: "step", unit_s: 0.5, end: 200, picture: 40, computed: 200, isComputing: false });
+  // A crash loses the steps since the last checkpoint, which count as done.
+  show({ ...run, state: "interrupted" }, { time_s: 75, duration_s: 250, computed_s: 75 });
+  assert.deepEqual(scale.value,
+    { unit: "step", unit_s: 0.5, end: 150, picture: 150, computed: 150, isComputing: false });
 });
 
 test("a race is told in seconds, and while it is computed it is expected to take longer", () => {

@@ -15,12 +15,13 @@ import {
 import { isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
+import { scale } from "../time.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, Loaded } from "./elements.js";
 import { Problem } from "./foot.js";
 
 /** @import { Message } from "../replay-frames.js" */
-/** @import { Scene } from "../types.js" */
+/** @import { Run, Scene } from "../types.js" */
 
 /** A frame that has not reported its status for so long is shown as it is. */
 const STATUS_TIMEOUT_MS = 12_000;
@@ -139,6 +140,13 @@ const StageNotes = () => html`
   </div>
 `;
 
+/** A crash loses the steps since the last checkpoint, which count as done. @param {Run} run */
+function lastPicture({ kind, progress: { done } }) {
+  const recorded = kind === "training" && scale.value ? scale.value.computed : done;
+  if (recorded === done) return "This is its last picture.";
+  return `What came after step ${whole(recorded)} is lost: this is its last picture.`;
+}
+
 /** Of a run on stage that was interrupted or failed: where, and how to go on. */
 function EarlyEndNote() {
   const run = shownRun.value;
@@ -149,7 +157,7 @@ function EarlyEndNote() {
   const verb = run.state === "failed" ? "failed" : "was interrupted";
   return html`
     <div class="stage-note" role="status">
-      <p><b>The ${run.kind} ${verb}${where}.</b> This is its last picture.</p>
+      <p><b>The ${run.kind} ${verb}${where}.</b> ${lastPicture(run)}</p>
       ${isOperator.value && html`
         <button class="primary compact" disabled=${pending.value[resumable.id]} onClick=${() => resumeRun(resumable)}>
           <${Icon} name="play" />Resume ${resumable === run ? "" : `the ${resumable.kind}`}
