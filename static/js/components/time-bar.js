@@ -206,7 +206,7 @@ function Below({ known, width, place }) {
       ${inner.map((one) => isFree(shareOf(one, 0, end) * width) && html`
         <span style=${{ left: place(one) }}>${one}</span>
       `)}
-      ${isFree(width - textWidth(last, 400) / 2) && html`<span class="last">${last}</span>`}
+      ${at + half < width - textWidth(last, 400) && html`<span class="last">${last}</span>`}
       <b style=${{ left: `${at}px` }}>${bubble}</b>
     </div>
   `;
