@@ -348,18 +348,17 @@ const practice = computed(() => {
   if (!training) return null;
   const newest = curve.value?.run.id === training.id ? curve.value.points.at(-1) : null;
   const { title } = agentOf(training.config.agent);
-  if (!newest?.step) {
+  const walk = newest?.step ? metres(newest.distance_m) : null;
+  // The last picture of one that has ended: nothing is found out any more.
+  if (!isActive(training) && scene.value?.ended) {
+    const what = walk === null ? "has practised" : `walked ${walk} in its last test`;
+    return { title: `${title} ${what}`, reason: endOfPractice(training) };
+  }
+  if (walk === null) {
     const first = training.config.evaluate_every;
     return { title: `${title} practises`, reason: first ? `Its first test is at step ${whole(first)}.` : null };
   }
-  // The last picture of one that has ended: nothing is found out any more.
-  if (!isActive(training) && scene.value?.ended) {
-    return { title: `${title} walked ${metres(newest.distance_m)} in its last test`, reason: endOfPractice(training) };
-  }
-  return {
-    title: `${title} walks ${metres(newest.distance_m)} so far`,
-    reason: practiceReason(newest.epsilon),
-  };
+  return { title: `${title} walks ${walk} so far`, reason: practiceReason(newest?.epsilon) };
 });
 
 /** How far the learner on stage walks by now; null where no training is shown. */

@@ -1,6 +1,7 @@
 """A run that a dead server left interrupted is offered on the page and resumes at a click."""
 
 import json
+import re
 from pathlib import Path
 from urllib.request import Request, urlopen
 
@@ -37,6 +38,7 @@ def test_an_interrupted_training_goes_on_at_a_click(tmp_path: Path, dashboard: D
         dashboard.open(server.address)
         note = dashboard.notes.get_by_text("interrupted at step")
         expect(note).to_be_visible()
+        is_at_the_step_of_the_picture(dashboard)
         page.goto(f"{server.address}#runs")
         expect(dashboard.runs.get_by_text("interrupted", exact=True)).to_be_visible()
         resume = dashboard.details.get_by_role("button", name="Resume", exact=True)
@@ -48,6 +50,18 @@ def test_an_interrupted_training_goes_on_at_a_click(tmp_path: Path, dashboard: D
         dashboard.eventually(lambda: done(dashboard) > left_at, "another step")
         dashboard.choose_depth("Try")
         dashboard.button("Stop").click()
+        expect(page.get_by_text("The training was stopped at step")).to_be_visible()
+        is_at_the_step_of_the_picture(dashboard)
+
+
+def is_at_the_step_of_the_picture(dashboard: Dashboard) -> None:
+    """The bar counts the steps that the robot's label counts, however many were ordered."""
+    label = dashboard.page.get_by_text(re.compile(r"(interrupted|stopped) at step \d+ of")).first
+    expect(label).to_be_visible()
+    found = re.search(r"at step (\d+) of", label.inner_text())
+    assert found is not None
+    moment = dashboard.page.get_by_role("slider", name="Moment that is shown")
+    expect(moment).to_have_attribute("aria-valuetext", f"step {found[1]} of step {found[1]}")
 
 
 def done(dashboard: Dashboard) -> int:

@@ -142,6 +142,8 @@ test("the last picture of a practice that has ended says how it ended, and nothi
     },
   });
   end({});
+  assert.deepEqual([practiceTitle.value, reason.value],
+    ["Learner has practised", "The training was stopped at step 120 of 500."]);
   applyEvent("evaluation", { run_id: run.id, step: 100, distance_m: 0.31, epsilon: 0.8 });
   assert.deepEqual([practiceTitle.value, reason.value],
     ["Learner walked 0.31\u00a0m in its last test", "The training was stopped at step 120 of 500."]);
