@@ -104,7 +104,7 @@ class ServoEffort(Record):
         torque_nm: the largest torque of any servo since the sample before, by magnitude.
         power_w: mean positive mechanical power of all servos since the sample before.
         largest_torque_nm: in the window.
-        torque_limit_nm: of each servo.
+        torque_limit_nm: the most that the servo with the largest torque has.
         energy_j: positive mechanical work in the window; what servos draw on top is not simulated.
         mean_power_w: energy by time.
         cost_of_transport: energy by weight times distance; None without distance.
@@ -390,7 +390,9 @@ def _effort(
         return None
     inside = inside.copy()
     inside[0] = False
-    times, torque = frames.times_s[inside], np.abs(frames.torque_nm[inside]).max(axis=1)
+    by_joint = np.abs(frames.torque_nm[inside])
+    times, torque = frames.times_s[inside], by_joint.max(axis=1)
+    joint = legs_of(robot).joints[int(by_joint.max(axis=0).argmax())]
     work, lasted = frames.work_j[inside], np.diff(frames.times_s, prepend=0.0)[inside]
     begins = np.arange(0, len(times), -(-len(times) // MAX_SAMPLES))
     power = np.add.reduceat(work, begins) / np.add.reduceat(lasted, begins)
@@ -401,7 +403,7 @@ def _effort(
         torque_nm=_rounded(np.maximum.reduceat(torque, begins)),
         power_w=_rounded(power, 3),
         largest_torque_nm=round(float(torque.max()), 4),
-        torque_limit_nm=robot.servo_torque_nm,
+        torque_limit_nm=robot.servo_of(joint.leg, joint.name).torque_nm,
         energy_j=energy,
         mean_power_w=energy / duration_s,
         cost_of_transport=energy / (weight_n * distance_m) if has_advanced else None,

@@ -259,7 +259,7 @@ export const FIGURES = [
     ({ posture }) => rangeInWords(posture.pitch_range_deg, 1, "°")],
   ["Roll", "How far the left side is up; below zero it is down.",
     ({ posture }) => rangeInWords(posture.roll_range_deg, 1, "°")],
-  ["Largest torque", "Of any servo, with the most that a servo has.",
+  ["Largest torque", "Of any servo, with the most that this servo has.",
     ({ effort }) => effort && `${number(effort.largest_torque_nm, 2)} of ${effort.torque_limit_nm}\u00a0N·m`],
   ["Energy", "Mechanical work of all servos. What motors and electronics lose is not simulated.",
     ({ effort }) => effort && `${number(effort.energy_j, 1)}\u00a0J`],

@@ -175,6 +175,24 @@ def test_the_cost_of_transport_is_energy_by_weight_and_distance(with_physics: Re
     assert np.mean(effort.power_w) == pytest.approx(effort.mean_power_w, rel=0.01)
 
 
+def test_the_limit_of_torque_is_that_of_the_servo_with_the_largest(
+    with_physics: RecordedWalk,
+) -> None:
+    torques = [with_physics.motion(index).torque_nm for index in range(15)]
+    largest = np.max([np.abs(one).max(axis=0) for one in torques if one is not None], axis=0)
+    leg = 1 + int(largest.argmax()) // 3
+    robot = with_physics.problem.robot
+    legs = list(robot.legs)
+    legs[leg - 1] = replace(legs[leg - 1], servo_torque_nm=2.5)
+    stronger = replace(with_physics.problem, robot=replace(robot, legs=tuple(legs)))
+
+    figures = gait_figures(replace(with_physics, problem=stronger), 0, 15 * STEP_S)
+
+    assert figures is not None
+    assert figures.effort is not None
+    assert figures.effort.torque_limit_nm == 2.5
+
+
 def test_without_distance_there_is_no_cost_of_transport(with_physics: RecordedWalk) -> None:
     figures = gait_figures(with_physics, 0, 0.02)
 
