@@ -10,9 +10,10 @@ from pathlib import Path
 
 from app.cli.machine_checks import CheckFailed
 from app.events.damage import damaged_runs
-from app.settings import PREFIX, Settings
+from app.settings import PREFIX, ROBOTS_FOLDER, Settings
 from app.storage.database.opening import ENTRIES
 from app.storage.database.read_only import open_read_only
+from app.storage.database.robots import damaged_robots
 from app.storage.disk_space import MB, DiskSpace
 from app.storage.private_folder import exposed_paths
 from app.storage.server_lock import LOCK_FILE, FolderInUse, lock_folder, read_address_file
@@ -86,6 +87,23 @@ def _database(settings: Settings) -> str:
     return f"{kind} can be read, " + ("and has runs" if has_runs else "and is empty or to be made")
 
 
+def _robots(settings: Settings) -> str:
+    with open_read_only(settings) as store:
+        robots = store.robots.stored(hidden=True)
+        damaged = damaged_robots(robots)
+    if damaged:
+        names = {one.id: one.name for one in robots}
+        named = "; ".join(
+            f"{names[robot_id]} ({robot_id}): {reason}"
+            for robot_id, reason in [*damaged.items()][:_MAX_NAMED]
+        )
+        raise CheckFailed(
+            f"{len(damaged):,} of the stored robots cannot be read, {named}; put a backup of "
+            f"{settings.data / ROBOTS_FOLDER} back, or import their files again"
+        )
+    return f"{len(robots):,} stored, which can all be read" if robots else "none is stored"
+
+
 def _address(settings: Settings) -> str:
     where = f"{settings.host} port {settings.port}"
     if _can_listen(settings):
@@ -129,5 +147,6 @@ CHECKS: Mapping[str, Callable[[Settings], str]] = {
     "room": _disk_space,
     "lock": _lock,
     "database": _database,
+    "robots": _robots,
     "address": _address,
 }

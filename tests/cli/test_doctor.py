@@ -9,7 +9,8 @@ import pytest
 
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.server_lock import lock_folder, write_address_file
-from tests.cli.running import hexapods, in_process
+from hexapods.domain.robot import document_of, robot
+from tests.cli.running import hexapods, in_process, output
 from tests.postgresql import PostgresServer
 from tests.storage.stores import database_url, opened
 
@@ -40,7 +41,7 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     names = [line[2:].partition(":")[0] for line in lines]
     assert names[:5] == ["python", "packages", "physics", "browser", "cores"]
     assert names[5:7] == ["exports", "settings"]
-    assert names[7:] == ["data folder", "room", "lock", "database", "address"]
+    assert names[7:] == ["data folder", "room", "lock", "database", "robots", "address"]
     assert list(tmp_path.iterdir()) == []
 
 
@@ -53,6 +54,20 @@ def test_quota_and_database_are_checked(tmp_path: Path) -> None:
     assert "raise HEXAPODS_QUOTA_MB" in failures(examined(tmp_path, HEXAPODS_QUOTA_MB="10"))["room"]
     (tmp_path / "data" / DATABASE_FILE).write_text("milk" * 1000)
     assert "damaged" in failures(examined(tmp_path))["database"]
+
+
+def test_stored_robots_that_cannot_be_read_are_named(tmp_path: Path) -> None:
+    assert examined(tmp_path)["robots"] == (True, "none is stored")
+    (tmp_path / "rex.json").write_bytes(document_of(robot({"preset": "dog", "femur_m": 0.096})))
+    where = ("--name", "Rex", "--data", str(tmp_path / "data"))
+    made = output("robots", "import", "rex.json", *where, folder=tmp_path, run=in_process)
+    assert examined(tmp_path)["robots"] == (True, "1 stored, which can all be read")
+    (document,) = (tmp_path / "data" / "robots").rglob(f"{made['id']}*")
+    document.write_bytes(document.read_bytes()[:-9])
+    found = examined(tmp_path)
+    assert f"Rex ({made['id']})" in failures(found)["robots"]
+    assert "put a backup" in failures(found)["robots"]
+    assert found["database"][0]
 
 
 def test_unusable_data_folder_is_named(tmp_path: Path) -> None:

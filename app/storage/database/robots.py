@@ -94,15 +94,12 @@ class RobotStore:
 
     def readable(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
         """Return those of `stored` whose documents can be read; others are logged."""
-        found = []
-        for one in self.stored(hidden=hidden):
-            try:
-                one.robot  # noqa: B018 - reads the document
-            except HexapodError as error:
-                _logger.warning("robot %s (%s) is left out: %s", one.id, one.name, error)
-            else:
-                found.append(one)
-        return found
+        stored = self.stored(hidden=hidden)
+        damaged = damaged_robots(stored)
+        for one in stored:
+            if one.id in damaged:
+                _logger.warning("robot %s (%s) is left out: %s", one.id, one.name, damaged[one.id])
+        return [one for one in stored if one.id not in damaged]
 
     def get(self, robot_id: str) -> StoredRobot:
         """Return a stored robot.
@@ -374,6 +371,17 @@ class RobotStore:
         if not robot_documents.is_id(robot_id):
             raise NotFound(f"there is no robot {robot_id!r}")
         return self._folder / f"{robot_id}{ending}"
+
+
+def damaged_robots(robots: Iterable[StoredRobot]) -> Mapping[str, str]:
+    """Return, by id, why the documents of some robots cannot be read; those that can are absent."""
+    reasons = {}
+    for one in robots:
+        try:
+            one.robot  # noqa: B018 - reads the document
+        except HexapodError as error:
+            reasons[one.id] = str(error)
+    return reasons
 
 
 def _name_taken(name: str) -> Conflict:
