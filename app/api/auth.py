@@ -7,7 +7,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.cookies import SessionCookie
+from app.api.cookies import SessionCookie, is_secure
 from app.api.problems import problem
 from app.api.rate_limit import is_question, too_many
 from app.api.room_access import READ_METHODS, RoomAccess
@@ -50,7 +50,7 @@ class TokenGuard:
         """
         self._app, self._rooms = app, rooms
         self._wrong_guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
-        self._is_https = (settings.public_url or "").startswith("https:")
+        self._settings = settings
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Store the role in the scope's state and call the app, or refuse with 401 or 429."""
@@ -101,7 +101,7 @@ class TokenGuard:
         return _unauthorized(f"This needs the operator: {_AUTH_HINT}.")
 
     def _is_secure(self, scope: Scope) -> bool:
-        return self._is_https or scope["scheme"] in ("https", "wss")
+        return is_secure(scope, self._settings)
 
     def _cookie(self, scope: Scope, headers: Headers) -> SessionCookie:
         return SessionCookie(headers, self._is_secure(scope), stage_of(scope).session_path)

@@ -2,11 +2,18 @@
 
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
+from starlette.types import Scope
 
+from app.settings import Settings
 from app.storage.sessions import SESSION_S
 
 NAME = "hexapods_operator"
 ROOM_NAME = "hexapods_room"
+
+
+def is_secure(scope: Scope, settings: Settings) -> bool:
+    """Whether browsers reach the server over HTTPS, by itself or by the proxy that offers it."""
+    return scope["scheme"] in ("https", "wss") or (settings.public_url or "").startswith("https:")
 
 
 class SessionCookie:

@@ -25,6 +25,11 @@ _REFUSALS: dict[Refusal, str] = {
     "address full": "The event stream has its maximum number of clients from this address; "
     "try again later.",
 }
+EVENT_STREAM: dict[str, Any] = {
+    "response_class": EventSourceResponse,
+    "openapi_extra": sends_events("EventBodies"),
+}
+"""How a route that yields `stream_events` is declared."""
 
 router = APIRouter(prefix="/events", tags=["events"])
 
@@ -61,8 +66,7 @@ async def client_slot(
 @router.get(
     "",
     summary="Stream the events of all runs and of the stage",
-    response_class=EventSourceResponse,
-    openapi_extra=sends_events("EventBodies"),
+    **EVENT_STREAM,
 )
 async def get_events(
     services: ServicesDep,

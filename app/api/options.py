@@ -14,6 +14,16 @@ from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
+from app.api.option_texts import (
+    CLOCK_TEXTS,
+    EXPERIMENT_TEXTS,
+    FIELD_HELP,
+    FIELD_TITLES,
+    OBSERVATION_TEXTS,
+    SIMULATOR_TEXTS,
+    SIMULATOR_TITLES,
+)
+from app.api.robot_options import built_in_options, gait_options, stored_options
 from app.archive.transfer import MAX_RUNS
 from app.jobs.submissions import MAX_SETTINGS
 from app.storage.database.robots import RobotStore
@@ -31,15 +41,12 @@ from hexapods.agents.registry import (
     searches,
 )
 from hexapods.domain import disturbances
-from hexapods.domain.creatures import CREATURES, Creature, own_gait
-from hexapods.domain.errors import InvalidInput
-from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json, resolve
-from hexapods.domain.kinematics import legs_of
+from hexapods.domain.creatures import CREATURES
+from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.records import to_json
-from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot, as_mapping, by_value
+from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
-from hexapods.domain.suggestions import usual_grid_side_m
-from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS, counted
+from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
 from hexapods.experiments.config import (
     EXPERIMENTS,
@@ -54,7 +61,6 @@ from hexapods.experiments.config import (
 )
 from hexapods.experiments.names import TITLES
 from hexapods.exports.registry import EXPORTS
-from hexapods.runs import best_known
 from hexapods.runs.clocks import CLOCK_TITLES
 from hexapods.runs.config import (
     RACE_STEPS,
@@ -97,121 +103,6 @@ def _content(agents: tuple[str, ...], robots: RobotStore, version: int) -> Compr
     return CompressedContent(bytes(JSONResponse(answer).body), "application/json")
 
 
-_EXPERIMENTS = {
-    "table1": (
-        "The paper’s Table 1: Q-learning after 500 and after 1000 steps beside greedy and "
-        "two-step, in all four gaits, with the feet measured and with the commands remembered."
-    ),
-    "figure4": (
-        "The paper’s Figure 4: practice in blocks of 250 steps up to 2000, the table saved and "
-        "loaded in between, and greedy as the line to reach."
-    ),
-    "sweep": (
-        "A grid of any values: every combination is tried over all seeds. The paper names tuning "
-        "as future work."
-    ),
-    "league": (
-        "Learners and searchers in several worlds, with robots that differ a little by seed: "
-        "distance against practice, beside greedy and the best known walk."
-    ),
-    "recovery": (
-        "Learners practise, then something happens to them, and they learn on: how far they walk "
-        "at once, and how soon they walk well again."
-    ),
-    "groups": (
-        "Pairs of legs beside two groups of three: fewer groups have fewer states, 25 instead of "
-        "125, and Q-learning comes level with greedy after 250 steps."
-    ),
-    "bodies": (
-        "Learners on robots with other bodies, each in the gait that suits it: how far they walk, "
-        "and how soon."
-    ),
-}
-_GAITS = {
-    "left-right-origin": (
-        "Three legs on each side of the way; legs that stand opposite each other move together."
-    ),
-    "left-right-vertical": (
-        "Three legs on each side of the way; each leg moves with its mirror image."
-    ),
-    "front-back-origin": (
-        "One leg leads, three in front and three behind; opposite legs move together."
-    ),
-    "front-back-vertical": (
-        "One leg leads, three in front and three behind; each leg moves with its mirror image."
-    ),
-    "tripod": "Six legs: three of them move together, three stand, as most insects run.",
-    "tetrapod": "Four legs stand, while two or four others move together.",
-    "trot": "Every other leg around the body moves: of four legs those on a diagonal.",
-    "pace": "All legs of one side move together; most bodies tip.",
-    "bound": "The legs in front move together, then all others; most bodies tip.",
-    "one-by-one": "Each leg moves alone, while all others stand: steady, but many states.",
-}
-_OBSERVATIONS = {
-    "measured": "Where the feet are, by the joint angles.",
-    "commanded": "Where the feet were last sent; the body's drift is not seen.",
-    "planned": "Where the feet would be if nothing had slipped, reckoned from the commands.",
-}
-_CLOCKS = {
-    "paper": "A decision costs a share of a step's time for every future that was simulated.",
-    "wall": "A decision costs the time that this computer took for it.",
-    "free": "Thinking costs nothing.",
-}
-_SIMULATORS = {
-    "mujoco": "Real physics: servos, contacts, friction.",
-    "kinematic": "The law of a step without slip: exact, and very quick.",
-}
-_SIMULATOR_TITLES = {"mujoco": "MuJoCo physics", "kinematic": "ideal (no slip)"}
-_HELP = {
-    "gait": "Which way is forward, and which legs move together.",
-    "what_if_steps": "How many steps of practice a what-if may have.",
-    "observation": "How the robot knows where its feet are.",
-    "robot": "Which robot walks; it differs in servos and friction.",
-    "simulator": "What computes the walking.",
-    "lanes": "Which agents race.",
-    "legs": "How many legs a robot may have.",
-    "disturbances": "Changes of the robot or the ground, each from a step on.",
-    "clock": "What thinking costs in the race; it can change who wins.",
-    "name": "What the run is called in the list.",
-    "tag": "A word by which the list of runs is filtered.",
-    "tags": "How many words a run may have by which the list is filtered.",
-    "notes": "What is worth remembering about a run.",
-    "import_bytes": "How large a file may be that is imported.",
-    "archive_runs": "How many runs one archive holds.",
-    "best_known": best_known.DEFINITION,
-    "best_known_where": best_known.COVERAGE,
-    "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",
-    "agent": "Which agent learns.",
-    "seeds": "How often each setting is tried, each time with other random numbers.",
-    "gaits": "Which gaits are tried.",
-    "robots": "Which robots are tried.",
-    "observations": "Which observations are tried.",
-    "worlds": "Which worlds are tried.",
-    "agents": "Which agents learn or search, and are compared with each other.",
-    "settings": "Combinations of values; each is tried over all seeds.",
-    "trials": "Settings times seeds; agents that look ahead are tried once.",
-    "workers": "How many trials are computed at once; by default one for each core.",
-}
-_FIELD_TITLES = {
-    "gait": "Gait",
-    "gaits": "Gaits",
-    "robot": "Robot",
-    "robots": "Robots",
-    "simulator": "Simulator",
-    "observations": "Observation",
-    "agent": "Learner",
-    "agents": "Agents",
-    "lanes": "Lanes",
-    "name": "Name",
-    "world": "World",
-    "worlds": "Worlds",
-    "disturb": "Disturbances",
-    "experiment": "Experiment",
-    "seeds": "Seeds",
-    "tags": "Tags",
-    "notes": "Notes",
-}
-"""Of the fields of all forms that are no declared settings."""
 # The limit of a race with the maximum number of lanes.
 _LANE_STEPS = Annotated[
     int, Ge(1), Le(MAX_RACE_STEPS // MAX_LANES), declared_fields(RaceConfig)["steps"].about
@@ -236,16 +127,16 @@ def catalogue(agents: Collection[str], robots: Iterable[StoredRobot] = ()) -> di
     settings = _all_settings(agents)
     return {
         "version": __version__,
-        "gaits": [_gait(name) for name in NAMED_GAITS],
-        "robots": [*map(_built_in, CREATURES.values()), *map(_stored, robots)],
+        "gaits": [gait_options(name) for name in NAMED_GAITS],
+        "robots": [*map(built_in_options, CREATURES.values()), *map(stored_options, robots)],
         "leg_fields": {name: _setting(setting) for name, setting in leg_fields().items()},
         "torso_fields": {name: _setting(setting) for name, setting in torso_fields().items()},
         "agents": _agents(agents),
         "worlds": _worlds(),
         "disturbances": _disturbances(),
-        "simulators": _described(_SIMULATORS, _SIMULATOR_TITLES),
-        "observations": _described(_OBSERVATIONS, _choice_titles("observation")),
-        "clocks": _described(_CLOCKS, CLOCK_TITLES),
+        "simulators": _described(SIMULATOR_TEXTS, SIMULATOR_TITLES),
+        "observations": _described(OBSERVATION_TEXTS, _choice_titles("observation")),
+        "clocks": _described(CLOCK_TEXTS, CLOCK_TITLES),
         "experiments": _experiments(agents),
         "defaults": {
             "training": _training_defaults(),
@@ -254,71 +145,10 @@ def catalogue(agents: Collection[str], robots: Iterable[StoredRobot] = ()) -> di
         },
         "settings": {name: _setting(setting) for name, setting in settings.items()},
         "limits": _limits(settings),
-        "help": {name: setting.about.help for name, setting in settings.items()} | _HELP,
-        "titles": _FIELD_TITLES,
+        "help": {name: setting.about.help for name, setting in settings.items()} | FIELD_HELP,
+        "titles": FIELD_TITLES,
         "exports": _exports(),
     }
-
-
-def _gait(name: str) -> dict[str, Any]:
-    gait = resolve(name, Robot().azimuths_deg)
-    return {
-        "name": name,
-        "title": GAIT_TITLES[name],
-        "forward_deg": gait.forward_deg,
-        "azimuths_deg": gait.azimuths_deg,
-        "pairs": gait.groups,
-        "description": _GAITS[name],
-    }
-
-
-def _built_in(creature: Creature) -> dict[str, Any]:
-    return {
-        "name": creature.robot.name,
-        "title": creature.title,
-        "description": creature.description,
-        **_robot(creature.robot, creature.gait),
-    }
-
-
-def _stored(stored: StoredRobot) -> dict[str, Any]:
-    made = stored.robot
-    origin = "made here" if stored.file is None else f"from {stored.file}"
-    return {
-        "name": stored.id,
-        "title": stored.name,
-        "description": f"{counted(len(made.legs), 'leg')}; {origin}.",
-        **_robot(made, own_gait(made)),
-        "hidden": stored.hidden,
-        "body": by_value(made),
-    }
-
-
-def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
-    legs = legs_of(made)
-    numbers = range(1, len(legs) + 1)
-    return {
-        "id": made.id,
-        "hidden": False,
-        "body": None,
-        "robot": as_mapping(made),
-        "grid_side_m": usual_grid_side_m(made, gait),
-        "joints": [[joint.name for joint in legs.of_leg(number)] for number in numbers],
-        "limits_rad": [[joint.limits_rad for joint in legs.of_leg(number)] for number in numbers],
-        "azimuths_deg": [*made.azimuths_deg],
-        "gait": gait_as_json(gait),
-        "gaits": [name for name in NAMED_GAITS if _divides(name, made)],
-        "built": {part: getattr(made, part) for part in _replaced_parts()},
-    }
-
-
-def _divides(gait: str, robot: Robot) -> bool:
-    """Return whether a named gait divides the legs of a robot into groups."""
-    try:
-        resolve(gait, robot.azimuths_deg)
-    except InvalidInput:
-        return False
-    return True
 
 
 def _all_settings(agents: Collection[str]) -> dict[str, DeclaredSetting]:
@@ -381,16 +211,10 @@ def _disturbances() -> list[dict[str, Any]]:
             "part": kind.part,
             "repairs": kind.repairs,
             "adjective": kind.adjective or name,
-            "simulators": [one for one in _SIMULATORS if is_simulated(name, one)],
+            "simulators": [one for one in SIMULATOR_TEXTS if is_simulated(name, one)],
         }
         for name, kind in disturbances.KINDS.items()
     ]
-
-
-def _replaced_parts() -> list[str]:
-    """Return the fields of a robot in whose place disturbances put another value."""
-    values = (kind.nothing for kind in disturbances.KINDS.values())
-    return [value for value in values if isinstance(value, str)]
 
 
 def _usual_choices(kind: type[disturbances.Disturbance], field: str) -> dict[str, Any]:
@@ -432,7 +256,7 @@ def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
             {
                 "name": name,
                 "title": TITLES[name],
-                "description": _EXPERIMENTS[name],
+                "description": EXPERIMENT_TEXTS[name],
                 "fields": fields,
                 "grid": [field for field in (GRID[0], *settings, *GRID[1:]) if field in fields],
                 "defaults": defaults,
@@ -453,7 +277,7 @@ def _simulator_defaults(
             for field, value in to_json(experiment_config(name, {"simulator": simulator})).items()
             if field != "simulator" and value != defaults[field]
         }
-        for simulator in _SIMULATORS
+        for simulator in SIMULATOR_TEXTS
     }
 
 

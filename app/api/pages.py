@@ -18,6 +18,9 @@ from starlette.types import Scope
 from app.api.compression import CompressedContent
 
 _INLINE_SCRIPT = re.compile(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", re.DOTALL)
+_INDEX = "index.html"
+_COMMON = re.compile(r"<!-- common -->\n(.*?)<!-- /common -->\n", re.DOTALL)
+_COMMON_OF_INDEX = "<!-- common: that of index.html -->\n"
 _IMPORT_MAP = re.compile(r'<script type="importmap">(.*?)</script>', re.DOTALL)
 _ENTRY = re.compile(r'<script type="module" src="((?:\.\./)*)([^"]+)"></script>')
 # As all modules write it: at the start of a line, with a relative path in double quotes.
@@ -30,7 +33,7 @@ def page_routes(folder: Path) -> list[BaseRoute]:
     Args:
         folder: folder of the dashboard, with its `index.html`.
     """
-    index = page_content("index.html", folder)
+    index = page_content(_INDEX, folder)
     files = _Files(directory=folder)
 
     async def show(request: Request) -> Response:
@@ -48,9 +51,21 @@ def page_routes(folder: Path) -> list[BaseRoute]:
 
 def page_content(name: str, folder: Path) -> CompressedContent:
     """Return a page of the dashboard's folder with its preloads and its policy."""
-    page = with_preloads((folder / name).read_text("utf-8"), folder)
+    page = with_preloads(_with_common_head(name, folder), folder)
     policy = {"Content-Security-Policy": content_policy(page)}
     return CompressedContent(page.encode(), "text/html", policy)
+
+
+def _with_common_head(name: str, folder: Path) -> str:
+    """Return a page's HTML, with what its head has in common with that of the dashboard."""
+    page = (folder / name).read_text("utf-8")
+    if _COMMON_OF_INDEX not in page:
+        return page
+    common = _COMMON.search((folder / _INDEX).read_text("utf-8"))
+    if common is None:
+        raise ValueError("The head of the dashboard's page has no common part.")
+    # Other pages are a folder below the dashboard, as "/r/CODE" is.
+    return page.replace(_COMMON_OF_INDEX, re.sub(r'"(?:\./)?static/', '"../static/', common[1]))
 
 
 def content_policy(page: str) -> str:

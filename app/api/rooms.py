@@ -5,8 +5,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request
 from fastapi.concurrency import run_in_threadpool
-from fastapi.sse import EventSourceResponse, ServerSentEvent
-from pydantic import Field, JsonValue
+from fastapi.sse import ServerSentEvent
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import AnyRunView, WhatIfView
@@ -18,13 +17,24 @@ from app.api.classroom_answers import (
     RoomList,
     RoomView,
 )
-from app.api.contract import LOCATION, TEXT, Schema, answers, sends_events
-from app.api.deps import EventListener, ReaderDep, ServicesDep
-from app.api.events import client_slot, stream_events
-from app.api.fields import INTEGRAL, Body
+from app.api.contract import LOCATION, TEXT, Schema, answers
+from app.api.cookies import SessionCookie, is_secure
+from app.api.deps import EventListener, ReaderDep, Services, ServicesDep
+from app.api.events import EVENT_STREAM, client_slot, stream_events
 from app.api.formats import attachment, negotiated
 from app.api.rate_limit import asker_of, whole_seconds
 from app.api.room_access import room_cookie
+from app.api.room_bodies import (
+    CardBody,
+    FreezeBody,
+    JoinBody,
+    ParticipantBody,
+    PredictionBody,
+    RevealBody,
+    RoomBody,
+    RunBody,
+    SpotlightBody,
+)
 from app.api.room_views import results_view, room_address, room_view
 from app.api.runs import located
 from app.api.spectators import qr_image
@@ -37,76 +47,14 @@ from app.limits.addresses import client_of
 from app.storage.errors import Busy, Forbidden, NotFound
 from app.storage.json_text import finite
 from app.viewer.shared_stage import SharedStage
-from hexapods.domain.settings import MAX_SETTING_NAME
 from hexapods.domain.text import MAX_NAME, check_name
 
 CodePath = Annotated[str, Path(description="code of the room", max_length=20)]
 SeedPath = Annotated[int, Path(description="seed of the participant", ge=0)]
-MAX_SETTINGS = 60
 _SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
 _JOINS_USED_UP = "Too many have joined from this address within a short time; try again later."
 
 router = APIRouter(prefix="/rooms", tags=["rooms"])
-
-
-class RoomBody(Body):
-    """A room: its lesson, by its id or itself, and whether participants have to be approved."""
-
-    lesson: str | dict[str, JsonValue] | None = None
-    needs_approval: Annotated[bool, Field(strict=True)] = False
-
-
-class JoinBody(Body):
-    """Nothing: a participant's name is from a list of words."""
-
-
-class CardBody(Body):
-    """A card, by its number, from 0."""
-
-    card: Annotated[CardNumber, Field(strict=True), INTEGRAL]
-
-
-class RevealBody(Body):
-    """The card that is revealed; by default the one that is shown."""
-
-    card: Annotated[CardNumber, Field(strict=True), INTEGRAL] | None = None
-
-
-class FreezeBody(Body):
-    """Whether all stands still."""
-
-    frozen: Annotated[bool, Field(strict=True)] = True
-
-
-class PredictionBody(CardBody):
-    """An answer to the question of the card that is shown.
-
-    A choice is its text, a number a number, a point [x, y], and a curve a list of points.
-    """
-
-    value: JsonValue
-
-
-class RunBody(Body):
-    """The settings that the card opens, by name; those that are left out are the card's."""
-
-    settings: Annotated[
-        dict[Annotated[str, Field(max_length=MAX_SETTING_NAME)], JsonValue],
-        Field(max_length=MAX_SETTINGS),
-    ] = Field(default_factory=dict)
-
-
-class SpotlightBody(Body):
-    """The run of the room that its stage shows; null for none."""
-
-    run_id: Annotated[str, Field(max_length=64)] | None
-
-
-class ParticipantBody(Body):
-    """What others see of a participant; what is left out stays as it is."""
-
-    is_name_hidden: Annotated[bool, Field(strict=True)] | None = None
-    is_approved: Annotated[bool, Field(strict=True)] | None = None
 
 
 def _seat(services: ServicesDep, code: CodePath, reader: ReaderDep) -> int:
@@ -209,13 +157,10 @@ def join_room(
     A cookie keeps name and seed; who has it gets both again, with 200.
     """
     del body
-    scope, headers = request.scope, request.headers
-    is_secure = scope["scheme"] == "https" or (services.settings.public_url or "")[:6] == "https:"
-    cookie = room_cookie(headers, normalized(code), is_secure=is_secure)
-    rooms = services.rooms
+    rooms, cookie = services.rooms, _cookie(services, request, code)
     if rooms.seat(normalized(code), cookie.value) is None:
         rooms.get(code).check_open()
-        if (wait_s := services.joins.take(f"{normalized(code)} {client_of(scope)}")) > 0:
+        if (wait_s := services.joins.take(f"{normalized(code)} {client_of(request.scope)}")) > 0:
             raise Busy(_JOINS_USED_UP, whole_seconds(wait_s))
     joined = rooms.join(code, cookie.value)
     shown = {"name": joined.participant.name, "seed": joined.participant.seed}
@@ -230,9 +175,13 @@ def leave_room(
 ) -> None:
     """Leave; answers and runs stay in the results."""
     services.rooms.leave(code, seed)
-    is_secure = request.scope["scheme"] == "https"
-    cookie = room_cookie(request.headers, normalized(code), is_secure=is_secure)
+    cookie = _cookie(services, request, code)
     response.headers.append("Set-Cookie", cookie.expire_header())
+
+
+def _cookie(services: Services, request: Request, code: str) -> SessionCookie:
+    secure = is_secure(request.scope, services.settings)
+    return room_cookie(request.headers, normalized(code), is_secure=secure)
 
 
 @router.patch(
@@ -396,8 +345,7 @@ def _room_stage(services: ServicesDep, code: CodePath) -> SharedStage:
 @router.get(
     "/{code}/events",
     summary="Stream the events of a room and of its stage",
-    response_class=EventSourceResponse,
-    openapi_extra=sends_events("EventBodies"),
+    **EVENT_STREAM,
 )
 async def get_room_events(
     services: ServicesDep,

@@ -3,61 +3,37 @@
 All is written to the database before it counts, so that a server that is killed goes on with it.
 """
 
-import hashlib
 import logging
 import secrets
 import threading
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Mapping
 from datetime import UTC, datetime, timedelta
-from typing import Any, NamedTuple
+from typing import Any
 
 from app.classroom.answers import check_answer
 from app.classroom.lesson import Lesson, plain, read_lesson
 from app.classroom.lessons import FoundLesson
-from app.classroom.names import Choose, new_code, new_name, normalized
-from app.classroom.room import Deed, Room, given_key
+from app.classroom.names import Choose, new_code, normalized
+from app.classroom.room import Deed, Room
+from app.classroom.room_runs import RoomRuns
+from app.classroom.seats import Joined, Seats, new_participant
 from app.jobs.submissions import Start
-from app.storage.database.room_rows import (
-    ParticipantRow,
-    PredictionRow,
-    RoomRow,
-    RoomRun,
-    Seat,
-)
+from app.storage.database.room_rows import ParticipantRow, PredictionRow, RoomRow, Seat
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, Forbidden, NotFound
-from app.storage.run import NOT_ENDED, Run
+from app.storage.run import Run
 from hexapods.domain.errors import HexapodError
 
 MAX_OPEN = 16
 """Rooms that are open at once; each has a stage of its own."""
-MAX_PARTICIPANTS = 64
-MAX_RUNS = 20
-"""Runs of a participant on a card."""
 IDLE = timedelta(days=1)
 """A room in which nothing has happened for so long is ended where another needs its place."""
 _RETRY_S = 60
-_FAILED = ("failed", "stopped")
 _EMPTY: Mapping[str, Any] = {
     "title": "A room",
     "cards": [{"text": "Watch what the teacher shows."}],
 }
 _logger = logging.getLogger(__name__)
-
-
-class Joined(NamedTuple):
-    """A participant who has joined.
-
-    Attributes:
-        participant: with name and seed.
-        key: what the cookie holds.
-        is_new: whether the participant was not in the room before.
-    """
-
-    participant: ParticipantRow
-    key: str
-    is_new: bool
 
 
 class Rooms:
@@ -87,9 +63,7 @@ class Rooms:
         self.on_changed = on_changed
         self._lock = threading.RLock()
         self._rooms: dict[str, Room] = {}
-        self._seats: dict[str, Seat] = {}
-        """Of participants, by the hash of the key."""
-        self._runs: dict[str, RoomRun] = {}
+        self._seats, self._runs = Seats(), RoomRuns(store)
         self._load()
 
     def _load(self) -> None:
@@ -100,18 +74,11 @@ class Rooms:
                 _logger.warning("the room %s cannot be read", row.code, exc_info=True)
         for participant in self._rows.participants():
             if participant.room in self._rooms:
-                self._seat(participant)
+                self._seats.add(self._rooms[participant.room], participant)
         for one in self._rows.predictions():
             if one.room in self._rooms:
                 self._rooms[one.room].predictions[one.seed, one.card] = one.value
-        for run in self._rows.runs():
-            self._runs[run.run_id] = run
-            if run.room in self._rooms and run.seed in self._rooms[run.room].participants:
-                self._rooms[run.room].runs[run.run_id] = run
-
-    def _seat(self, row: ParticipantRow) -> None:
-        self._rooms[row.room].participants[row.seed] = row
-        self._seats[row.key_sha256] = (row.room, row.seed)
+        self._runs.load(self._rooms)
 
     # ---- of the teacher
 
@@ -200,7 +167,7 @@ class Rooms:
                 [one.run_id for one in runs],
             )
             room.revealed |= {number}
-            self._note_shown(room, runs)
+            self._runs.note_shown(room, runs)
         self.on_changed(room)
         return room
 
@@ -224,7 +191,7 @@ class Rooms:
                     raise Conflict(f"{participant.name} is not approved yet; approve first", "open")
             self._rows.change_room(room.code, {"spotlight": run_id}, [one.run_id for one in runs])
             room.spotlight = run_id
-            self._note_shown(room, runs)
+            self._runs.note_shown(room, runs)
         self.on_changed(room)
         return room
 
@@ -247,7 +214,7 @@ class Rooms:
             runs = [r for r in own if is_approved and r.card in room.revealed]
             self._rows.change_participant(room.code, seed, changes, [one.run_id for one in runs])
             room.participants[seed] = participant
-            self._note_shown(room, runs)
+            self._runs.note_shown(room, runs)
         self.on_changed(room)
         return room
 
@@ -295,25 +262,11 @@ class Rooms:
             seat = self.seat(room.code, key)
             if seat is not None:
                 return Joined(seat, key, is_new=False)
-            if len(room.present) >= MAX_PARTICIPANTS:
-                raise Busy(
-                    f"{MAX_PARTICIPANTS} are in the room {room.code}, which is the most", _RETRY_S
-                )
-            key = secrets.token_urlsafe(32)
-            row = ParticipantRow(
-                room=room.code,
-                seed=max(room.participants, default=-1) + 1,
-                name=new_name(self._choose, {one.name for one in room.participants.values()}),
-                key_sha256=_sha256(key),
-                is_name_hidden=False,
-                is_approved=not room.needs_approval,
-                joined_at=self._now(),
-                left_at=None,
-            )
-            self._rows.add_participant(row)
-            self._seat(row)
+            joined = new_participant(room, self._choose, self._now())
+            self._rows.add_participant(joined.participant)
+            self._seats.add(room, joined.participant)
         self.on_changed(room)
-        return Joined(row, key, is_new=True)
+        return joined
 
     def leave(self, code: str, seed: int) -> None:
         """Leave a room; what was answered and run stays."""
@@ -325,11 +278,8 @@ class Rooms:
 
     def seat(self, code: str, key: str) -> ParticipantRow | None:
         """Return the participant of a room by the key of the cookie; None if it is none's."""
-        seat = self._seats.get(_sha256(key)) if key else None
-        if seat is None or seat[0] != code:
-            return None
-        participant = self._rooms[code].participants[seat[1]]
-        return participant if participant.left_at is None else None
+        room = self._rooms.get(code)
+        return None if room is None else self._seats.of(room, key)
 
     def predict(self, code: str, seed: int, card: int, value: Any) -> Any:
         """Keep a participant's answer to the question of the card that is shown.
@@ -395,58 +345,15 @@ class Rooms:
         """
         with self._lock:
             room = self.check_run(code)
-            before = room.runs_of(seed, room.card)
-            for one in before:
-                run = self._run(one)
-                if run is None or run.state in _FAILED:
-                    continue
-                if given_key(one.given) == given_key(given):
-                    return run
-            self._check_none_goes_on(room, seed)
-            if len(before) >= MAX_RUNS:
-                raise Busy(f"you have started {MAX_RUNS} runs on this card, the most", _RETRY_S)
-            start = _Linked(make(room), self, room, seed, given)
-            try:
-                run = queue(start)
-            except BaseException:
-                self._unlink(room, start.links)
-                raise
+            run = self._runs.start(room, seed, given, make, queue)
         self.on_changed(room)
         return run
-
-    def _check_none_goes_on(self, room: Room, seed: int) -> None:
-        for one in room.runs.values():
-            run = self._run(one) if one.is_main and one.seed == seed else None
-            if run is not None and run.state in NOT_ENDED:
-                raise Conflict(f"your {run.kind} is {run.state}; wait for its end", run.state)
-
-    def _run(self, one: RoomRun) -> Run | None:
-        found = None
-        with suppress(NotFound):
-            run = self._store.find(one.run_id)
-            found = run if isinstance(run, Run) else None
-        return found
-
-    def link(self, room: Room, runs: Sequence[RoomRun]) -> None:
-        """Note whose runs these are, before they are stored."""
-        self._rows.add_runs(runs)
-        for one in runs:
-            self._runs[one.run_id] = room.runs[one.run_id] = one
-
-    def _unlink(self, room: Room, run_ids: Collection[str]) -> None:
-        if run_ids:
-            with suppress(HexapodError):  # a link to no run has no effect
-                self._rows.remove_runs(run_ids)
-        for one in run_ids:
-            self._runs.pop(one, None)
-            room.runs.pop(one, None)
 
     # ---- who sees what
 
     def owner_of(self, run_id: str) -> str | None:
         """Return who waits for a run, as a text; None if it is no participant of a room."""
-        run = self._runs.get(run_id)
-        return None if run is None else f"{run.room} {run.seed}"
+        return self._runs.owner_of(run_id)
 
     def is_hidden(self, run_id: str | None, reader: Iterable[Seat]) -> bool:
         """Whether a run is hidden from a reader who is no operator.
@@ -455,57 +362,12 @@ class Rooms:
             run_id: of the run; None for none.
             reader: the participants that the reader is.
         """
-        run = self._runs.get(run_id or "")
-        return run is not None and not run.is_shown and (run.room, run.seed) not in reader
+        return self._runs.is_hidden(run_id, reader)
 
     def unfinished(self) -> list[str]:
         """Return the ids of interrupted runs of open rooms, which were asked for."""
         with self._lock:
-            mains = [r for room in self.open_rooms() for r in room.runs.values() if r.is_main]
-        found = ((one.run_id, self._run(one)) for one in mains)
-        return [run_id for run_id, run in found if run is not None and run.state == "interrupted"]
-
-    def _note_shown(self, room: Room, runs: Iterable[RoomRun]) -> None:
-        for one in runs:
-            self._runs[one.run_id] = room.runs[one.run_id] = one._replace(is_shown=True)
-
-
-class _Linked:
-    """A start whose runs are a participant's; they are linked before they are stored.
-
-    So no run is ever stored without whose it is; a link to a run that was not stored has no effect.
-
-    Attributes:
-        links: ids of the runs.
-    """
-
-    def __init__(
-        self, start: Start, rooms: Rooms, room: Room, seed: int, given: Mapping[str, Any]
-    ) -> None:
-        self._start, self._rooms, self._room = start, rooms, room
-        self._seed, self._given = seed, given
-        self.links: list[str] = []
-
-    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
-        """See `Start`."""
-        runs, room = self._start.runs(store, new_id), self._room
-        is_shown = room.shows(self._seed, room.card)
-        self.links = [run.id for run in runs]
-        links = [
-            RoomRun(
-                run_id=run.id,
-                room=room.code,
-                seed=self._seed,
-                card=room.card,
-                given=self._given,
-                is_main=run is runs[-1],
-                is_shown=is_shown,
-                created_at=run.created_at,
-            )
-            for run in runs
-        ]
-        self._rooms.link(room, links)
-        return runs
+            return [one for room in self.open_rooms() for one in self._runs.interrupted(room)]
 
 
 def _check_allowed(room: Room, deed: Deed) -> None:
@@ -523,7 +385,3 @@ def _room(row: RoomRow) -> Room:
 def _last_deed(room: Room) -> datetime:
     times = [one.joined_at for one in room.participants.values()]
     return max([room.created_at, *times, *(one.created_at for one in room.runs.values())])
-
-
-def _sha256(text: str) -> str:
-    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()

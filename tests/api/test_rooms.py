@@ -14,7 +14,7 @@ from app.api.classroom_answers import LessonList, LessonView, ResultsView, RoomL
 from app.api.deps import Services
 from app.api.event_answers import RoomEvent
 from app.api.room_access import JOINS, WRONG_CODES
-from app.classroom.rooms import MAX_PARTICIPANTS
+from app.classroom.seats import MAX_PARTICIPANTS
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -170,6 +170,20 @@ def test_who_joins_again_has_the_same_name_and_seed(school: Class) -> None:
     other = pupil.call("POST", f"/rooms/{code}/participants")
     assert other.status_code == 201
     assert other.json()["seed"] == first.json()["seed"] + 1
+
+
+def test_who_leaves_behind_a_proxy_loses_the_cookie(serve: Callable[..., Api]) -> None:
+    api = serve(token=TOKEN, public_url="https://hexapods.example")
+    teacher = {"Authorization": f"Bearer {TOKEN}"}
+    code = api.call("POST", "/rooms", json={}, headers=teacher).json()["code"]
+    joined = api.call("POST", f"/rooms/{code}/participants").headers["set-cookie"]
+    assert joined.startswith("__Host-")
+    cookie = {"Cookie": joined.partition(";")[0]}
+    left = api.call("DELETE", f"/rooms/{code}/me", headers={**cookie, "X-Requested-With": "tests"})
+    assert left.status_code == 204
+    assert left.headers["set-cookie"].partition("=")[0] == joined.partition("=")[0]
+    assert "Max-Age=0" in left.headers["set-cookie"]
+    api.call("POST", f"/rooms/{code}/end", headers=teacher)
 
 
 def test_a_race_and_a_what_if_of_a_card(school: Class) -> None:

@@ -9,6 +9,7 @@ from playwright.sync_api import Browser, Locator, ViewportSize, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import finished, hold, serving
+from tests.browser.type_sizes import small_texts
 from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(300)
@@ -23,20 +24,6 @@ RACE = {
 SCREEN: ViewportSize = {"width": 1920, "height": 1080}
 PHONE: ViewportSize = {"width": 390, "height": 844}
 LEAST_PX = 18
-# Each text that can be seen in a type that is too small, with its size.
-_SMALL_TEXTS = """least => {
-    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-    const small = [];
-    while (walker.nextNode()) {
-        const {parentElement, textContent} = walker.currentNode;
-        const box = parentElement.getBoundingClientRect();
-        const isSeen = parentElement.checkVisibility({visibilityProperty: true})
-            && box.width > 2 && box.height > 2 && !parentElement.closest("script, style, option");
-        const size = parseFloat(getComputedStyle(parentElement).fontSize);
-        if (textContent.trim() && isSeen && size < least) small.push(`${size} px: ${textContent}`);
-    }
-    return small;
-}"""
 
 
 def test_a_window_is_presented_and_a_remote_turns_its_cards(
@@ -86,7 +73,7 @@ def shows_the_race_in_large_type(dashboard: Dashboard, address: str) -> None:
         re.compile(r"The farthest at time-out wins: .* \(paper clock\)")
     )
     dashboard.stand_in_for_stage()
-    assert page.evaluate(_SMALL_TEXTS, LEAST_PX) == []
+    assert small_texts(page, LEAST_PX) == []
     stage = page.get_by_role("region", name="Stage").bounding_box()
     assert stage is not None
     assert stage["width"] > 0.6 * SCREEN["width"]
@@ -107,7 +94,7 @@ def follows_its_remote(dashboard: Dashboard, remote: Dashboard) -> None:
 
     remote.button("Show why").tap()
     expect(dashboard.headline).to_have_text(re.compile("^Legs .* to "))
-    assert dashboard.page.evaluate(_SMALL_TEXTS, LEAST_PX) == []
+    assert small_texts(dashboard.page, LEAST_PX) == []
     remote.button("Show why").tap()
     expect(dashboard.headline).to_have_text(re.compile("leads|level"))
 

@@ -10,6 +10,7 @@ from playwright.sync_api import Browser, expect
 
 from tests.browser.rooms import PHONE, SCREEN, TOKEN, RoomPage, phone
 from tests.browser.serving import Serving, serving
+from tests.browser.type_sizes import small_texts
 from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(400)
@@ -56,22 +57,6 @@ LESSON: dict[str, Any] = {
 LEAST_PX = 28
 """Of type on the projector, which is read from ten metres."""
 THUMB_PX = 40
-_SMALL_TEXTS = """least => {
-    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-    const small = [];
-    while (walker.nextNode()) {
-        const {parentElement, textContent} = walker.currentNode;
-        const box = parentElement.getBoundingClientRect();
-        const isSeen = parentElement.checkVisibility({visibilityProperty: true})
-            && box.width > 2 && box.height > 2 && !parentElement.closest("script, style");
-        // Text of a drawing is scaled with it.
-        const view = parentElement.ownerSVGElement?.getScreenCTM()?.a ?? 1;
-        const size = parseFloat(getComputedStyle(parentElement).fontSize) * view;
-        const isSmall = textContent.trim() && isSeen && size < least - 0.01;
-        if (isSmall) small.push(`${size} ${textContent}`);
-    }
-    return small;
-}"""
 _OVERFLOW = """() => {
     const {scrollWidth, scrollHeight} = document.scrollingElement;
     return [Math.max(0, scrollWidth - innerWidth), Math.max(0, scrollHeight - innerHeight)];
@@ -95,7 +80,7 @@ def is_accessible(page: RoomPage, *, is_touched: bool = True) -> None:
 
 def is_read_from_afar(projector: RoomPage) -> None:
     """Check that no type is small, and that nothing is beyond the screen's edges."""
-    assert projector.page.evaluate(_SMALL_TEXTS, LEAST_PX) == []
+    assert small_texts(projector.page, LEAST_PX) == []
     assert projector.page.evaluate(_OVERFLOW) == [0, 0]
     is_accessible(projector, is_touched=False)
 

@@ -1,0 +1,159 @@
+"""The runs of participants: whose they are, who may see them, and how one is started."""
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
+from typing import Any
+
+from app.classroom.room import Room, given_key
+from app.jobs.submissions import Start
+from app.storage.database.room_rows import RoomRun, Seat
+from app.storage.database.store import RunStore
+from app.storage.errors import Busy, Conflict, NotFound
+from app.storage.run import NOT_ENDED, Run
+from hexapods.domain.errors import HexapodError
+
+MAX_RUNS = 20
+"""Runs of a participant on a card."""
+_RETRY_S = 60
+_FAILED = ("failed", "stopped")
+
+
+class RoomRuns:
+    """Runs of all participants by id. Reads from any thread; `Rooms` holds its lock for changes."""
+
+    def __init__(self, store: RunStore) -> None:
+        """Create it without a run.
+
+        Args:
+            store: of the runs.
+        """
+        self._store, self._rows = store, store.rooms
+        self._runs: dict[str, RoomRun] = {}
+
+    def load(self, rooms: Mapping[str, Room]) -> None:
+        """Load the runs of the participants of rooms, by code; those of other rooms stay hidden."""
+        for run in self._rows.runs():
+            self._runs[run.run_id] = run
+            if run.room in rooms and run.seed in rooms[run.room].participants:
+                rooms[run.room].runs[run.run_id] = run
+
+    def owner_of(self, run_id: str) -> str | None:
+        """Return the participant who waits for a run, as a text; None if there is none."""
+        run = self._runs.get(run_id)
+        return None if run is None else f"{run.room} {run.seed}"
+
+    def is_hidden(self, run_id: str | None, reader: Iterable[Seat]) -> bool:
+        """Whether a run is hidden from a reader who is no operator.
+
+        Args:
+            run_id: of the run; None for none.
+            reader: the participants that the reader is.
+        """
+        run = self._runs.get(run_id or "")
+        return run is not None and not run.is_shown and (run.room, run.seed) not in reader
+
+    def note_shown(self, room: Room, runs: Iterable[RoomRun]) -> None:
+        """Show runs of a room to others; the database has been told before."""
+        for one in runs:
+            self._runs[one.run_id] = room.runs[one.run_id] = one._replace(is_shown=True)
+
+    def interrupted(self, room: Room) -> list[str]:
+        """Return the ids of the runs of a room that were asked for, and are interrupted."""
+        found = [(one.run_id, self._find(one)) for one in room.runs.values() if one.is_main]
+        return [run_id for run_id, run in found if run is not None and run.state == "interrupted"]
+
+    def start(
+        self,
+        room: Room,
+        seed: int,
+        given: Mapping[str, Any],
+        make: Callable[[Room], Start],
+        queue: Callable[[Start], Run],
+    ) -> Run:
+        """Start a run of a participant on the card that is shown; see `Rooms.start`.
+
+        Raises:
+            Conflict: if a run of the participant has not ended.
+            Busy: if there were too many.
+        """
+        before = room.runs_of(seed, room.card)
+        for one in before:
+            run = self._find(one)
+            if run is None or run.state in _FAILED:
+                continue
+            if given_key(one.given) == given_key(given):
+                return run
+        self._check_none_goes_on(room, seed)
+        if len(before) >= MAX_RUNS:
+            raise Busy(f"you have started {MAX_RUNS} runs on this card, the most", _RETRY_S)
+        start = _LinkedStart(make(room), self, room, seed, given)
+        try:
+            return queue(start)
+        except BaseException:
+            self._unlink(room, start.links)
+            raise
+
+    def link(self, room: Room, runs: Sequence[RoomRun]) -> None:
+        """Note whose runs these are, before they are stored."""
+        self._rows.add_runs(runs)
+        for one in runs:
+            self._runs[one.run_id] = room.runs[one.run_id] = one
+
+    def _unlink(self, room: Room, run_ids: Collection[str]) -> None:
+        if run_ids:
+            with suppress(HexapodError):  # a link to no run has no effect
+                self._rows.remove_runs(run_ids)
+        for one in run_ids:
+            self._runs.pop(one, None)
+            room.runs.pop(one, None)
+
+    def _check_none_goes_on(self, room: Room, seed: int) -> None:
+        for one in room.runs.values():
+            run = self._find(one) if one.is_main and one.seed == seed else None
+            if run is not None and run.state in NOT_ENDED:
+                raise Conflict(f"your {run.kind} is {run.state}; wait for its end", run.state)
+
+    def _find(self, one: RoomRun) -> Run | None:
+        found = None
+        with suppress(NotFound):
+            run = self._store.find(one.run_id)
+            found = run if isinstance(run, Run) else None
+        return found
+
+
+class _LinkedStart:
+    """A start whose runs are a participant's; they are linked before they are stored.
+
+    So no run is ever stored without whose it is; a link to a run that was not stored has no effect.
+
+    Attributes:
+        links: ids of the runs.
+    """
+
+    def __init__(
+        self, start: Start, runs: RoomRuns, room: Room, seed: int, given: Mapping[str, Any]
+    ) -> None:
+        self._start, self._runs, self._room = start, runs, room
+        self._seed, self._given = seed, given
+        self.links: list[str] = []
+
+    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
+        """See `Start`."""
+        runs, room = self._start.runs(store, new_id), self._room
+        is_shown = room.shows(self._seed, room.card)
+        self.links = [run.id for run in runs]
+        links = [
+            RoomRun(
+                run_id=run.id,
+                room=room.code,
+                seed=self._seed,
+                card=room.card,
+                given=self._given,
+                is_main=run is runs[-1],
+                is_shown=is_shown,
+                created_at=run.created_at,
+            )
+            for run in runs
+        ]
+        self._runs.link(room, links)
+        return runs
