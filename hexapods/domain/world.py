@@ -374,3 +374,18 @@ def parse_world(text: str) -> World:
     if text in WORLDS or ":" not in text:
         return named_world(text)
     return World(tuple(parse_disturbance(part) for part in text.split("+")))
+
+
+def lasting_world(text: str) -> World:
+    """Parse a world whose disturbances hold from the start to the end.
+
+    Raises:
+        UnknownName, InvalidInput: as `parse_world`, or if something begins later or ends.
+    """
+    parsed = parse_world(text)
+    if parsed.change_steps:
+        raise InvalidInput(
+            f"{text}: the worlds of an experiment or a tournament hold from the start to the end; "
+            "leave out at and until"
+        )
+    return parsed

@@ -21,7 +21,7 @@ from hexapods.domain.settings import (
     Value,
     declared_fields,
 )
-from hexapods.domain.world import parse_world
+from hexapods.domain.world import lasting_world
 from hexapods.runs.config import (
     Divisions,
     GridSide,
@@ -128,11 +128,7 @@ class ExperimentConfig(Record):
         for setting in declared_fields(type(self)).values():  # type: ignore[arg-type]  # mypy: no hash
             setting.check(getattr(self, setting.name))
         for world in self.worlds:
-            if parse_world(world).change_steps:
-                raise InvalidInput(
-                    f"{world}: the worlds of an experiment hold from the start to the end; leave "
-                    "out at and until"
-                )
+            lasting_world(world)
         lists = {name: getattr(self, name) for name in (*_LIST_FIELDS, *GRID)} | dict(self.settings)
         for name, values in lists.items():
             if not values and (name, self.experiment) != ("gaits", "bodies"):

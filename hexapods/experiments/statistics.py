@@ -150,6 +150,31 @@ def paired_interval(
     return interval([tuple(map(float, range(one.shape[1]))) for one in strata], of_seeds, seed)
 
 
+def resampled_iqms(points: FloatArray, seed: int) -> FloatArray:
+    """Return interquartile means of k series over the same resamples of the n seeds.
+
+    A percentile interval of a row is that of `iqm_interval`, and one of the difference of two rows
+    that of `paired_interval`, up to rounding; but the seeds are resampled once for all.
+
+    Args:
+        points: (k, n).
+        seed: seed of the resampling.
+
+    Returns:
+        (k, RESAMPLES).
+    """
+    n = points.shape[1]
+    chosen = np.random.default_rng(seed).integers(0, n, (RESAMPLES, n))
+    return np.array([iqm(series[chosen]) for series in points]).reshape(-1, RESAMPLES)
+
+
+def percentile_limits(resampled: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the lower and upper limits of percentile intervals along the last axis."""
+    tail = (1 - CONFIDENCE) / 2
+    low, high = np.quantile(resampled, [tail, 1 - tail], axis=-1)
+    return low, high
+
+
 @lru_cache(maxsize=_CACHE_SIZE)
 def share(hits: int, of: int, ties: int = 0) -> Interval:
     """Return a share of seeds with its Wilson interval; a tie counts half.

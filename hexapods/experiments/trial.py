@@ -36,6 +36,7 @@ class TrialConfig:
             with any there is no race.
         earning_steps: number of steps after each evaluation whose rewards are added up; 0 for none.
         plans_with: what a searcher knows, as in `LaneConfig`.
+        keep_learning: whether the agent learns from each step of the race too.
     """
 
     training: TrainingConfig
@@ -44,6 +45,7 @@ class TrialConfig:
     evaluations: tuple[int, ...] = ()
     earning_steps: int = 0
     plans_with: PlansWith | None = None
+    keep_learning: bool = False
 
     @property
     def must_be_alone(self) -> bool:
@@ -102,12 +104,18 @@ class TrialResult:
         )
 
 
-def run_trial(config: TrialConfig, timer: Callable[[], float] = time.perf_counter) -> TrialResult:
+def run_trial(
+    config: TrialConfig,
+    timer: Callable[[], float] = time.perf_counter,
+    table: Checkpoint | None = None,
+) -> TrialResult:
     """Run a trial; diverging physics, or an agent that fails in the race, is a result too.
 
     Args:
         config: the trial.
         timer: clock in seconds that measures decisions.
+        table: what the agent has learned before; with 0 blocks it races with that. No evaluations
+            are made with it.
 
     Raises:
         HexapodError: if the config is invalid: an unknown agent, an unreachable grid.
@@ -115,7 +123,7 @@ def run_trial(config: TrialConfig, timer: Callable[[], float] = time.perf_counte
     try:
         if config.evaluations:
             return _practise_and_evaluate(config)
-        table, distances = _practise(config)
+        table, distances = _practise(config, table)
         if config.blocks > 1:
             return TrialResult(distances_m=distances)
         lanes = _race(config, table, timer)
@@ -127,9 +135,11 @@ def run_trial(config: TrialConfig, timer: Callable[[], float] = time.perf_counte
     return _result(lanes, _wall_clock_results(lanes) if config.rivals else None)
 
 
-def _practise(config: TrialConfig) -> tuple[Checkpoint | None, tuple[float, ...]]:
+def _practise(
+    config: TrialConfig, table: Checkpoint | None
+) -> tuple[Checkpoint | None, tuple[float, ...]]:
     """Return the table after all blocks, and with several blocks the distance [m] after each."""
-    table, distances = None, []
+    distances = []
     for _ in range(config.blocks):
         learner = build_learner(config.training, table)
         for _ in train(learner, config.training):
@@ -179,6 +189,7 @@ def _race(
         agent=training.agent,
         observation=training.observation,
         plans_with=config.plans_with,
+        keep_learning=config.keep_learning,
         settings=training.settings if table is None else SettingValues(),
     )
     rivals = (LaneConfig(agent=one, observation=training.observation) for one in config.rivals)

@@ -4,14 +4,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from hexapods.agents.registry import check_problem, learns, registered
-from hexapods.domain.creatures import own_gait
-from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.agents.registry import check_problem, learns, registered, searches
+from hexapods.domain.errors import InvalidInput, TableMismatch, UnknownName
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import Record
 from hexapods.domain.robot import AnyRobot
-from hexapods.domain.settings import SettingValues, Value
-from hexapods.runs.config import PracticeSteps, TrainingConfig, problem_of, training_config
+from hexapods.domain.settings import SettingValues, Value, complete
+from hexapods.runs.config import (
+    PracticeSteps,
+    TrainingConfig,
+    agent_settings,
+    problem_of,
+)
+from hexapods.runs.tables import Checkpoint, check_fits
 from hexapods.tournaments.rules import TournamentRules
 
 REFERENCES = ("greedy", "random-walk", "linear-model")
@@ -51,28 +56,51 @@ def training_of(entry: Entry, rules: TournamentRules) -> TrainingConfig:
     """
     if entry.agent not in registered():
         raise UnknownName("agent", entry.agent, registered())
+    if learns(entry.agent) and searches(entry.agent):
+        # It would practise with a simulator of the draw's world.
+        raise InvalidInput(
+            f"{entry.agent} learns and plans with a simulator; only one of both is judged here"
+        )
     _check_steps(entry, rules)
-    walk: dict[str, Any] = vars(rules.walk())
-    if entry.robot is not None and entry.robot != rules.robot:
-        if entry.robot not in rules.robots:
-            raise UnknownName("robot", entry.robot.name, _names(rules))
-        walk |= {"robot": entry.robot, "gait": own_gait(entry.robot)}
-    config = training_config(
-        entry.agent,
+    if entry.table is not None:
+        _check_table_allowed(entry, rules)
+    robot = rules.robot if entry.robot is None else entry.robot
+    walk: dict[str, Any] = vars(rules.walk()) | {"robot": robot, "gait": rules.gait_of(robot)}
+    config = TrainingConfig(
         **walk,
+        agent=entry.agent,
         observation=entry.observation,
         steps=rules.steps if entry.steps is None else entry.steps,
         evaluate_every=0,
-        **entry.settings,
+        settings=complete(agent_settings(entry.agent), entry.settings, entry.agent),
     )
     check_problem(entry.agent, problem_of(config), config.settings)
     return config
 
 
+def check_table(entry: Entry, rules: TournamentRules, table: Checkpoint) -> None:
+    """Check that what a table has learned may race for an entry.
+
+    The robot and the simulator with which it was learned may be others than those of the rules.
+
+    Raises:
+        UnknownName, InvalidInput: if the rules do not allow it.
+        TableMismatch: if it is of another agent or walking problem.
+    """
+    config, learned_by = training_of(entry, rules), table.meta["agent"]
+    if learned_by != entry.agent:
+        raise TableMismatch(f"the table was learned by {learned_by}, not by {entry.agent}")
+    check_fits(table, config, entry.observation)
+    if table.meta["step"] > rules.steps:
+        raise InvalidInput(
+            f"the table has practised {table.meta['step']:,} steps; the budget of this tournament "
+            f"is {rules.steps:,}"
+        )
+
+
 def references(rules: TournamentRules) -> Sequence[Entry]:
     """Return the entries that are judged in every tournament, each with the whole budget."""
-    del rules  # a robot of another kind may one day need other references
-    return [Entry(agent=agent) for agent in REFERENCES]
+    return [completed(Entry(agent=agent), rules) for agent in REFERENCES]
 
 
 def completed(entry: Entry, rules: TournamentRules) -> Entry:
@@ -92,12 +120,23 @@ def _check_steps(entry: Entry, rules: TournamentRules) -> None:
         return
     if entry.table is not None or not learns(entry.agent):
         raise InvalidInput(f"{entry.agent} practises no steps here; leave out steps")
-    if entry.steps > rules.steps:
+    if isinstance(entry.steps, bool) or not 1 <= entry.steps <= rules.steps:
         raise InvalidInput(
-            f"steps must be from 1 to {rules.steps}, the budget of this tournament, not "
-            f"{entry.steps}"
+            f"steps must be from 1 to {rules.steps:,}, the budget of this tournament, not "
+            f"{entry.steps:,}"
         )
 
 
-def _names(rules: TournamentRules) -> list[str]:
-    return [one.name for one in (rules.robot, *rules.robots)]
+def _check_table_allowed(entry: Entry, rules: TournamentRules) -> None:
+    if not rules.tables:
+        raise InvalidInput(
+            "no trained tables enter this tournament; leave out the table, and the agent practises "
+            "on each draw"
+        )
+    if not learns(entry.agent):
+        raise InvalidInput(f"{entry.agent} does not learn, so it has no table; leave it out")
+    if entry.settings:
+        raise InvalidInput(
+            "an entry with a table has the settings of its training; leave out "
+            + ", ".join(entry.settings)
+        )

@@ -2,21 +2,28 @@
 
 import hashlib
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 from annotated_types import Ge, Le
 
+from hexapods.domain.creatures import own_gait
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.gait import AnyGait, resolve
+from hexapods.domain.kinematics import check_reach
 from hexapods.domain.records import Record
-from hexapods.domain.robot import AnyRobot
-from hexapods.domain.settings import Setting, declared_fields
-from hexapods.domain.world import UNDISTURBED, parse_world
+from hexapods.domain.robot import AnyRobot, Robot
+from hexapods.domain.settings import Setting
+from hexapods.domain.world import UNDISTURBED, lasting_world
 from hexapods.experiments.statistics import MIN_RESAMPLED
 from hexapods.runs.config import PracticeSteps, Seed, WalkingProblem
 
 MAX_DRAWS = 100
+MAX_WORLDS = MAX_ROBOTS = 20
+MAX_ENTRIES = 300
+"""Entries of a tournament, with the references: each is compared with each other."""
 MAX_BUDGET = 5_000
 """Steps of practice on a draw: a judge takes seconds for it."""
 _SECRET = re.compile("[0-9a-f]{64}")
@@ -30,11 +37,14 @@ class TournamentRules(WalkingProblem):
         steps: budget: the most steps that an entry practises on each draw.
         draws: number of secret draws; each is a seed and a world.
         worlds: names of worlds, or disturbances as on the command line, of which each draw has one.
-        robots: creatures that an entry may choose beside `robot`, each in the gait that suits it.
+        robots: creatures that an entry may choose beside `robot`.
+        gaits: of each of `robots`, in their order; empty for those that suit them, which are then
+            written out, since what suits a stored robot is not known everywhere.
         tables: whether a trained table may enter.
 
     Raises:
         UnknownName, InvalidInput: if a value is invalid.
+        Unreachable: if a robot's legs cannot reach the grid.
     """
 
     steps: PracticeSteps = 500
@@ -46,24 +56,65 @@ class TournamentRules(WalkingProblem):
     ] = 20
     worlds: tuple[str, ...] = ("flat",)
     robots: tuple[AnyRobot, ...] = ()
+    gaits: tuple[AnyGait, ...] = ()
     tables: bool = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        setting = declared_fields(TournamentRules)["draws"]
-        setting.check(self.draws)
         if self.steps > MAX_BUDGET:
-            raise InvalidInput(f"steps must be from 1 to {MAX_BUDGET} in a tournament")
+            raise InvalidInput(
+                f"steps must be from 1 to {MAX_BUDGET:,}, the largest budget of a tournament, not "
+                f"{self.steps:,}"
+            )
         if self.world != UNDISTURBED:
             raise InvalidInput(
                 "a tournament has worlds, of which each draw has one; leave out disturbances"
             )
-        if not self.worlds:
-            raise InvalidInput("worlds must name at least one")
-        for name in self.worlds:
-            # A robot of any kind that may enter must be able to walk in it.
-            for robot in (self.robot, *self.robots):
-                parse_world(name).check(robot, self.simulator, None)
+        self._check_robots()
+        self._check_worlds()
+
+    def _check_robots(self) -> None:
+        if len(self.robots) > MAX_ROBOTS:
+            raise InvalidInput(f"robots must be at most {MAX_ROBOTS}, not {len(self.robots)}")
+        for number, robot in enumerate(self.robots):
+            if robot in (self.robot, *self.robots[:number]):
+                raise InvalidInput(f"robots: {robot.name} is there twice; name each robot once")
+        if not self.gaits:
+            object.__setattr__(self, "gaits", tuple(own_gait(one) for one in self.robots))
+        if len(self.gaits) != len(self.robots):
+            raise InvalidInput(
+                f"gaits must be as many as robots, {len(self.robots)}, not {len(self.gaits)}; "
+                "leave them out for those that suit the robots"
+            )
+        for robot, gait in self._walkers():
+            check_reach(robot, resolve(gait, robot.azimuths_deg), self.grid)
+
+    def _check_worlds(self) -> None:
+        if not 1 <= len(self.worlds) <= MAX_WORLDS:
+            raise InvalidInput(f"worlds must be 1 to {MAX_WORLDS}, not {len(self.worlds)}")
+        worlds = [lasting_world(name) for name in self.worlds]
+        for number, world in enumerate(worlds):
+            if world in worlds[:number]:
+                raise InvalidInput(f"worlds: {self.worlds[number]} is there twice; name it once")
+            for robot, _ in self._walkers():
+                world.check(robot, self.simulator)
+
+    def _walkers(self) -> Iterator[tuple[Robot, AnyGait]]:
+        """Yield each robot that may walk, with its gait."""
+        yield self.robot, self.gait
+        yield from zip(self.robots, self.gaits, strict=True)
+
+    def gait_of(self, robot: Robot) -> AnyGait:
+        """Return the gait in which a robot walks here.
+
+        Raises:
+            InvalidInput: if the rules do not name the robot.
+        """
+        for allowed, gait in self._walkers():
+            if allowed == robot:
+                return gait
+        names = ", ".join(one.name for one, _ in self._walkers())
+        raise InvalidInput(f"{robot.name} is no robot of this tournament; choose one of: {names}")
 
 
 @dataclass(frozen=True)
@@ -82,7 +133,7 @@ class Draw(Record):
 def commitment_of(secret: str) -> str:
     """Return what is published of a secret before the end: its SHA-256, hexadecimal.
 
-    Who has it can check after the end that the draws were fixed at the beginning.
+    With it anyone can check after the end that the draws were fixed at the beginning.
 
     Raises:
         InvalidInput: if the secret is not 64 hexadecimal digits.
