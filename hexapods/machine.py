@@ -2,9 +2,11 @@
 
 import math
 import os
+import platform
 import sys
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 _CGROUPS = Path("/sys/fs/cgroup")
 
@@ -19,6 +21,11 @@ def cores() -> int:
         case [quota_us, period_us] if quota_us > 0:
             return min(count, math.ceil(quota_us / period_us))
     return count
+
+
+def description() -> dict[str, Any]:
+    """Return what summaries and files say of the machine on which they were computed."""
+    return {"platform": platform.platform(), "cores": os.cpu_count()}
 
 
 def memory_bytes() -> int | None:

@@ -21,6 +21,17 @@ _MEMORY_SHARE = 0.95
 
 @contextmanager
 def local_workers(count: int, most_bytes: int | None = None) -> "Iterator[LocalWorkers]":
+    """Start worker processes for trials, and yield them; see `local_pool`.
+
+    Raises:
+        ClusterLost: if they cannot be started.
+    """
+    with local_pool(count, most_bytes) as pool:
+        yield LocalWorkers(pool)
+
+
+@contextmanager
+def local_pool(count: int, most_bytes: int | None = None) -> Iterator[WorkerPool]:
     """Start worker processes, and yield them; they end with this process, even if it is killed.
 
     Args:
@@ -45,9 +56,8 @@ def local_workers(count: int, most_bytes: int | None = None) -> "Iterator[LocalW
         try:
             with _one_thread_each():
                 start_fork_server(_PRELOADED)
-                workers = LocalWorkers(pool)
-                workers.wait_until_started()
-            yield workers
+                _wait_until_started(pool)
+            yield pool
         finally:
             # Each would finish its trial first.
             pool.shutdown(cancel_futures=True)
@@ -59,17 +69,6 @@ class LocalWorkers:
     def __init__(self, pool: WorkerPool) -> None:
         """Give trials to the processes of a pool."""
         self._pool, self._expected = pool, versions()
-
-    def wait_until_started(self) -> None:
-        """Wait until all processes run; raises ClusterLost if one cannot be started."""
-        try:
-            for one in [self.submit([]) for _ in range(self._pool.count)]:
-                self.result(one)
-        except WorkerDied as error:
-            raise ClusterLost(
-                "no worker process can be started; does the program start its work under "
-                '`if __name__ == "__main__":`, as the workers import it?'
-            ) from error
 
     def count(self) -> int:
         """Return how many tasks they compute at once."""
@@ -91,7 +90,25 @@ class LocalWorkers:
         except BrokenExecutor as error:
             raise WorkerDied from error
         except OSError as error:
-            raise ClusterLost(f"no worker process can be started ({error})") from error
+            raise _not_started(error) from error
+
+
+def _wait_until_started(pool: WorkerPool) -> None:
+    """Wait until all processes run; raises ClusterLost if one cannot be started."""
+    try:
+        for one in [pool.submit(os.getpid) for _ in range(pool.count)]:
+            one.result()
+    except BrokenExecutor as error:
+        raise ClusterLost(
+            "no worker process can be started; does the program start its work under "
+            '`if __name__ == "__main__":`, as the workers import it?'
+        ) from error
+    except OSError as error:
+        raise _not_started(error) from error
+
+
+def _not_started(error: OSError) -> ClusterLost:
+    return ClusterLost(f"no worker process can be started ({error})")
 
 
 @contextmanager

@@ -1,7 +1,5 @@
 """Build an experiment's summary from its trials: the data of the report, the page and the CLI."""
 
-import os
-import platform
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from importlib.metadata import version
@@ -34,6 +32,7 @@ from hexapods.experiments.statistics import bootstrap_exceeds, improvement, shar
 from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worker import versions
 from hexapods.experiments.worlds import compare_in_worlds
+from hexapods.machine import description
 
 _DISTANCE_SHARES = ("relative", "relative_finished", "of_best_known")
 """Measures that are shares of a distance, other than shares of seeds."""
@@ -69,7 +68,7 @@ def summarise(
         "experiment": config.experiment,
         "config": to_json(config),
         "versions": _versions(),
-        "machine": {"platform": platform.platform(), "cores": os.cpu_count()},
+        "machine": description(),
         "trials": _count_trials(plan, settings, set_aside or {}),
         "cost": None if cost is None else dict(cost),
         "parameters": list(plan.settings[0].parameters),

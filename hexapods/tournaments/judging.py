@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from hexapods.agents.registry import keeps_learning, learns, searches
 from hexapods.domain.errors import HexapodError, IllegalAction, InvalidInput
 from hexapods.domain.records import Record
+from hexapods.domain.text import message
 from hexapods.domain.world import parse_world
 from hexapods.experiments.trial import TrialConfig, run_trial
 from hexapods.runs.tables import Checkpoint
@@ -71,11 +72,15 @@ def judge(
     try:
         result = run_trial(trial, table=table)
     except IllegalAction as error:
-        return Judgement(0.0, str(error))
+        return _failed(str(error))
     except (HexapodError, MemoryError):
         raise
     except Exception as error:  # an agent of a package may raise anything while it practises
-        return Judgement(0.0, f"{entry.agent} failed: {type(error).__name__}: {error}")
+        return _failed(f"{entry.agent} failed: {type(error).__name__}: {error}")
     if result.failure is not None:
-        return Judgement(0.0, result.failure)
+        return _failed(result.failure)
     return Judgement(result.distances_m[0])
+
+
+def _failed(reason: str) -> Judgement:
+    return Judgement(0.0, message(reason))

@@ -10,6 +10,8 @@ from hexapods.domain.records import Record
 from hexapods.domain.types import FloatArray
 from hexapods.experiments.statistics import iqm, percentile_limits, resampled_iqms
 
+RESOLUTION_M = 1e-6
+"""Differences up to this are none [m]: the same walk adds up to sums that differ by rounding."""
 _RESAMPLING_SEED = 0
 
 
@@ -25,8 +27,7 @@ class Standing(Record):
             better and can be told apart from it, and the number of all without those that are
             worse and can be told apart.
         not_separable: numbers, ascending, of the entries of which the 95 % interval of the paired
-            difference of the interquartile means includes 0, or is not on the side of the
-            difference itself.
+            difference of the interquartile means includes 0, to a micrometre.
         failures: on how many draws it could not walk to the end; it counts as 0 m there.
     """
 
@@ -105,5 +106,5 @@ def _can_be_told_apart(iqms_m: FloatArray, resampled_m: FloatArray) -> NDArray[n
     for place in range(len(iqms_m) - 1):
         behind = slice(place + 1, None)
         low_m, _ = percentile_limits(resampled_m[place] - resampled_m[behind])
-        is_apart[place, behind] = (low_m > 0) & (iqms_m[place] > iqms_m[behind])
+        is_apart[place, behind] = (low_m > RESOLUTION_M) & (iqms_m[place] > iqms_m[behind])
     return is_apart | is_apart.T

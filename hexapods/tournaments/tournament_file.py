@@ -1,17 +1,30 @@
 """Tournaments that have ended as files, which anyone can repeat to the last digit."""
 
-from collections.abc import Callable, Mapping
+import hashlib
+import json
+from base64 import b64decode, b64encode
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NoReturn
 
-from hexapods.domain.records import Record
+from hexapods.domain import robot_documents
+from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, TooLong
+from hexapods.domain.records import Record, from_json, to_json
+from hexapods.domain.robot import parse_document
+from hexapods.domain.text import check_name, visible
+from hexapods.experiments.worker import versions
+from hexapods.machine import description
 from hexapods.tournaments.entry import Entry
 from hexapods.tournaments.judging import Judgement
-from hexapods.tournaments.ranking import Standing
-from hexapods.tournaments.rules import TournamentRules
+from hexapods.tournaments.ranking import Standing, ranking
+from hexapods.tournaments.rules import MAX_ENTRIES, TournamentRules, commitment_of
 
 FORMAT = 1
 MEDIA_TYPE = "application/json"
+MAX_BYTES = 256 << 20
+MAX_TABLES_BYTES = MAX_BYTES // 2
+"""Size of all trained tables of a tournament, as files: in JSON they take a third more."""
+_MAX_REASON = 1_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,12 +36,18 @@ class JudgedEntry(Record):
         name: of its entrant, or of the reference.
         entry: as it was judged.
         judgements: on each draw, in their order.
+
+    Raises:
+        InvalidInput: if the name is not valid.
     """
 
     number: int
     name: str
     entry: Entry
     judgements: tuple[Judgement, ...]
+
+    def __post_init__(self) -> None:
+        check_name(self.name)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +66,9 @@ class TournamentFile(Record):
         robots: by id the documents of stored robots that rules or entries name.
         versions: of the packages on which the results depend.
         machine: on which it was judged.
+
+    Raises:
+        InvalidInput: if the title is not valid, or the entries are not numbered ascending.
     """
 
     format: int = FORMAT
@@ -61,35 +83,158 @@ class TournamentFile(Record):
     versions: Mapping[str, str] = field(default_factory=dict)
     machine: Mapping[str, Any] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        check_name(self.title)
+        if len(self.entries) > MAX_ENTRIES:
+            raise InvalidInput(
+                f"a tournament has at most {MAX_ENTRIES} entries, not {len(self.entries)}"
+            )
+        numbers = [one.number for one in self.entries]
+        if numbers != sorted(set(numbers)):
+            raise InvalidInput("the entries of a tournament are numbered ascending")
+
+    def table(self, digest: str) -> bytes | None:
+        """Return the file of a trained table by its SHA-256; None if it is not there."""
+        text = self.tables.get(digest)
+        return None if text is None else b64decode(text)
+
+
+def tournament_file(
+    title: str,
+    rules: TournamentRules,
+    secret: str,
+    entries: Sequence[JudgedEntry],
+    tables: Iterable[bytes] = (),
+) -> TournamentFile:
+    """Return a tournament that has ended, with its standings, and with what is needed to repeat it.
+
+    Args:
+        title: of the tournament.
+        rules: its rules; stored robots that they or an entry name must be known in this process.
+        secret: from which the draws follow.
+        entries: that were judged on all draws, ascending by their numbers.
+        tables: files of the trained tables that entered.
+
+    Raises:
+        InvalidInput: if a stored robot is not known here, or a name is not valid.
+    """
+    return TournamentFile(
+        title=title,
+        rules=rules,
+        commitment=commitment_of(secret),
+        secret=secret,
+        entries=tuple(entries),
+        standings=tuple(standings_of({one.number: one.judgements for one in entries})),
+        tables={sha256_of(one): b64encode(one).decode() for one in tables},
+        robots={
+            robot.id: json.loads(robot_documents.find(robot.id, robot.name))
+            for robot in (rules.robot, *rules.robots)
+            if robot.id is not None
+        },
+        versions=versions(),
+        machine=description(),
+    )
+
+
+def standings_of(judgements: Mapping[int, Sequence[Judgement]]) -> list[Standing]:
+    """Return the standings of entries by their judgements, by number; best first."""
+    return ranking(
+        {number: [one.distance_m for one in given] for number, given in judgements.items()},
+        {
+            number: sum(one.failure is not None for one in given)
+            for number, given in judgements.items()
+        },
+    )
+
+
+def sha256_of(table: bytes) -> str:
+    """Return the SHA-256 of a table's file, by which entries name it."""
+    return hashlib.sha256(table).hexdigest()
+
+
+def documents_of(tournament: TournamentFile) -> list[bytes]:
+    """Return the documents of its stored robots, as `hexapods.domain.robot_documents` has them."""
+    return [robot_documents.encode(one) for one in tournament.robots.values()]
+
 
 def write_file(tournament: TournamentFile) -> bytes:
-    """Encode a tournament as JSON."""
-    raise NotImplementedError
+    """Encode a tournament as JSON.
+
+    Raises:
+        TooLong: if `read_file` would not read it, as it is too large.
+    """
+    with robot_documents.lent(documents_of(tournament)):
+        data = json.dumps(to_json(tournament), allow_nan=False, indent=1).encode()
+    if len(data) > MAX_BYTES:
+        raise TooLong(
+            f"the file of a tournament has at most {MAX_BYTES:,} bytes, not {len(data):,}"
+        )
+    return data
 
 
 def read_file(data: bytes, name: str) -> TournamentFile:
-    """Decode a tournament.
+    """Decode a tournament. Whether it is true is for `hexapods.tournaments.verification` to tell.
 
     Args:
         data: content of the file.
         name: of the file, for messages.
 
     Raises:
-        DamagedFile: if it is no tournament of this product, or of a later format.
+        DamagedFile: if it is no tournament of this product, of a later format, or one of its tables
+            or robots is not what its name says.
     """
-    raise NotImplementedError
+    try:
+        with robot_documents.lent(_robots(_checked(data))):
+            tournament = from_json(TournamentFile, data, strict=True)
+        _check_tables(tournament)
+    except (HexapodError, ValueError, TypeError, AttributeError, RecursionError) as error:
+        reason = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
+        raise DamagedFile(
+            f"{name} is no tournament that can be read: {visible(reason)[:_MAX_REASON]}"
+        ) from error
+    return tournament
 
 
-def verify(
-    tournament: TournamentFile,
-    workers: int | None = None,
-    on_judged: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
-) -> list[str]:
-    """Repeat a tournament, and return what differs, a sentence each; nothing if all is the same.
+def _checked(data: bytes) -> dict[str, Any]:
+    """Return the plain content of a file, of this format.
 
-    Args:
-        tournament: the tournament.
-        workers: number of processes; None for one per core.
-        on_judged: called with how many draws of entries have been judged, and of how many.
+    Raises:
+        ValueError: if it is too large, no object of JSON, has a number that is none, or is of
+            another format.
+        RecursionError: if it is nested too deeply.
     """
-    raise NotImplementedError
+    if len(data) > MAX_BYTES:
+        raise ValueError(f"it has {len(data):,} bytes; at most {MAX_BYTES:,} are read")
+    content = json.loads(data, parse_constant=_refuse)
+    if not isinstance(content, dict) or "format" not in content:
+        raise ValueError("it does not say its format")
+    if content["format"] != FORMAT:
+        raise ValueError(f"its format is {content['format']!r}; this version reads {FORMAT}")
+    return content
+
+
+def _refuse(constant: str) -> NoReturn:
+    raise ValueError(f"{constant} is no number in JSON")
+
+
+def _robots(content: Mapping[str, Any]) -> list[bytes]:
+    """Return the documents of the stored robots of a file.
+
+    Raises:
+        HexapodError: if one is damaged, or of another robot than its name says.
+        TypeError, ValueError, AttributeError: if they are no objects.
+    """
+    documents = []
+    for robot_id, given in dict(content.get("robots", {})).items():
+        document = robot_documents.encode(given)
+        parse_document(document)
+        if robot_documents.id_of(document) != robot_id:
+            raise DamagedFile(f"the document of robot {robot_id} is that of another robot")
+        documents.append(document)
+    return documents
+
+
+def _check_tables(tournament: TournamentFile) -> None:
+    for digest, text in tournament.tables.items():
+        if sha256_of(b64decode(text, validate=True)) != digest:
+            raise DamagedFile(f"the table {digest} was changed: its SHA-256 is another one")

@@ -1,7 +1,5 @@
 """The outcome of a tuning: one document for report and terminal, and what it says in sentences."""
 
-import os
-import platform
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from importlib.metadata import version
@@ -23,6 +21,7 @@ from hexapods.experiments.tuning.ranges import SearchRange
 from hexapods.experiments.tuning.tuning import Candidate, Tuning, objective_m
 from hexapods.experiments.worker import versions
 from hexapods.experiments.worlds import compare_in_worlds
+from hexapods.machine import description
 from hexapods.runs.config import agent_settings
 
 FORMAT = 1
@@ -53,7 +52,7 @@ def summarise_tuning(tuning: Tuning, progress: Progress, workers: int | None) ->
         "agent": config.agent,
         "config": config_json(config),
         "versions": {**versions(), "optuna": version("optuna")},
-        "machine": {"platform": platform.platform(), "cores": os.cpu_count()},
+        "machine": description(),
         "cost": dict(progress.cost(workers)),
         "trials": {
             "done": progress.done,

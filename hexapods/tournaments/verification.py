@@ -1,0 +1,213 @@
+"""Repeat a tournament from its file, and tell what differs."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Future, as_completed
+from dataclasses import fields
+from itertools import chain
+
+from hexapods.domain import robot_documents
+from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.text import visible
+from hexapods.experiments.local_workers import local_pool
+from hexapods.experiments.worker import difference, versions
+from hexapods.machine import cores
+from hexapods.runs.tables import Checkpoint, from_bytes
+from hexapods.tournaments.entry import Entry, check_table, references, training_of
+from hexapods.tournaments.judging import Judgement, judge
+from hexapods.tournaments.ranking import Standing
+from hexapods.tournaments.rules import Draw, commitment_of, draws_of
+from hexapods.tournaments.tournament_file import (
+    JudgedEntry,
+    TournamentFile,
+    documents_of,
+    standings_of,
+)
+
+MAX_TOLD = 3
+"""Draws of an entry that are told one by one if they differ; of more their number is told."""
+Repeated = Mapping[int, Sequence[Judgement | str]]
+"""By number of an entry, for each draw its judgement, or why there is none."""
+
+
+def verify(
+    tournament: TournamentFile,
+    workers: int | None = None,
+    on_judged: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
+) -> list[str]:
+    """Repeat a tournament, and return what differs, a sentence each; nothing if all is the same.
+
+    Its secret is compared with its commitment, the references with those of every tournament, each
+    judgement and each standing with the repeated one, to the last bit. A file cannot show which
+    entries were left out of it.
+
+    Args:
+        tournament: the tournament.
+        workers: number of processes; None for one per core.
+        on_judged: called with how many draws of entries have been judged, and of how many.
+
+    Raises:
+        InvalidInput: if the number of workers is not valid.
+        ClusterLost: if no process can be started.
+    """
+    if workers is not None and workers < 1:
+        raise InvalidInput(f"workers must be at least 1, not {workers}")
+    try:
+        draws = draws_of(tournament.rules, tournament.secret)
+    except InvalidInput as error:
+        return [f"The draws cannot be repeated: {error}."]
+    differences = [*_secret_differences(tournament), *_reference_differences(tournament)]
+    tables: dict[int, Checkpoint | None] = {}
+    for one in tournament.entries:
+        try:
+            tables[one.number] = _checked_table(one.entry, tournament)
+        except HexapodError as error:
+            differences.append(f"{_name(one)} cannot be judged: {visible(str(error))}.")
+    with robot_documents.lent(documents_of(tournament)):
+        judged = [one for one in tournament.entries if one.number in tables]
+        pending = len(judged) * len(draws)
+        with local_pool(min(workers or cores(), max(1, pending))) as pool:
+            futures = {
+                one.number: [
+                    pool.submit(judge, tournament.rules, one.entry, draw, tables[one.number])
+                    for draw in draws
+                ]
+                for one in judged
+            }
+            for done, _ in enumerate(as_completed(chain(*futures.values())), start=1):
+                on_judged(done, pending)
+    repeated = {number: [_result(one) for one in tasks] for number, tasks in futures.items()}
+    for one in judged:
+        differences += _judgement_differences(one, draws, repeated[one.number])
+    return differences + _standing_differences(tournament, repeated)
+
+
+def version_note(tournament: TournamentFile) -> str | None:
+    """Return how the versions here differ from those that judged; None if results must be equal."""
+    other = difference(tournament.versions, versions())
+    if other is None:
+        return None
+    return visible(f"This is {other}, by which results may differ in their last digits.")
+
+
+def _secret_differences(tournament: TournamentFile) -> Iterator[str]:
+    if commitment_of(tournament.secret) != tournament.commitment:
+        yield (
+            "The secret is not the one to which the tournament was committed at its beginning: its "
+            "SHA-256 is another one."
+        )
+
+
+def _reference_differences(tournament: TournamentFile) -> Iterator[str]:
+    by_number = {one.number: one.entry for one in tournament.entries}
+    try:
+        usual = references(tournament.rules)
+    except HexapodError as error:
+        yield f"The references cannot be judged: {visible(str(error))}."
+        return
+    for number, expected in enumerate(usual):
+        if number not in by_number:
+            yield f"Entry {number}, the reference {expected.agent}, is missing."
+        elif by_number[number] != expected:
+            yield f"Entry {number} is not the reference {expected.agent} with its usual settings."
+
+
+def _checked_table(entry: Entry, tournament: TournamentFile) -> Checkpoint | None:
+    """Return the table of an entry; None if it has none.
+
+    Raises:
+        HexapodError: if the rules do not allow the entry or its table, or the table is not there.
+    """
+    training_of(entry, tournament.rules)
+    if entry.table is None:
+        return None
+    data = tournament.table(entry.table)
+    if data is None:
+        raise InvalidInput(f"its table {entry.table} is not in the file")
+    table = from_bytes(data, "its table")
+    check_table(entry, tournament.rules, table)
+    return table
+
+
+def _result(future: "Future[Judgement]") -> Judgement | str:
+    try:
+        return future.result()
+    except BrokenExecutor:
+        return "the process that judged it has ended; is there too little memory?"
+    except Exception as error:  # of an agent of a package that is missing or broken here
+        return f"{type(error).__name__}: {error}"
+
+
+def _judgement_differences(
+    one: JudgedEntry, draws: Sequence[Draw], repeated: Sequence[Judgement | str]
+) -> Iterator[str]:
+    if len(one.judgements) != len(draws):
+        yield (
+            f"{_name(one)} has {len(one.judgements)} judgements in the file; the rules have "
+            f"{len(draws)} draws."
+        )
+        return
+    differing = [
+        f"{_name(one)}, draw {number} (seed {draw.seed}, {draw.world}): "
+        f"{_text(given)} in the file, {_text(again)} repeated."
+        for number, (draw, given, again) in enumerate(
+            zip(draws, one.judgements, repeated, strict=True), start=1
+        )
+        if given != again
+    ]
+    yield from differing[:MAX_TOLD]
+    if len(differing) > MAX_TOLD:
+        yield (f"{_name(one)}: {len(differing) - MAX_TOLD} more of its {len(draws)} draws differ.")
+
+
+def _standing_differences(tournament: TournamentFile, repeated: Repeated) -> list[str]:
+    """Compare the standings with those of the repeated judgements."""
+    judgements: dict[int, Sequence[Judgement]] = {}
+    for number, of_entry in repeated.items():
+        found = [one for one in of_entry if isinstance(one, Judgement)]
+        if len(found) == len(of_entry):
+            judgements[number] = found
+    if len(judgements) < len(tournament.entries):
+        return ["The standings were not compared, as some entries could not be judged."]
+    expected = {one.number: one for one in standings_of(judgements)}
+    names = {one.number: _name(one) for one in tournament.entries}
+    given = {one.number: one for one in tournament.standings}
+    told = [f"{names[number]} has no standing." for number in expected if number not in given]
+    told += [
+        f"There is a standing of entry {one}, which is not there."
+        for one in given
+        if one not in expected
+    ]
+    for number, again in expected.items():
+        if number in given:
+            told += _field_differences(names[number], given[number], again)
+    order = [one.number for one in tournament.standings]
+    if not told and order != list(expected):
+        told.append(
+            f"The standings are in the order {_listed(order)} in the file, {_listed(expected)} "
+            "repeated."
+        )
+    return told
+
+
+def _field_differences(name: str, given: Standing, expected: Standing) -> Iterator[str]:
+    for one in fields(Standing):
+        in_file, again = getattr(given, one.name), getattr(expected, one.name)
+        if in_file != again:
+            yield f"Standing of {name}: {one.name} is {in_file!r} in the file, {again!r} repeated."
+
+
+def _name(one: JudgedEntry) -> str:
+    return f"Entry {one.number} ({one.name})"
+
+
+def _text(judgement: Judgement | str) -> str:
+    """Describe a judgement, with all digits of its distance."""
+    if isinstance(judgement, str):
+        return f"not judged ({visible(judgement)})"
+    if judgement.failure is not None:
+        return f"failed ({visible(judgement.failure)})"
+    return f"{judgement.distance_m!r} m"
+
+
+def _listed(numbers: Iterable[int]) -> str:
+    return ", ".join(map(str, numbers))
