@@ -2,8 +2,8 @@
 
 Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `best-known`, `runs` (list,
 show, delete; `run_files` and `servos` have its verbs that write files), `robots` (list, show,
-export), `export`, `imports`, `doctor` (with checks in `machine_checks` and `data_checks`), `bench`
-(with the measurements in `benchmarks`).
+export), `export`, `imports`, `verify`, `doctor` (with checks in `machine_checks` and
+`data_checks`), `bench` (with the measurements in `benchmarks`).
 Their module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `stored_runs` (runs of a data folder),
@@ -39,6 +39,7 @@ COMMANDS = {
     "robots": "robots",
     "export": "export",
     "import": "imports",
+    "verify": "verify",
     "doctor": "doctor",
     "bench": "bench",
 }

@@ -1,4 +1,4 @@
-"""Atomically write files that users name, with clear errors."""
+"""Read and atomically write files that users name, with clear errors."""
 
 import tempfile
 from pathlib import Path
@@ -23,6 +23,23 @@ def check_writable(path: str) -> None:
         ) from error
     if Path(path).is_dir():
         raise InvalidInput(f"cannot write {path}: it is a folder; name a file")
+
+
+def read_bounded(path: str, most_bytes: int) -> bytes:
+    """Return the content of a file, or of a larger one as much as shows that it is too large.
+
+    Args:
+        path: of the file.
+        most_bytes: that are read; of a larger file one more.
+
+    Raises:
+        InvalidInput: if it cannot be read.
+    """
+    try:
+        with Path(path).open("rb") as file:
+            return file.read(most_bytes + 1)
+    except OSError as error:
+        raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
 
 
 def write_whole(path: str, data: bytes) -> None:

@@ -5,15 +5,14 @@ Nothing of the file is believed before it is checked; see docs/operations.md.
 
 import argparse
 import json
-from pathlib import Path
 from typing import Any
 
 from app.archive.archive import MAX_BYTES
+from app.cli.files import read_bounded
 from app.cli.options import CommandParser
 from app.cli.server_client import call_server
 from app.cli.stored_runs import add_data
 from app.settings import Settings, read_settings
-from hexapods.domain.errors import InvalidInput
 from hexapods.runs.config import usable_agents
 
 
@@ -32,22 +31,15 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HexapodError: if the file is not a valid archive, or a run cannot be stored.
     """
-    views = _import(read_settings(data=options.data), _read(options.file), options.file)
+    views = _import(
+        read_settings(data=options.data), read_bounded(options.file, MAX_BYTES), options.file
+    )
     if options.json:
         print(json.dumps(views[0] if len(views) == 1 else {"items": views}))
         return 0
     for view in views:
         print(f"{options.file} is {view['kind']} {view['id']} here, {view['name']!r}.")
     return 0
-
-
-def _read(path: str) -> bytes:
-    try:
-        with Path(path).open("rb") as file:
-            # One byte over the limit suffices to refuse a file that is too large.
-            return file.read(MAX_BYTES + 1)
-    except OSError as error:
-        raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
 
 
 def _import(settings: Settings, data: bytes, label: str) -> list[dict[str, Any]]:

@@ -108,7 +108,10 @@ def lent(documents: Collection[bytes]) -> Iterator[None]:
     try:
         yield
     finally:
-        forget(new)
+        with _lock:
+            for robot_id in new:
+                # What is known beside them stays: a folder may have them too.
+                _added.pop(robot_id, None)
 
 
 def forget(robot_ids: Collection[str]) -> None:

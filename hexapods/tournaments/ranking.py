@@ -106,5 +106,6 @@ def _can_be_told_apart(iqms_m: FloatArray, resampled_m: FloatArray) -> NDArray[n
     for place in range(len(iqms_m) - 1):
         behind = slice(place + 1, None)
         low_m, _ = percentile_limits(resampled_m[place] - resampled_m[behind])
+        # Rarely an interval is on the other side of the difference: that tells nothing.
         is_apart[place, behind] = (low_m > RESOLUTION_M) & (iqms_m[place] > iqms_m[behind])
     return is_apart | is_apart.T

@@ -10,7 +10,7 @@ import numpy as np
 from annotated_types import Ge, Le
 
 from hexapods.domain.creatures import own_gait
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import InvalidInput, Unreachable
 from hexapods.domain.gait import AnyGait, resolve
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.records import Record
@@ -87,7 +87,10 @@ class TournamentRules(WalkingProblem):
                 "leave them out for those that suit the robots"
             )
         for robot, gait in self._walkers():
-            check_reach(robot, resolve(gait, robot.azimuths_deg), self.grid)
+            try:
+                check_reach(robot, resolve(gait, robot.azimuths_deg), self.grid)
+            except Unreachable as error:
+                raise Unreachable(f"{robot.name}: {error}", error.legs) from error
 
     def _check_worlds(self) -> None:
         if not 1 <= len(self.worlds) <= MAX_WORLDS:

@@ -183,6 +183,20 @@ def test_lent_documents_are_there_for_a_while() -> None:
         robot({"id": robot_documents.id_of(data)})
 
 
+def test_what_is_told_of_a_stored_robot_outlasts_its_lending(tmp_path: Path) -> None:
+    data = document_of(robot({"preset": "crab", "femur_m": 0.071}))
+    robot_id = robot_documents.id_of(data)
+    (tmp_path / f"{robot_id}.json").write_bytes(data)
+    robot_documents.use_folder(tmp_path)
+    robot_documents.tell(robot_id, About("Pinch", "trot"))
+    with robot_documents.lent([data]):
+        assert robot({"id": robot_id}).name == "Pinch"
+    assert robot({"id": robot_id}).name == "Pinch"
+    assert own_gait(robot({"id": robot_id})) == "trot"
+    robot_documents.leave_folder(tmp_path)
+    robot_documents.forget([robot_id])
+
+
 def test_its_gait_is_told_unless_it_does_not_divide_its_legs(stored: Robot) -> None:
     assert own_gait(stored) == "one-by-one"
     robot_documents.tell(ID, About("Rex", "trot"))

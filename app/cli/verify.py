@@ -1,0 +1,101 @@
+"""`hexapods verify`: repeat a tournament that has ended, and compare each number to the last digit.
+
+The file is that of the tournament's page. The exit code is 0 if everything repeats, and 1 if
+something differs; each difference is a sentence. See docs/tournaments.md.
+"""
+
+import argparse
+import json
+from typing import TYPE_CHECKING
+
+from app.cli.files import read_bounded
+from app.cli.options import CommandParser, integer
+from app.cli.terminal import progress, show_table
+from hexapods.agents.appearance import name_of
+from hexapods.domain.records import to_json
+from hexapods.domain.text import visible
+
+if TYPE_CHECKING:
+    from hexapods.tournaments.tournament_file import TournamentFile
+
+DIFFERS = 1
+"""Exit code if something differs."""
+
+
+def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
+    """Add the command's parser."""
+    parser = commands.add_parser("verify", help="repeat a tournament", description=__doc__)
+    parser.add_argument("file", metavar="FILE", help="file of a tournament that has ended")
+    parser.add_argument(
+        "--workers", type=integer, help="worker processes on this machine (default: one per core)"
+    )
+    parser.add_argument("--json", action="store_true", help="print standings and differences")
+    parser.set_defaults(run=run)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Repeat a tournament, and print its ranking and what differs.
+
+    Raises:
+        HexapodError: if the file is no tournament, or cannot be repeated.
+    """
+    # Imported here, as SciPy takes a second to import.
+    from hexapods.tournaments.tournament_file import MAX_BYTES, read_file  # noqa: PLC0415
+    from hexapods.tournaments.verification import verify, version_note  # noqa: PLC0415
+
+    tournament = read_file(read_bounded(options.file, MAX_BYTES), options.file)
+    with progress("draws") as bar:
+        task = bar.add_task("judging again", total=None)
+        differences = verify(
+            tournament,
+            options.workers,
+            lambda done, total: bar.update(task, completed=done, total=total),
+        )
+    note = version_note(tournament)
+    if options.json:
+        shown = {
+            "title": tournament.title,
+            "repeats": not differences,
+            "differences": differences,
+            "version_note": note,
+            "standings": [to_json(one) for one in tournament.standings],
+        }
+        print(json.dumps(shown))
+        return DIFFERS if differences else 0
+    _show_ranking(tournament)
+    for sentence in differences:
+        print(sentence)
+    if note is not None:
+        print(note)
+    if differences:
+        print(f"{options.file} does not repeat: see the differences above.")
+        return DIFFERS
+    judged = f"{len(tournament.entries)} entries on {tournament.rules.draws} draws"
+    print(f"{options.file} repeats to the last digit: {judged}.")
+    return 0
+
+
+def _show_ranking(tournament: "TournamentFile") -> None:
+    """Print the standings as the file has them."""
+    entries = {one.number: one for one in tournament.entries}
+    names = {number: f"{one.name} ({number})" for number, one in entries.items()}
+    rows = []
+    for one in tournament.standings:
+        entered = entries[one.number].entry if one.number in entries else None
+        rows.append(
+            (
+                _ranks(one.best_rank, one.worst_rank),
+                names.get(one.number, f"({one.number})"),
+                "" if entered is None else visible(name_of(entered.agent, entered.settings)),
+                f"{one.iqm_m:.3f}",
+                f"{one.low_m:.3f}–{one.high_m:.3f}",
+                str(one.failures or ""),
+                ", ".join(str(other) for other in one.not_separable) or "–",
+            )
+        )
+    head = ("rank", "name", "agent", "IQM m", "95\u00a0%", "failed", "not separable from")
+    show_table(tournament.title, head, rows, text=(1, 2, 6))
+
+
+def _ranks(best: int, worst: int) -> str:
+    return str(best) if best == worst else f"{best}–{worst}"

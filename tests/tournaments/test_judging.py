@@ -1,0 +1,169 @@
+"""Judging an entry on a draw: deterministic, and a failure is a result."""
+
+import pickle
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from hexapods.agents import registry
+from hexapods.domain.errors import InvalidInput, TableMismatch
+from hexapods.domain.robot import PRESETS, robot
+from hexapods.domain.world import named_world
+from hexapods.experiments.trial import TrialConfig, run_trial
+from hexapods.tournaments.entry import Entry, training_of
+from hexapods.tournaments.judging import Judgement, judge
+from hexapods.tournaments.rules import Draw
+from hexapods.tournaments.tournament_file import sha256_of
+from tests.tournaments.sample_tournaments import rules_of, table_file, table_of
+
+DRAW = Draw(5, "flat")
+
+
+@pytest.fixture
+def clumsy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Install a package with agents that fail: one raises, another takes no legal action."""
+    about = tmp_path / "clumsy-1.0.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: clumsy\nVersion: 1.0\n")
+    (about / "entry_points.txt").write_text(
+        "[hexapods.agents]\n"
+        "clumsy = tests.own_agents:Clumsy\n"
+        "cheat = tests.own_agents:Cheat\n"
+        "seer = tests.tournaments.test_judging:Seer\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    registry.registered.cache_clear()
+    yield
+    registry.registered.cache_clear()
+
+
+class Seer:
+    """Learns, and plans with a simulator."""
+
+    def __init__(self, expand: object) -> None:
+        del expand
+
+
+@pytest.mark.parametrize("agent", ["q-learning", "linear-model", "greedy", "random-walk"])
+def test_a_judgement_depends_on_neither_order_nor_thread_nor_process(agent: str) -> None:
+    rules = rules_of(simulator="mujoco", steps=20, tolerance=0.03, worlds=("flat", "ice"))
+    entry, draws = Entry(agent=agent), [Draw(5, "flat"), Draw(2**53 - 1, "ice")]
+    expected = [judge(rules, entry, draw) for draw in draws]
+    assert [judge(rules, entry, draw) for draw in draws[::-1]] == expected[::-1]
+    with ThreadPoolExecutor(2) as threads:
+        assert list(threads.map(lambda draw: judge(rules, entry, draw), draws)) == expected
+    script = (
+        "import pickle, sys; from hexapods.tournaments.judging import judge; "
+        "sys.stdout.buffer.write(pickle.dumps(judge(*pickle.load(sys.stdin.buffer))))"
+    )
+    given = pickle.dumps((rules, entry, draws[1]))
+    done = subprocess.run(
+        [sys.executable, "-c", script], input=given, capture_output=True, check=True
+    )
+    assert pickle.loads(done.stdout) == expected[1]
+    assert all(one.failure is None for one in expected)
+
+
+def test_a_learner_practises_and_walks_from_rest_as_in_a_trial() -> None:
+    rules = rules_of(steps=50)
+    training = replace(training_of(Entry(agent="q-learning"), rules), seed=5)
+    [distance_m] = run_trial(TrialConfig(training=training)).distances_m
+    assert judge(rules, Entry(agent="q-learning"), DRAW) == Judgement(distance_m)
+    less = judge(rules, Entry(agent="q-learning", steps=10), DRAW)
+    assert less != judge(rules, Entry(agent="q-learning"), DRAW)
+
+
+def test_what_learns_in_races_by_default_does_here() -> None:
+    rules = rules_of(simulator="mujoco", steps=5)
+    entry = Entry(agent="linear-model")
+    training = replace(training_of(entry, rules), seed=5)
+    [goes_on], [stops] = (
+        run_trial(TrialConfig(training=training, keep_learning=keeps)).distances_m
+        for keeps in (True, False)
+    )
+    assert judge(rules, entry, DRAW).distance_m == goes_on != stops
+
+
+def test_the_world_and_the_tolerance_of_the_draw_hold() -> None:
+    rules = rules_of(simulator="mujoco", steps=5, worlds=("flat", "ice"))
+    entry = Entry(agent="greedy")
+    flat, ice = (judge(rules, entry, Draw(5, world)).distance_m for world in ("flat", "ice"))
+    assert ice < flat
+    built = rules_of(simulator="mujoco", steps=5, tolerance=0.1)
+    assert judge(built, entry, DRAW) != judge(built, entry, Draw(6, "flat"))
+    assert judge(built, entry, DRAW) != judge(rules, entry, DRAW)
+
+
+def test_a_search_plans_with_the_nominal_model() -> None:
+    rules = rules_of(simulator="mujoco", steps=5, worlds=("limp-pair",))
+    training = replace(
+        training_of(Entry(agent="greedy"), rules), seed=5, world=named_world("limp-pair")
+    )
+    informed, nominal = (
+        run_trial(TrialConfig(training=training, blocks=0, plans_with=model)).distances_m[0]
+        for model in ("start", "nominal")
+    )
+    assert judge(rules, Entry(agent="greedy"), Draw(5, "limp-pair")).distance_m == nominal
+    assert nominal < informed
+
+
+def test_a_table_walks_as_if_it_had_been_learned_on_the_draw() -> None:
+    rules, draw = rules_of(tables=True), Draw(0, "flat")  # it was learned with the seed 0
+    entry = Entry(agent="q-learning", table=sha256_of(table_file()))
+    practised = judge(rules, Entry(agent="q-learning", steps=40), draw)
+    assert judge(rules, entry, draw, table_of()) == practised
+
+
+def test_a_table_of_another_robot_and_simulator_may_race() -> None:
+    rules = rules_of(simulator="mujoco", robot=PRESETS["compliant"], tables=True)
+    entry = Entry(agent="q-learning", table=sha256_of(table_file()))
+    assert judge(rules, entry, DRAW, table_of()).failure is None
+
+
+def test_a_table_that_does_not_fit_is_refused() -> None:
+    entry = Entry(agent="q-learning", table=sha256_of(table_file()))
+    with pytest.raises(TableMismatch, match="divisions"):
+        judge(rules_of(tables=True, divisions=3), entry, DRAW, table_of())
+    with pytest.raises(InvalidInput, match="with its table"):
+        judge(rules_of(tables=True), entry, DRAW)
+    with pytest.raises(InvalidInput, match="with its table"):
+        judge(rules_of(tables=True), Entry(agent="q-learning"), DRAW, table_of())
+
+
+@pytest.mark.parametrize("agent", ["q-learning", "greedy", "random-walk"])
+def test_diverged_physics_is_a_failure(agent: str) -> None:
+    light = dict.fromkeys(("coxa_kg", "femur_kg", "tibia_kg", "foot_kg"), 0.001)
+    stiff = {"servo_kp": 1000, "servo_kv": 100, "servo_torque_nm": 100}
+    free = {"joint_armature": 0.0001, "joint_damping": 0.0001, "dt_s": 0.005}
+    rules = rules_of(simulator="mujoco", steps=20, robot=robot({**light, **stiff, **free}))
+    judgement = judge(rules, Entry(agent=agent), Draw(3, "flat"))
+    assert judgement.distance_m == 0.0
+    assert judgement.failure is not None
+    assert "the physics diverged at step" in judgement.failure
+
+
+@pytest.mark.usefixtures("clumsy")
+@pytest.mark.parametrize(("agent", "reason"), [("clumsy", "I tripped"), ("cheat", "action")])
+def test_an_agent_that_fails_is_a_failure(agent: str, reason: str) -> None:
+    judgement = judge(rules_of(), Entry(agent=agent), DRAW)
+    assert judgement.distance_m == 0.0
+    assert judgement.failure is not None
+    assert reason in judgement.failure
+
+
+@pytest.mark.usefixtures("clumsy")
+def test_an_agent_that_would_practise_with_a_model_of_the_secret_world_is_refused() -> None:
+    with pytest.raises(InvalidInput, match="learns and plans with a simulator"):
+        judge(rules_of(), Entry(agent="seer"), DRAW)
+
+
+def test_a_judgement_is_a_number_and_0_where_it_failed() -> None:
+    with pytest.raises(InvalidInput, match="finite"):
+        Judgement(float("nan"))
+    with pytest.raises(InvalidInput, match="must be 0"):
+        Judgement(0.1, "it fell")

@@ -1,0 +1,120 @@
+"""Ranks, and which entries can be told apart."""
+
+import random
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hexapods.experiments.statistics import iqm_interval, paired_interval
+from hexapods.tournaments.ranking import Standing, ranking
+
+DISTANCES = st.lists(
+    st.lists(st.floats(-0.1, 0.6) | st.just(0.0), min_size=5, max_size=5), min_size=1, max_size=5
+)
+
+
+def sample(entries: int, draws: int, seed: int = 0) -> dict[int, list[float]]:
+    rng = np.random.default_rng(seed)
+    ease = rng.normal(0, 0.05, draws)  # of a draw, for all
+    return {
+        number: (0.3 + 0.02 * (number % 7) + ease + rng.normal(0, 0.01, draws)).tolist()
+        for number in range(entries)
+    }
+
+
+def test_intervals_are_those_of_experiments() -> None:
+    distances = sample(6, 20)
+    for one in ranking(distances, {}):
+        expected = iqm_interval((tuple(distances[one.number]),), 0)
+        assert (one.iqm_m, one.low_m, one.high_m) == pytest.approx(expected, rel=1e-12)
+        for other, points in distances.items():
+            pair = np.array([distances[one.number], points])
+            low, high = paired_interval([pair], lambda iqms: iqms[0] - iqms[1], 0)[1:]
+            assert low is not None
+            assert high is not None
+            is_apart = not low <= 0 <= high
+            assert (other in one.not_separable) == (other != one.number and not is_apart)
+
+
+def test_pairs_tell_apart_what_overlapping_intervals_do_not() -> None:
+    easy_and_hard = np.linspace(0.1, 0.5, 20)
+    better, worse = ranking({0: easy_and_hard.tolist(), 1: (easy_and_hard + 0.01).tolist()}, {})
+    assert better.number == 1
+    assert better.low_m < worse.high_m
+    assert (better.best_rank, better.worst_rank) == (1, 1)
+    assert (worse.best_rank, worse.worst_rank) == (2, 2)
+    assert better.not_separable == worse.not_separable == ()
+
+
+def test_equal_results_are_not_told_apart() -> None:
+    same = [0.1, 0.2, 0.3, 0.4, 0.5]
+    rounded = [one + 1e-16 for one in same]
+    standings = ranking({7: same, 2: same, 5: rounded}, {2: 3})
+    assert {one.number: one.not_separable for one in standings} == {
+        2: (5, 7),
+        5: (2, 7),
+        7: (2, 5),
+    }
+    assert all((one.best_rank, one.worst_rank) == (1, 3) for one in standings)
+    assert [one.failures for one in standings if one.number == 2] == [3]
+    assert [one.number for one in ranking({7: same, 2: same}, {})] == [2, 7]
+
+
+def test_there_may_be_none_or_one() -> None:
+    assert ranking({}, {}) == []
+    assert ranking({4: [0.5] * 5}, {4: 1}) == [
+        Standing(
+            number=4,
+            iqm_m=0.5,
+            low_m=0.5,
+            high_m=0.5,
+            best_rank=1,
+            worst_rank=1,
+            not_separable=(),
+            failures=1,
+        )
+    ]
+
+
+def test_entries_of_other_draws_are_refused() -> None:
+    with pytest.raises(ValueError, match="same draws"):
+        ranking({0: [0.1] * 5, 1: [0.1] * 6}, {})
+
+
+@given(DISTANCES, st.randoms(use_true_random=False))
+def test_ranks_are_consistent_and_independent_of_the_order(
+    points: list[list[float]], order: random.Random
+) -> None:
+    distances = dict(enumerate(points))
+    standings = ranking(distances, {})
+    shuffled = list(distances.items())
+    order.shuffle(shuffled)
+    assert ranking(dict(shuffled), {}) == standings
+    by_number = {one.number: one for one in standings}
+    assert set(by_number) == set(distances)
+    iqms = [one.iqm_m for one in standings]
+    assert iqms == sorted(iqms, reverse=True)
+    for place, one in enumerate(standings, start=1):
+        assert 1 <= one.best_rank <= place <= one.worst_rank <= len(standings)
+        assert one.number not in one.not_separable
+        told_apart = len(standings) - 1 - len(one.not_separable)
+        assert one.best_rank - 1 + len(standings) - one.worst_rank == told_apart
+        for other in one.not_separable:
+            assert one.number in by_number[other].not_separable
+
+
+def test_many_entries_are_ranked_by_the_same_resamples() -> None:
+    """Two hundred entries have 19,900 pairs; each pair alone would take minutes."""
+    distances = sample(200, 20)
+    whole = {one.number: one for one in ranking(distances, {})}
+    some = {number: distances[number] for number in (3, 77, 150)}
+    for one in ranking(some, {}):
+        in_whole = whole[one.number]
+        assert (one.iqm_m, one.low_m, one.high_m) == (
+            in_whole.iqm_m,
+            in_whole.low_m,
+            in_whole.high_m,
+        )
+        assert set(one.not_separable) == set(in_whole.not_separable) & set(some)

@@ -1,0 +1,205 @@
+"""A tournament repeats to the last digit, and what was changed in its file is told."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+
+from hexapods.domain import robot_documents
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.model_robot import model_robot
+from hexapods.domain.robot import PRESETS, document_of, read_document
+from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.tournament_file import (
+    JudgedEntry,
+    TournamentFile,
+    read_file,
+    sha256_of,
+    standings_of,
+    write_file,
+)
+from hexapods.tournaments.verification import verify, version_note
+from tests.model_robots import model_of
+from tests.tournaments.sample_tournaments import judged, rules_of, table_file
+
+OTHER_SECRET = "fedcba9876543210" * 4
+
+
+@pytest.fixture(scope="module")
+def kinematic() -> TournamentFile:
+    rules = rules_of(tables=True)
+    table = Entry(agent="q-learning", table=sha256_of(table_file()))
+    return judged(rules, [Entry(agent="q-learning"), table], [table_file()])
+
+
+def edited(tournament: TournamentFile, number: int, **changes: object) -> TournamentFile:
+    entries = [
+        replace(one, **changes) if one.number == number else one  # type: ignore[arg-type]
+        for one in tournament.entries
+    ]
+    return replace(tournament, entries=tuple(entries))
+
+
+def sentences(tournament: TournamentFile) -> list[str]:
+    """Return what differs, of the file that others get."""
+    return verify(read_file(write_file(tournament), "it"), workers=1)
+
+
+def test_a_tournament_in_mujoco_repeats_with_any_number_of_processes() -> None:
+    rules = rules_of(
+        simulator="mujoco",
+        steps=10,
+        tolerance=0.03,
+        worlds=("flat", "ice"),
+        robots=(PRESETS["dog"],),
+    )
+    tournament = judged(rules, [Entry(agent="q-learning", robot=PRESETS["dog"])])
+    counted: list[tuple[int, int]] = []
+    read = read_file(write_file(tournament), "it")
+    assert verify(read, 2, lambda *counts: counted.append(counts)) == []
+    assert counted == [(done, 20) for done in range(1, 21)]
+    assert verify(read, 1) == []
+    assert version_note(read) is None
+
+
+@pytest.fixture
+def imported() -> Iterator[str]:
+    """Store a robot from a file, and return its id."""
+    made = read_document(document_of(model_robot(model_of(PRESETS["stiff"]), "Own")), "Own")
+    assert made.id is not None
+    robot_documents.tell(made.id, robot_documents.About("Own", "tripod"))
+    yield made.id
+    robot_documents.forget([made.id])
+
+
+def test_a_tournament_of_an_imported_robot_repeats_where_it_is_not_known(imported: str) -> None:
+    own = read_document(robot_documents.find(imported), "Own")
+    rules = rules_of(simulator="mujoco", steps=10, robots=(own,))
+    assert rules.gaits == ("tripod",)
+    data = write_file(judged(rules, [Entry(agent="q-learning", robot=own)]))
+    robot_documents.forget([imported])
+    assert verify(read_file(data, "it"), workers=1) == []
+    with pytest.raises(InvalidInput, match="no stored robot"):
+        robot_documents.find(imported)
+
+
+def test_the_whole_repeats(kinematic: TournamentFile) -> None:
+    assert sentences(kinematic) == []
+
+
+def test_one_digit_of_a_distance_is_told(kinematic: TournamentFile) -> None:
+    one = kinematic.entries[3]
+    distance = one.judgements[2].distance_m
+    other = float(f"{distance:.16g}"[:-1] + ("1" if f"{distance:.16g}"[-1] != "1" else "2"))
+    judgements = [
+        replace(j, distance_m=other) if n == 2 else j for n, j in enumerate(one.judgements)
+    ]
+    [told] = sentences(edited(kinematic, 3, judgements=tuple(judgements)))
+    assert told.startswith("Entry 3 (entrant 3), draw 3 (seed ")
+    assert told.endswith(f", flat): {other!r} m in the file, {distance!r} m repeated.")
+
+
+def test_a_result_that_was_improved_with_its_standing_is_told(kinematic: TournamentFile) -> None:
+    one = kinematic.entries[3]
+    best = tuple(replace(judgement, distance_m=0.9) for judgement in one.judgements)
+    changed = edited(kinematic, 3, judgements=best)
+    standings = standings_of({each.number: each.judgements for each in changed.entries})
+    told = sentences(replace(changed, standings=tuple(standings)))
+    assert [one for one in told if one.startswith("Entry 3 (entrant 3), draw ")] == told[:3]
+    assert told[3] == "Entry 3 (entrant 3): 2 more of its 5 draws differ."
+    assert any(
+        one.startswith("Standing of Entry 3 (entrant 3): iqm_m is 0.9 in the file, ")
+        for one in told[4:]
+    )
+
+
+def test_another_secret_is_told(kinematic: TournamentFile) -> None:
+    told = sentences(replace(kinematic, secret=OTHER_SECRET))
+    assert told[0].startswith("The secret is not the one to which the tournament was committed")
+    assert any(one.startswith("Entry 3 (entrant 3), draw 1 ") for one in told)
+
+
+def test_a_draw_that_was_removed_is_told(kinematic: TournamentFile) -> None:
+    fewer = kinematic.entries[3].judgements[:-1]
+    assert sentences(edited(kinematic, 3, judgements=fewer)) == [
+        "Entry 3 (entrant 3) has 4 judgements in the file; the rules have 5 draws."
+    ]
+
+
+def test_standings_in_another_order_are_told(kinematic: TournamentFile) -> None:
+    first, second, *others = kinematic.standings
+    [told] = sentences(replace(kinematic, standings=(second, first, *others)))
+    assert told.startswith(f"The standings are in the order {second.number}, {first.number}, ")
+
+
+def test_standings_of_others_are_told(kinematic: TournamentFile) -> None:
+    first, second, *others = kinematic.standings
+    swapped = (
+        replace(second, number=first.number),
+        replace(first, number=second.number),
+        *others,
+    )
+    told = sentences(replace(kinematic, standings=swapped))
+    assert any(one.startswith(f"Standing of Entry {second.number} ") for one in told)
+    missing, strange = replace(kinematic, standings=(first, *others)), replace(first, number=99)
+    assert sentences(missing) == [
+        f"Entry {second.number} (entrant {second.number}) has no standing."
+    ]
+    assert sentences(replace(kinematic, standings=(*kinematic.standings, strange))) == [
+        "There is a standing of entry 99, which is not there."
+    ]
+
+
+def test_a_missing_and_a_weakened_reference_are_told(kinematic: TournamentFile) -> None:
+    weak = replace(kinematic.entries[2].entry, steps=1)
+    told = sentences(edited(kinematic, 2, entry=weak))
+    assert told[0] == "Entry 2 is not the reference linear-model with its usual settings."
+    told = sentences(replace(kinematic, entries=kinematic.entries[1:]))
+    assert told[0] == "Entry 0, the reference greedy, is missing."
+
+
+def test_an_entry_that_the_rules_do_not_allow_is_told(kinematic: TournamentFile) -> None:
+    told = sentences(edited(kinematic, 3, entry=Entry(agent="q-learning", steps=61)))
+    assert told == [
+        "Entry 3 (entrant 3) cannot be judged: steps must be from 1 to 60, the budget of this "
+        "tournament, not 61.",
+        "The standings were not compared, as some entries could not be judged.",
+    ]
+
+
+def test_a_table_that_is_not_there_and_another_one_are_told(kinematic: TournamentFile) -> None:
+    digest = sha256_of(table_file())
+    [told, _] = sentences(replace(kinematic, tables={}))
+    assert told == f"Entry 4 (entrant 4) cannot be judged: its table {digest} is not in the file."
+    other = judged(
+        kinematic.rules,
+        [Entry(agent="q-learning", table=sha256_of(table_file(41)))],
+        [table_file(41)],
+    )
+    exchanged = edited(replace(kinematic, tables=other.tables), 4, entry=other.entries[3].entry)
+    told = sentences(exchanged)[0]
+    assert told.startswith("Entry 4 (entrant 4), draw ")
+
+
+def test_other_versions_are_a_note(kinematic: TournamentFile) -> None:
+    versions = {**kinematic.versions, "numpy": "1.0", "mujoco": "2.0"}
+    changed = read_file(write_file(replace(kinematic, versions=versions)), "it")
+    note = version_note(changed)
+    assert note is not None
+    assert "instead of 1.0" in note
+    assert "instead of 2.0" in note
+    assert verify(changed, workers=1) == []
+
+
+def test_the_number_of_workers_is_checked(kinematic: TournamentFile) -> None:
+    with pytest.raises(InvalidInput, match="workers must be at least 1, not 0"):
+        verify(kinematic, workers=0)
+
+
+def test_a_file_without_entries_lacks_its_references(kinematic: TournamentFile) -> None:
+    empty: tuple[JudgedEntry, ...] = ()
+    told = sentences(replace(kinematic, entries=empty, standings=()))
+    assert told == [
+        f"Entry {number}, the reference {agent}, is missing."
+        for number, agent in enumerate(("greedy", "random-walk", "linear-model"))
+    ]
