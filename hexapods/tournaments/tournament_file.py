@@ -5,6 +5,7 @@ import json
 from base64 import b64decode, b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib.metadata import version
 from typing import Any, NoReturn
 
 from hexapods.domain import robot_documents
@@ -131,9 +132,14 @@ def tournament_file(
             for robot in (rules.robot, *rules.robots)
             if robot.id is not None
         },
-        versions=versions(),
+        versions=own_versions(),
         machine=description(),
     )
+
+
+def own_versions() -> dict[str, str]:
+    """Return the versions here of the packages on which the results of a tournament depend."""
+    return {**versions(), "scipy": version("scipy")}
 
 
 def standings_of(judgements: Mapping[int, Sequence[Judgement]]) -> list[Standing]:

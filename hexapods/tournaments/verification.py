@@ -9,7 +9,7 @@ from hexapods.domain import robot_documents
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.text import visible
 from hexapods.experiments.local_workers import local_pool
-from hexapods.experiments.worker import difference, versions
+from hexapods.experiments.worker import difference
 from hexapods.machine import cores
 from hexapods.runs.tables import Checkpoint, from_bytes
 from hexapods.tournaments.entry import Entry, check_table, references, training_of
@@ -20,6 +20,7 @@ from hexapods.tournaments.tournament_file import (
     JudgedEntry,
     TournamentFile,
     documents_of,
+    own_versions,
     standings_of,
 )
 
@@ -83,7 +84,7 @@ def verify(
 
 def version_note(tournament: TournamentFile) -> str | None:
     """Return how the versions here differ from those that judged; None if results must be equal."""
-    other = difference(tournament.versions, versions())
+    other = difference(tournament.versions, own_versions())
     if other is None:
         return None
     return visible(f"This is {other}, by which results may differ in their last digits.")

@@ -10,11 +10,16 @@ from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import PRESETS, robot
 from hexapods.domain.world import named_world
-from hexapods.tournaments.rules import TournamentRules, commitment_of, draws_of
+from hexapods.experiments.statistics import MIN_RESAMPLED
+from hexapods.tournaments.rules import MIN_DRAWS, TournamentRules, commitment_of, draws_of
 from tests.tournaments.sample_tournaments import SECRET, rules_of
 
 SMALL = robot({"preset": "dog", "body_height_m": 0.2})
 """It stands on stretched legs."""
+
+
+def test_the_draws_are_enough_for_intervals_that_decide() -> None:
+    assert MIN_DRAWS == MIN_RESAMPLED
 
 
 def test_the_draws_follow_from_the_secret() -> None:
