@@ -65,5 +65,9 @@ class TooLong(HexapodError):
     """A run is too long for a type of file."""
 
 
+class BudgetExceeded(HexapodError):
+    """A search simulates more transitions than it may."""
+
+
 class Diverged(HexapodError):
     """The physics simulation diverged to non-finite numbers."""

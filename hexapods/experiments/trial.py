@@ -37,6 +37,8 @@ class TrialConfig:
         earning_steps: number of steps after each evaluation whose rewards are added up; 0 for none.
         plans_with: what a searcher knows, as in `LaneConfig`.
         keep_learning: whether the agent learns from each step of the race too.
+        most_transitions: that a search may simulate in the race; over it, it fails. None for any
+            number.
     """
 
     training: TrainingConfig
@@ -46,6 +48,7 @@ class TrialConfig:
     earning_steps: int = 0
     plans_with: PlansWith | None = None
     keep_learning: bool = False
+    most_transitions: int | None = None
 
     @property
     def must_be_alone(self) -> bool:
@@ -195,6 +198,9 @@ def _race(
     rivals = (LaneConfig(agent=one, observation=training.observation) for one in config.rivals)
     race = RaceConfig(**walk, lanes=(own, *rivals), seed=training.seed)
     walkers = build_walkers(race, [table, *(None for _ in config.rivals)], threads=1)
+    for walker in walkers:
+        if walker.expand is not None:
+            walker.expand.budget = config.most_transitions
     *_, recorded = record_race(walkers, race, timer)
     return recorded
 

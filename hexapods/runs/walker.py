@@ -8,7 +8,7 @@ import numpy as np
 
 from hexapods.agents.protocol import Agent, Node, Transition, Valuing
 from hexapods.domain.disturbances import SensorNoise
-from hexapods.domain.errors import IllegalAction
+from hexapods.domain.errors import BudgetExceeded, IllegalAction
 from hexapods.domain.observation import (
     Observation,
     legal_in,
@@ -123,6 +123,7 @@ class SimulatorExpand:
 
     Attributes:
         transitions: number of transitions simulated so far.
+        budget: most transitions that may be simulated; None for any number.
         here: root node, the current state of the robot.
         interrupt: called before each batch; may raise `Interrupted`.
     """
@@ -130,6 +131,7 @@ class SimulatorExpand:
     def __init__(self, simulator: Simulator[Any], observation: Observation) -> None:
         self._simulator, self._observation = simulator, observation
         self.transitions = 0
+        self.budget: int | None = None
         self.interrupt: Callable[[], None] = lambda: None
         self.here = FutureNode(self, simulator.rest())
 
@@ -144,7 +146,14 @@ class SimulatorExpand:
 
         Returns:
             the resulting nodes, and the rewards [m], (n,).
+
+        Raises:
+            BudgetExceeded: if that would be more transitions than the budget.
         """
+        if self.budget is not None and self.transitions + len(actions) > self.budget:
+            raise BudgetExceeded(
+                f"it would have simulated over {self.budget:,} transitions, which is the most"
+            )
         states = [cast(FutureNode, node).state for node in nodes]
         ends: list[FutureNode] = []
         rewards: list[FloatArray] = []

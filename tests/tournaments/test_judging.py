@@ -13,6 +13,7 @@ import pytest
 from hexapods.agents import registry
 from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.robot import PRESETS, robot
+from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import named_world
 from hexapods.experiments.trial import TrialConfig, run_trial
 from hexapods.tournaments.entry import Entry, training_of
@@ -160,6 +161,16 @@ def test_an_agent_that_fails_is_a_failure(agent: str, reason: str) -> None:
 def test_an_agent_that_would_practise_with_a_model_of_the_secret_world_is_refused() -> None:
     with pytest.raises(InvalidInput, match="learns and plans with a simulator"):
         judge(rules_of(), Entry(agent="seer"), DRAW)
+
+
+def test_a_search_that_simulates_too_many_transitions_has_failed() -> None:
+    two_steps = Entry(agent="look-ahead", settings=SettingValues({"depth": 2}))
+    assert judge(rules_of(), two_steps, DRAW).failure is None
+    three_steps = Entry(agent="look-ahead", settings=SettingValues({"depth": 3}))
+    judged = judge(rules_of(), three_steps, DRAW)
+    assert judged.failure is not None
+    assert "over 40,000 transitions" in judged.failure
+    assert judge(rules_of(), three_steps, DRAW) == judged
 
 
 def test_a_judgement_is_a_number_and_0_where_it_failed() -> None:
