@@ -22,6 +22,8 @@ from app.api.tournament_views import (
     seed_of,
     tournament_view,
 )
+from app.archive.transfer import BudgetedChunks
+from app.storage.artifact_file import CHUNK_BYTES
 from app.storage.errors import Forbidden
 from app.tournaments.ended_file import file_of
 from app.tournaments.entered_tables import entry_of_training
@@ -114,7 +116,9 @@ def get_tournament_file(
     tournament = _known(services, tournament_id, reader)
     name_of = partial(name_for_others, services.rooms, tournament)
     data = file_of(services.tournaments, tournament, name_of)
-    return attachment(data, MEDIA_TYPE, f"tournament-{tournament.id}.json")
+    parts = (data[at : at + CHUNK_BYTES] for at in range(0, len(data), CHUNK_BYTES))
+    chunks = BudgetedChunks(parts, len(data), services.exports)
+    return attachment(chunks, MEDIA_TYPE, f"tournament-{tournament.id}.json")
 
 
 @router.delete("/{tournament_id}", status_code=204, summary="Delete a tournament")

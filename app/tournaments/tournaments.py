@@ -22,8 +22,9 @@ from app.tournaments.tournament import (
     Tournament,
     TournamentEntry,
 )
-from hexapods.domain.errors import HexapodError
+from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
+from hexapods.domain.robot import Robot
 from hexapods.tournaments.entry import Entry, completed, references
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.ranking import Standing
@@ -31,8 +32,10 @@ from hexapods.tournaments.rules import TournamentRules
 
 MAX_OPEN = 16
 """Tournaments that have not ended, at once."""
-MAX_TABLES_BYTES = 32 << 20
-"""Of a tournament, as its file has them, in base64."""
+MAX_TABLES_BYTES = 24 << 20
+"""Of all tables of a tournament, as its file has them, in base64."""
+MAX_ROBOTS_BYTES = 8 << 20
+"""Of the documents of all stored robots of the rules, which are in the file too."""
 _RETRY_S = 60
 _logger = logging.getLogger(__name__)
 
@@ -146,10 +149,12 @@ class Tournaments:
 
         Raises:
             Busy: if too many have not ended.
+            InvalidInput: if the documents of its stored robots are too large.
             NotFound: if a stored robot of the rules was deleted meanwhile.
             UnknownName, InvalidInput: if the references cannot walk by these rules.
         """
-        entries = references(rules)
+        entries, robots = references(rules), (rules.robot, *rules.robots)
+        self._check_robots(robots)
         with self.changed:
             if sum(one.state != "ended" for one in self._tournaments.values()) >= MAX_OPEN:
                 raise Busy(
@@ -182,7 +187,6 @@ class Tournaments:
                 )
                 for number, entry in enumerate(entries)
             ]
-            robots = (rules.robot, *rules.robots)
             self._rows.add(row, rows, lambda c: self._store.robots.check(c, robots))
             tournament = self._tournaments[row.id] = _tournament(row)
             tournament.entries = {one.number: _entry(one) for one in rows}
@@ -337,6 +341,15 @@ class Tournaments:
 
     def _tell(self, tournament: Tournament) -> None:
         self.on_changed(tournament, False)
+
+    def _check_robots(self, robots: Sequence[Robot]) -> None:
+        stored = [one.id for one in robots if one.id is not None]
+        size = sum(len(self._store.robots.document(one)) for one in stored)
+        if size > MAX_ROBOTS_BYTES:
+            raise InvalidInput(
+                f"the stored robots of these rules have {size:,} bytes together; at most "
+                f"{MAX_ROBOTS_BYTES:,} enter a tournament, as its file has them"
+            )
 
     def _check_size(self, tournament: Tournament, table: EnteredTable | None) -> None:
         if table is None:

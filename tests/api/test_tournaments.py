@@ -6,9 +6,12 @@ from contextlib import ExitStack
 from typing import Any
 
 import pytest
+from fastapi import FastAPI
 from pydantic import TypeAdapter
 from starlette.testclient import TestClient
 
+from app.api.deps import Services
+from app.api.event_answers import TournamentEvent
 from app.api.tournament_answers import EntryView, TournamentList, TournamentView
 from app.server import create_app
 from app.settings import Settings
@@ -32,6 +35,11 @@ TRAINING_CARD = {"title": "T", "cards": [{"text": "Go", "state": {"form": FORM},
 
 class Contest(Class):
     """A class with tournaments."""
+
+    @property
+    def app(self) -> FastAPI:
+        assert isinstance(self._client.app, FastAPI)
+        return self._client.app
 
     def open(self, room: str | None = None, **options: Any) -> dict[str, Any]:
         """Open a tournament, after the end of those before."""
@@ -335,6 +343,28 @@ def test_what_waits_is_withdrawn_or_deleted(school: Contest) -> None:
     refused(school.teacher.call("DELETE", path), 404)
     # The judge goes on with others.
     assert school.ended(school.open())["state"] == "ended"
+
+
+def test_events_tell_of_it_on_the_common_stage_and_the_rooms(school: Contest) -> None:
+    services: Services = school.app.state.services
+    code = school.room()
+    of_room = services.room_stages.of(code)
+    assert of_room is not None
+    channels = (services.stages[0].channel, of_room.channel)
+    streams = [one.subscribe(names={"tournament"}) for one in channels]
+    tournament = school.open(code)
+    entered(school.teacher, tournament, agent="greedy")
+    school.ended(tournament)
+    for one in streams:
+        newest = one.drain()[-1]  # those before it were superseded
+        event = TypeAdapter(TournamentEvent).validate_json(newest.data)
+        assert (event.id, event.state) == (tournament["id"], "ended")
+        assert (event.entries, event.judged, event.of) == (1, 20, 20)
+    school.teacher.call("DELETE", f"/tournaments/{tournament['id']}")
+    for one in streams:
+        (deleted,) = one.drain()
+        assert TypeAdapter(TournamentEvent).validate_json(deleted.data).state == "deleted"
+        one.close()
 
 
 def test_its_page_and_its_address(school: Contest) -> None:
