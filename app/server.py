@@ -37,6 +37,8 @@ from app.api import (
     runs,
     spectators,
     stage,
+    tournament_views,
+    tournaments,
     trainings,
 )
 from app.api.auth import TokenGuard
@@ -78,6 +80,8 @@ from app.storage.errors import OwnershipLost
 from app.storage.idempotency import Idempotency
 from app.storage.recordings import Recordings
 from app.storage.server_lock import write_address_file
+from app.tournaments.judge import Judge
+from app.tournaments.tournaments import Tournaments
 from app.viewer.replay_frames import ReplayFrames
 from app.viewer.session import websocket_options
 from app.viewer.shared_stage import SharedStage
@@ -86,6 +90,7 @@ from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
 from hexapods import __version__, assets
 from hexapods.domain.errors import HexapodError
+from hexapods.machine import cores
 from hexapods.processes import return_freed_memory, start_fork_server
 from hexapods.runs.config import usable_agents
 
@@ -132,6 +137,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         stages, lambda path: new_stage(path=path, session_path="", announces=False)
     )
     rooms.on_changed = room_stages.publish
+    contests = Tournaments(store, on_changed=partial(tournament_views.publish, shared, room_stages))
     jobs = Jobs(
         store,
         recordings,
@@ -171,6 +177,8 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         rooms=rooms,
         room_stages=room_stages,
         card_starts=CardStarts(usable_agents()),
+        tournaments=contests,
+        judge=Judge(contests, max(1, cores() // 2), _judges_niceness(settings)),
         joins=RateLimiter(JOINS, JOINS_PER_S),
     )
     app.state.work_slots = WorkSlots()
@@ -181,9 +189,10 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     # The middleware that is added last runs first.
     app.add_middleware(ConcurrencyLimit, slots=app.state.work_slots)
     app.add_middleware(HeldBodies)
+    access = RoomAccess(rooms, contests.room_of)
     what_ifs = app.state.services.what_if_limiter
     app.add_middleware(RateLimit, settings=settings, what_ifs=what_ifs)
-    app.add_middleware(TokenGuard, settings=settings, rooms=RoomAccess(rooms))
+    app.add_middleware(TokenGuard, settings=settings, rooms=access)
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(Unfinished)
     app.add_middleware(ProblemPages)
@@ -193,12 +202,20 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     return app
 
 
+def _judges_niceness(settings: Settings) -> int:
+    """Return the lowest priority, as people wait for trainings; that of jobs if they have ours."""
+    return 19 if settings.job_niceness else 0
+
+
 def _add_routes(app: FastAPI, agents: tuple[str, ...]) -> None:
     app.router.routes += _api_routes(agents)
     app.router.routes += [
         *viewer_routes(_serve_viewer),
         *pages.page_routes(assets.static_dir()),
         *classroom_pages.classroom_routes(pages.page_content("room.html", assets.static_dir())),
+        *classroom_pages.tournament_routes(
+            pages.page_content("tournament.html", assets.static_dir())
+        ),
         *guide_routes(assets.docs_dir()),
     ]
 
@@ -214,11 +231,12 @@ def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(archives, trainings, races, experiments, runs, exports, replays, gait),
-        *(stage, spectators, events, options, robots, lessons, rooms),
+        *(stage, spectators, events, options, robots, lessons, rooms, tournaments),
     )
     for module in modules:
         versioned.include_router(module.router)
     versioned.include_router(start_routes(agents))
+    versioned.include_router(tournaments.entry_routes(agents))
     for included in (versioned, monitoring.router, docs.router):
         router.include_router(included)
     return tuple(router.routes)
@@ -236,6 +254,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
             await services.room_stages.open(room)
         services.jobs.open()
         await asyncio.to_thread(_resume_runs_of_rooms, services)
+        services.judge.start()
         try:
             yield
         finally:
@@ -258,7 +277,7 @@ async def _end_long_requests(app: FastAPI) -> None:
     services: Services = app.state.services
     services.stopping.set()
     app.state.work_slots.close()
-    for user in (services.what_if, services.estimates, services.renderer):
+    for user in (services.judge, services.what_if, services.estimates, services.renderer):
         await asyncio.to_thread(user.close)
 
 

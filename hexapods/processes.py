@@ -293,6 +293,17 @@ def _kill_group(pid: int) -> None:
         os.killpg(pid, signal.SIGKILL)
 
 
+def processor_s(pid: int) -> float:
+    """Return the processor time that a process has taken [s]; Linux only, else 0."""
+    try:
+        status = Path(f"/proc/{pid}/stat").read_bytes()
+    except OSError:  # it has exited, or this is not Linux
+        return 0.0
+    # User and system time are the 14th and 15th field; the name, the second, may contain any.
+    fields = status.rpartition(b") ")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def _is_stopped(pid: int) -> bool:
     """Whether a signal such as SIGSTOP has stopped a process; Linux only, else False."""
     try:

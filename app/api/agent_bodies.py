@@ -19,6 +19,7 @@ from app.api.schemas import (
     RaceBody,
     TrainingBody,
 )
+from app.api.tournament_bodies import EntryBody
 from hexapods.agents.registry import learns
 from hexapods.domain.settings import REQUIRED, DeclaredSetting
 from hexapods.experiments.config import ExperimentConfig, settings_by_name
@@ -36,6 +37,7 @@ class AgentBodies:
         race: of a `RaceBody`, or, with `branch_from`, of a `BranchBody`.
         experiment: of an `ExperimentBody`.
         change: of a `ChangeBody`.
+        entry: of an `EntryBody`.
     """
 
     def __init__(self, agents: Sequence[str]) -> None:
@@ -51,6 +53,7 @@ class AgentBodies:
         self.race: Any = one_of({"race": _race_body(lanes), "branch": BranchBody}, _race_or_branch)
         self.experiment: Any = _experiment_body(agents)
         self.change: Any = _change_body(agents)
+        self.entry: Any = named_in({one: _entry_body(one) for one in agents}, "agent", "agent")
 
 
 @cache
@@ -98,21 +101,31 @@ def _training_body(agent: str, practice: type[PracticeBody]) -> type[TrainingBod
 def _lane_body(agent: str, practice: type[PracticeBody]) -> type[LaneBody]:
     description = Field(description=VALID["training"])
     training: dict[str, Any] = {"training": (Annotated[practice | None, description], None)}
-    settings: dict[str, Any] = {
-        # None of them required: a lane with training has them from there.
-        name: (_field([one]), None if one.default is REQUIRED else one.default)
-        for name, one in agent_settings(agent).items()
-    }
     name = f"{_camel_case(agent)}LaneSettings"
     return create_model(
         f"{_camel_case(agent)}Lane",
         __base__=LaneBody,
         __doc__=LaneBody.__doc__,
         agent=(_literal(agent), ...),
-        settings=_settings_body(name, settings),
+        settings=_settings_body(name, _optional_settings(agent)),
         **record_fields(LaneConfig, {"agent", "settings"}, optional=LANE_FIELDS),
         **(training if learns(agent) else {}),
     )
+
+
+def _entry_body(agent: str) -> type[EntryBody]:
+    name = f"{_camel_case(agent)}Entry"
+    settings = _settings_body(f"{name}Settings", _optional_settings(agent))
+    fields: dict[str, Any] = {"agent": (_literal(agent), ...), "settings": settings}
+    return create_model(name, __base__=EntryBody, __doc__=EntryBody.__doc__, **fields)
+
+
+def _optional_settings(agent: str) -> dict[str, Any]:
+    """Return fields of an agent's settings, none of them required: a training may say them."""
+    return {
+        name: (_field([one]), None if one.default is REQUIRED else one.default)
+        for name, one in agent_settings(agent).items()
+    }
 
 
 def _race_body(lanes: Mapping[str, type[LaneBody]]) -> type[RaceBody]:

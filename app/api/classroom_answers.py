@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, JsonValue
 
 from app.api.answers import Answer, Count
+from app.api.tournament_answers import RoomTournament
 from app.classroom.lesson import Ask, Card, Lesson
 from app.storage.run import Kind, State
 
@@ -163,6 +164,7 @@ class RoomView(RoomState):
         me: the participant who asks; null for others.
         people: all participants, for a teacher alone.
         lesson: all of it, for a teacher alone.
+        tournaments: of the room, oldest first.
         address: of its page, as this client reaches it.
         qr_code: of the address, an SVG image as a data URI.
     """
@@ -173,6 +175,7 @@ class RoomView(RoomState):
     me: Me | None
     people: list[Person]
     lesson: LessonView | None
+    tournaments: list[RoomTournament]
     address: str
     qr_code: str
 

@@ -1,4 +1,4 @@
-"""Pages of the classroom: the page of a room, links to lessons, the dashboard on a room's stage."""
+"""Pages of the classroom: of a room, of a tournament, links to lessons, a room's dashboard."""
 
 from urllib.parse import quote
 
@@ -41,6 +41,28 @@ def classroom_routes(page: CompressedContent) -> list[BaseRoute]:
         Route("/r/{code}", show_room, name="room_page"),
         Route("/r/{code}/", _room, name="room_stage"),
     ]
+
+
+def tournament_routes(page: CompressedContent) -> list[BaseRoute]:
+    """Return the route of the page of a tournament, `/t/ID`.
+
+    Args:
+        page: of a tournament, the same for all.
+    """
+
+    def show_tournament(request: Request) -> Response:
+        services: Services = request.app.state.services
+        response = page.response(request.scope)
+        try:
+            services.tournaments.get(request.path_params["tournament_id"])
+        except NotFound as error:
+            if not prefers_html(request.headers):
+                return problem(404, as_sentence(str(error)))
+            # The page asks for the tournament itself, and tells what came of that.
+            response.status_code = 404
+        return response
+
+    return [Route("/t/{tournament_id}", show_tournament, name="tournament_page")]
 
 
 def _lesson(request: Request) -> Response:

@@ -75,7 +75,7 @@ _RETRY_S = 5
 _EVENT_STREAM = "text/event-stream"
 _READ_METHODS = ("GET", "HEAD")
 _OF_A_RUN = re.compile(r"/api/v1/(runs|trainings|races|experiments)/[^/]+/.+")
-_DOWNLOAD = re.compile(r"/api/v1/.*/(export|recording|files/.*)")
+_DOWNLOAD = re.compile(r"/api/v1/(.*/(export|recording|files/.*)|tournaments/[^/]+/file)")
 T = TypeVar("T")
 
 

@@ -17,7 +17,7 @@ from app.api.cookies import NAME, ROOM_NAME
 from app.api.event_answers import EventBodies
 from app.api.problems import MEDIA_TYPE
 from app.api.rate_limit import QUESTIONS
-from app.api.room_access import OF_PARTICIPANTS, OPEN_TO_ALL
+from app.api.room_access import OF_BOTH, OF_PARTICIPANTS, OPEN_TO_ALL
 from app.classroom import lesson
 from app.settings import Settings
 
@@ -272,6 +272,8 @@ def _add_security(schema: Schema, settings: Settings) -> None:
         )
         if (method, path) in OF_PARTICIPANTS:
             operation["security"] = [{"participant": []}]
+        elif needs_token and (method, path) in OF_BOTH:
+            operation["security"] = [*operator, {"participant": []}]
         elif needs_token and (method, path) not in OPEN_TO_ALL:
             operation["security"] = operator
         else:

@@ -30,6 +30,8 @@ from app.storage.database.store import RunStore
 from app.storage.idempotency import Create, Idempotency
 from app.storage.recordings import Recordings
 from app.storage.run import MAX_KEY_LENGTH, Run
+from app.tournaments.judge import Judge
+from app.tournaments.tournaments import Tournaments
 from app.viewer.replay_frames import ReplayFrames
 from app.viewer.shared_stage import SharedStage
 from app.what_if.estimate import Estimates
@@ -56,6 +58,7 @@ class Services:
         lessons, rooms: of classes.
         room_stages: the stages of the rooms that are open.
         card_starts: makes what cards of lessons run.
+        tournaments, judge: of entries on secret seeds and worlds.
         joins: limits how often one address joins rooms.
         stream_lock: held while a race is encoded as a recorded stream for viser.
         exports: memory budget of exports that clients are still reading.
@@ -82,6 +85,8 @@ class Services:
     rooms: Rooms
     room_stages: RoomStages
     card_starts: CardStarts
+    tournaments: Tournaments
+    judge: Judge
     joins: RateLimiter
     stream_lock: Lock = field(default_factory=Lock)
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))

@@ -14,6 +14,7 @@ from app.api.answers import (
 )
 from app.api.classroom_answers import RoomState
 from app.api.recorded_answers import Evaluation
+from app.api.tournament_answers import TournamentState
 from app.storage.run import Kind, State
 from hexapods.runs.clocks import Clock
 
@@ -184,6 +185,21 @@ class RoomEvent(RoomState):
     """A room has changed; sent on its own stage alone."""
 
 
+class TournamentEvent(Answer):
+    """A tournament has changed; `GET /tournaments/{tournament_id}` has it.
+
+    Attributes:
+        entries: number of its entries, without the references.
+        judged, of: number of draws that are judged, over all entries and references, and of all.
+    """
+
+    id: str
+    state: TournamentState | Literal["deleted"]
+    entries: Count
+    judged: Count
+    of: Count
+
+
 class RobotsEvent(Answer):
     """Stored robots have changed; `GET /options` has them. `count` leaves hidden ones out."""
 
@@ -205,3 +221,4 @@ class EventBodies(Answer):
     viewers: ViewersEvent
     robots: RobotsEvent
     room: RoomEvent
+    tournament: TournamentEvent

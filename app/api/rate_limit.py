@@ -18,7 +18,8 @@ from hexapods.exports.registry import EXPORTS
 
 _STARTS_NOTHING = re.compile(
     r"/api/v1/(what-if|robots/preview|lessons|.*/(estimate|stop|pause|disturbances)"
-    r"|rooms/[^/]+/(participants|predictions|reveal|freeze|end))"
+    r"|rooms/[^/]+/(participants|predictions|reveal|freeze|end)"
+    r"|tournaments/[^/]+/(entries|end))"
 )
 """Every other POST counts, so that a new route is limited unless it is added here."""
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")

@@ -1,12 +1,13 @@
 """What those who are no operators may do with rooms: the one place where that is decided.
 
 A participant is a spectator whom a room knows by a cookie. By default a participant changes
-nothing: only the room's own routes are open, as far as the card that is shown allows it. Nobody but
-operators and the participant sees a participant's run before it is shown to others.
+nothing: only the room's own routes are open, as far as the card that is shown allows it, and the
+entries of its tournaments. Nobody but operators and the participant sees a participant's run before
+it is shown to others.
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from urllib.parse import parse_qsl
 
 from starlette.datastructures import Headers
@@ -36,6 +37,8 @@ _OF_ROOM = re.compile(r"/api/v1/rooms/(?P<code>[^/]+)(?P<rest>/.*)?")
 _PAGE_OF_ROOM = re.compile(r"/r/(?P<code>[^/]+)(?P<rest>/.*)?")
 _OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]+)(?:/.*)?")
 _COOKIE = re.compile(rf"(?:__Host-)?{ROOM_NAME}_\d+_(?P<code>[{ALPHABET}]{{{CODE_LENGTH}}})")
+_OF_TOURNAMENT = re.compile(r"(?:/api/v1/tournaments|/t)/(?P<id>[^/]+)(?P<rest>/.*)?")
+_ENTER = "/entries"
 _DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
 """By the end of the path that is sent to, what the card must allow."""
 _LEAVE = "/me"
@@ -53,10 +56,12 @@ OF_PARTICIPANTS = frozenset(
     {("delete", f"{ROOMS}/{{code}}{_LEAVE}"), *(("post", f"{ROOMS}/{{code}}{x}") for x in _DEEDS)}
 )
 """Operations that need the cookie of a participant."""
+OF_BOTH = frozenset({("post", f"/api/v1/tournaments/{{tournament_id}}{_ENTER}")})
+"""Operations for operators and for participants."""
 _TAUGHT = re.compile(r"/api/v1/lessons(/.*)?")
 """What a participant does not read: lessons have the answers."""
 _READ_IN_ROOM = re.compile(
-    r"/|/favicon\.ico|/static/.*|/viewer/?.*|/healthz|/readyz|/api/v1/(stage|events|options)"
+    r"/|/favicon\.ico|/static/.*|/viewer/?.*|/healthz|/readyz|/api/v1/(stage|events|options|tournaments)"
 )
 """Besides the room itself and its runs, what participants read where others need the token."""
 
@@ -64,9 +69,15 @@ _READ_IN_ROOM = re.compile(
 class RoomAccess:
     """Decides what a request of no operator may do. Thread-safe."""
 
-    def __init__(self, rooms: Rooms) -> None:
-        """Decide about these rooms."""
-        self._rooms = rooms
+    def __init__(self, rooms: Rooms, room_of_tournament: Callable[[str], str | None]) -> None:
+        """Decide about these rooms.
+
+        Args:
+            rooms: those of the server.
+            room_of_tournament: returns the code of a tournament's room by the tournament's id;
+                None if it has none, or there is no such tournament.
+        """
+        self._rooms, self._room_of_tournament = rooms, room_of_tournament
         self._wrong_codes = RateLimiter(WRONG_CODES, WRONG_CODES_PER_S)
 
     def seats(self, headers: Headers, *, is_secure: bool) -> tuple[Seat, ...]:
@@ -130,9 +141,19 @@ class RoomAccess:
             in_room = self._rooms.get(code)
             scope["state"]["asks_what_if"] = deed == "run" and in_room.shown.go == "what-if"
             refusal = in_room.refusal(deed)
-        elif not (leaves or self.is_open_to_all(scope)):
+        elif not (leaves or self._enters(scope, seats) or self.is_open_to_all(scope)):
             refusal = self._what_is_allowed(scope, seats[0][0])
         return None if refusal is None else problem(403, as_sentence(refusal))
+
+    def _enters(self, scope: Scope, seats: tuple[Seat, ...]) -> bool:
+        """Whether a request enters a tournament of a participant's room."""
+        found = _OF_TOURNAMENT.fullmatch(path_of(scope))
+        is_entry = found is not None and (scope["method"], found["rest"]) == ("POST", _ENTER)
+        return is_entry and self._is_of_own_tournament(scope, seats)
+
+    def _is_of_own_tournament(self, scope: Scope, seats: tuple[Seat, ...]) -> bool:
+        found = _OF_TOURNAMENT.fullmatch(path_of(scope))
+        return found is not None and self._room_of_tournament(found["id"]) in dict(seats)
 
     def _what_is_allowed(self, scope: Scope, code: str) -> str:
         room = self._rooms.get(code)
@@ -154,6 +175,8 @@ class RoomAccess:
         if run is not None:
             owner = self._rooms.owner_of(run["run"])
             return owner is not None and owner.partition(" ")[0] in codes
+        if self._is_of_own_tournament(scope, seats):
+            return True
         is_rooms_stage = scope.get("root_path", "").removeprefix(f"{PAGES}/") in codes
         shared = path in ("/api/v1/stage", "/api/v1/events") or path.startswith("/viewer")
         return _READ_IN_ROOM.fullmatch(path) is not None and (is_rooms_stage or not shared)

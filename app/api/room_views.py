@@ -10,6 +10,7 @@ from app.api.deps import Services
 from app.api.lessons import lesson_view
 from app.api.room_stages import path_of_room
 from app.api.spectators import page_address, qr_image
+from app.api.tournament_views import tournaments_of_room
 from app.classroom.lesson import Card, html_of
 from app.classroom.lessons import FoundLesson
 from app.classroom.results import CardResults, Entry, RunResult
@@ -50,6 +51,7 @@ def room_view(request: Request, services: Services, room: Room, seed: int | None
         "me": None if seed is None else _me(room, seed),
         "people": _people(room, services.store) if is_teacher else [],
         "lesson": lesson_view(lesson) if is_teacher else None,
+        "tournaments": tournaments_of_room(services, room),
         "address": address,
         "qr_code": qr_image(address),
     }

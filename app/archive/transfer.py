@@ -59,7 +59,7 @@ def export_chunks(
     in_memory = {name: archive.member(text) for name, text in texts.items()}
     chunks = archive.pack_chunks(in_memory | files)
     size = sum(map(len, texts.values()))
-    return chunks if budget is None else _BudgetedChunks(chunks, size, budget)
+    return chunks if budget is None else BudgetedChunks(chunks, size, budget)
 
 
 def export_many(
@@ -88,7 +88,7 @@ def export_many(
         members[f"{run.kind}-{run.id}.zip"] = archive.Member(archive.packed_size(size), chunks)
         held = max(held, in_memory)
     packed = archive.pack_chunks(members)
-    return packed if budget is None else _BudgetedChunks(packed, held, budget)
+    return packed if budget is None else BudgetedChunks(packed, held, budget)
 
 
 def _contents(
@@ -106,10 +106,20 @@ def _contents(
     return run, texts, members_of(store, run)
 
 
-class _BudgetedChunks:
+class BudgetedChunks:
     """Iterator over chunks that holds bytes of a memory budget until it is garbage-collected."""
 
     def __init__(self, chunks: Iterator[bytes], size: int, budget: MemoryBudget) -> None:
+        """Reserve the bytes.
+
+        Args:
+            chunks: what is iterated over.
+            size: of what is held in memory meanwhile [bytes].
+            budget: of which it is a part.
+
+        Raises:
+            Busy: if the budget has no place for it.
+        """
         self._chunks, self._size, self._budget = chunks, 0, budget
         if budget.reserve(_ANYONE, size) is not None:
             raise Busy("as much is exported as the server can at once; try again in a moment", 5)

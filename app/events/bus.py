@@ -20,7 +20,9 @@ RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
 MAX_PENDING = 2048
 """Most pending events of a slow subscription."""
-_STATE_EVENTS = frozenset({"robots", "room", "run", "scene", "stage", "summary", "viewers"})
+_STATE_EVENTS = frozenset(
+    {"robots", "room", "run", "scene", "stage", "summary", "tournament", "viewers"}
+)
 """Names of events that carry a full state: a newer one supersedes pending older ones."""
 
 
@@ -31,7 +33,7 @@ class Event(NamedTuple):
         id: increasing number, for `Last-Event-ID`.
         event: its name.
         data: JSON, encoded once for all subscribers.
-        run_id: id of the run that it is about, or None.
+        run_id: id of the run, or of the tournament, that it is about, or None.
         run: of a `run` event the run itself, for subscribers in this process.
         channel: the channel to whose subscribers alone it goes; None for all channels.
     """
@@ -55,8 +57,9 @@ class Subscription:
     """Buffer of one subscriber: `drain()` it, or iterate: `async for event in subscription`.
 
     A slow subscriber receives only the newest of each `robots`, `scene`, `stage`, `summary` and
-    `viewers` event, and of `run` or `run-deleted` for each run. It is closed when it has
-    `MAX_PENDING` pending events and another comes; the client then reconnects with `Last-Event-ID`.
+    `viewers` event, of `run` or `run-deleted` for each run, and of `tournament` for each of those.
+    It is closed when it has `MAX_PENDING` pending events and another comes; the client then
+    reconnects with `Last-Event-ID`.
 
     Attributes:
         since: id of an event after which it receives every event, but coalesced.
@@ -166,7 +169,7 @@ class EventBus:
             event: its name.
             data: plain types. A NaN or an infinity is sent as null, so that one run's number
                 does not break every stream.
-            run_id: the run that it is about, if any.
+            run_id: the run or the tournament that it is about, if any.
             channel: the channel to whose subscribers alone it goes; None for all.
         """
         self._send(event, data, run_id, channel=channel)
@@ -247,9 +250,9 @@ class Channel:
         self._bus = bus
         self.is_closed = False
 
-    def publish(self, event: str, data: Mapping[str, Any]) -> None:
+    def publish(self, event: str, data: Mapping[str, Any], run_id: str | None = None) -> None:
         """Send an event to the subscribers of this channel; see `EventBus.publish`."""
-        self._bus.publish(event, data, channel=self)
+        self._bus.publish(event, data, run_id, channel=self)
 
     def subscribe(
         self,

@@ -42,7 +42,13 @@ class ProcessPool:
     """
 
     def __init__(
-        self, count: int | None = None, idle_s: float = IDLE_S, timeout_s: float = TIMEOUT_S
+        self,
+        count: int | None = None,
+        idle_s: float = IDLE_S,
+        timeout_s: float = TIMEOUT_S,
+        *,
+        name: str = "pool worker",
+        niceness: int = NICENESS,
     ) -> None:
         """Create the pool; the first request starts the processes.
 
@@ -50,9 +56,11 @@ class ProcessPool:
             count: number of processes; by default one per core.
             idle_s: time without a request after which they are shut down [s].
             timeout_s: time after which a request is given up, and its processes are killed [s].
+            name: of the processes.
+            niceness: of the processes.
         """
         self.count, self._timeout_s = count or os.cpu_count() or 1, timeout_s
-        set_up = SetUp(name="pool worker", niceness=NICENESS)
+        set_up = SetUp(name=name, niceness=niceness)
         self._pool = WorkerPool(self.count, set_up, idle_s=idle_s)
         self._turn = threading.Lock()
         """Held by the request that is served."""

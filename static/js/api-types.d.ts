@@ -818,6 +818,172 @@ export interface RangesView {
   };
 }
 /**
+ * A seed and a world on which all entries are judged, so that they can be compared in pairs.
+ */
+export interface Draw {
+  /**
+   * Everything that is random follows from this number: the same seed, the same run.
+   */
+  seed: number;
+  /**
+   * name of the world, or its disturbances.
+   */
+  world: string;
+}
+/**
+ * An entry: an agent with its settings, a creature where allowed, or a trained table.
+ */
+export interface Entry {
+  /**
+   * a registered name.
+   */
+  agent: string;
+  /**
+   * observation mode; with a table that of its training.
+   */
+  observation: "measured" | "commanded" | "planned";
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
+  /**
+   * steps of practice on each draw, within the budget; null for all of it. An agent that does not learn, or enters with a table, practises none.
+   */
+  steps: number | null;
+  /**
+   * a creature that the rules allow; null for the robot of the rules.
+   */
+  robot: {
+    preset?:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
+    id?: string;
+    name?: string;
+    legs?: {
+      azimuth_deg: number;
+      radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
+    }[];
+    [k: string]:
+      | number
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
+      | string
+      | {
+          azimuth_deg: number;
+          radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
+        }[]
+      | undefined;
+  } | null;
+  /**
+   * SHA-256 of the trained table, hexadecimal; null for an agent that practises on each draw.
+   */
+  table: string | null;
+}
+/**
+ * An entry of a tournament.
+ */
+export interface EntryView {
+  /**
+   * from 0, in the order of their entering; the references come first.
+   */
+  number: number;
+  /**
+   * of its entrant, or of the reference; null where it is not to be seen.
+   */
+  name: string | null;
+  is_reference: boolean;
+  /**
+   * whether it is the reader's own; an operator's if an operator reads.
+   */
+  is_own: boolean;
+  /**
+   * with all settings; that of others is null until the end, but for operators.
+   */
+  entry: Entry | null;
+  /**
+   * of the training whose table entered; null where the entry is, or without one.
+   */
+  training_id: string | null;
+  /**
+   * `judging` once its first draw is; `withdrawn` if the end came before it was judged.
+   */
+  state: "waiting" | "judging" | "judged" | "withdrawn";
+  /**
+   * number of draws on which it is judged, and of all.
+   */
+  judged: number;
+  /**
+   * number of draws on which it is judged, and of all.
+   */
+  of: number;
+  /**
+   * on each draw; null until the end.
+   */
+  judgements: Judgement[] | null;
+  entered_at: string;
+}
+/**
+ * Result of an entry on a draw.
+ */
+export interface Judgement {
+  /**
+   * that it walked in 50 steps from rest [m]; 0 if it failed.
+   */
+  distance_m: number;
+  /**
+   * why it failed, one sentence; null if it did not.
+   */
+  failure: string | null;
+}
+/**
  * Estimated duration of a run here once it has a core [s].
  */
 export interface EstimateView {
@@ -852,6 +1018,7 @@ export interface EventBodies {
   viewers: ViewersEvent;
   robots: RobotsEvent;
   room: RoomEvent;
+  tournament: TournamentEvent;
 }
 /**
  * State of the server when the stream begins: the newest runs, or the one that is followed.
@@ -1769,6 +1936,25 @@ export interface RoomEvent {
   needs_approval: boolean;
 }
 /**
+ * A tournament has changed; `GET /tournaments/{tournament_id}` has it.
+ */
+export interface TournamentEvent {
+  id: string;
+  state: ("open" | "ending" | "ended") | "deleted";
+  /**
+   * number of its entries, without the references.
+   */
+  entries: number;
+  /**
+   * number of draws that are judged, over all entries and references, and of all.
+   */
+  judged: number;
+  /**
+   * number of draws that are judged, over all entries and references, and of all.
+   */
+  of: number;
+}
+/**
  * An experiment, with the fields of its request body and their defaults.
  */
 export interface ExperimentOption {
@@ -2160,7 +2346,7 @@ export interface ServoEffort {
    */
   largest_torque_nm: number;
   /**
-   * of each servo.
+   * the most that the servo with the largest torque has.
    */
   torque_limit_nm: number;
   /**
@@ -2521,6 +2707,26 @@ export interface ListedRoom {
   created_at: string;
 }
 /**
+ * A tournament in a list.
+ */
+export interface ListedTournament {
+  id: string;
+  title: string;
+  /**
+   * code of its room; null without one.
+   */
+  room: string | null;
+  /**
+   * `open` for entries; `ending` until those that wait are judged; or `ended`.
+   */
+  state: "open" | "ending" | "ended";
+  /**
+   * number of its entries, without the references.
+   */
+  entries: number;
+  created_at: string;
+}
+/**
  * Machine on which the experiment ran; empty before its start.
  */
 export interface Machine {
@@ -2855,6 +3061,27 @@ export interface WorldOption {
     at_step: number;
     [k: string]: number | string | null | number[];
   }[];
+}
+/**
+ * What the reader may enter.
+ */
+export interface OwnEntries {
+  /**
+   * whether an entry would be taken now.
+   */
+  may_enter: boolean;
+  /**
+   * why not, in a sentence; null if it would be.
+   */
+  reason: string | null;
+  /**
+   * entries that are left this hour; null for operators, who have no limit, and for others who may not enter at all.
+   */
+  left: number | null;
+  /**
+   * when there is a further one; null while some are left.
+   */
+  next_at: string | null;
 }
 /**
  * A participant, as the teacher sees them.
@@ -3210,6 +3437,14 @@ export interface RoomList {
   items: ListedRoom[];
 }
 /**
+ * A tournament of a room.
+ */
+export interface RoomTournament {
+  id: string;
+  title: string;
+  state: "open" | "ending" | "ended";
+}
+/**
  * A room.
  */
 export interface RoomView {
@@ -3268,6 +3503,10 @@ export interface RoomView {
    * all of it, for a teacher alone.
    */
   lesson: LessonView | null;
+  /**
+   * of the room, oldest first.
+   */
+  tournaments: RoomTournament[];
   /**
    * of its page, as this client reaches it.
    */
@@ -3346,6 +3585,43 @@ export interface SpectatorsView {
   qr_code: string | null;
   reason: string;
   watching: number;
+}
+/**
+ * Standing of an entry that has been judged on all draws.
+ */
+export interface Standing {
+  /**
+   * of the entry.
+   */
+  number: number;
+  /**
+   * interquartile mean of the distances over all draws [m].
+   */
+  iqm_m: number;
+  /**
+   * its 95 % bootstrap interval [m].
+   */
+  low_m: number;
+  /**
+   * its 95 % bootstrap interval [m].
+   */
+  high_m: number;
+  /**
+   * the ranks that it may have: 1 + the number of entries that are better and can be told apart from it, and the number of all without those that are worse and can be told apart.
+   */
+  best_rank: number;
+  /**
+   * the ranks that it may have: 1 + the number of entries that are better and can be told apart from it, and the number of all without those that are worse and can be told apart.
+   */
+  worst_rank: number;
+  /**
+   * numbers, ascending, of the entries of which the 95 % interval of the paired difference of the interquartile means includes 0, to a micrometre.
+   */
+  not_separable: number[];
+  /**
+   * on how many draws it could not walk to the end; it counts as 0 m there.
+   */
+  failures: number;
 }
 /**
  * A leg of a stored robot.
@@ -3641,6 +3917,311 @@ export interface TimelineView {
   finish_line_m: number;
   first_finish_s: number | null;
   lanes: TimelineLane[];
+}
+/**
+ * The tournaments that who asks may know, newest first.
+ */
+export interface TournamentList {
+  items: ListedTournament[];
+}
+/**
+ * Rules of a tournament: the walking problem, the secret draws, and what an entry may choose.
+ */
+export interface TournamentRules {
+  /**
+   * a named gait, or a gait given by its groups of legs.
+   */
+  gait:
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      };
+  /**
+   * A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
+   */
+  robot: {
+    preset?:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
+    id?: string;
+    name?: string;
+    legs?: {
+      azimuth_deg: number;
+      radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
+    }[];
+    [k: string]:
+      | number
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
+      | string
+      | {
+          azimuth_deg: number;
+          radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
+        }[]
+      | undefined;
+  };
+  /**
+   * `mujoco` (physics) or `kinematic` (ideal, no slip).
+   */
+  simulator: "mujoco" | "kinematic";
+  /**
+   * Points along each side of the foot grid: more choices, more to learn.
+   */
+  divisions: number;
+  /**
+   * Side of the square in which each foot may be put; every leg must reach all of it.
+   */
+  grid_side_m: number;
+  /**
+   * what happens to the robot and the ground, by step.
+   *
+   * Items: A disturbance from a step on; the fields of its kind are further members.
+   */
+  disturbances: {
+    kind: string;
+    at_step: number;
+    [k: string]: number | string | null | number[];
+  }[];
+  /**
+   * How far the robot that the seed draws differs from its design, as a share.
+   */
+  tolerance: number;
+  /**
+   * How many steps it practises; the paper uses 500 and 1000.
+   */
+  steps: number;
+  /**
+   * Secret seeds and worlds on which each entry is judged.
+   */
+  draws: number;
+  /**
+   * names of worlds, or disturbances as on the command line, of which each draw has one.
+   */
+  worlds: string[];
+  /**
+   * creatures that an entry may choose beside `robot`.
+   *
+   * Items: A preset, or the id and the name of a stored robot, and by name the parts that differ from it.
+   */
+  robots: {
+    preset?:
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica";
+    id?: string;
+    name?: string;
+    legs?: {
+      azimuth_deg: number;
+      radius_m: number;
+      z_m?: number;
+      yaw_deg?: number;
+      foot_out_m?: number;
+      coxa_m?: number;
+      femur_m?: number;
+      tibia_m?: number;
+      coxa_kg?: number;
+      femur_kg?: number;
+      tibia_kg?: number;
+      foot_kg?: number;
+      servo_kp?: number;
+      servo_kv?: number;
+      servo_torque_nm?: number;
+    }[];
+    [k: string]:
+      | number
+      | "stiff"
+      | "compliant"
+      | "slippery"
+      | "ant"
+      | "crab"
+      | "spider"
+      | "starfish"
+      | "dog"
+      | "centipede"
+      | "freenove"
+      | "phantomx"
+      | "chica"
+      | string
+      | {
+          azimuth_deg: number;
+          radius_m: number;
+          z_m?: number;
+          yaw_deg?: number;
+          foot_out_m?: number;
+          coxa_m?: number;
+          femur_m?: number;
+          tibia_m?: number;
+          coxa_kg?: number;
+          femur_kg?: number;
+          tibia_kg?: number;
+          foot_kg?: number;
+          servo_kp?: number;
+          servo_kv?: number;
+          servo_torque_nm?: number;
+        }[]
+      | undefined;
+  }[];
+  /**
+   * of each of `robots`, in their order; empty for those that suit them, which are then written out, since what suits a stored robot is not known everywhere.
+   */
+  gaits: (
+    | (
+        | "left-right-origin"
+        | "left-right-vertical"
+        | "front-back-origin"
+        | "front-back-vertical"
+        | "tripod"
+        | "tetrapod"
+        | "trot"
+        | "pace"
+        | "bound"
+        | "one-by-one"
+      )
+    | {
+        right_leg: number;
+        left_leg: number;
+        symmetry?: "origin" | "vertical";
+        pairs?: [number, number][];
+        groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
+      }
+  )[];
+  /**
+   * whether a trained table may enter.
+   */
+  tables: boolean;
+}
+/**
+ * A tournament, as who asks may see it.
+ */
+export interface TournamentView {
+  id: string;
+  title: string;
+  /**
+   * code of its room; null without one.
+   */
+  room: string | null;
+  /**
+   * `open` for entries; `ending` until those that wait are judged; or `ended`.
+   */
+  state: "open" | "ending" | "ended";
+  rules: TournamentRules;
+  /**
+   * SHA-256 of the secret, from which the draws follow.
+   */
+  commitment: string;
+  /**
+   * entries of a participant within an hour.
+   */
+  entries_per_hour: number;
+  created_at: string;
+  ended_at: string | null;
+  /**
+   * of its page, as this client reaches it.
+   */
+  address: string;
+  /**
+   * of the address, an SVG image as a data URI.
+   */
+  qr_code: string;
+  /**
+   * in the order of their numbers.
+   */
+  entries: EntryView[];
+  /**
+   * of the entries that are judged on all draws, best first.
+   */
+  standings: Standing[];
+  own: OwnEntries;
+  /**
+   * whether the reader is one, and may delete it.
+   */
+  is_operator: boolean;
+  /**
+   * whether the reader may end it.
+   */
+  may_end: boolean;
+  /**
+   * null until the end.
+   */
+  secret: string | null;
+  /**
+   * null until the end.
+   */
+  draws: Draw[] | null;
+  /**
+   * path of the file with all of it; null until the end.
+   */
+  file: string | null;
 }
 /**
  * Page of trainings.

@@ -149,3 +149,6 @@ export const sentence = (text) => text.replace(/^\p{Script=Latin}/u, (first) => 
  */
 export const listed = (items) =>
   items.length < 2 ? items.join("") : `${items.slice(0, -1).join(", ")} and ${items.at(-1)}`;
+
+/** An address as a person types it. @param {string} address */
+export const shortAddress = (address) => address.replace(/^https?:\/\//, "");

@@ -1,7 +1,7 @@
 // The lesson of this page, the first one or that of the address: its cards, and how far this page is. A card of the
 // first one may ask for a prediction, which is revealed at time-out.
 import { computed, effect, signal } from "@preact/signals";
-import { change, page } from "./page-state.js";
+import { asTexts, change, page } from "./page-state.js";
 import { storedText } from "./page.js";
 import { isTimedOut, standings } from "./race.js";
 import { isOperator } from "./selectors.js";
@@ -110,19 +110,6 @@ export const linkedCard = computed(() => linked.value?.cards[(page.card.value ??
 
 /** Whether a tab of the panel is shown by the open card. @param {string} tab */
 export const isShown = (tab) => linkedCard.value?.show?.some((one) => one === tab) ?? true;
-
-/**
- * The fields of a card's form as an address has them: lists with commas, of disturbances each by itself.
- * @param {Record<string, any>} form
- */
-export function asTexts({ settings = {}, ...form }) {
-  const pairs = Object.entries({ ...form, ...settings }).flatMap(([name, value]) => {
-    if (name === "disturb" && Array.isArray(value)) return value.map((one) => [name, String(one)]);
-    if (Array.isArray(value)) return [[name, value.join(",")]];
-    return [[name, value !== null && typeof value === "object" ? JSON.stringify(value) : String(value)]];
-  });
-  return new URLSearchParams(pairs);
-}
 
 /** Load the lesson that the address names, and tell once it is there. @param {() => unknown} onLoaded */
 export const followLinkedLesson = (onLoaded) => effect(() => {

@@ -280,11 +280,30 @@ export function followHistory() {
 /** A link to the page as it is, or with only these fields set. @param {Partial<PageState>} [values] */
 export const linkTo = (values) => `${location.origin}${location.pathname}${values ? addressOf(values) : write()}`;
 
+/**
+ * The fields of a card's form as an address has them: lists with commas, of disturbances each by itself.
+ * @param {Record<string, any>} form
+ */
+export function asTexts({ settings = {}, ...form }) {
+  const pairs = Object.entries({ ...form, ...settings }).flatMap(([name, value]) => {
+    if (name === "disturb" && Array.isArray(value)) return value.map((one) => [name, String(one)]);
+    if (Array.isArray(value)) return [[name, value.join(",")]];
+    return [[name, value !== null && typeof value === "object" ? JSON.stringify(value) : String(value)]];
+  });
+  return new URLSearchParams(pairs);
+}
+
 /** The room of the page `/r/CODE`, and whether the page is for the projector. */
 export const ofRoom = () => ({
   code: decodeURIComponent(location.pathname.split("/").at(-1) ?? ""),
   isProjector: new URLSearchParams(location.search).has("projector"),
 });
+
+/** The id of the tournament of this page's address, and whether the page is for the projector. */
+export const ofTournament = () => {
+  const { code: id, isProjector } = ofRoom();
+  return { id, isProjector };
+};
 
 /** Write a link into the address bar. @param {string} address */
 export const showAddress = (address) => history.replaceState(history.state, "", address);

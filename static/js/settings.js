@@ -22,7 +22,7 @@ const SLIDER_STEPS = 100;
 /**
  * The ends and the step of a setting's slider; null without both limits. A limit that is not valid itself is one
  * step beyond the end.
- * @param {SettingOption} setting
+ * @param {Limits & { is_whole: boolean }} setting
  */
 export function sliderOf({ minimum, maximum, excludes_minimum, excludes_maximum, is_whole }) {
   if (minimum === null || maximum === null) return null;

@@ -76,7 +76,7 @@ const deletedIds = new Set();
 /** @param {string} id */
 export const isDeleted = (id) => deletedIds.has(id);
 
-/** @type {{ [Name in Exclude<keyof EventBodies, "room">]: (data: EventBodies[Name]) => void }} */
+/** @type {{ [Name in Exclude<keyof EventBodies, "room" | "tournament">]: (data: EventBodies[Name]) => void }} */
 const handlers = {
   snapshot(data) {
     // It tells of the stage and of the newest runs; an answer about an older run is still news.

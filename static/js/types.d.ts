@@ -61,6 +61,12 @@ export type {
   SpectatorsView as Spectators,
   SummaryView as Summary,
   TableView as StateTable,
+  ListedTournament,
+  OwnEntries,
+  Judgement,
+  Standing as TournamentStanding,
+  TournamentList,
+  TournamentEvent,
   TimelineLane,
   TrialRow as Trial,
   Until,
@@ -211,3 +217,16 @@ export type LessonCard = { text: string, may?: Record<string, Partial<Api.Bounds
   & Omit<Loose<Api.Card>, "text" | "may" | "ask">;
 /** A lesson, as it is sent. */
 export type LessonDocument = { title: string, language?: string, aims?: string[], cards: LessonCard[] };
+
+// ---- tournaments
+
+/** Robots are names, ids, or objects. */
+export type Tournament = Omit<Api.TournamentView, "rules" | "entries"> & {
+  rules: TournamentRules, entries: TournamentEntry[], is_operator: boolean,
+};
+export type TournamentRules = Omit<Api.TournamentView["rules"], "robot" | "robots" | "gait"> & {
+  robot: RobotConfig, robots: RobotConfig[], gait: GaitConfig,
+};
+export type TournamentEntry = Omit<Api.EntryView, "entry"> & { entry: EnteredAgent | null };
+/** An entry, as it is judged. */
+export type EnteredAgent = Omit<NonNullable<Api.EntryView["entry"]>, "robot"> & { robot?: RobotConfig | null };

@@ -31,7 +31,7 @@ from app.api.problems import STATUSES
 from app.api.rate_limit import QUESTIONS
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.api.robot_answers import StoredRobotsView, StoredRobotView, WholeRobotView
-from app.api.room_access import OF_PARTICIPANTS, OPEN_TO_ALL
+from app.api.room_access import OF_BOTH, OF_PARTICIPANTS, OPEN_TO_ALL
 from app.server import create_app
 from app.settings import Settings
 from hexapods.domain.errors import HexapodError
@@ -42,7 +42,7 @@ from tests.storage.stores import temporary_store
 PAGES = {
     *("/", "/docs", "/favicon.ico", "/guide/{name}"),
     *("/l/{lesson_id}", "/openapi.json", "/r/{code}", "/r/{code}/"),
-    *("/static", "/viewer", "/viewer/"),
+    *("/static", "/t/{tournament_id}", "/viewer", "/viewer/"),
 }
 """Pages for browsers, which are no part of the API."""
 Serve = Callable[..., Api]
@@ -144,6 +144,9 @@ def test_security_requirements_are_described(
             assert is_free
         elif (method, path) in OF_PARTICIPANTS:
             assert operation["security"] == [{"participant": []}]
+        elif not writes and (method, path) in OF_BOTH:
+            assert {"participant": []} in operation["security"]
+            assert not is_free
         else:
             is_read = method == "get" or path in QUESTIONS
             assert is_free == (reads if is_read else writes), path
@@ -238,6 +241,8 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     api.call("DELETE", f"/trainings/{run['id']}")
     stored = api.call("POST", "/robots", json={"robot": {"preset": "ant", "femur_m": 0.07}}).json()
     api.call("DELETE", f"/robots/{stored['id']}")
+    opened = api.call("POST", "/tournaments", json={"rules": {**WALK, "draws": 5}}).json()
+    api.call("DELETE", f"/tournaments/{opened['id']}")
 
     async def first_event() -> ServerSentEvent:
         listener = EventListener("operator")

@@ -142,6 +142,7 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
     opened = {path for script in scripts for path in imported_later(script, folder)}
     opened.add("static/js/offline/player.js")  # of files that play a replay offline
     opened.add("static/js/room/main.js")  # of the page of rooms
+    opened.add("static/js/tournament/main.js")  # of the page of tournaments
     later = {path for one in opened for path in imported_modules(one, folder)} - {*modules}
 
     assert {folder.parent / path for path in (*modules, *later)} == {*scripts}

@@ -8,11 +8,19 @@ from playwright.sync_api import Browser, Locator, ViewportSize, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
+from tests.browser.type_sizes import small_texts
 from tests.conftest import new_page
 
 TOKEN = "for-the-teacher-of-the-class"
 PHONE: ViewportSize = {"width": 390, "height": 844}
 SCREEN: ViewportSize = {"width": 1920, "height": 1080}
+LEAST_PX = 28
+"""Of type on the projector, which is read from ten metres."""
+THUMB_PX = 40
+_OVERFLOW = """() => {
+    const {scrollWidth, scrollHeight} = document.scrollingElement;
+    return [Math.max(0, scrollWidth - innerWidth), Math.max(0, scrollHeight - innerHeight)];
+}"""
 _KEPT = re.compile(r"^(\w+ \w+)\s*seed (\d+)$")
 
 
@@ -55,3 +63,23 @@ def phone(browser: Browser) -> Iterator[RoomPage]:
         watched = RoomPage(page, has_3d=False)
         yield watched
         assert watched.complaints == []
+
+
+def is_accessible(page: RoomPage, *, is_touched: bool = True) -> None:
+    """Check axe's rules in both themes, the width, and the size of what is tapped."""
+    violations = page.violations_in_both_themes()
+    assert violations == [], violations
+    page.page.emulate_media(color_scheme="light")
+    if is_touched:
+        assert page.scroll_width() == PHONE["width"]
+        small = page.small_targets(THUMB_PX)
+        assert small == [], small
+
+
+def is_read_from_afar(projector: RoomPage) -> None:
+    """Check that no type is small, and that nothing is beyond the screen's edges."""
+    small = small_texts(projector.page, LEAST_PX)
+    assert small == [], small
+    beyond = projector.page.evaluate(_OVERFLOW)
+    assert beyond == [0, 0], beyond
+    is_accessible(projector, is_touched=False)

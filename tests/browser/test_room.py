@@ -8,9 +8,16 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, expect
 
-from tests.browser.rooms import PHONE, SCREEN, TOKEN, RoomPage, phone
+from tests.browser.rooms import (
+    PHONE,
+    SCREEN,
+    TOKEN,
+    RoomPage,
+    is_accessible,
+    is_read_from_afar,
+    phone,
+)
 from tests.browser.serving import Serving, serving
-from tests.browser.type_sizes import small_texts
 from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(400)
@@ -54,35 +61,12 @@ LESSON: dict[str, Any] = {
         {"title": "A point", "text": "Where?", "ask": {"kind": "point", "text": "Tap."}},
     ],
 }
-LEAST_PX = 28
-"""Of type on the projector, which is read from ten metres."""
-THUMB_PX = 40
-_OVERFLOW = """() => {
-    const {scrollWidth, scrollHeight} = document.scrollingElement;
-    return [Math.max(0, scrollWidth - innerWidth), Math.max(0, scrollHeight - innerHeight)];
-}"""
 
 
 @pytest.fixture
 def school(tmp_path: Path) -> Iterator[Serving]:
     with serving(tmp_path, token=TOKEN) as server:
         yield server
-
-
-def is_accessible(page: RoomPage, *, is_touched: bool = True) -> None:
-    """Check axe's rules in both themes, the width, and the size of what is tapped."""
-    assert page.violations_in_both_themes() == []
-    page.page.emulate_media(color_scheme="light")
-    if is_touched:
-        assert page.scroll_width() == PHONE["width"]
-        assert page.small_targets(THUMB_PX) == []
-
-
-def is_read_from_afar(projector: RoomPage) -> None:
-    """Check that no type is small, and that nothing is beyond the screen's edges."""
-    assert small_texts(projector.page, LEAST_PX) == []
-    assert projector.page.evaluate(_OVERFLOW) == [0, 0]
-    is_accessible(projector, is_touched=False)
 
 
 def test_a_lesson_from_the_code_to_the_reveal(flat_browser: Browser, school: Serving) -> None:

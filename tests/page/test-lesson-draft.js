@@ -6,8 +6,8 @@ import {
   pageAsState, removeCard, toSend,
 } from "../../static/js/lessons/draft.js";
 import { paragraphs } from "../../static/js/lessons/markdown.js";
-import { asTexts, isShown, linked } from "../../static/js/lesson.js";
-import { change, read } from "../../static/js/page-state.js";
+import { isShown, linked } from "../../static/js/lesson.js";
+import { asTexts, change, read } from "../../static/js/page-state.js";
 import { setDepth } from "../../static/js/workspace.js";
 
 beforeEach(() => {

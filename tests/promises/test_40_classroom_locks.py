@@ -1,8 +1,8 @@
 """Locks of a classroom: every route and websocket as a participant, against every card.
 
 The matrix is generated: routes from the app, cards from the built-in lessons. A participant changes
-nothing but by the routes of their own room that the card allows, reads no lesson, and sees nothing
-of another participant's run before the reveal.
+nothing but by the routes of their own room that the card allows, and by entering its tournaments,
+reads no lesson, and sees nothing of another participant's run before the reveal.
 """
 
 import json
@@ -33,7 +33,8 @@ TRIED = at_length(DIFFERENT, CARDS)
 ROOM = "/api/v1/rooms/{code}"
 NEEDS = {f"{ROOM}/predictions": "ask", f"{ROOM}/runs": "go"}
 """By path that is sent to, the field of a card that opens it."""
-ALWAYS = {("POST", f"{ROOM}/participants"), ("DELETE", f"{ROOM}/me")}
+ENTRIES = "/api/v1/tournaments/{tournament_id}/entries"
+ALWAYS = {("POST", f"{ROOM}/participants"), ("DELETE", f"{ROOM}/me"), ("POST", ENTRIES)}
 LESSONS = "/api/v1/lessons"
 
 
@@ -44,12 +45,14 @@ class Desk(NamedTuple):
         code: of the room.
         cookie: header of a participant.
         other_run: id of a run of the other one, which is not shown.
+        tournament: id of a tournament of the room.
     """
 
     server: Serving
     code: str
     cookie: str
     other_run: str
+    tournament: str
 
     def call(self, method: str, path: str, *headers: str, body: Any = None) -> bytes:
         """Send a request, and return the answer."""
@@ -87,6 +90,7 @@ class Desk(NamedTuple):
     def own_path(self, path: str) -> str:
         """Return a path with this room, and the other participant's run, in place of parameters."""
         filled = path.replace("{code}", self.code).replace("{run_id}", self.other_run)
+        filled = filled.replace("{tournament_id}", self.tournament)
         return filled.replace("{seed}", "0").replace("{lesson_id}", "one-run-proves-nothing")
 
     def people(self) -> list[dict[str, Any]]:
@@ -106,7 +110,7 @@ class Desk(NamedTuple):
 
 def room_of(server: Serving, lesson: Any) -> Desk:
     """Open a room with two participants, of whom the other has run something."""
-    desk = Desk(server, "", "", "")
+    desk = Desk(server, "", "", "", "")
     code = desk.teach("POST", "/api/v1/rooms", {"lesson": lesson})["code"]
     desk = desk._replace(code=code)
     other = desk.join()
@@ -116,7 +120,9 @@ def room_of(server: Serving, lesson: Any) -> Desk:
     answer = desk.call("POST", f"/api/v1/rooms/{code}/runs", other, body={})
     assert status_of(answer) == 202, answer
     run = json.loads(answer.partition(b"\r\n\r\n")[2])["id"]
-    return desk._replace(cookie=desk.join(), other_run=run)
+    rules = {"gait": "left-right-origin", "simulator": "kinematic", "draws": 5, "steps": 10}
+    opened = desk.teach("POST", "/api/v1/tournaments", {"room": code, "rules": rules})
+    return desk._replace(cookie=desk.join(), other_run=run, tournament=opened["id"])
 
 
 @pytest.fixture(scope="module", params=["public", "token"])
@@ -208,6 +214,26 @@ def test_another_room_is_closed_to_a_participant(desks: dict[str, Desk]) -> None
         assert one.status("POST", address, one.cookie, body={}) == 403
     address = f"/api/v1/rooms/{other.code}/me"
     assert one.status("DELETE", address, one.cookie, body={}) == 403
+
+
+def test_a_tournament_is_for_its_room_alone(desks: dict[str, Desk]) -> None:
+    one, other = list(desks.values())[:2]
+    path = f"/api/v1/tournaments/{one.tournament}"
+    body = {"agent": "greedy"}
+    for read in (path, f"/r/{one.code}{path}", f"/t/{one.tournament}", "/api/v1/tournaments"):
+        assert one.status("GET", read, one.cookie) == 200, read
+    assert one.status("POST", f"{path}/entries", one.cookie, body=body) == 202
+    assert one.status("POST", f"{path}/entries", one.cookie, body=body) == 200
+    assert other.status("GET", path, other.cookie) == 403
+    assert other.status("POST", f"{path}/entries", other.cookie, body=body) == 403
+    listed = other.call("GET", "/api/v1/tournaments", other.cookie)
+    assert one.tournament.encode() not in listed
+    for desk in (one, other):
+        assert desk.status("POST", f"{path}/end", desk.cookie, body={}) == 403
+        assert desk.status("DELETE", path, desk.cookie) == 403
+    assert one.status("POST", f"{path}/entries", body=body) == 401
+    view = one.teach("GET", path, None)
+    assert (view["state"], len(view["entries"])) == ("open", 4)
 
 
 def test_after_the_reveal_others_are_seen(server: Serving) -> None:

@@ -14,7 +14,7 @@ from sqlalchemy import Connection, String, cast, delete, func, insert, or_, sele
 from app.storage.database.engine import Database
 from app.storage.database.queries import Row, fetch_rows
 from app.storage.database.rows import forget_configs
-from app.storage.database.schema import ROBOTS, RUNS
+from app.storage.database.schema import ROBOTS, RUNS, TOURNAMENTS
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import Conflict, NotFound, StorageFailed, StorageFull
 from app.storage.stored_robot import MAX_ROBOTS, StoredRobot, distinct_name
@@ -290,7 +290,7 @@ class RobotStore:
 
             def work(connection: Connection) -> None:
                 nonlocal is_used
-                is_used = _users(connection, old.id) > 0
+                is_used = bool(_users(connection, old.id))
                 is_old = ROBOTS.c.id == old.id
                 if is_used:
                     connection.execute(update(ROBOTS).where(is_old).values(name=earlier, hidden=1))
@@ -315,16 +315,16 @@ class RobotStore:
 
         Raises:
             NotFound: if there is no such robot.
-            Conflict: if runs use it.
+            Conflict: if runs or tournaments use it.
         """
 
         def work(connection: Connection) -> None:
             robot, users = _fetch(connection, robot_id), _users(connection, robot_id)
-            if users:
-                runs = "a run uses" if users == 1 else f"{users:,} runs use"
+            for noun, count in users.items():
+                told = f"a {noun} uses" if count == 1 else f"{count:,} {noun}s use"
                 raise Conflict(
-                    f"{runs} {robot.name}, and could not be shown without it; hide it instead, "
-                    f"or delete {'that run' if users == 1 else 'those runs'} first",
+                    f"{told} {robot.name}, and could not be shown without it; hide it instead, "
+                    f"or delete {f'that {noun}' if count == 1 else f'those {noun}s'} first",
                     "hidden" if robot.hidden else "used",
                 )
             connection.execute(delete(ROBOTS).where(ROBOTS.c.id == robot_id))
@@ -396,11 +396,18 @@ def _fetch(connection: Connection, robot_id: str) -> StoredRobot:
     return robot
 
 
-def _users(connection: Connection, robot_id: str) -> int:
-    """Return the number of runs whose config or result names a robot."""
-    told = (cast(column, String).contains(robot_id) for column in (RUNS.c.config, RUNS.c.result))
-    query = select(func.count()).select_from(RUNS).where(or_(*told))
-    return int(connection.execute(query).scalar_one())
+def _users(connection: Connection, robot_id: str) -> dict[str, int]:
+    """Return the numbers, by noun, of runs and tournaments that name a robot; only of some."""
+    users = {
+        "run": (RUNS, (RUNS.c.config, RUNS.c.result)),
+        "tournament": (TOURNAMENTS, (TOURNAMENTS.c.rules,)),
+    }
+    counts = {}
+    for noun, (table, columns) in users.items():
+        told = (cast(column, String).contains(robot_id) for column in columns)
+        query = select(func.count()).select_from(table).where(or_(*told))
+        counts[noun] = int(connection.execute(query).scalar_one())
+    return {noun: count for noun, count in counts.items() if count}
 
 
 def _encode(robot: StoredRobot) -> dict[str, Any]:

@@ -4,36 +4,17 @@ All are read when the server starts; from then on they are only written. A row t
 decoded is left out, and logged.
 """
 
-import json
-import logging
 from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
-from sqlalchemy import (
-    Column,
-    Connection,
-    String,
-    Table,
-    and_,
-    cast,
-    delete,
-    exists,
-    insert,
-    not_,
-    or_,
-    select,
-    update,
-)
+from sqlalchemy import Connection, Table, and_, delete, exists, not_, or_, update
 from sqlalchemy.sql.elements import ColumnElement
 
-from app.storage.database.columns import JsonWithNan, UtcTime, decode_json
 from app.storage.database.engine import Database
-from app.storage.database.rows import decode_time
+from app.storage.database.named_rows import all_rows, insert_rows
 from app.storage.database.schema import PARTICIPANTS, PREDICTIONS, ROOM_RUNS, ROOMS, RUNS
 
-_logger = logging.getLogger(__name__)
-RowT = TypeVar("RowT", bound=tuple[Any, ...])
 Seat = tuple[str, int]
 """A participant: code of the room, and seed."""
 
@@ -129,19 +110,19 @@ class RoomRows:
 
     def rooms(self) -> list[RoomRow]:
         """Return all rooms that can be decoded, oldest first."""
-        return self._all(ROOMS, RoomRow, ROOMS.c.created_at)
+        return all_rows(self._database, ROOMS, RoomRow, ROOMS.c.created_at)
 
     def participants(self) -> list[ParticipantRow]:
         """Return all participants that can be decoded."""
-        return self._all(PARTICIPANTS, ParticipantRow, PARTICIPANTS.c.seed)
+        return all_rows(self._database, PARTICIPANTS, ParticipantRow, PARTICIPANTS.c.seed)
 
     def predictions(self) -> list[PredictionRow]:
         """Return all predictions that can be decoded."""
-        return self._all(PREDICTIONS, PredictionRow, PREDICTIONS.c.made_at)
+        return all_rows(self._database, PREDICTIONS, PredictionRow, PREDICTIONS.c.made_at)
 
     def runs(self) -> list[RoomRun]:
         """Return all runs of rooms that can be decoded, oldest first."""
-        return self._all(ROOM_RUNS, RoomRun, ROOM_RUNS.c.run_id)
+        return all_rows(self._database, ROOM_RUNS, RoomRun, ROOM_RUNS.c.run_id)
 
     def add_room(self, row: RoomRow) -> None:
         """Insert a room."""
@@ -190,20 +171,7 @@ class RoomRows:
         self._database.write(lambda connection: connection.execute(statement))
 
     def _insert(self, table: Table, rows: Sequence[Any]) -> None:
-        if rows:
-            values = [row._asdict() for row in rows]
-            self._database.write(lambda connection: connection.execute(insert(table), values))
-
-    def _all(self, table: Table, kind: type[RowT], order: Column[Any]) -> list[RowT]:
-        query = select(*map(_undecoded, table.c)).order_by(order)
-        rows = self._database.read(lambda connection: connection.execute(query).mappings().all())
-        found = []
-        for row in rows:
-            try:
-                found.append(kind(**{one.name: _decoded(one, row[one.name]) for one in table.c}))
-            except (ValueError, TypeError, RecursionError):
-                _logger.warning("a row of %s cannot be read", table.name, exc_info=True)
-        return found
+        self._database.write(lambda connection: insert_rows(connection, table, rows))
 
 
 def is_seen_by(reader: Sequence[Seat]) -> ColumnElement[bool]:
@@ -223,27 +191,3 @@ def _show(connection: Connection, run_ids: Collection[str]) -> None:
     if run_ids:
         chosen = ROOM_RUNS.c.run_id.in_(list(run_ids))
         connection.execute(update(ROOM_RUNS).where(chosen).values(is_shown=True))
-
-
-def _undecoded(column: Column[Any]) -> ColumnElement[Any]:
-    """Return a column without type decoding, so that no damaged value fails the query."""
-    if isinstance(column.type, JsonWithNan | UtcTime):
-        return cast(column, String).label(column.name)
-    return column
-
-
-def _decoded(column: Column[Any], value: Any) -> Any:
-    """Return the value of an undecoded column.
-
-    Raises:
-        ValueError, TypeError, RecursionError: if it is none of the column's type.
-    """
-    if value is None and column.nullable:
-        return None
-    if isinstance(column.type, JsonWithNan):
-        return decode_json(json.loads(value))
-    if isinstance(column.type, UtcTime):
-        return decode_time(column.name, value)
-    if not isinstance(value, column.type.python_type):
-        raise TypeError(f"{column.name} is no {column.type.python_type.__name__}")
-    return value

@@ -37,6 +37,7 @@ from app.storage.database.robots import RobotStore
 from app.storage.database.room_rows import RoomRows, Seat
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import RUNS
+from app.storage.database.tournament_rows import TournamentRows
 from app.storage.database.trials import Trials
 from app.storage.disk_space import START_BYTES
 from app.storage.errors import Conflict, Damaged, StorageFailed
@@ -77,6 +78,7 @@ class RunStore:
         sessions: storage of operators' browser sessions, in the same database.
         lessons: those that were stored.
         rooms: rooms of classes, with their participants, predictions and runs.
+        tournaments: with their entries, judgements and tables.
     """
 
     def __init__(self, database: Database, files: ArtifactFiles, robots: RobotStore) -> None:
@@ -86,6 +88,7 @@ class RunStore:
         self.curves, self.trials, self.keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SessionRows(database)
         self.lessons, self.rooms = LessonRows(database), RoomRows(database)
+        self.tournaments = TournamentRows(database)
 
     def check_disk_space(self) -> None:
         """Check that there is disk space for one more run.
@@ -185,7 +188,7 @@ class RunStore:
     ) -> Run:
         existing = connection.execute(select(RUNS.c.id).where(RUNS.c.id == run.id)).first()
         added = run if existing is None else replace(run, id=new_id())
-        connection.execute(insert(RUNS), [encode_run(added)])
+        connection.execute(insert(RUNS), [{**encode_run(added), "is_imported": True}])
         self.curves.insert(connection, added.id, content.evaluations)
         self.trials.insert(connection, added.id, content.trials)
         self._artifacts.insert(connection, added.id, files)
@@ -215,6 +218,11 @@ class RunStore:
         progress = self._progress.get(run_id)
         row = self.database.read(lambda connection: fetch_run_row(connection, run_id))
         return try_decode_run(_with_progress(row, progress))
+
+    def is_imported(self, run_id: str) -> bool:
+        """Whether a run was imported, and so ran elsewhere; False also if there is none."""
+        query = select(RUNS.c.id).where(RUNS.c.id == run_id, RUNS.c.is_imported.is_(True))
+        return self.database.read(lambda connection: connection.execute(query).first()) is not None
 
     def list(
         self,

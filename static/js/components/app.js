@@ -20,6 +20,8 @@ import { TimeBar } from "./time-bar.js";
 
 /** Whether a room was to be opened. */
 const roomIsWanted = signal(false);
+/** Whether the tournaments were to be seen. */
+const tournamentsAreWanted = signal(false);
 
 export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
@@ -29,6 +31,7 @@ export const App = () => html`
   <${BodyEditor} />
   <${StoredRobots} />
   <${Room} />
+  <${Tournaments} />
   <${Toast} />
   <p class="sr-only" role="status">${announcement}</p>
 `;
@@ -114,6 +117,19 @@ const Room = () => (roomIsWanted.value || loaded.value["dialog of rooms"] || pag
   <${Loaded} name="dialog of rooms" load=${loadRoom} />
 `;
 
+const loadTournaments = () =>
+  withStyle("tournaments", import("./tournaments/tournaments.js")).then((own) => own.Tournaments);
+
+/** Open the dialog of tournaments; its modules come with the first time. */
+const showTournaments = () => {
+  tournamentsAreWanted.value = true;
+  import("../tournament/list.js").then((own) => own.showList());
+};
+
+const Tournaments = () => (tournamentsAreWanted.value || loaded.value["dialog of tournaments"]) && html`
+  <${Loaded} name="dialog of tournaments" load=${loadTournaments} />
+`;
+
 const loadDesk = () => withStyle("presenter", import("./desk.js")).then(({ Desk }) => Desk);
 
 // ---- the views that are loaded when they are first opened: most visits do not
@@ -193,6 +209,7 @@ function Menu() {
         `}
         <a href="#lessons" onClick=${item(() => {})}>Lessons</a>
         ${isOperator.value && html`<button class="quiet" onClick=${item(askForRoom)}>Open a room…</button>`}
+        <button class="quiet" onClick=${item(showTournaments)}>Tournaments…</button>
         ${card.value
           ? html`<button class="quiet" onClick=${item(closeLesson)}>Hide the lesson</button>`
           : html`<button class="quiet" onClick=${item(openLesson)}>The first lesson</button>`}

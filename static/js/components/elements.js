@@ -3,6 +3,7 @@ import { effect, signal } from "@preact/signals";
 import htm from "htm";
 import { h } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { root } from "../api.js";
 import { listed } from "../format.js";
 import { connection, setEntry } from "../store.js";
 
@@ -240,7 +241,7 @@ export function Loaded({ name, load }) {
  * @param {Promise<Module>} module
  */
 export async function withStyle(name, module) {
-  const href = `static/style/${name}.css`;
+  const href = `${root()}static/style/${name}.css`;
   if (!document.querySelector(`link[href="${href}"]`)) {
     const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href });
     const isLoaded = new Promise((resolve, reject) => { Object.assign(link, { onload: resolve, onerror: reject }); });

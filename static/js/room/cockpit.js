@@ -1,13 +1,14 @@
 // The teacher's cockpit: the code, the card and the next one, what all may do, who is in and how far.
 import { signal } from "@preact/signals";
 import { DotStrip } from "../components/dot-strip.js";
-import { Dialog, html, Icon } from "../components/elements.js";
+import { Dialog, html, Icon, Loaded, withStyle } from "../components/elements.js";
 import { Prose } from "../components/prose.js";
 import { resultsFile } from "../classroom-api.js";
-import { count, metres } from "../format.js";
+import { count, metres, shortAddress } from "../format.js";
 import { copy, isPhone, nextTheme, theme, toastMessage } from "../page.js";
-import { connection } from "../store.js";
-import { Failure, shortAddress } from "./doors.js";
+import { connection, options } from "../store.js";
+import { stateInWords, tournamentPage } from "../tournament/states.js";
+import { Failure } from "./doors.js";
 import { People } from "./people.js";
 import { busy, end, freeze, isRevealed, reveal, room, showCard, shownResults, spotlight } from "./room.js";
 import { axisOf } from "./scores.js";
@@ -17,6 +18,8 @@ import { axisOf } from "./scores.js";
 const codeIsOpen = signal(false);
 /** Whether the next press ends the room. */
 const willEnd = signal(false);
+/** Whether a tournament was to be opened. */
+const tournamentIsWanted = signal(false);
 
 export function Cockpit() {
   const known = /** @type {Classroom} */ (room.value);
@@ -33,9 +36,11 @@ export function Cockpit() {
         <${Dots} />
       </div>
       <${People} known=${known} />
+      <${RoomTournaments} known=${known} />
       <${Ways} known=${known} />
     </main>
     <${Code} known=${known} />
+    ${tournamentIsWanted.value && html`<${Loaded} name="dialog of tournaments" load=${loadTournaments} />`}
     <div class="toast" role="status">${toastMessage.value && html`<p>${toastMessage.value}</p>`}</div>
   `;
 }
@@ -154,6 +159,38 @@ function Dots() {
     </section>
   `;
 }
+
+// ---- tournaments of the room
+
+const loadTournaments = () =>
+  withStyle("tournaments", import("../components/tournaments/tournaments.js")).then((own) => own.Tournaments);
+
+/** All walk as the card opens the page. @param {Classroom} known */
+function askForTournament({ code, shown }) {
+  tournamentIsWanted.value = true;
+  import("../tournament/list.js").then((own) => own.askForTournament(code, shown.state?.form ?? {}));
+}
+
+/** @param {{ known: Classroom }} props */
+const RoomTournaments = ({ known }) => html`
+  <section class="panel room-tournaments" aria-labelledby="room-tournaments-title">
+    <h2 id="room-tournaments-title">Tournaments</h2>
+    ${known.tournaments.length > 0 && html`
+      <ul>
+        ${known.tournaments.map(({ id, title, state }) => html`
+          <li key=${id}>
+            <a href=${tournamentPage(id)}>${title}</a><span class="dim">${stateInWords(state)}</span>
+          </li>
+        `)}
+      </ul>
+    `}
+    ${known.state !== "ended" && html`
+      <button class="secondary" disabled=${options.value === null} onClick=${() => askForTournament(known)}>
+        Start a tournament…
+      </button>
+    `}
+  </section>
+`;
 
 // ---- the projector, the results, the end
 

@@ -62,6 +62,3 @@ export const Away = () => connection.value === "reconnecting" && html`
     <span class="spinner" aria-hidden="true"></span> Reconnecting. Your name and your seed are kept.
   </p>
 `;
-
-/** An address as a person types it. @param {string} address */
-export const shortAddress = (address) => address.replace(/^https?:\/\//, "");

@@ -1,10 +1,10 @@
 // The settings that a card opens, each within the card's bounds.
 import { signal } from "@preact/signals";
 import { html, Segments } from "../components/elements.js";
+import { NumberRow } from "../components/number-row.js";
 import { sentence } from "../format.js";
 import { parseNumber } from "../parse.js";
-import { shareOf } from "../scale.js";
-import { agentOf, choiceTitle, fullTitle, rangeOf, sliderOf } from "../settings.js";
+import { agentOf, choiceTitle, fullTitle, rangeOf } from "../settings.js";
 import { options, setEntry } from "../store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -116,28 +116,10 @@ function Setting({ name, bounds, card, number }) {
     return html`<div class="may-row"><span>${label}</span>
       <${Segments} label=${label} choices=${rule.choices} value=${draft} onValue=${onValue} /></div>`;
   }
-  return html`<${NumberSetting} name=${name} label=${label} rule=${rule} draft=${draft} onValue=${onValue} />`;
-}
-
-/** @param {{ name: string, label: string, rule: any, draft: any, onValue: (value: any) => unknown }} props */
-function NumberSetting({ name, label, rule, draft, onValue }) {
   const { limits, isWhole } = rule;
-  const { value, mistake } = parseNumber(String(draft ?? ""), limits, isWhole);
-  const slider = sliderOf({ ...limits, is_whole: isWhole });
-  const at = value ?? slider?.min ?? 0;
-  const type = (/** @type {any} */ { target }) => onValue(target.value);
+  const parsed = parseNumber(String(draft ?? ""), limits, isWhole);
   return html`
-    <div class="may-row">
-      <label for=${`may-${name}`}>${label}</label>
-      <input id=${`may-${name}`} type="text" inputmode="decimal" value=${draft} onInput=${type}
-        aria-invalid=${mistake ? "true" : undefined} aria-describedby=${`range-${name}`} />
-      ${slider && html`
-        <input type="range" min=${slider.min} max=${slider.max} step=${slider.step} value=${at} aria-label=${label}
-          style=${{ "--share": `${100 * shareOf(at, slider.min, slider.max)}%` }} onInput=${type} />
-      `}
-      <p id=${`range-${name}`} class=${mistake ? "bad" : "dim"} role=${mistake ? "alert" : undefined}>
-        ${mistake ?? sentence(rangeOf(limits))}
-      </p>
-    </div>
+    <${NumberRow} id=${`may-${name}`} label=${label} limits=${limits} isWhole=${isWhole} text=${draft} parsed=${parsed}
+      words=${sentence(rangeOf(limits))} onText=${onValue} />
   `;
 }

@@ -12,6 +12,7 @@ import { OwnRobot, OwnRun } from "./own-run.js";
 import { CLOSER, closerLink, replayed } from "./picture.js";
 import { Answer } from "./questions.js";
 import { axisOf, scoreInWords } from "./scores.js";
+import { presentTournaments, tournamentPage } from "../tournament/states.js";
 import { answers, goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, room, shownResults } from "./room.js";
 
 /** @import { Ask, Classroom, LessonCard, WhatIfAnswer } from "../types.js" */
@@ -61,6 +62,7 @@ function Present({ known }) {
     `}
     ${answers.value[`${card}`] && html`<${WhatIfDots} answer=${answers.value[`${card}`]} />`}
     <${Closer} card=${shown} />
+    <${ToTournaments} known=${known} />
     <${Next} card=${shown} />
     <${Deeds} card=${shown} number=${card} isOpen=${isOpen} />
   `;
@@ -126,6 +128,13 @@ function Closer({ card }) {
     </nav>
   `;
 }
+
+/** The way to the tournaments of the room. @param {{ known: Classroom }} props */
+const ToTournaments = ({ known }) => presentTournaments(known).map(({ id, title, state }) => html`
+  <a key=${id} class="secondary as-button" href=${tournamentPage(id)}>
+    ${state === "open" ? "Enter" : "See"} the tournament: ${title}
+  </a>
+`);
 
 // ---- after the reveal
 

@@ -4,12 +4,13 @@ import { getCurves } from "../api.js";
 import { DotStrip } from "../components/dot-strip.js";
 import { html } from "../components/elements.js";
 import { Prose } from "../components/prose.js";
-import { count, metres } from "../format.js";
-import { Away, shortAddress } from "./doors.js";
+import { count, metres, shortAddress } from "../format.js";
+import { Away } from "./doors.js";
 import { stepsOf } from "./chart.js";
 import { Picture } from "./picture.js";
 import { Axes, lineOf } from "./questions.js";
 import { agentOf } from "../settings.js";
+import { presentTournaments, tournamentPage } from "../tournament/states.js";
 import { isRevealed, room, shownResults } from "./room.js";
 import { axisOf, predictedMetres, tally } from "./scores.js";
 
@@ -47,6 +48,11 @@ const Door = ({ known }) => html`
       <p class="joined" role="status">
         <b class="num">${known.participants}</b> ${known.participants === 1 ? "is" : "are"} in
       </p>
+      ${presentTournaments(known).map(({ id, title }) => html`
+        <p key=${id} class="join-address">
+          <a href=${`${tournamentPage(id)}?projector`}>Tournament: ${title}</a>
+        </p>
+      `)}
     </div>
   </section>
 `;

@@ -3,6 +3,8 @@ import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getAnyRun, getOptions } from "../api.js";
 import * as api from "../classroom-api.js";
 import { ofRoom } from "../page-state.js";
+import { makeRequests } from "../requests.js";
+import { soon } from "../soon.js";
 import { applyEvent, connection, eventNames, openEvents, options, runs, setEntry } from "../store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -20,10 +22,9 @@ export const refusal = signal("");
 export const results = signal({});
 /** Card → the answer to its what-if. @type {Signal<Record<string, WhatIfAnswer>>} */
 export const answers = signal({});
-/** What is under way, by name. @type {Signal<Record<string, boolean>>} */
-export const busy = signal({});
-/** What failed last, by name. @type {Signal<Record<string, string>>} */
-export const failures = signal({});
+const requests = makeRequests();
+export const { busy, failures } = requests;
+const { perform } = requests;
 
 export const isTeacher = computed(() => room.value?.role === "teacher");
 /** Results of the card that is shown; null until they are known. */
@@ -85,28 +86,9 @@ export async function refreshResults() {
 }
 
 const AGAIN_MS = 1500;
-/** A class acts within the same seconds: who watches all of it asks at most so often. */
-const SOON_MS = 400;
-/** Phones of a class hear of the same event at once, and spread their questions over so long. */
-const SPREAD_MS = 1500;
-
-/**
- * A function that acts soon, and once for all calls until then.
- * @param {() => unknown} act
- */
-function soon(act) {
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
-  return () => {
-    timer ??= setTimeout(() => {
-      timer = undefined;
-      act();
-    }, SOON_MS + (isTeacher.peek() ? 0 : Math.random() * SPREAD_MS));
-  };
-}
-
-const refreshSoon = soon(refresh);
-const refreshResultsSoon = soon(refreshResults);
+// A class acts within the same seconds.
+const refreshSoon = soon(refresh, () => isTeacher.peek());
+const refreshResultsSoon = soon(refreshResults, () => isTeacher.peek());
 
 /** Take in what an event tells of the room; ask for what it does not tell. @param {RoomState} state */
 function onRoom(state) {
@@ -121,9 +103,16 @@ function onRoom(state) {
   if (before.role === "teacher" || state.revealed.includes(state.card)) refreshResultsSoon();
 }
 
+/** Ask for the room when a tournament of it is opened or has ended. @param {{ id: string, state: string }} data */
+function onTournament({ id, state }) {
+  const known = room.peek()?.tournaments.find((one) => one.id === id);
+  if (known?.state !== state) refreshSoon();
+}
+
 /** @param {string} name @param {any} data */
 function onEvent(name, data) {
   if (name === "room") onRoom(data);
+  else if (name === "tournament") onTournament(data);
   else applyEvent(name, data);
   if (name === "snapshot") refresh().then(refreshResults);
   if (name !== "run" || !ENDED.includes(data.state)) return;
@@ -144,7 +133,7 @@ export async function followRoom() {
       connection.value = "live";
       return undefined;
     }
-    return openEvents(["room", ...eventNames], onEvent, (now) => {
+    return openEvents(["room", "tournament", ...eventNames], onEvent, (now) => {
       connection.value = now;
       // The stream does not say why it ended: the room may have.
       if (now === "reconnecting") untracked(refresh);
@@ -189,26 +178,6 @@ async function readRun(id) {
 }
 
 // ---- acting
-
-/**
- * Perform a request: what is under way and what failed is told by its name; true once it is done.
- * @param {string} name
- * @param {() => Promise<unknown>} send
- */
-async function perform(name, send) {
-  if (busy.peek()[name]) return false;
-  setEntry(busy, name, true);
-  setEntry(failures, name, "");
-  try {
-    await send();
-    return true;
-  } catch (error) {
-    setEntry(failures, name, /** @type {RequestError} */ (error).message);
-    return false;
-  } finally {
-    setEntry(busy, name, false);
-  }
-}
 
 /** Take in the room that a request answers with. @param {() => Promise<Classroom>} send */
 const changed = (send) => async () => {

@@ -1,4 +1,5 @@
 // The editor of a lesson: its title and aims, its cards, and the one that is edited beside how a phone shows it.
+import { shortAddress } from "../../format.js";
 import { copy } from "../../page.js";
 import { lessonFile } from "../../classroom-api.js";
 import { addCard, changeLesson, chosen, draft, linesOf, moveCard, removeCard } from "../../lessons/draft.js";
@@ -67,7 +68,7 @@ const Saved = ({ lesson }) => html`
     <img src=${lesson.qr_code} alt=${`QR code of ${lesson.link}`} />
     <div>
       <p><b>Saved.</b> Its link opens it on this page, where nothing is locked.</p>
-      <p class="address">${lesson.link.replace(/^https?:\/\//, "")}</p>
+      <p class="address">${shortAddress(lesson.link)}</p>
       <div class="row">
         <button class="secondary compact" onClick=${() => copy(lesson.link, "Link copied.")}>
           <${Icon} name="link" />Copy the link

@@ -2,7 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { addressOf } from "../../page-state.js";
 import { chosenLesson, isBusy, lessons, opened, openRoom, problem, roomIsOpen, rooms } from "../../lessons/list.js";
-import { count } from "../../format.js";
+import { count, shortAddress } from "../../format.js";
 import { Dialog, html } from "../elements.js";
 
 /** @import { NewRoom } from "../../types.js" */
@@ -61,7 +61,7 @@ const Opened = ({ room }) => html`
     <img src=${room.qr_code} alt=${`QR code of ${room.address}`} />
     <div>
       <p class="room-code">${room.code}</p>
-      <p class="address">${room.address.replace(/^https?:\/\//, "")}</p>
+      <p class="address">${shortAddress(room.address)}</p>
     </div>
   </div>
   <a class="primary button-link" href=${`r/${room.code}`}>Teach: open the cockpit</a>

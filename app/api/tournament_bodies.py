@@ -1,0 +1,120 @@
+"""Request bodies of tournaments and their entries."""
+
+from typing import Annotated, Any
+
+from pydantic import Field, create_model
+
+from app.api.descriptions import VALID
+from app.api.fields import (
+    INTEGRAL,
+    Body,
+    Declared,
+    Name,
+    RunId,
+    SettingsBody,
+    given_settings,
+    record_fields,
+)
+from app.tournaments.tournament import MAX_ENTRIES_PER_HOUR
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.observation import Observation
+from hexapods.domain.robot import AnyRobot
+from hexapods.domain.settings import SettingValues, declared_fields
+from hexapods.runs.config import TrainingConfig
+from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.rules import MAX_ROBOTS, MAX_WORLDS, TournamentRules
+
+_MAX_WORLD = 500
+_Flag = Annotated[bool, Field(strict=True)]
+
+
+class RulesBody(Body):
+    """Rules of a tournament; the other fields of `TournamentRules` are added to it."""
+
+    worlds: Annotated[
+        list[Annotated[str, Field(max_length=_MAX_WORLD)]],
+        Field(min_length=1, max_length=MAX_WORLDS, description=VALID["worlds"]),
+    ] = Field(default_factory=lambda: list(TournamentRules.worlds))
+    robots: Annotated[list[AnyRobot], Field(max_length=MAX_ROBOTS, description=VALID["robots"])] = (
+        Field(default_factory=list)
+    )
+    tables: _Flag = False
+
+    def rules(self) -> TournamentRules:
+        """Convert to rules.
+
+        Raises:
+            UnknownName, InvalidInput: if the values are not valid together.
+        """
+        given: dict[str, Any] = {name: getattr(self, name) for name in type(self).model_fields}
+        worlds, robots = tuple(self.worlds), tuple(self.robots)
+        return TournamentRules(**{**given, "worlds": worlds, "robots": robots})
+
+
+# Robots walk in the gaits that suit them.
+_own = record_fields(TournamentRules, {"world", "gaits", *RulesBody.model_fields})
+_Rules: Any = create_model(
+    "TournamentRulesBody", __base__=RulesBody, __doc__=RulesBody.__doc__, **_own
+)
+
+
+class TournamentBody(Body):
+    """A tournament: its rules, and the code of the room whose participants may enter."""
+
+    title: Name = ""
+    room: Annotated[str, Field(max_length=20, description=VALID["room"])] | None = None
+    entries_per_hour: Annotated[
+        int,
+        Field(strict=True, ge=1, le=MAX_ENTRIES_PER_HOUR, description=VALID["entries_per_hour"]),
+        INTEGRAL,
+    ] = 6
+    rules: _Rules
+
+
+class EntryBody(Body):
+    """An entry: an agent with settings, or a finished training, whose table enters.
+
+    With `training_id` observation and settings are those of the training. An operator may name the
+    entrant; participants have their name in the room.
+    """
+
+    agent: str
+    settings: SettingsBody = Field(default_factory=SettingsBody)
+    steps: Annotated[Any, Declared(declared_fields(TrainingConfig)["steps"])] | None = None
+    observation: Annotated[Observation | None, Field(description=VALID["observation"])] = None
+    robot: Annotated[AnyRobot | None, Field(description=VALID["robot"])] = None
+    training_id: Annotated[
+        RunId | None, Field(description="the id of a finished training, whose table enters")
+    ] = None
+    name: Name | None = None
+
+    def entry(self) -> Entry:
+        """Convert to an entry without a table."""
+        return Entry(
+            agent=self.agent,
+            observation=self.observation or Entry.observation,
+            settings=SettingValues(given_settings(self.settings)),
+            steps=self.steps,
+            robot=self.robot,
+        )
+
+    def check_of_training(self) -> None:
+        """Check that nothing is given that the training says.
+
+        Raises:
+            InvalidInput: if something is.
+        """
+        given = {
+            "settings": given_settings(self.settings),
+            "steps": self.steps,
+            "observation": self.observation,
+        }
+        for name, value in given.items():
+            if value:
+                raise InvalidInput(f"{name} of a table are those of its training; leave {name} out")
+
+
+class EndBody(Body):
+    """Whether entries that are not judged yet are withdrawn."""
+
+    withdraw_waiting: _Flag = False

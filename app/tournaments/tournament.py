@@ -1,0 +1,230 @@
+"""A tournament, as it is in the database: its entries, and how far they are judged."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from datetime import datetime, timedelta
+from functools import cached_property
+from typing import Any, Literal, NamedTuple, get_args
+
+from app.storage.errors import Conflict
+from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.judging import Judgement
+from hexapods.tournaments.ranking import Standing
+from hexapods.tournaments.rules import MAX_ENTRIES, Draw, TournamentRules, commitment_of, draws_of
+
+TournamentState = Literal["open", "ending", "ended"]
+STATES: tuple[TournamentState, ...] = get_args(TournamentState)
+EntryState = Literal["waiting", "judging", "judged", "withdrawn"]
+MAX_ENTRIES_PER_HOUR = 60
+HOUR = timedelta(hours=1)
+OUTCOME = ("standings", "robots", "versions", "machine")
+"""Fields of a tournament's file that are kept at its end: a later version could not tell them."""
+
+
+class Entrant(NamedTuple):
+    """Whose an entry is.
+
+    Attributes:
+        seed: of the participant; None of a reference, or of an operator.
+        name: of the reference, or as the operator has given it.
+    """
+
+    seed: int | None
+    name: str = ""
+
+
+class EnteredTable(NamedTuple):
+    """The table of a training that enters.
+
+    Attributes:
+        training_id: of the training.
+        sha256: of its file, hexadecimal.
+        data: the file.
+    """
+
+    training_id: str
+    sha256: str
+    data: bytes
+
+
+@dataclass(frozen=True)
+class TournamentEntry:
+    """An entry of a tournament; its judgements come in one after another.
+
+    Attributes:
+        number: from 0, in the order of their entering; the references come first.
+        entrant: whose it is.
+        is_reference: whether it is judged in every tournament.
+        entry: what is judged.
+        training_id: of the training whose table entered; None without one.
+        is_withdrawn: whether the end came before it was judged.
+        entered_at: in UTC.
+        judgements: by number of the draw.
+    """
+
+    number: int
+    entrant: Entrant
+    is_reference: bool
+    entry: Entry
+    training_id: str | None
+    is_withdrawn: bool
+    entered_at: datetime
+    judgements: dict[int, Judgement] = field(default_factory=dict)
+
+    def in_order(self) -> tuple[Judgement, ...]:
+        """Return its judgements in the order of the draws."""
+        return tuple(one for _, one in sorted({**self.judgements}.items()))
+
+
+@dataclass
+class Tournament:
+    """A tournament, as it is in the database.
+
+    Attributes:
+        id: hard to guess.
+        title: as its opener has named it.
+        room: code of its room; None without one.
+        rules: of all entries.
+        secret: from which the draws follow; it is published at the end.
+        entries_per_hour: entries of a participant within an hour.
+        state: `open` for entries; `ending` until those that wait are judged; or `ended`.
+        created_at, ended_at: in UTC.
+        entries: by number.
+        next_number: of the next entry.
+        standings: of the entries that are judged on all draws, best first; the judge ranks them.
+        outcome: once it has ended, what its file has of these names, in JSON: see `OUTCOME`.
+    """
+
+    id: str
+    title: str
+    room: str | None
+    rules: TournamentRules
+    secret: str = field(repr=False)
+    entries_per_hour: int
+    state: TournamentState
+    created_at: datetime
+    ended_at: datetime | None
+    entries: dict[int, TournamentEntry] = field(default_factory=dict)
+    next_number: int = 0
+    standings: Sequence[Standing] = ()
+    outcome: Mapping[str, Any] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def commitment(self) -> str:
+        """SHA-256 of the secret."""
+        return commitment_of(self.secret)
+
+    @cached_property
+    def draws(self) -> tuple[Draw, ...]:
+        """Seeds and worlds on which all entries are judged."""
+        return draws_of(self.rules, self.secret)
+
+    @property
+    def listed(self) -> list[TournamentEntry]:
+        """Its entries by number; a copy, as others may enter meanwhile."""
+        return list(self.entries.values())
+
+    @property
+    def progress(self) -> dict[str, Any]:
+        """What all may know of it, in plain types, as its event has it."""
+        counted = [one for one in self.listed if not one.is_withdrawn]
+        return {
+            "id": self.id,
+            "state": self.state,
+            "entries": self.entered,
+            "judged": sum(len(one.judgements) for one in counted),
+            "of": len(counted) * self.rules.draws,
+        }
+
+    @property
+    def entered(self) -> int:
+        """Number of its entries without the references."""
+        return sum(not one.is_reference for one in self.listed)
+
+    @property
+    def judged(self) -> list[TournamentEntry]:
+        """The entries that are judged on all draws, by number."""
+        return [one for one in self.listed if self.is_judged(one)]
+
+    @property
+    def waiting(self) -> list[TournamentEntry]:
+        """The entries that are not judged on all draws yet, by number."""
+        return [one for one in self.listed if not (one.is_withdrawn or self.is_judged(one))]
+
+    def is_judged(self, entry: TournamentEntry) -> bool:
+        """Whether an entry is judged on all draws."""
+        return len(entry.judgements) >= self.rules.draws
+
+    def state_of(self, entry: TournamentEntry) -> EntryState:
+        """Return how far an entry is judged."""
+        if entry.is_withdrawn:
+            return "withdrawn"
+        if self.is_judged(entry):
+            return "judged"
+        return "judging" if entry.judgements else "waiting"
+
+    def of_entrant(self, entrant: Entrant) -> list[TournamentEntry]:
+        """Return the entries of an entrant, oldest first."""
+        return [one for one in self.listed if not one.is_reference and one.entrant == entrant]
+
+    def equal_entry(self, entrant: Entrant, entry: Entry) -> TournamentEntry | None:
+        """Return the entry of an entrant that is judged alike; None if there is none.
+
+        Args:
+            entrant: whose it is.
+            entry: as `completed` returns it.
+        """
+        wanted = self._written_out(entry)
+        own = self.of_entrant(entrant)
+        return next((one for one in own if self._written_out(one.entry) == wanted), None)
+
+    def _written_out(self, entry: Entry) -> Entry:
+        robot = self.rules.robot if entry.robot is None else entry.robot
+        steps = self.rules.steps if entry.steps is None else entry.steps
+        return replace(entry, robot=robot, steps=steps)
+
+    def left(self, entrant: Entrant, now: datetime) -> tuple[int, datetime | None]:
+        """Return the entries that a participant has left this hour, and when it has a further one.
+
+        Args:
+            entrant: the participant.
+            now: time in UTC.
+
+        Returns:
+            the number, and the time if it is 0, else None.
+        """
+        # One in the future is of before the clock was set back.
+        within = (one.entered_at for one in self.of_entrant(entrant))
+        recent = sorted(one for one in within if now - HOUR < one <= now)
+        left = max(0, self.entries_per_hour - len(recent))
+        return left, None if left else recent[-self.entries_per_hour] + HOUR
+
+    def check_open(self) -> None:
+        """Check that it takes entries.
+
+        Raises:
+            Conflict: if it does not.
+        """
+        if self.state != "open":
+            raise Conflict("this tournament takes no more entries", self.state)
+
+    def check_not_full(self) -> None:
+        """Check that it has a place for a further entry.
+
+        Raises:
+            Conflict: if it has not.
+        """
+        if len(self.entries) >= MAX_ENTRIES:
+            raise Conflict(f"this tournament has {MAX_ENTRIES} entries, the most", self.state)
+
+    def check_ended(self) -> None:
+        """Check that it has ended.
+
+        Raises:
+            Conflict: if it has not.
+        """
+        if self.state != "ended":
+            raise Conflict(
+                "this tournament has not ended; its file is there once the last entry is judged",
+                self.state,
+            )

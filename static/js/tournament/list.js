@@ -1,0 +1,132 @@
+// The tournaments of the server, and the one that is about to be opened.
+import { batch, computed, signal } from "@preact/signals";
+import { call } from "../api.js";
+import { form } from "../form.js";
+import { asTexts, page } from "../page-state.js";
+import { parseNumber } from "../parse.js";
+import { makeRequests } from "../requests.js";
+import { served } from "../store.js";
+import * as api from "../tournaments-api.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { Parsed } from "../parse.js" */
+/** @import { ListedRoom, ListedTournament, Limits, Tournament } from "../types.js" */
+
+/** Null until the server has answered. @type {Signal<ListedTournament[] | null>} */
+export const tournaments = signal(null);
+/** The open rooms, in which a tournament can be. @type {Signal<ListedRoom[]>} */
+export const rooms = signal([]);
+/** The tournament that was opened last. @type {Signal<Tournament | null>} */
+export const opened = signal(null);
+/** Whether the dialog is open. */
+export const isOpen = signal(false);
+/** Whether it shows the form of a new tournament, and not the list. */
+export const isNew = signal(false);
+/** The room whose page this is; null on the dashboard. @type {Signal<string | null>} */
+export const ownRoom = signal(null);
+
+const requests = makeRequests();
+export const { busy, failures, refused } = requests;
+const { perform } = requests;
+
+/** Ask for the tournaments, and the rooms that are open. */
+export const refresh = () => perform("list", async () => {
+  tournaments.value = (await api.listTournaments()).items;
+  const all = await call("GET", "rooms");
+  rooms.value = all.items.filter((/** @type {ListedRoom} */ { state }) => state !== "ended");
+});
+
+/** Show the list. */
+export function showList() {
+  isNew.value = false;
+  isOpen.value = true;
+  refresh();
+}
+
+/**
+ * Show the form of a tournament of a room; all walk as its card opens the page.
+ * @param {string} code
+ * @param {Record<string, any>} fields of the card's form
+ */
+export function askForTournament(code, fields) {
+  page.form.value = asTexts(fields);
+  batch(() => {
+    ownRoom.value = code;
+    showForm();
+    isOpen.value = true;
+  });
+}
+
+export function showForm() {
+  batch(() => {
+    opened.value = null;
+    draft.value = { ...NEW, room: ownRoom.peek() ?? "", worlds: [served().worlds[0].name] };
+    isNew.value = true;
+  });
+}
+
+// ---- the form
+
+/** As it was typed and chosen; numbers as texts. */
+const NEW = {
+  title: "", room: "", steps: "500", draws: "20", entries_per_hour: "6", worlds: /** @type {string[]} */ ([]),
+  robots: /** @type {string[]} */ ([]), tables: false,
+};
+
+/** @typedef {typeof NEW} NewTournament */
+
+/** @type {Signal<NewTournament>} */
+export const draft = signal(NEW);
+
+/** @param {Partial<NewTournament>} changes */
+export const change = (changes) => {
+  draft.value = { ...draft.peek(), ...changes };
+};
+
+/** A list with a name, or without it, in the order of all names. */
+/** @type {(list: string[], name: string, all: string[]) => string[]} */
+export const toggled = (list, name, all) =>
+  all.filter((one) => (one === name ? !list.includes(one) : list.includes(one)));
+
+/** The server knows the upper limits, and refuses more. @type {Limits} */
+const AT_LEAST_ONE = { minimum: 1, maximum: null, excludes_minimum: false, excludes_maximum: false };
+
+export const NUMBERS = /** @type {const} */ (["steps", "draws", "entries_per_hour"]);
+
+/** @type {Record<string, string>} */
+export const TITLES = { steps: "Most steps of practice", draws: "Secret seeds", entries_per_hour: "Entries per hour" };
+
+/** A sentence of the server, with the names of this form. @param {string} message */
+export const inFormWords = (message) =>
+  message.replace(/\b(?:rules\.)?([a-z_]+)(?= must be )/g, (whole, field) => TITLES[field] ?? whole);
+
+/** @type {(of: NewTournament, name: typeof NUMBERS[number]) => Parsed<number>} */
+export const readNumber = (of, name) => parseNumber(of[name], AT_LEAST_ONE, true);
+
+const WALK = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance"];
+
+/** The walking problem of the page's form, which the tournament has, too. */
+export const walk = computed(() => Object.fromEntries(WALK.map((field) => [field, form.value[field]])));
+
+/**
+ * The request of a tournament; null while something is not valid.
+ * @param {NewTournament} of
+ * @param {Record<string, unknown>} walking the walking problem
+ */
+export function requestOf(of, walking) {
+  const [steps, draws, perHour] = NUMBERS.map((name) => readNumber(of, name).value);
+  if (steps === undefined || draws === undefined || perHour === undefined || of.worlds.length === 0) return null;
+  const { worlds, robots, tables } = of;
+  return {
+    title: of.title.trim(), ...(of.room ? { room: of.room } : {}), entries_per_hour: perHour,
+    rules: { ...walking, steps, draws, worlds, robots, tables },
+  };
+}
+
+/** Open the tournament of the form. */
+export const open = () => perform("open", async () => {
+  const body = requestOf(draft.peek(), walk.peek());
+  if (body === null) return;
+  opened.value = await api.openTournament(body);
+  refresh();
+});

@@ -1,0 +1,308 @@
+"""A tournament in a room: two phones, the operator, the projector; and opened from the menu."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Download, Page, expect
+
+from tests.browser.dashboard import Dashboard
+from tests.browser.rooms import (
+    PHONE,
+    SCREEN,
+    TOKEN,
+    RoomPage,
+    is_accessible,
+    is_read_from_afar,
+    phone,
+)
+from tests.browser.serving import Serving, finished, serving
+from tests.conftest import new_page
+
+pytestmark = pytest.mark.timeout(400)
+
+LESSON: dict[str, Any] = {
+    "title": "Before the tournament",
+    "cards": [
+        {
+            "title": "Think",
+            "text": "Which learner is best?",
+            "state": {"form": {"gait": "left-right-origin", "simulator": "kinematic"}},
+        }
+    ],
+}
+WALK: dict[str, Any] = {"gait": "left-right-origin", "simulator": "kinematic"}
+RULES: dict[str, Any] = {**WALK, "steps": 40, "draws": 8}
+REFERENCES = ("Greedy", "Random walk", "Linear model")
+
+
+@pytest.fixture(scope="module")
+def school(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
+    with serving(tmp_path_factory.mktemp("data"), token=TOKEN) as server:
+        yield server
+
+
+def visit(page: RoomPage, server: Serving, tournament_id: str) -> None:
+    """Open the page of a tournament."""
+    page.page.goto(f"{server.address}t/{tournament_id}")
+
+
+def ranked(page: RoomPage, name: str) -> str:
+    """Wait until an entry is ranked, and return what its row says."""
+    row = page.page.get_by_role("row").filter(has=page.page.get_by_text(name, exact=True))
+    expect(row).to_have_count(1)
+    return " ".join(row.inner_text().split())
+
+
+def choose(page: RoomPage, agent: str) -> None:
+    """Choose what enters."""
+    page.page.get_by_label("Agent", exact=True).select_option(label=agent)
+
+
+@pytest.fixture
+def teacher(flat_browser: Browser, school: Serving) -> Iterator[RoomPage]:
+    """A phone of an operator."""
+    with phone(flat_browser) as page:
+        page.page.goto(f"{school.address}?token={TOKEN}")
+        yield page
+
+
+def test_a_tournament_of_a_room(
+    flat_browser: Browser, school: Serving, teacher: RoomPage, tmp_path: Path
+) -> None:
+    with (
+        school.api(TOKEN) as api,
+        phone(flat_browser) as one,
+        phone(flat_browser) as two,
+        new_page(flat_browser, viewport=SCREEN) as screen,
+    ):
+        code = api.post("rooms", json={"lesson": LESSON}).raise_for_status().json()["code"]
+        for pupil in (one, two):
+            pupil.enter(school, code)
+            pupil.press("Join")
+        opens_it_in_the_cockpit(teacher, school, code)
+
+        names = one.who[0], two.who[0]
+        for pupil in (one, two):
+            pupil.page.get_by_role("link", name="Enter the tournament: Cup of the class").tap()
+            pupil.sees("practises at most 40 steps, then walks 50, on 8 secret seeds")
+        enters_a_learner(one)
+        enters_by_keys_alone(two)
+        sees_the_ranking(two, names)
+
+        projector = RoomPage(screen, has_3d=False)
+        screen.context.add_cookies(teacher.page.context.cookies())  # type: ignore[arg-type]
+        projector.enter(school, code, "?projector")
+        projector.sees("Tournament: Cup of the class")
+        is_read_from_afar(projector)
+        projector.page.goto(f"{one.page.url}?projector")
+        ranked(projector, names[0])
+        is_read_from_afar(projector)
+
+        ends_it(teacher, one.page.url)
+        repeats_it(teacher, tmp_path)
+        one.sees("Ended")
+        assert "Sarsa, α 0.5, 30 steps" in ranked(two, names[0])
+        one.sees("Secret and draws")
+        one.sees("Flat ground")
+        is_accessible(one)
+        projector.sees("Ended")
+        is_read_from_afar(projector)
+        assert projector.complaints == []
+
+
+def opens_it_in_the_cockpit(teacher: RoomPage, school: Serving, code: str) -> None:
+    teacher.enter(school, code)
+    teacher.press("Start a tournament…")
+    dialog = teacher.page.get_by_role("dialog", name="Open a tournament")
+    expect(dialog).to_contain_text("ideal (no slip)")
+    dialog.get_by_label("Title").fill("Cup of the class")
+    steps = dialog.get_by_label("Most steps of practice")
+    steps.fill("40.5")
+    teacher.sees("Enter a whole number")
+    steps.fill("40")
+    seeds = dialog.get_by_label("Secret seeds")
+    seeds.fill("3")
+    teacher.press("Open the tournament")
+    # The refusal of the server stands beside the field that it is about.
+    expect(seeds).to_have_accessible_description(
+        "Secret seeds must be a whole number from 5 to 100."
+    )
+    is_accessible(teacher)
+    teacher.complaints.clear()
+    seeds.fill("8")
+    teacher.press("Open the tournament")
+    expect(teacher.page.get_by_role("dialog", name="The tournament is open")).to_be_visible()
+    is_accessible(teacher)
+    teacher.press("Close")
+    expect(teacher.page.get_by_role("link", name="Cup of the class")).to_be_visible()
+
+
+def enters_a_learner(pupil: RoomPage) -> None:
+    pupil.sees("6 of 6 entries left this hour.")
+    choose(pupil, "Sarsa")
+    pupil.page.get_by_label("Steps of practice").first.fill("41")
+    pupil.sees("Must be from 1 to 40")
+    pupil.page.get_by_label("Steps of practice").first.fill("30")
+    pupil.page.locator("summary").get_by_text("Settings", exact=True).tap()
+    alpha = pupil.page.get_by_role("textbox", name="Learning rate α")
+    alpha.fill("2")
+    expect(pupil.button("Enter")).to_have_attribute("aria-disabled", "true")
+    alpha.fill("0.5")
+    is_accessible(pupil)
+    pupil.press("Enter")
+    expect(pupil.page.get_by_role("status").filter(has_text="judged on 8 draws")).to_have_count(1)
+    expect(pupil.page.locator(":focus")).to_contain_text("Sarsa, α 0.5, 30 steps")
+    pupil.sees("5 of 6 entries left this hour.")
+    # The same is judged once.
+    pupil.press("Enter")
+    expect(pupil.page.get_by_role("status").filter(has_text="was entered before")).to_have_count(1)
+    pupil.sees("5 of 6 entries left this hour.")
+
+
+def enters_by_keys_alone(pupil: RoomPage) -> None:
+    keyboard = pupil.page.keyboard
+    pupil.page.locator("body").focus()
+    for _ in range(20):
+        keyboard.press("Tab")
+        if pupil.page.evaluate("document.activeElement.id") == "entry-agent":
+            break
+    keyboard.type("Double")
+    expect(pupil.page.get_by_label("Agent", exact=True)).to_have_value("double-q")
+    for _ in range(20):
+        keyboard.press("Tab")
+        if pupil.page.evaluate("document.activeElement.type") == "submit":
+            break
+    keyboard.press("Enter")
+    expect(pupil.page.locator(":focus")).to_contain_text("Double Q")
+
+
+def sees_the_ranking(pupil: RoomPage, names: tuple[str, str]) -> None:
+    other, own = names
+    for name in (*REFERENCES, *names):
+        assert re.search(r"\d\.\d\d m", ranked(pupil, name))
+    # What others have entered is shown at the end alone.
+    assert "Sarsa" not in ranked(pupil, other)
+    assert "Double Q" in ranked(pupil, own)
+    marks = pupil.page.get_by_role("img", name=re.compile(r"m, 95 % interval .+ to .+ m$"))
+    expect(marks).to_have_count(5)
+    expect(pupil.page.get_by_role("heading", name="Being judged")).to_have_count(0)
+    is_accessible(pupil)
+
+
+def ends_it(teacher: RoomPage, address: str) -> None:
+    teacher.page.goto(address)
+    teacher.sees("For you as an operator")
+    # Operators see what has been entered.
+    teacher.sees("Sarsa, α 0.5")
+    is_accessible(teacher)
+    teacher.press("End…")
+    is_accessible(teacher)
+    teacher.press("End the tournament")
+    teacher.sees("Secret and draws")
+    is_accessible(teacher)
+
+
+def repeats_it(teacher: RoomPage, folder: Path) -> None:
+    with teacher.page.expect_download() as loading:
+        teacher.page.get_by_role("link", name="Download the file").tap()
+    download: Download = loading.value
+    file = folder / download.suggested_filename
+    download.save_as(file)
+    teacher.sees(f"hexapods verify {file.name}")
+    program = [sys.executable, "-m", "app.cli", "verify", str(file)]
+    done = subprocess.run(program, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_an_operator_opens_one_from_the_menu_and_deletes_it(
+    flat_browser: Browser, school: Serving
+) -> None:
+    with school.api(TOKEN) as api, new_page(flat_browser) as page:
+        trained = finished(api, "trainings", {**WALK, "steps": 10, "name": "Early riser"})
+        finished(api, "trainings", {**WALK, "steps": 11})
+        dashboard = Dashboard(page, has_3d=False)
+        dashboard.open(f"{school.address}?token={TOKEN}&simulator=kinematic")
+        page.get_by_label("More", exact=True).click()
+        dashboard.button("Tournaments…").click()
+        assert dashboard.violations_in_both_themes() == []
+        dashboard.button("Open a tournament…").click()
+        dialog = page.get_by_role("dialog", name="Open a tournament")
+        dialog.get_by_label("Title").fill("Cup of operators")
+        dialog.get_by_label("Most steps of practice").fill("10")
+        dialog.get_by_label("Secret seeds").fill("8")
+        dialog.get_by_text("Other creatures that may enter").click()
+        dialog.get_by_role("checkbox", name="Ant", exact=True).check()
+        dialog.get_by_role("checkbox", name="Trained tables may enter").check()
+        assert dashboard.violations_in_both_themes() == []
+        dashboard.button("Open the tournament").click()
+        page.get_by_role("link", name="Go to the tournament").click()
+
+        watched = RoomPage(page, has_3d=False)
+        watched.sees("Creatures that may enter")
+        page.get_by_label("Name of the entry").fill("A" * 30)
+        page.get_by_label("Creature", exact=True).select_option(index=1)
+        dashboard.button("Enter").click()
+        expect(page.locator(":focus")).to_contain_text("A" * 30)
+        assert dashboard.violations_in_both_themes() == []
+        enters_a_table(page, trained["name"])
+        dashboard.button("End…").click()
+        page.get_by_role("checkbox", name=re.compile("^Drop the")).check()
+        dashboard.button("End the tournament").click()
+        watched.sees("Not judged, since the tournament ended before")
+        watched.sees("Secret and draws")
+        dashboard.button("Delete…").click()
+        dashboard.button("Delete the tournament").click()
+        expect(page).to_have_url(school.address)
+        assert dashboard.complaints == []
+
+
+def enters_a_table(page: Page, name: str) -> None:
+    """Enter with a training that is within the budget; the longer one is not offered."""
+    field = page.get_by_label("What enters")
+    expect(field.get_by_role("option")).to_have_count(2)
+    field.select_option(label=f"{name}, 10 steps")
+    expect(page.get_by_label("Agent", exact=True)).to_have_count(0)
+    page.get_by_role("button", name="Enter", exact=True).click()
+    expect(page.locator(":focus")).to_contain_text("Q-learning, a trained table")
+
+
+def test_what_is_not_there_is_told(flat_browser: Browser, school: Serving) -> None:
+    with (
+        school.api(TOKEN) as api,
+        phone(flat_browser) as none,
+        phone(flat_browser) as watches,
+    ):
+        visit(none, school, "0123456789abcdef")
+        none.sees("No tournament here")
+        is_accessible(none)
+        none.complaints.clear()
+        made = api.post("tournaments", json={"title": "Open", "rules": RULES}).raise_for_status()
+        visit(watches, school, made.json()["id"])
+        watches.sees("The references are the first")
+        expect(watches.button("Enter")).to_have_count(0)
+        expect(watches.button("End…")).to_have_count(0)
+        is_accessible(watches)
+
+
+def test_a_tournament_goes_on_when_its_server_comes_back(
+    flat_browser: Browser, tmp_path: Path
+) -> None:
+    with new_page(flat_browser, viewport=PHONE, has_touch=True, is_mobile=True) as page:
+        pupil = RoomPage(page, has_3d=False)
+        with serving(tmp_path, token=TOKEN) as first, first.api(TOKEN) as api:
+            rules = {**RULES, "draws": 100, "simulator": "mujoco", "steps": 500}
+            made = api.post("tournaments", json={"title": "Cup", "rules": rules}).json()
+            visit(pupil, first, made["id"])
+            pupil.sees("The references are the first")
+            first.kill()
+            pupil.sees("Reconnecting")
+            is_accessible(pupil)
+        with serving(tmp_path, port=first.port, token=TOKEN) as second, second.api(TOKEN) as api:
+            expect(page.get_by_text("Reconnecting")).to_have_count(0)
+            api.post(f"tournaments/{made['id']}/end", json={}).raise_for_status()
+            pupil.sees("Judging the last entries")
