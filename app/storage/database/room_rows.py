@@ -184,6 +184,11 @@ class RoomRows:
 
         self._database.write(work)
 
+    def delete_room(self, code: str) -> None:
+        """Delete a room, with its participants, predictions and links to runs."""
+        statement = delete(ROOMS).where(ROOMS.c.code == code)
+        self._database.write(lambda connection: connection.execute(statement))
+
     def remove_runs(self, run_ids: Collection[str]) -> None:
         """Delete the links of runs that were never stored."""
         statement = delete(ROOM_RUNS).where(ROOM_RUNS.c.run_id.in_(run_ids))
@@ -195,15 +200,29 @@ class RoomRows:
             self._database.write(lambda connection: connection.execute(insert(table), values))
 
     def _all(self, table: Table, kind: type[RowT], order: Column[Any]) -> list[RowT]:
-        query = select(*map(_undecoded, table.c)).order_by(order)
-        rows = self._database.read(lambda connection: connection.execute(query).mappings().all())
-        found = []
-        for row in rows:
-            try:
-                found.append(kind(**{one.name: _decoded(one, row[one.name]) for one in table.c}))
-            except (ValueError, TypeError, RecursionError):
-                _logger.warning("a row of %s cannot be read", table.name, exc_info=True)
-        return found
+        return read_rows(self._database, table, kind, order)
+
+
+def read_rows(
+    database: Database, table: Table, kind: type[RowT], order: Column[Any]
+) -> list[RowT]:
+    """Return all rows of a table that can be decoded; others are logged.
+
+    Args:
+        database: has the table.
+        table: the table.
+        kind: named tuple with the columns of the table.
+        order: column by which they are sorted.
+    """
+    query = select(*map(_undecoded, table.c)).order_by(order)
+    rows = database.read(lambda connection: connection.execute(query).mappings().all())
+    found = []
+    for row in rows:
+        try:
+            found.append(kind(**{one.name: _decoded(one, row[one.name]) for one in table.c}))
+        except (ValueError, TypeError, RecursionError):
+            _logger.warning("a row of %s cannot be read", table.name, exc_info=True)
+    return found
 
 
 def is_seen_by(reader: Sequence[Seat]) -> ColumnElement[bool]:

@@ -172,6 +172,19 @@ ROOM_RUNS = Table(
     Index("ix_room_runs_room_card_seed", "room", "card", "seed"),
 )
 
+VISITOR_RUNS = Table(
+    "visitor_runs",
+    METADATA,
+    # No foreign key to runs: the link is written first, and counts after its run was deleted.
+    Column("run_id", PortableText, primary_key=True),
+    # SHA-256 of the key in the visitor's cookie; nothing else is known of who it is.
+    Column("visitor", PortableText, nullable=False),
+    Column("steps", BigInteger, nullable=False),
+    # Whether it is the run that was asked for, not a training that it needs.
+    Column("is_main", Boolean, nullable=False),
+    Column("created_at", UtcTime, nullable=False),
+)
+
 ROBOTS = Table(
     "robots",
     METADATA,

@@ -38,6 +38,7 @@ from app.storage.database.room_rows import RoomRows, Seat
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import RUNS
 from app.storage.database.trials import Trials
+from app.storage.database.visitor_rows import VisitorRows
 from app.storage.disk_space import START_BYTES
 from app.storage.errors import Conflict, Damaged, StorageFailed
 from app.storage.run import (
@@ -77,6 +78,7 @@ class RunStore:
         sessions: storage of operators' browser sessions, in the same database.
         lessons: those that were stored.
         rooms: rooms of classes, with their participants, predictions and runs.
+        visitors: runs of visitors of a demo.
     """
 
     def __init__(self, database: Database, files: ArtifactFiles, robots: RobotStore) -> None:
@@ -86,6 +88,7 @@ class RunStore:
         self.curves, self.trials, self.keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SessionRows(database)
         self.lessons, self.rooms = LessonRows(database), RoomRows(database)
+        self.visitors = VisitorRows(database)
 
     def check_disk_space(self) -> None:
         """Check that there is disk space for one more run.
