@@ -128,8 +128,7 @@ class Settings:
         if self.database_url is not None:
             _check_database_url(self.database_url)
         self._check_numbers()
-        if self.demo:
-            self._check_demo()
+        self._check_demo()
         if self.token is None and not is_loopback(self.host):
             raise InvalidInput(
                 f"refusing to listen on {self.host} without a token, since anyone there could "
@@ -145,6 +144,8 @@ class Settings:
             raise InvalidInput(f"{PREFIX}{name.upper()} must be {limits}, not {number}")
 
     def _check_demo(self) -> None:
+        if not self.demo:
+            return
         if self.token is None:
             raise InvalidInput(
                 f"a demo needs {PREFIX}TOKEN, or every stranger would be its operator; "

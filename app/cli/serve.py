@@ -35,7 +35,8 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "--demo",
         action="store_true",
         help="let strangers train within an allowance, and delete what they make after a day "
-        "(or HEXAPODS_DEMO=1); makes a token if none is set, on loopback alone, and prints the links",
+        "(or HEXAPODS_DEMO=1); print the links, with a token that is made if none is set, on "
+        "loopback alone",
     )
     parser.set_defaults(run=run)
 

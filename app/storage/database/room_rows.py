@@ -203,9 +203,7 @@ class RoomRows:
         return read_rows(self._database, table, kind, order)
 
 
-def read_rows(
-    database: Database, table: Table, kind: type[RowT], order: Column[Any]
-) -> list[RowT]:
+def read_rows(database: Database, table: Table, kind: type[RowT], order: Column[Any]) -> list[RowT]:
     """Return all rows of a table that can be decoded; others are logged.
 
     Args:

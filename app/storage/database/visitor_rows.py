@@ -1,14 +1,14 @@
 """Rows of the `visitor_runs` table: runs of strangers who visit a demo."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
 from typing import NamedTuple
 
-from sqlalchemy import delete, insert
+from sqlalchemy import delete, insert, select
 
 from app.storage.database.engine import Database
 from app.storage.database.room_rows import read_rows
-from app.storage.database.schema import VISITOR_RUNS
+from app.storage.database.schema import RUNS, VISITOR_RUNS
 
 
 class VisitorRun(NamedTuple):
@@ -38,6 +38,16 @@ class VisitorRows:
     def all(self) -> list[VisitorRun]:
         """Return all that can be decoded, oldest first."""
         return read_rows(self._database, VISITOR_RUNS, VisitorRun, VISITOR_RUNS.c.run_id)
+
+    def states(self, visitor: str | None = None) -> Mapping[str, str]:
+        """Return the states of the runs that are kept, by id; of one visitor, or of all."""
+        query = select(RUNS.c.id, RUNS.c.state).join(
+            VISITOR_RUNS, VISITOR_RUNS.c.run_id == RUNS.c.id
+        )
+        if visitor is not None:
+            query = query.where(VISITOR_RUNS.c.visitor == visitor)
+        rows = self._database.read(lambda connection: connection.execute(query).all())
+        return {str(run_id): str(state) for run_id, state in rows}
 
     def add(self, rows: Sequence[VisitorRun]) -> None:
         """Insert runs, all or none."""
