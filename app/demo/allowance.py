@@ -25,7 +25,7 @@ class Allowance:
         unended: starts of a visitor that wait or go on at once.
         kept: runs of a visitor that are kept at once, trainings and races.
         seconds_per_run: for so long a run computes at most; then it is stopped [s].
-        visitors_per_address: so many times a visitor's steps one address has, as of a class.
+        visitors_per_address: so many visitors' steps and starts one address has, as of a class.
     """
 
     steps_per_hour: int = Settings.demo_steps_per_hour
@@ -52,6 +52,11 @@ class Allowance:
         """Steps that all visitors of one address may compute in an hour."""
         return self.visitors_per_address * self.steps_per_hour
 
+    @property
+    def unended_of_address(self) -> int:
+        """Starts of all visitors of one address that wait or go on at once."""
+        return self.visitors_per_address * self.unended
+
     def cost(self, runs: Sequence[Run]) -> int:
         """Return how many steps a start counts as."""
         return max(self.least_steps, sum(run.total for run in runs))
@@ -77,8 +82,12 @@ class Allowance:
                 f"practice and all lanes; this has {steps:,}, so choose fewer steps or lanes"
             )
 
-    def check_unended(self, count: int) -> None:
+    def check_unended(self, count: int, of_address: int) -> None:
         """Check that another start may wait beside so many.
+
+        Args:
+            count: of the visitor.
+            of_address: of all visitors of the address.
 
         Raises:
             Busy: if it may not.
@@ -87,6 +96,12 @@ class Allowance:
             raise Busy(
                 f"{count} of your runs wait or go on, and {self.unended} may at once here; wait "
                 "for one to end, or stop one",
+                _RETRY_S,
+            )
+        if of_address >= self.unended_of_address:
+            raise Busy(
+                f"{of_address} runs of visitors of your network wait or go on, which is the most "
+                "at once; wait for one to end",
                 _RETRY_S,
             )
 

@@ -15,6 +15,8 @@ from hexapods.domain.errors import HexapodError
 
 EVERY_S = 5.0
 """Period of the clean-up [s]."""
+_ATTEMPTS, _PAUSE_S = 20, 0.5
+"""Of an operator who ends a visitor: how often, and after how long again [s]."""
 _OVERLONG = "Stopped after {seconds:g} s, for which a run of this demo may compute."
 _logger = logging.getLogger(__name__)
 
@@ -87,15 +89,20 @@ class Expiry:
             Conflict: if a run is kept, as one of others waits for it.
         """
         runs = sorted(self._visitors.runs_of(visitor_id), key=lambda one: one.is_main, reverse=True)
-        ids = [one.run_id for one in runs]
-        deleted = self._deleted(ids)
-        self._visitors.forget(deleted)
-        if len(deleted) < len(ids):
-            raise Conflict(
-                f"{len(ids) - len(deleted)} runs of the visitor are kept, since others wait for "
-                "them; try again later",
-                "queued",
-            )
+        left = [one.run_id for one in runs]
+        for _ in range(_ATTEMPTS):
+            gone = self._deleted(left)
+            self._visitors.forget(gone)
+            left = [one for one in left if one not in gone]
+            if not left:
+                return
+            # A training that is stopped with its race has not ended yet.
+            time.sleep(_PAUSE_S)
+        raise Conflict(
+            f"{len(left)} runs of the visitor are kept, as others wait for them or they are still "
+            "ending; try again later",
+            "queued",
+        )
 
     def _sweep_rooms(self, rooms: Rooms, before: datetime) -> list[str]:
         gone = []

@@ -20,7 +20,7 @@ from app.limits.token_bucket import RateLimiter
 from app.storage.database.store import RunStore
 from app.storage.database.visitor_rows import VisitorRun
 from app.storage.errors import Forbidden, NotFound
-from app.storage.run import NOT_ENDED, Run
+from app.storage.run import INTERRUPTED, NOT_ENDED, RUNNING, Run
 from hexapods.domain.errors import HexapodError
 from hexapods.runs.race_config import RaceConfig
 
@@ -169,7 +169,7 @@ class Visitors:
         allowance.check_start(runs)
         if any(map(self.is_hidden, _used_by(runs))):
             raise Forbidden("this rests on a run of a class, which is shown after the reveal")
-        allowance.check_unended(used.unended)
+        allowance.check_unended(used.unended, self._unended_at(address))
         ends_s = 0.0
         if used.oldest is not None:
             ends_s = (used.oldest + allowance.lifetime - now).total_seconds()
@@ -198,7 +198,7 @@ class Visitors:
             self._runs[one.run_id] = self._by_visitor[visitor][one.run_id] = one
 
     def _use(self, visitor: str) -> Use:
-        states = self._rows.states(visitor)
+        states = self._rows.states(visitor=visitor)
         runs = list(self._by_visitor.get(visitor, {}).values())
         since = self._now() - HOUR
         kept = [one for one in runs if one.run_id in states]
@@ -208,6 +208,11 @@ class Visitors:
             kept=tuple(one.run_id for one in kept),
             oldest=min((one.created_at for one in kept), default=None),
         )
+
+    def _unended_at(self, address: str) -> int:
+        """Return how many starts of all visitors of an address wait or go on."""
+        unended = (self._runs[one] for one in self._rows.states(NOT_ENDED) if one in self._runs)
+        return sum(one.is_main and self._addresses.get(one.visitor) == address for one in unended)
 
     def _wait_s(self, visitor: str, cost: int) -> float:
         """Return the time until a visitor has so many steps left [s]."""
@@ -228,13 +233,16 @@ class Visitors:
 
     def unfinished(self) -> list[str]:
         """Return the ids of runs that were asked for, and that a crash has interrupted."""
-        states = self._rows.states()
-        mains = [one.run_id for one in list(self._runs.values()) if one.is_main]
-        return [run_id for run_id in mains if states.get(run_id) == "interrupted"]
+        interrupted = self._rows.states(INTERRUPTED)
+        return [
+            one.run_id
+            for one in list(self._runs.values())
+            if one.is_main and one.run_id in interrupted
+        ]
 
     def running(self) -> list[str]:
         """Return the ids of the runs that compute."""
-        return [one for one, state in self._rows.states().items() if state == "running"]
+        return list(self._rows.states(RUNNING))
 
     def made_before(self, time: datetime) -> list[VisitorRun]:
         """Return the runs that were made before a time, races before the trainings they need."""

@@ -39,12 +39,14 @@ def test_experiments_are_the_operators() -> None:
 
 
 def test_refusals_say_what_is_allowed_and_when() -> None:
-    ALLOWANCE.check_unended(1)
+    ALLOWANCE.check_unended(1, 63)
     with pytest.raises(Busy, match="2 of your runs wait or go on, and 2 may at once"):
-        ALLOWANCE.check_unended(2)
+        ALLOWANCE.check_unended(2, 2)
+    with pytest.raises(Busy, match="64 runs of visitors of your network"):
+        ALLOWANCE.check_unended(0, 64)
     ALLOWANCE.check_kept(38, 2, 60)
     with pytest.raises(
-        Busy, match="40 may be kept here; delete some, or wait: .* in 2 h"
+        Busy, match=r"40 may be kept here; delete some, or wait: .* in 2 h"
     ) as refused:
         ALLOWANCE.check_kept(39, 2, 7200)
     assert refused.value.retry_after_s == 7200

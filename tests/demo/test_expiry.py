@@ -49,13 +49,9 @@ def is_kept(store: RunStore, run_id: str) -> bool:
 
 
 def test_a_day_later_no_row_and_no_file_is_left(
-    store: RunStore,
-    jobs: Jobs,
-    visitors: Visitors,
-    clock: Clock,
-    expiry: Expiry,
-    tmp_path: Path,
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, tmp_path: Path
 ) -> None:
+    expiry = make_expiry(store, jobs, visitors, clock)
     before = files_in(tmp_path)
     started = start(visitors, jobs, race_of(training()))
     race = wait_until_ended(store, started.run)

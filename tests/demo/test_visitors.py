@@ -127,7 +127,7 @@ def test_dropping_the_cookie_gives_no_more_than_the_address_has(
     for _ in range(most):
         visitors.start("", HOME, training(steps=50), queue)
     visitors.start("", HOME, training(steps=50), queue)
-    with pytest.raises(Busy, match="300 steps within an hour, .* start this in 10 min"):
+    with pytest.raises(Busy, match=r"300 steps within an hour, .* start this in 10 min"):
         visitors.start("", HOME, training(steps=50), queue)
     visitors.start("", SCHOOL, training(steps=50), queue)
     clock.pass_time(minutes=11)
@@ -180,6 +180,20 @@ def test_two_starts_of_a_visitor_wait_or_go_on(
     third = start(visitors, jobs, training(), first.key)
     jobs.stop(first.run.id)
     wait_until_ended(store, third.run)
+
+
+def test_an_address_that_drops_its_cookie_fills_no_more_places_than_a_class(
+    store: RunStore, visitors: Visitors, jobs: Jobs
+) -> None:
+    blocker = jobs.start(endless())
+    wait_for_progress(store, blocker)
+    places = SMALL.unended_of_address
+    for _ in range(places):
+        start(visitors, jobs, training())
+    with pytest.raises(Busy, match=f"{places} runs of visitors of your network"):
+        start(visitors, jobs, training())
+    start(visitors, jobs, training(), address=SCHOOL)
+    jobs.stop(blocker.id)
 
 
 def test_three_visitors_take_turns_after_the_operator(

@@ -9,6 +9,7 @@ from sqlalchemy import delete, insert, select
 from app.storage.database.engine import Database
 from app.storage.database.room_rows import read_rows
 from app.storage.database.schema import RUNS, VISITOR_RUNS
+from app.storage.run import STATES, State
 
 
 class VisitorRun(NamedTuple):
@@ -39,11 +40,20 @@ class VisitorRows:
         """Return all that can be decoded, oldest first."""
         return read_rows(self._database, VISITOR_RUNS, VisitorRun, VISITOR_RUNS.c.run_id)
 
-    def states(self, visitor: str | None = None) -> Mapping[str, str]:
-        """Return the states of the runs that are kept, by id; of one visitor, or of all."""
+    def states(
+        self, states: Collection[State] = STATES, *, visitor: str | None = None
+    ) -> Mapping[str, str]:
+        """Return the states of the runs that are kept, by id.
+
+        Args:
+            states: of runs in these alone.
+            visitor: of this visitor alone; None for all.
+        """
         query = select(RUNS.c.id, RUNS.c.state).join(
             VISITOR_RUNS, VISITOR_RUNS.c.run_id == RUNS.c.id
         )
+        if states is not STATES:
+            query = query.where(RUNS.c.state.in_(states))
         if visitor is not None:
             query = query.where(VISITOR_RUNS.c.visitor == visitor)
         rows = self._database.read(lambda connection: connection.execute(query).all())
