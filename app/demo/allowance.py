@@ -34,7 +34,7 @@ class Allowance:
     least_steps: int = 200
     unended: int = 2
     kept: int = 40
-    seconds_per_run: float = 180.0
+    seconds_per_run: float = 300.0
     visitors_per_address: int = 32
 
     @classmethod

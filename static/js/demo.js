@@ -19,7 +19,7 @@ const allowance = signal(null);
 export const allowanceInWords = computed(() => {
   if (!isVisitor.value || allowance.value === null) return "";
   const { steps_left, steps_per_hour, hours } = allowance.value;
-  const left = `${whole(steps_left)} of ${count(steps_per_hour, "step")} left for this hour`;
+  const left = `${whole(steps_left)} of ${count(steps_per_hour, "step")} an hour left`;
   const after = hours === 24 ? "a day" : count(hours, "hour");
   return `A demo: ${left}. What you make is public, and deleted after ${after}.`;
 });
@@ -66,8 +66,8 @@ export function followDemo() {
 
 // ---- the own robot: its practice as soon as it has a step, then its race
 
-/** A practice is shown in about so long [s]; its steps are much alike, and take about a second each. */
-const PRACTICE_S = 20;
+/** A practice is shown in about 15 s, as its steps are much alike: so many of them at real time. */
+const PRACTICE_STEPS = 40;
 const SPEEDS = [2, 4, 8, 16, 64];
 const RACE_SPEED = 2;
 
@@ -83,7 +83,7 @@ const shownInOrder = (run) => [
 
 /** @param {Run} run */
 const speedOf = ({ kind, config }) =>
-  (kind === "race" ? RACE_SPEED : SPEEDS.find((times) => config.steps <= times * PRACTICE_S) ?? SPEEDS.at(-1) ?? 1);
+  (kind === "race" ? RACE_SPEED : SPEEDS.find((times) => config.steps <= times * PRACTICE_STEPS) ?? SPEEDS.at(-1) ?? 1);
 
 function showFollowed() {
   const run = runOf(followed.value);

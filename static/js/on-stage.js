@@ -163,7 +163,9 @@ const fits = (training, values) =>
 const fittingTrainings = computed(() => {
   const known = [raceInView.value, shownRun.value, ...myRuns.value.map(runOf)];
   const trainings = known.flatMap((run) => (run?.kind === "race" ? trainingIds(run).map(runOf) : [run]));
-  return trainings.filter(isKnown).filter((run) => fits(run, form.value));
+  // A stranger begins with a robot of their own, whatever the stage shows of others.
+  const isUsable = (/** @type {Run} */ run) => !isVisitor.value || myRuns.value.includes(run.id);
+  return trainings.filter(isKnown).filter((run) => isUsable(run) && fits(run, form.value));
 });
 
 /** @param {string} agent */

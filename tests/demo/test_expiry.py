@@ -101,14 +101,14 @@ def test_a_run_that_takes_too_long_is_stopped_and_says_so(
     wait_for_progress(store, run)
     jobs.annotate(run.id, {"notes": "slow"})
     expiry.sweep()
-    clock.pass_time(seconds=179)
+    clock.pass_time(seconds=299)
     expiry.sweep()
     assert store.get(run.id).state == "running"
     clock.pass_time(seconds=1)
     expiry.sweep()
     stopped = store.get(run.id)
     assert stopped.state == "stopped"
-    assert stopped.notes == "slow\nStopped after 180 s, for which a run of this demo may compute."
+    assert stopped.notes == "slow\nStopped after 300 s, for which a run of this demo may compute."
 
 
 def test_an_operators_run_that_rests_on_a_visitors_stays_whole(
