@@ -62,7 +62,8 @@ def see_the_own_robot(dashboard: Dashboard, server: Serving) -> None:
     expect(dashboard.shown_run).to_contain_text("Race")
     expect(dashboard.headline).to_have_text(re.compile("wins|leads|level"))
     with server.api() as api:
-        assert api.get("stage").json()["run_id"] is None
+        # The common stage may replay a race, as it does by itself; nobody has put a run on it.
+        assert api.get("stage").json()["origin"] in ("none", "automatic")
 
 
 def own_runs_alone_are_changed(dashboard: Dashboard, other_id: str) -> None:
