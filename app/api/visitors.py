@@ -23,6 +23,7 @@ _OF_OTHERS = "User-agent: *\nDisallow: /\n"
     "/allowance",
     summary="Get what a visitor of a demo may start, and what is left of it",
     response_model=AllowanceView,
+    responses={404: {}},
 )
 def get_allowance(services: ServicesDep, visitor: VisitorDep) -> Response:
     """Return the limits of each visitor, what who asks has left, and the ids of their runs."""
@@ -44,7 +45,12 @@ def get_allowance(services: ServicesDep, visitor: VisitorDep) -> Response:
     return JSONResponse(answer)
 
 
-@router.get("/visitors", summary="List the visitors of a demo", response_model=VisitorList)
+@router.get(
+    "/visitors",
+    summary="List the visitors of a demo",
+    response_model=VisitorList,
+    responses={404: {}},
+)
 def list_visitors(services: ServicesDep, reader: ReaderDep) -> Response:
     """Return the visitors of whom something is kept or counted; for operators alone."""
     _check_demo(services)

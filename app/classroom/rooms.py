@@ -158,8 +158,8 @@ class Rooms:
             room = self.end(code)
             self._rows.delete_room(room.code)
             del self._rooms[room.code]
-            self._seats = {key: seat for key, seat in self._seats.items() if seat[0] != room.code}
-            self._runs = {k: one for k, one in self._runs.items() if one.room != room.code}
+            self._seats.forget(room)
+            self._runs.forget(room)
 
     def show_card(self, code: str, number: int) -> Room:
         """Show a card.

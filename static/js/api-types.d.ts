@@ -2205,7 +2205,7 @@ export interface ServoEffort {
    */
   largest_torque_nm: number;
   /**
-   * of each servo.
+   * the most that the servo with the largest torque has.
    */
   torque_limit_nm: number;
   /**

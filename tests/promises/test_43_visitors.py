@@ -10,6 +10,7 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -121,17 +122,24 @@ def visit(server: Serving, body: Any) -> tuple[str, str]:
 
 @pytest.fixture(scope="module")
 def demo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Demo]:
-    settings = {"demo": 1, "starts_per_minute": 100_000, "demo_steps_per_hour": 1_000_000}
-    with serving(tmp_path_factory.mktemp("demo"), token=TOKEN, **settings) as server:
+    data = tmp_path_factory.mktemp("demo")
+    with serving(
+        data, token=TOKEN, demo=1, starts_per_minute=100_000, demo_steps_per_hour=1_000_000
+    ) as server:
         with server.api(TOKEN) as api:
             run = str(api.post("trainings", json={**SLOW, "steps": 400_000}).json()["id"])
             code = str(api.post("rooms", json={}).json()["code"])
         other, _ = visit(server, SLOW)
         with server.api() as api:
             for one in (run, other):
-                wait_until(lambda one=one: api.get(f"runs/{one}").json()["state"] == "running")
+                wait_until(partial(is_running, api, one))
         own, cookie = visit(server, BODY)
         yield Demo(server, run, own, other, cookie, code)
+
+
+def is_running(api: httpx2.Client, run_id: str) -> bool:
+    """Whether a run computes."""
+    return bool(api.get(f"runs/{run_id}").json()["state"] == "running")
 
 
 def may_send(route: Route) -> bool:
@@ -197,8 +205,7 @@ def test_operators_are_accepted_everywhere(demo: Demo) -> None:
 
 
 def test_after_a_day_nothing_is_left_though_the_server_was_down(tmp_path: Path) -> None:
-    settings = {"token": TOKEN, "demo": 1}
-    with serving(tmp_path, **settings) as server:
+    with serving(tmp_path, token=TOKEN, demo=1) as server:
         run_id, cookie = visit(server, SLOW)
         kept, _ = visit(server, BODY)
         with server.api(TOKEN) as api:
