@@ -59,6 +59,7 @@ def see_the_own_robot(dashboard: Dashboard, server: Serving) -> None:
     expect(slider).to_be_visible()
     first = slider.input_value()
     dashboard.eventually(lambda: slider.input_value() != first, "the robot walks")
+    expect(dashboard.labels).to_contain_text("Your robot")
     expect(dashboard.shown_run).to_contain_text("Race")
     expect(dashboard.headline).to_have_text(re.compile("wins|leads|level"))
     with server.api() as api:
