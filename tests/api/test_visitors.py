@@ -155,3 +155,10 @@ def test_no_demo_has_neither(api: Api) -> None:
     assert "--demo" in refused(api.call("GET", "/visitors"), 404)
     assert "--demo" in refused(api.call("DELETE", "/visitors/x", headers=X), 404)
     assert api.client.get("/robots.txt").text == "User-agent: *\nDisallow: /\n"
+
+
+def test_the_description_tells_what_a_visitor_may(stranger: Api) -> None:
+    paths = stranger.client.get("/openapi.json").json()["paths"]
+    assert paths["/api/v1/races"]["post"]["security"][-1] == {}
+    assert {"visitor": []} in paths["/api/v1/runs"]["delete"]["security"]
+    assert {"visitor": []} not in paths["/api/v1/experiments"]["post"]["security"]
