@@ -40,6 +40,7 @@ from app.api import (
     tournament_views,
     tournaments,
     trainings,
+    visitors,
 )
 from app.api.auth import TokenGuard
 from app.api.card_starts import CardStarts
@@ -56,15 +57,21 @@ from app.api.room_stages import RoomStages
 from app.api.stage_paths import StagePaths, stage_of
 from app.api.starts import start_routes
 from app.api.unfinished import Unfinished
+from app.api.visitor_access import VisitorAccess
 from app.api.wellformed import WellFormed
 from app.classroom.lessons import Lessons
 from app.classroom.rooms import Rooms
+from app.demo import expiry
+from app.demo.allowance import Allowance
+from app.demo.expiry import Expiry
+from app.demo.visitors import Visitors
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.file_renderer import FileRenderer
 from app.jobs.jobs import Jobs
 from app.jobs.process_pool import ProcessPool
+from app.jobs.queue import Owner
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
@@ -132,7 +139,13 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         viewer_slots=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     stages = [shared := new_stage()]
-    rooms = Rooms(store)
+    rooms, of_visitors = Rooms(store), Visitors(store, Allowance.of(settings))
+    of_visitors.is_hidden = lambda run_id: rooms.is_hidden(run_id, ())
+
+    def owner_of(run_id: str) -> Owner | None:
+        participant = rooms.owner_of(run_id)
+        return of_visitors.owner_of(run_id) if participant is None else Owner(participant)
+
     room_stages = RoomStages(
         stages, lambda path: new_stage(path=path, session_path="", announces=False)
     )
@@ -142,8 +155,9 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         store,
         recordings,
         bus,
-        on_queued=lambda run_id: rooms.owner_of(run_id) or shared.stage.offer(run_id),
-        owner_of=rooms.owner_of,
+        # Participants and visitors see their runs on pages of their own.
+        on_queued=lambda run_id: owner_of(run_id) or shared.stage.offer(run_id),
+        owner_of=owner_of,
         niceness=settings.job_niceness,
     )
     app = FastAPI(
@@ -180,10 +194,12 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         tournaments=contests,
         judge=Judge(contests, max(1, cores() // 2), _judges_niceness(settings)),
         joins=RateLimiter(JOINS, JOINS_PER_S),
+        visitors=of_visitors,
+        expiry=Expiry(store, jobs, of_visitors, rooms if settings.demo else None),
     )
     app.state.work_slots = WorkSlots()
     app.state.metrics = monitoring.registry_of(app.state.services)
-    _add_routes(app, app.state.services.agents)
+    _add_routes(app, app.state.services.agents, is_demo=settings.demo)
     problems.install(app)
     contract.install(app, app.state.services.agents, settings)
     # The middleware that is added last runs first.
@@ -192,7 +208,12 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     access = RoomAccess(rooms, contests.room_of)
     what_ifs = app.state.services.what_if_limiter
     app.add_middleware(RateLimit, settings=settings, what_ifs=what_ifs)
-    app.add_middleware(TokenGuard, settings=settings, rooms=access)
+    app.add_middleware(
+        TokenGuard,
+        settings=settings,
+        rooms=access,
+        visitors=VisitorAccess(of_visitors) if settings.demo else None,
+    )
     app.add_middleware(HostGuard, settings=settings)
     app.add_middleware(Unfinished)
     app.add_middleware(ProblemPages)
@@ -207,7 +228,7 @@ def _judges_niceness(settings: Settings) -> int:
     return 19 if settings.job_niceness else 0
 
 
-def _add_routes(app: FastAPI, agents: tuple[str, ...]) -> None:
+def _add_routes(app: FastAPI, agents: tuple[str, ...], *, is_demo: bool) -> None:
     app.router.routes += _api_routes(agents)
     app.router.routes += [
         *viewer_routes(_serve_viewer),
@@ -217,6 +238,7 @@ def _add_routes(app: FastAPI, agents: tuple[str, ...]) -> None:
             pages.page_content("tournament.html", assets.static_dir())
         ),
         *guide_routes(assets.docs_dir()),
+        visitors.robots_txt(is_demo=is_demo),
     ]
 
 
@@ -231,7 +253,7 @@ def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(archives, trainings, races, experiments, runs, exports, replays, gait),
-        *(stage, spectators, events, options, robots, lessons, rooms, tournaments),
+        *(stage, spectators, events, options, robots, lessons, rooms, tournaments, visitors),
     )
     for module in modules:
         versioned.include_router(module.router)
@@ -252,24 +274,45 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         opened.push_async_callback(services.room_stages.close_all)
         for room in services.rooms.open_rooms():
             await services.room_stages.open(room)
+        # Before what they have made is shown, or goes on.
+        await _clean_up(services)
         services.jobs.open()
-        await asyncio.to_thread(_resume_runs_of_rooms, services)
+        await asyncio.to_thread(_resume_interrupted, services)
         services.judge.start()
+        cleaning = asyncio.create_task(_keep_clean(services))
         try:
             yield
         finally:
+            cleaning.cancel()
             services.bus.close()
             await _end_long_requests(app)
             await asyncio.to_thread(services.jobs.close)
 
 
-def _resume_runs_of_rooms(services: Services) -> None:
-    """Queue again what participants of open rooms have started, and a crash has interrupted."""
-    for run_id in services.rooms.unfinished():
+def _resume_interrupted(services: Services) -> None:
+    """Queue again what participants of open rooms and visitors had started before a crash."""
+    for run_id in (*services.rooms.unfinished(), *services.visitors.unfinished()):
         try:
             services.jobs.resume(run_id)
         except HexapodError as error:
-            _logger.warning("a participant's run is not resumed: %s", error)
+            _logger.warning("an interrupted run is not resumed: %s", error)
+
+
+async def _keep_clean(services: Services) -> None:
+    """Clean up a demo for as long as there is one, or something is left of one."""
+    while services.settings.demo or services.visitors.count:
+        await asyncio.sleep(expiry.EVERY_S)
+        await _clean_up(services)
+
+
+async def _clean_up(services: Services) -> None:
+    try:
+        gone = await asyncio.to_thread(services.expiry.sweep)
+    except Exception:  # such as a damaged file: the next clean-up is not to be left out
+        _logger.exception("the clean-up has failed")
+        return
+    for code in gone:
+        await services.room_stages.close(code)
 
 
 async def _end_long_requests(app: FastAPI) -> None:

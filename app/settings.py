@@ -37,8 +37,19 @@ _WHOLE_NUMBERS = {
     "max_connections_per_address": (1, None, ""),
     "job_niceness": (0, 19, ""),
     "max_viewers": (1, None, ""),
+    "demo_steps_per_hour": (1, None, " of steps"),
+    "demo_hours": (1, 24, " of hours"),
 }
 """By setting the least, the most if there is one, and of what."""
+_YES, _NO = ("1", "true", "yes", "on"), ("0", "false", "no", "off")
+_DEMO_DEFAULTS: Mapping[str, Any] = {
+    "starts_per_minute": 120,
+    "what_ifs_per_minute": 20,
+    "max_viewers": 200,
+    "quota_mb": 4000,
+}
+"""What is stricter on a demo unless it is given: strangers are there, of whom a class may share an
+address."""
 MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
 _TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
@@ -71,6 +82,9 @@ class Settings:
         log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
         max_viewers: how many may watch the stage at once, and as many may follow the events.
+        demo: whether strangers may train, within an allowance, what is deleted after a day.
+        demo_steps_per_hour: how many steps a visitor of a demo may compute in an hour.
+        demo_hours: after how many hours what a visitor of a demo has made is deleted.
     """
 
     host: str = "127.0.0.1"
@@ -90,6 +104,9 @@ class Settings:
     job_niceness: int = 15
     max_viewers: int = 300
     log_level: LogLevel = "info"
+    demo: bool = False
+    demo_steps_per_hour: int = 20_000
+    demo_hours: int = 24
 
     def __post_init__(self) -> None:
         if isinstance(self.port, bool) or not 0 <= self.port <= MAX_PORT:
@@ -111,6 +128,7 @@ class Settings:
         if self.database_url is not None:
             _check_database_url(self.database_url)
         self._check_numbers()
+        self._check_demo()
         if self.token is None and not is_loopback(self.host):
             raise InvalidInput(
                 f"refusing to listen on {self.host} without a token, since anyone there could "
@@ -124,6 +142,20 @@ class Settings:
                 continue
             limits = f"at least {least}" if most is None else f"from {least} to {most}"
             raise InvalidInput(f"{PREFIX}{name.upper()} must be {limits}, not {number}")
+
+    def _check_demo(self) -> None:
+        if not self.demo:
+            return
+        if self.token is None:
+            raise InvalidInput(
+                f"a demo needs {PREFIX}TOKEN, or every stranger would be its operator; "
+                "`openssl rand -hex 16` makes a good one"
+            )
+        if self.spectators != "public":
+            raise InvalidInput(
+                f"a demo is open to strangers: leave {PREFIX}SPECTATORS out, or leave out "
+                f"{PREFIX}DEMO"
+            )
 
     @property
     def viewers_per_address(self) -> int:
@@ -186,6 +218,10 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
     given: dict[str, Any] = {name: environ.get(PREFIX + name.upper()) or None for name in names}
     given |= {name: value for name, value in options.items() if value is not None}
     given = {name: value for name, value in given.items() if value is not None}
+    if isinstance(given.get("demo"), str):
+        given["demo"] = _yes_or_no("demo", given["demo"])
+    if given.get("demo"):
+        given = {**_DEMO_DEFAULTS, **given}
     if isinstance(given.get("port"), str):
         given["port"] = _port(given["port"])
     for name, (_, _, what) in _WHOLE_NUMBERS.items():
@@ -197,6 +233,11 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
             given[name] = tuple(host.strip() for host in hosts if host.strip())
     data = given.pop("data", None) or platformdirs.user_data_path("racing-hexapods", False)
     return Settings(data=Path(data).expanduser().absolute(), **given)
+
+
+def is_demo(environ: Mapping[str, str] = os.environ) -> bool:
+    """Whether an environment makes a server a demo; errors as `read_settings`."""
+    return _yes_or_no("demo", environ.get(f"{PREFIX}DEMO") or _NO[0])
 
 
 def remove_secrets() -> None:
@@ -240,6 +281,12 @@ def _whole_number(name: str, what: str, text: str) -> int:
     if not text.isascii() or not text.isdigit():
         raise InvalidInput(f"{PREFIX}{name.upper()} must be a whole number{what}, not {text!r}")
     return int(text[:18])
+
+
+def _yes_or_no(name: str, text: str) -> bool:
+    if text.lower() not in (*_YES, *_NO):
+        raise InvalidInput(f"{PREFIX}{name.upper()} must be 1 or 0, not {text!r}")
+    return text.lower() in _YES
 
 
 def _check_host(name: str) -> None:

@@ -101,7 +101,10 @@ def _imported(services: Services, start_request: StartRequest, *, is_one: bool) 
 
     def create(key: IdempotencyKey | None) -> Sequence[Run]:
         agents = services.agents
-        return import_runs(store, body, ids, agents, "the archive", is_one=is_one, key=key)
+        runs = import_runs(store, body, ids, agents, "the archive", is_one=is_one, key=key)
+        # One that a visitor of a demo made and deleted, with the same id, is the operator's now.
+        services.visitors.forget([run.id for run in runs])
+        return runs
 
     runs = start_request.runs(services, create)
     for run in runs:

@@ -12,11 +12,12 @@ from app.api.problems import problem
 from app.api.rate_limit import is_question, too_many
 from app.api.room_access import READ_METHODS, RoomAccess
 from app.api.stage_paths import path_of, stage_of
+from app.api.visitor_access import VisitorAccess, visitor_cookie
 from app.limits.addresses import client_of
 from app.limits.connections import Connection
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
-from app.stage.roles import Roles
+from app.stage.roles import Role, Roles
 from app.storage.database.room_rows import Seat
 from hexapods.domain.errors import HexapodError
 
@@ -40,15 +41,22 @@ class TokenGuard:
     are guarded too.
     """
 
-    def __init__(self, app: ASGIApp, settings: Settings, rooms: RoomAccess) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        settings: Settings,
+        rooms: RoomAccess,
+        visitors: VisitorAccess | None = None,
+    ) -> None:
         """Wrap an app, inside `StagePaths`; of the settings it uses `public_url`.
 
         Args:
             app: the wrapped app.
             settings: of the server.
             rooms: decides what participants of rooms may do.
+            visitors: decides what visitors may do; None on a server that is no demo.
         """
-        self._app, self._rooms = app, rooms
+        self._app, self._rooms, self._visitors = app, rooms, visitors
         self._wrong_guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._settings = settings
 
@@ -63,12 +71,7 @@ class TokenGuard:
             await response(scope, receive, send)
             return
         cookie, bearer = self._cookie(scope, headers), _bearer(headers)
-        role = roles.of(bearer, cookie.value)
-        seats = self._seats(scope, headers) if role == "spectator" or not roles.needs_token else ()
-        if seats:
-            # Where nobody needs a token, a participant is who has a room's cookie.
-            role = "spectator"
-        scope["state"]["seats"] = seats
+        role, seats = self._identify(scope, headers, roles.of(bearer, cookie.value))
         if role == "spectator" and roles.needs_token:
             wrong = [credential for credential in (bearer, cookie.value) if credential]
             wait_s = max((self._wrong_guesses.take(client_of(scope)) for _ in wrong), default=0.0)
@@ -88,8 +91,24 @@ class TokenGuard:
         else:
             await refusal(scope, receive, send)
 
-    def _seats(self, scope: Scope, headers: Headers) -> tuple[Seat, ...]:
-        return self._rooms.seats(headers, is_secure=self._is_secure(scope))
+    def _identify(
+        self, scope: Scope, headers: Headers, role: Role
+    ) -> tuple[Role, tuple[Seat, ...]]:
+        """Return the role of a client and its seats in rooms; store these and a visitor's cookie.
+
+        Where nobody needs a token, a participant is who has a room's cookie.
+        """
+        seats: tuple[Seat, ...] = ()
+        is_secure = self._is_secure(scope)
+        if role == "spectator" or not stage_of(scope).roles.needs_token:
+            seats = self._rooms.seats(headers, is_secure=is_secure)
+        role = "spectator" if seats else role
+        is_visitor = self._visitors is not None and role == "spectator" and not seats
+        scope["state"]["seats"] = seats
+        scope["state"]["visitor"] = (
+            visitor_cookie(headers, is_secure=is_secure) if is_visitor else None
+        )
+        return role, seats
 
     def _refusal(self, scope: Scope, roles: Roles, seats: tuple[Seat, ...]) -> ASGIApp | None:
         """Return the refusal of a request of no operator; None if it is allowed."""
@@ -98,6 +117,8 @@ class TokenGuard:
             return refusal
         if self._rooms.is_open_to_all(scope) or _is_open_to_spectators(scope, roles):
             return None
+        if self._visitors is not None:
+            return self._visitors.refuse(scope, scope["state"]["visitor"].value)
         return _unauthorized(f"This needs the operator: {_AUTH_HINT}.")
 
     def _is_secure(self, scope: Scope) -> bool:

@@ -13,11 +13,12 @@ from fastapi import FastAPI
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.auth import PUBLIC_PATHS
-from app.api.cookies import NAME, ROOM_NAME
+from app.api.cookies import NAME, ROOM_NAME, VISITOR_NAME
 from app.api.event_answers import EventBodies
 from app.api.problems import MEDIA_TYPE
 from app.api.rate_limit import QUESTIONS
 from app.api.room_access import OF_BOTH, OF_PARTICIPANTS, OPEN_TO_ALL
+from app.api.visitor_access import OF_OWN_RUNS, STARTS
 from app.classroom import lesson
 from app.settings import Settings
 
@@ -68,7 +69,7 @@ _PROBLEMS: Mapping[int, tuple[str, str]] = {
     403: (
         "Forbidden",
         "The request calls the server by a foreign name, comes from a foreign page, or is none "
-        "that the card of a participant's room allows.",
+        "that a participant's card, or the demo to its visitors, allows.",
     ),
     404: ("NotFound", "There is no such thing (any more)."),
     405: ("MethodNotAllowed", "The method is not possible here."),
@@ -263,6 +264,7 @@ def _add_security(schema: Schema, settings: Settings) -> None:
             "name": f"{ROOM_NAME}_{settings.port}_CODE",
             "description": "set by joining a room; its name ends with the code of the room",
         },
+        **({"visitor": _of_visitors(settings)} if settings.demo else {}),
     }
     operator: list[Schema] = [{"bearer": []}, {"cookie": []}]
     for method, path, operation in operations(schema):
@@ -276,5 +278,19 @@ def _add_security(schema: Schema, settings: Settings) -> None:
             operation["security"] = [*operator, {"participant": []}]
         elif needs_token and (method, path) not in OPEN_TO_ALL:
             operation["security"] = operator
+            if settings.demo and (method, path) in STARTS:
+                # Without the cookie the start sets one.
+                operation["security"] = [*operator, {"visitor": []}, {}]
+            elif settings.demo and (method, path) in OF_OWN_RUNS:
+                operation["security"] = [*operator, {"visitor": []}]
         else:
             operation["security"] = [*operator, {}]
+
+
+def _of_visitors(settings: Settings) -> Schema:
+    return {
+        "type": "apiKey",
+        "in": "cookie",
+        "name": f"{VISITOR_NAME}_{settings.port}",
+        "description": "set by the first start of a visitor; it opens their own runs to them",
+    }

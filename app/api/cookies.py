@@ -1,4 +1,4 @@
-"""Session cookies: that of an operator, and those of participants of rooms."""
+"""Session cookies: of operators, of participants of rooms, and of visitors of a demo."""
 
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
@@ -9,6 +9,7 @@ from app.storage.sessions import SESSION_S
 
 NAME = "hexapods_operator"
 ROOM_NAME = "hexapods_room"
+VISITOR_NAME = "hexapods_visitor"
 
 
 def is_secure(scope: Scope, settings: Settings) -> bool:
@@ -47,9 +48,9 @@ class SessionCookie:
         self.others = cookie_parser("; ".join(headers.getlist("cookie")))
         self.value = self.others.get(self.name, "")
 
-    def set_header(self, session_id: str) -> str:
-        """Return the `Set-Cookie` value that stores a session id."""
-        return self._header(session_id, SESSION_S)
+    def set_header(self, session_id: str, age_s: int = SESSION_S) -> str:
+        """Return the `Set-Cookie` value that stores a session id for a time [s]."""
+        return self._header(session_id, age_s)
 
     def expire_header(self) -> str:
         """Return the `Set-Cookie` value that deletes the cookie."""

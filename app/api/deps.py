@@ -9,12 +9,15 @@ from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
 from app.api.card_starts import CardStarts
+from app.api.cookies import SessionCookie
 from app.api.descriptions import VALID
 from app.api.room_stages import RoomStages
 from app.api.stage_paths import stage_of
 from app.cache import BytesCache
 from app.classroom.lessons import Lessons
 from app.classroom.rooms import Rooms
+from app.demo.expiry import Expiry
+from app.demo.visitors import Visitors
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.file_renderer import FileRenderer
@@ -60,6 +63,7 @@ class Services:
         card_starts: makes what cards of lessons run.
         tournaments, judge: of entries on secret seeds and worlds.
         joins: limits how often one address joins rooms.
+        visitors, expiry: of a demo, and of what is left of one; the latter cleans it up.
         stream_lock: held while a race is encoded as a recorded stream for viser.
         exports: memory budget of exports that clients are still reading.
         analyses: gait analyses and timelines, which all pages that watch a run request at once.
@@ -88,6 +92,8 @@ class Services:
     tournaments: Tournaments
     judge: Judge
     joins: RateLimiter
+    visitors: Visitors
+    expiry: Expiry
     stream_lock: Lock = field(default_factory=Lock)
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
     analyses: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
@@ -96,8 +102,8 @@ class Services:
 class EventListener:
     """A client of the event stream, with its role; `close` ends its stream, if one is open."""
 
-    def __init__(self, role: Role, seats: Sequence[Seat] = ()) -> None:
-        self.role, self.seats = role, seats
+    def __init__(self, role: Role, seats: Sequence[Seat] = (), *, is_visitor: bool = False) -> None:
+        self.role, self.seats, self.is_visitor = role, seats, is_visitor
         self.close: Callable[[], None] = lambda: None
 
 
@@ -133,6 +139,11 @@ def _reader(request: Request) -> tuple[Seat, ...] | None:
     return None if request.state.role == "operator" else request.state.seats
 
 
+def _visitor(request: Request) -> SessionCookie | None:
+    cookie: SessionCookie | None = request.state.visitor
+    return cookie
+
+
 async def _body(request: Request) -> bytes:
     try:
         return await request.body()
@@ -161,4 +172,6 @@ BodyDep = Annotated[bytes, Depends(_body)]
 """The body of a request, as it was sent."""
 ReaderDep = Annotated[tuple[Seat, ...] | None, Depends(_reader)]
 """Which participants of rooms the client is, whose runs it sees; None for operators."""
+VisitorDep = Annotated[SessionCookie | None, Depends(_visitor)]
+"""The cookie of the visitor of a demo who asks, empty before the first start; None for others."""
 RoleDep = Annotated[Role, Depends(_role)]

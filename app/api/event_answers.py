@@ -130,7 +130,7 @@ class SnapshotView(Answer):
     """State of the server when the stream begins: the newest runs, or the one that is followed."""
 
     version: str
-    role: Literal["operator", "spectator"]
+    role: Literal["operator", "spectator", "visitor"]
     viewers: Count
     runs: list[ListedRunView]
     stage: StageView

@@ -8,7 +8,15 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.api.contract import sends_events
-from app.api.deps import EventListener, ReaderDep, RoleDep, Services, ServicesDep, StageDep
+from app.api.deps import (
+    EventListener,
+    ReaderDep,
+    RoleDep,
+    Services,
+    ServicesDep,
+    StageDep,
+    VisitorDep,
+)
 from app.api.descriptions import VALID
 from app.limits.addresses import client_of
 from app.limits.client_slots import NoFreeSlot, Refusal
@@ -43,14 +51,19 @@ def _existing_run_id(
 
 
 async def client_slot(
-    request: Request, services: ServicesDep, role: RoleDep, reader: ReaderDep
+    request: Request,
+    services: ServicesDep,
+    role: RoleDep,
+    reader: ReaderDep,
+    visitor: VisitorDep,
 ) -> AsyncIterator[EventListener]:
     """Occupy a client slot until the stream ends, evicting another client if the slots allow it.
 
     Raises:
         Busy: if no slot is free.
     """
-    listener = EventListener(role, reader or ())
+    is_visitor = visitor is not None and not request.scope["root_path"]
+    listener = EventListener(role, reader or (), is_visitor=is_visitor)
     try:
         evicted = services.listeners.take(listener, client_of(request.scope), role == "operator")
     except NoFreeSlot as error:
@@ -138,7 +151,7 @@ def _snapshot(
         runs = [store.find(run_id)]
     snapshot: dict[str, Any] = {
         "version": __version__,
-        "role": role,
+        "role": "visitor" if listener.is_visitor else role,
         "viewers": shared.hub.counters.viewers,
         "runs": [services.jobs.view(run) for run in runs],
         "stage": shared.stage.state(),

@@ -32,7 +32,7 @@ CONTENTS = (
             "exports",
         ),
     ),
-    ("Experiments", ("experiments", "figures", "python", "operations")),
+    ("Experiments", ("experiments", "figures", "python", "operations", "hosting")),
     (
         "How it works",
         (

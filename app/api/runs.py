@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request
@@ -24,6 +25,7 @@ from app.api.answers import (
     TrainingView,
 )
 from app.api.contract import LOCATION, answers
+from app.api.cookies import SessionCookie
 from app.api.deps import ReaderDep, Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
 from app.api.explanation_answers import ExplanationView
@@ -34,10 +36,11 @@ from app.api.schemas import AnnotationBody
 from app.archive.transfer import MAX_RUNS
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import CopyStart, Start
+from app.limits.addresses import client_of
 from app.storage.database.listing import Listing
 from app.storage.errors import Conflict, Damaged, NotFound
 from app.storage.json_text import finite
-from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
+from app.storage.run import AnyRun, DamagedRun, IdempotencyKey, Kind, Run, Sort, State
 from hexapods.domain.text import MAX_TAG
 
 MAX_POINTS = 40
@@ -96,9 +99,29 @@ def find_any(services: Services, kind: Kind, run_id: str) -> AnyRun:
 def start_run(
     services: Services, request: Request, start_request: StartRequest, start: Start
 ) -> Response:
-    """Queue a run, unless this request did before; return the response with its Location."""
-    (run,) = start_request.runs(services, lambda key: [services.jobs.start(start, key)])
-    return located(services, request, run, 202)
+    """Queue a run, unless this request did before; return the response with its Location.
+
+    A visitor of a demo starts within the allowance, and is known by a cookie from then on.
+    """
+    visitor: SessionCookie | None = request.state.visitor
+    if visitor is None:
+        (run,) = start_request.runs(services, lambda key: [services.jobs.start(start, key)])
+        return located(services, request, run, 202)
+    visitors, address = services.visitors, client_of(request.scope)
+    visitor_key = ""
+
+    def create(key: IdempotencyKey | None) -> list[Run]:
+        nonlocal visitor_key
+        queue = partial(services.jobs.start, key=key)
+        started, visitor_key = visitors.start(visitor.value, address, start, queue)
+        return [started]
+
+    (run,) = start_request.runs(services, create)
+    response = located(services, request, run, 202)
+    if visitor_key:
+        age_s = int(visitors.allowance.lifetime.total_seconds())
+        response.headers.append("Set-Cookie", visitor.set_header(visitor_key, age_s))
+    return response
 
 
 def located(services: Services, request: Request, run: Run, status: int) -> Response:

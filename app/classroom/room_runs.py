@@ -5,6 +5,7 @@ from contextlib import suppress
 from typing import Any
 
 from app.classroom.room import Room, given_key
+from app.jobs.linked_start import LinkedStart
 from app.jobs.submissions import Start
 from app.storage.database.room_rows import RoomRun, Seat
 from app.storage.database.store import RunStore
@@ -86,17 +87,36 @@ class RoomRuns:
         self._check_none_goes_on(room, seed)
         if len(before) >= MAX_RUNS:
             raise Busy(f"you have started {MAX_RUNS} runs on this card, the most", _RETRY_S)
-        start = _LinkedStart(make(room), self, room, seed, given)
+        start = LinkedStart(make(room), lambda runs: self._link(room, seed, given, runs))
         try:
             return queue(start)
         except BaseException:
             self._unlink(room, start.links)
             raise
 
-    def link(self, room: Room, runs: Sequence[RoomRun]) -> None:
-        """Note whose runs these are, before they are stored."""
-        self._rows.add_runs(runs)
-        for one in runs:
+    def forget(self, room: Room) -> None:
+        """Forget the runs of a room that is deleted."""
+        for one in room.runs:
+            self._runs.pop(one, None)
+
+    def _link(self, room: Room, seed: int, given: Mapping[str, Any], runs: Sequence[Run]) -> None:
+        """Note whose runs these are before they are stored; a link to none has no effect."""
+        is_shown = room.shows(seed, room.card)
+        links = [
+            RoomRun(
+                run_id=run.id,
+                room=room.code,
+                seed=seed,
+                card=room.card,
+                given=given,
+                is_main=run is runs[-1],
+                is_shown=is_shown,
+                created_at=run.created_at,
+            )
+            for run in runs
+        ]
+        self._rows.add_runs(links)
+        for one in links:
             self._runs[one.run_id] = room.runs[one.run_id] = one
 
     def _unlink(self, room: Room, run_ids: Collection[str]) -> None:
@@ -119,41 +139,3 @@ class RoomRuns:
             run = self._store.find(one.run_id)
             found = run if isinstance(run, Run) else None
         return found
-
-
-class _LinkedStart:
-    """A start whose runs are a participant's; they are linked before they are stored.
-
-    So no run is ever stored without whose it is; a link to a run that was not stored has no effect.
-
-    Attributes:
-        links: ids of the runs.
-    """
-
-    def __init__(
-        self, start: Start, runs: RoomRuns, room: Room, seed: int, given: Mapping[str, Any]
-    ) -> None:
-        self._start, self._runs, self._room = start, runs, room
-        self._seed, self._given = seed, given
-        self.links: list[str] = []
-
-    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:
-        """See `Start`."""
-        runs, room = self._start.runs(store, new_id), self._room
-        is_shown = room.shows(self._seed, room.card)
-        self.links = [run.id for run in runs]
-        links = [
-            RoomRun(
-                run_id=run.id,
-                room=room.code,
-                seed=self._seed,
-                card=room.card,
-                given=self._given,
-                is_main=run is runs[-1],
-                is_shown=is_shown,
-                created_at=run.created_at,
-            )
-            for run in runs
-        ]
-        self._runs.link(room, links)
-        return runs

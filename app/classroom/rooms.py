@@ -140,6 +140,27 @@ class Rooms:
         with self._lock:
             return [room for room in self.open_rooms() if self._now() - _last_deed(room) > IDLE]
 
+    def last_used_before(self, time: datetime) -> list[str]:
+        """Return the codes of the rooms in which nothing has happened since."""
+        return [room.code for room in self.all() if _last_deed(room) <= time]
+
+    def runs_in(self, code: str) -> list[str]:
+        """Return the ids of a room's runs, the newest first: races before their trainings."""
+        return [one.run_id for one in reversed(list(self.get(code).runs.values()))]
+
+    def forget(self, code: str) -> None:
+        """End a room, and delete all that is known of it but its runs.
+
+        Raises:
+            NotFound: if there is no such room.
+        """
+        with self._lock:
+            room = self.end(code)
+            self._rows.delete_room(room.code)
+            del self._rooms[room.code]
+            self._seats.forget(room)
+            self._runs.forget(room)
+
     def show_card(self, code: str, number: int) -> Room:
         """Show a card.
 

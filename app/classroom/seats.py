@@ -41,6 +41,11 @@ class Seats:
         room.participants[row.seed] = row
         self._seats[row.key_sha256] = (row.room, row.seed)
 
+    def forget(self, room: Room) -> None:
+        """Forget the seats of a room that is deleted."""
+        for one in room.participants.values():
+            self._seats.pop(one.key_sha256, None)
+
     def of(self, room: Room, key: str) -> ParticipantRow | None:
         """Return the participant of a room who has a key; None if none has, or has left."""
         seat = self._seats.get(_sha256(key)) if key else None

@@ -11,7 +11,7 @@ from typing import Any
 
 from app.cli import without_garbage_collection
 from app.cli.options import CommandParser, integer
-from app.settings import Settings, read_settings, remove_secrets
+from app.settings import Settings, is_demo, is_loopback, read_settings, remove_secrets
 
 THREADS_END_S = 2.0
 """Time for threads to end that still compute for requests once everything else has ended."""
@@ -31,6 +31,13 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         help="let the local network watch: bind every address, make a token if none is set, "
         "print the links",
     )
+    parser.add_argument(
+        "--demo",
+        action="store_true",
+        help="let strangers train within an allowance, and delete what they make after a day "
+        "(or HEXAPODS_DEMO=1); print the links, with a token that is made if none is set, on "
+        "loopback alone",
+    )
     parser.set_defaults(run=run)
 
 
@@ -44,12 +51,19 @@ def run(options: argparse.Namespace) -> int:
     if options.share:
         given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
         given["token"] = read_token() or secrets.token_urlsafe(24)
+    given["demo"] = options.demo or None
+    # Of a token of the environment no link is printed unless it is asked for: it would be in a log.
+    shows_links = options.share or options.demo
+    if (options.demo or is_demo()) and "token" not in given and read_token() is None:
+        host = options.host or os.environ.get("HEXAPODS_HOST") or Settings.host
+        if is_loopback(host):
+            given["token"], shows_links = secrets.token_urlsafe(24), True
     settings = read_settings(**given)
     remove_secrets()  # no process that is started from here on needs them
     with without_garbage_collection():
         from app.server import serve  # noqa: PLC0415 - its imports take most of a second
     # A link that is opened before the server answers looks broken.
-    serve(settings, on_ready=partial(show_links, settings) if options.share else None)
+    serve(settings, on_ready=partial(show_links, settings) if shows_links else None)
     _end_with_threads()
     return 0
 
@@ -75,11 +89,14 @@ def read_token() -> str | None:
 
 
 def show_links(settings: Settings, port: int) -> None:
-    """Print the links of operators and spectators, the latter also as a QR code."""
+    """Print the links of operators and of others, the latter also as a QR code."""
     from app.api.spectators import qr_code, shared_address  # noqa: PLC0415 - as for `serve` above
 
     address = shared_address(settings, port)
     print(f"Operator (may start and stop):  {address}?token={settings.token}")
-    print(f"Spectators (may watch):         {address}")
+    if settings.demo:
+        print(f"Visitors (may train, a day):    {address}")
+    else:
+        print(f"Spectators (may watch):         {address}")
     qr_code(address).terminal(out=sys.stdout, compact=True)
     sys.stdout.flush()

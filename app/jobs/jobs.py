@@ -10,7 +10,7 @@ from app.events.bus import EventBus
 from app.events.run_view import run_view
 from app.jobs.job import Job
 from app.jobs.messages import Changed
-from app.jobs.queue import RunQueue
+from app.jobs.queue import Owner, RunQueue
 from app.jobs.submissions import Start
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.jobs.tasks import resumed_runs
@@ -63,7 +63,7 @@ class Jobs:
         bus: EventBus,
         *,
         on_queued: Callable[[str], object] | None = None,
-        owner_of: Callable[[str], str | None] = lambda run_id: None,  # noqa: ARG005
+        owner_of: Callable[[str], Owner | None] = lambda run_id: None,  # noqa: ARG005
         cores: int | None = None,
         niceness: int = 0,
     ) -> None:
@@ -74,7 +74,7 @@ class Jobs:
             recordings: receives the motion of the robots.
             bus: receives the events.
             on_queued: called with the id of each training or race that was submitted.
-            owner_of: returns which participant of a room waits for a run; None if it is none.
+            owner_of: returns who waits for a run; None for an operator.
             cores: maximum number of jobs that run at once; by default one per core.
             niceness: added to the server's nice value in worker processes.
         """

@@ -1,11 +1,15 @@
 """The queue: runs in order of submission, each with the trainings that it depends on.
 
 Of runs that participants of rooms have started, that of whom has had the fewest turns comes first.
+Runs of a demo's visitors come after all others, fairly among addresses and then among visitors.
 """
 
 from collections import Counter
 from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
+from typing import Literal, NamedTuple
+
+from cachetools import LRUCache
 
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, StorageFailed, StorageFull
@@ -15,7 +19,31 @@ from hexapods.domain.errors import HexapodError
 MAX_QUEUED = 32
 """Runs that wait, besides those of participants, of which each has one at a time."""
 MAX_OF_PARTICIPANTS = 2048
+MAX_OF_VISITORS = 256
 RETRY_AFTER_S = 10
+_MAX_TURNS_KEPT = 20_000
+"""Owners and groups whose turns are known; of others it is forgotten that they had any."""
+_Class = Literal["operator", "participant", "visitor"]
+_PLACES: dict[_Class, int] = {
+    "operator": MAX_QUEUED,
+    "participant": MAX_OF_PARTICIPANTS,
+    "visitor": MAX_OF_VISITORS,
+}
+
+
+class Owner(NamedTuple):
+    """Someone other than an operator, who waits for a run.
+
+    Attributes:
+        name: of the owner; nobody else has it.
+        group: owners who take turns together before each takes their own: visitors of one address,
+            which could pose as many.
+        is_visitor: whether it is a visitor of a demo, else a participant of a room.
+    """
+
+    name: str
+    group: str = ""
+    is_visitor: bool = False
 
 
 class RunQueue:
@@ -26,18 +54,18 @@ class RunQueue:
     Args:
         store: store of the runs.
         publish: called with every run that changes here.
-        owner_of: returns who waits for the run of an id; None if it is no participant of a room.
+        owner_of: returns who waits for the run of an id; None for an operator.
     """
 
     def __init__(
         self,
         store: RunStore,
         publish: Callable[[Run], None],
-        owner_of: Callable[[str], str | None] = lambda run_id: None,  # noqa: ARG005
+        owner_of: Callable[[str], Owner | None] = lambda run_id: None,  # noqa: ARG005
     ) -> None:
         self._store, self._publish, self._owner_of = store, publish, owner_of
-        self._turns: Counter[str] = Counter()
-        """How many runs of each participant were started."""
+        self._turns: LRUCache[str, int] = LRUCache(_MAX_TURNS_KEPT)
+        """How many runs of each owner, and of each group, were started."""
         self._runs: dict[str, Run] = {}
         """By id, in order; each as it was stored last."""
         self._unreconciled: set[str] = set()
@@ -83,14 +111,20 @@ class RunQueue:
         return runs[-1]
 
     def _check_room_for(self, runs: Sequence[Run], free: int) -> None:
-        is_owned = self._owner_of(runs[-1].id) is not None
-        alike = sum((self._owner_of(one) is not None) == is_owned for one in self._runs)
-        most = MAX_OF_PARTICIPANTS if is_owned else MAX_QUEUED
+        kind = self._class_of(runs[-1].id)
+        alike = sum(self._class_of(one) == kind for one in self._runs)
+        most = _PLACES[kind]
         if alike + len(runs) > most + free:
             raise Busy(
                 f"{alike} runs are waiting, the most is {most}; wait for one to end, or stop one",
                 RETRY_AFTER_S,
             )
+
+    def _class_of(self, run_id: str) -> _Class:
+        owner = self._owner_of(run_id)
+        if owner is None:
+            return "operator"
+        return "visitor" if owner.is_visitor else "participant"
 
     def _requeue(self, run: Run) -> Run:
         """Store a resumed run as queued and delete the evaluations that it will repeat."""
@@ -129,20 +163,28 @@ class RunQueue:
         """Remove and return the first run that waits for nothing but a core, None if none does.
 
         If it is a participant's, the first of the participant who has had the fewest turns; both
-        exchange their places, so that the runs of others keep theirs.
+        exchange their places, so that the runs of others keep theirs. A visitor's only if there is
+        no other, the first of the address, and there of the visitor, with the fewest turns.
         """
         ready = [run for run in self._runs.values() if not run.waiting_for]
+        ready = [run for run in ready if self._class_of(run.id) != "visitor"] or ready
         if not ready:
             return None
         first = ready[0]
         if self._owner_of(first.id) is None:
             return self._runs.pop(first.id)
         owned = [(one, run) for run in ready if (one := self._owner_of(run.id)) is not None]
-        owner, run = min(owned, key=lambda pair: self._turns[pair[0]])
-        self._turns[owner] += 1
+        owner, run = min(owned, key=lambda pair: self._turns_of(pair[0]))
+        for name in (owner.name, _group_key(owner)):
+            self._turns[name] = self._turns.get(name, 0) + 1
+        if owner.is_visitor:  # only theirs wait
+            return self._runs.pop(run.id)
         places = {run.id: first, first.id: run}
         self._runs = {one.id: one for one in (places.get(i, r) for i, r in self._runs.items())}
         return self._runs.pop(run.id)
+
+    def _turns_of(self, owner: Owner) -> tuple[int, int]:
+        return self._turns.get(_group_key(owner), 0), self._turns.get(owner.name, 0)
 
     def push_front(self, run: Run) -> None:
         """Insert a run that could not be started at the head of the queue."""
@@ -156,7 +198,28 @@ class RunQueue:
     def position(self, run_id: str) -> int | None:
         """Return a run's position, 1 for the first, None if absent; callable from any thread."""
         ids = list(self._runs)
-        return ids.index(run_id) + 1 if run_id in ids else None
+        if run_id not in ids:
+            return None
+        owner = self._owner_of(run_id)
+        if owner is None or not owner.is_visitor:
+            return [one for one in ids if self._class_of(one) != "visitor"].index(run_id) + 1
+        return self._visitors_order(ids).index(run_id) + 1
+
+    def _visitors_order(self, ids: Sequence[str]) -> list[str]:
+        """Return ids in the order in which visitors' runs are started if none is added."""
+        others = [one for one in ids if self._class_of(one) != "visitor"]
+        owners = {one: owner for one in ids if (owner := self._owner_of(one)) and owner.is_visitor}
+        ahead: Counter[str] = Counter()
+        own_turns: dict[str, int] = {}
+        for run_id, owner in owners.items():
+            own_turns[run_id] = self._turns_of(owner)[1] + ahead[owner.name]
+            ahead[owner.name] += 1
+        places: dict[str, tuple[int, int]] = {}
+        for run_id in sorted(owners, key=lambda one: own_turns[one]):
+            group = _group_key(owners[run_id])
+            places[run_id] = self._turns.get(group, 0) + ahead[group], own_turns[run_id]
+            ahead[group] += 1
+        return [*others, *sorted(owners, key=lambda one: places[one])]
 
     def interrupt(self, reason: str) -> None:
         """Set all queued runs to `interrupted`, which can be resumed, and empty the queue."""
@@ -201,6 +264,10 @@ class RunQueue:
         self.publish_positions()
         self.settle(run)
         return run
+
+
+def _group_key(owner: Owner) -> str:
+    return f"group {owner.group}"
 
 
 def _needed_by(run: Run) -> tuple[str | None, ...]:

@@ -9,7 +9,7 @@ import {
 import { count, listed, whole } from "./format.js";
 import { changeIfStillHere, page } from "./page-state.js";
 import { canPlay, isPlaying, isRaceRun, laneTables, matchingTable, myWork, shownRun, work } from "./on-stage.js";
-import { isActive, isOperator, markAsMine } from "./selectors.js";
+import { isActive, isOperator, isVisitor, markAsMine, mayStart } from "./selectors.js";
 import { closeReplay, playReplay, seekReplay, setReplayClock, setReplaySpeed } from "./replay.js";
 import { formRobot } from "./robots.js";
 import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
@@ -135,10 +135,16 @@ export const secondaryActions = computed(() => {
 });
 
 export const canStart = computed(
-  () => isOperator.value && options.value !== null && !myWork.value && Object.keys(mistakes.value).length === 0,
+  () => mayStart.value && options.value !== null && !myWork.value && Object.keys(mistakes.value).length === 0,
 );
 
 export const runPrimaryAction = () => (canStart.value ? primaryAction.value.run() : null);
+
+/**
+ * Id of the run that a visitor of a demo has started last, whose picture this page is to show by itself; null once it
+ * has, or where another was chosen. @type {Signal<string | null>}
+ */
+export const followed = signal(null);
 
 /**
  * Take in a run that this tab starts.
@@ -149,6 +155,7 @@ export const adopt = async (send) => {
   if (run?.id) {
     markAsMine(run.id);
     closeReplay();
+    if (isVisitor.peek()) followed.value = run.id;
   }
   return run;
 };
@@ -183,6 +190,7 @@ const commands = oneAtATime("work", async (/** @type {{ verb: Verb, id: string }
   // A race that waits for its training stops that too.
   await requestRun(() => api.command(verb === "stop" ? requested : current, verb));
   const { run_id, playing } = commonStage.value ?? {};
+  if (!isOperator.value) return;
   if (verb === "stop" ? playing === false : run_id === id) await api.putStage({ playing: verb !== "pause" });
 });
 

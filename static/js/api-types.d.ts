@@ -79,6 +79,51 @@ export interface SettingOption {
   is_live: boolean;
 }
 /**
+ * What each visitor of a demo may start, and what is left of it to who asks.
+ */
+export interface AllowanceView {
+  /**
+   * steps that may be computed in any hour; of a race of all its lanes.
+   */
+  steps_per_hour: number;
+  /**
+   * of these.
+   */
+  steps_left: number;
+  /**
+   * steps of one start, with all the practice that a race needs.
+   */
+  steps_per_start: number;
+  /**
+   * a start counts as so many at least.
+   */
+  least_steps: number;
+  /**
+   * starts that may wait or go on at once.
+   */
+  max_unended: number;
+  /**
+   * starts that do.
+   */
+  unended: number;
+  /**
+   * runs that may be kept at once.
+   */
+  max_kept: number;
+  /**
+   * for so long a run computes at most; then it is stopped [s].
+   */
+  seconds_per_run: number;
+  /**
+   * after how many hours what was made is deleted.
+   */
+  hours: number;
+  /**
+   * ids of the runs of who asks, oldest first.
+   */
+  runs: string[];
+}
+/**
  * A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run.
  */
 export interface Announcement {
@@ -1025,7 +1070,7 @@ export interface EventBodies {
  */
 export interface SnapshotView {
   version: string;
-  role: "operator" | "spectator";
+  role: "operator" | "spectator" | "visitor";
   viewers: number;
   runs: ((TrainingView | RaceView | ExperimentView) | DamagedRunView)[];
   stage: StageView;
@@ -4259,6 +4304,37 @@ export interface TrialRow {
  */
 export interface TrialsView {
   trials: TrialRow[];
+}
+/**
+ * The visitors of a demo, those who have started last first.
+ */
+export interface VisitorList {
+  items: VisitorView[];
+}
+/**
+ * A visitor of a demo, of whom nothing but this is known.
+ */
+export interface VisitorView {
+  /**
+   * beginning of the hash of the key in the visitor's cookie.
+   */
+  id: string;
+  /**
+   * when the oldest of the runs was made.
+   */
+  since: string;
+  /**
+   * when the newest was.
+   */
+  newest: string;
+  /**
+   * that were started within the hour before that.
+   */
+  steps: number;
+  /**
+   * ids of the runs, oldest first; some may have been deleted.
+   */
+  runs: string[];
 }
 /**
  * Result of 30 seeds with these settings: their distances [m] and interquartile mean.

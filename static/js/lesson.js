@@ -4,7 +4,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { asTexts, change, page } from "./page-state.js";
 import { storedText } from "./page.js";
 import { isTimedOut, standings } from "./race.js";
-import { isOperator } from "./selectors.js";
+import { mayStart } from "./selectors.js";
 import { raceInView } from "./on-stage.js";
 import { agentOf, laneTitle } from "./settings.js";
 
@@ -50,7 +50,7 @@ const kept = storedText("lesson", "open");
 /** The cards of the lesson for who looks at this page. */
 export const cards = computed(() => (linked.value
   ? linked.value.cards.map(asCard)
-  : CARDS.filter(({ isForOperators }) => isOperator.value || !isForOperators)));
+  : CARDS.filter(({ isForOperators }) => mayStart.value || !isForOperators)));
 
 /** A card of the lesson that the address names; its texts are read in a dialog. */
 /** @type {(one: LessonCard, n: number) => Card} */

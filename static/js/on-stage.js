@@ -7,7 +7,7 @@ import { form } from "./form.js";
 import { count, duration, sentence, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
 import {
-  hasTable, isActive, isKnown, isOperator, ownRuns, runOf, stageableRuns, trainingIds,
+  hasTable, isActive, isKnown, isOperator, isVisitor, myRuns, runOf, stageableRuns, trainingIds,
 } from "./selectors.js";
 import { learns } from "./settings.js";
 import { commonStage, connection, isLockedOut, ownStage, scene, stage } from "./store.js";
@@ -93,13 +93,14 @@ const workOf = (requested) => {
 
 /** This tab's newest run that is not done. */
 export const myWork = computed(() => {
-  const run = ownRuns.value.map(runOf).find(isActive);
+  const run = myRuns.value.map(runOf).find(isActive);
   return run ? workOf(run) : null;
 });
 
 /** The work that Pause and Stop act on: this tab's, else the one on stage, else any. */
 export const work = computed(() => {
-  if (myWork.value) return myWork.value;
+  // Strangers see each other's work in the list of runs alone.
+  if (myWork.value || isVisitor.value) return myWork.value;
   const candidates = isActive(shownRun.value) ? [raceInView.value, shownRun.value] : stageableRuns.value;
   const run = candidates.find(isActive);
   return run ? workOf(run) : null;
@@ -115,7 +116,7 @@ export const liveTraining = computed(() => {
 export const offStage = computed(() => {
   const { requested, current } = myWork.value ?? {};
   const onStage = commonStage.value?.run_id;
-  if (!requested || !current || !onStage) return null;
+  if (!requested || !current || !onStage || isVisitor.value) return null;
   const isOwn = [requested.id, current.id, ...trainingIds(requested)].includes(onStage);
   return isOwn || commonStage.value?.next_run_id === requested.id ? null : current;
 });
@@ -139,7 +140,7 @@ const lastActivity = ({ ended_at, created_at }) => ended_at ?? created_at;
 /** The run that was last at work, if it was interrupted and is not on stage. */
 export const interruptedRun = computed(() => {
   const [last] = stageableRuns.value.toSorted((a, b) => lastActivity(b).localeCompare(lastActivity(a)));
-  if (work.value || last?.state !== "interrupted") return null;
+  if (work.value || isVisitor.value || last?.state !== "interrupted") return null;
   return last === shownRun.value || last === resumableOnStage.value ? null : last;
 });
 
@@ -160,9 +161,11 @@ const fits = (training, values) =>
 
 /** The trainings whose tables fit the form: those on stage first, then this tab's. */
 const fittingTrainings = computed(() => {
-  const known = [raceInView.value, shownRun.value, ...ownRuns.value.map(runOf)];
+  const known = [raceInView.value, shownRun.value, ...myRuns.value.map(runOf)];
   const trainings = known.flatMap((run) => (run?.kind === "race" ? trainingIds(run).map(runOf) : [run]));
-  return trainings.filter(isKnown).filter((run) => fits(run, form.value));
+  // A stranger begins with a robot of their own, whatever the stage shows of others.
+  const isUsable = (/** @type {Run} */ run) => !isVisitor.value || myRuns.value.includes(run.id);
+  return trainings.filter(isKnown).filter((run) => isUsable(run) && fits(run, form.value));
 });
 
 /** @param {string} agent */
@@ -269,6 +272,9 @@ const VERBS = { training: "Practising", race: "Simulating the race" };
 /** Progress of the work, else of what plays; null while there is neither. @type {Signal<Progress | null>} */
 export const progress = computed(() => (work.value ? ofWork(work.value) : ofPlayback(sceneOnStage.value)));
 
+/** Told to those who wait for strangers. @param {Run} run */
+const placeInQueue = ({ queue_position: place }) => (isVisitor.value && place ? `, place ${place}` : "");
+
 /** @param {{ requested: Run, current: Run }} work @returns {Progress} */
 function ofWork({ requested, current }) {
   const { done, total } = current.progress;
@@ -276,7 +282,9 @@ function ofWork({ requested, current }) {
   const seen = shownRun.value?.id === current.id ? stepsShown.value : null;
   const shown = seen === null || !total ? null : Math.min(seen, done) / total;
   const then = requested === current ? "" : ", then the race";
-  if (current.state === "queued") return { label: `Waiting in the queue${then}`, left: "", share: 0, shown: null };
+  if (current.state === "queued") {
+    return { label: `Waiting in the queue${placeInQueue(current)}${then}`, left: "", share: 0, shown: null };
+  }
   const steps = `${whole(done)} of ${count(total, "step")}`;
   if (current.state === "paused") return { label: `Paused at ${steps}${then}`, left: "", share, shown };
   const seconds = secondsLeft(current);

@@ -21,6 +21,14 @@ export const isActive = (run) => isKnown(run) && ACTIVE.has(run.state);
 export const hasTable = (run) => run?.kind === "training" && WITH_TABLE.has(run.state);
 
 export const isOperator = computed(() => role.value === "operator");
+/** Whether this page is a stranger's, on a demo: they start runs, and change their own. */
+export const isVisitor = computed(() => role.value === "visitor");
+/** Whether this page may start trainings and races. */
+export const mayStart = computed(() => isOperator.value || isVisitor.value);
+/** Ids of the runs of a demo's visitor, oldest first. @type {Signal<string[]>} */
+export const visitorRuns = signal([]);
+/** Whether this page may stop, rename or delete a run. @param {{ id: string }} run */
+export const mayChange = ({ id }) => isOperator.value || visitorRuns.value.includes(id);
 
 /** Every known run, newest first. */
 export const everyRun = computed(() =>
@@ -35,6 +43,9 @@ export const runOf = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);
 
 /** Ids of the runs that this tab started, newest first. @type {Signal<string[]>} */
 export const ownRuns = signal(readOwnRuns());
+
+/** Ids of the runs that this tab, or the visitor of a demo, has started, newest first. */
+export const myRuns = computed(() => [...new Set([...ownRuns.value, ...visitorRuns.value.toReversed()])]);
 
 /** @param {string} id */
 export const markAsMine = (id) => {

@@ -12,7 +12,7 @@ export const connection = signal("connecting");
 export const version = signal(null);
 /** Whether the server refuses this page because it lacks the link's token. */
 export const isLockedOut = signal(false);
-/** Null until the first snapshot. @type {Signal<"operator" | "spectator" | null>} */
+/** Null until the first snapshot. @type {Signal<"operator" | "spectator" | "visitor" | null>} */
 export const role = signal(null);
 /** Number of pages that watch the stage. @type {Signal<number | null>} */
 export const viewers = signal(null);

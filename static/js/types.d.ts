@@ -4,6 +4,7 @@ import type * as Api from "./api-types.js";
 
 export type {
   AgentOption as Agent,
+  AllowanceView as Allowance,
   Ask,
   BeliefView as Belief,
   Bounds,

@@ -25,7 +25,13 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="package")
 def api(data: Path) -> Iterator[Api]:
     """Return an API client of a server that the tests of this folder share."""
-    settings = Settings(data=data, job_niceness=0)
+    with running(Settings(data=data, job_niceness=0)) as api:
+        yield api
+
+
+@contextmanager
+def running(settings: Settings) -> Iterator[Api]:
+    """Yield an API client of a server with its jobs."""
     with open_store(settings) as store:
         app = create_app(settings, store)
         with TestClient(app, base_url=ADDRESS) as client:

@@ -42,7 +42,7 @@ from tests.storage.stores import temporary_store
 PAGES = {
     *("/", "/docs", "/favicon.ico", "/guide/{name}"),
     *("/l/{lesson_id}", "/openapi.json", "/r/{code}", "/r/{code}/"),
-    *("/static", "/t/{tournament_id}", "/viewer", "/viewer/"),
+    *("/robots.txt", "/static", "/t/{tournament_id}", "/viewer", "/viewer/"),
 }
 """Pages for browsers, which are no part of the API."""
 Serve = Callable[..., Api]

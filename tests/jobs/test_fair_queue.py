@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.jobs.queue import MAX_QUEUED, RunQueue
+from app.jobs.queue import MAX_OF_VISITORS, MAX_QUEUED, Owner, RunQueue
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy
 from app.storage.run import Run
@@ -10,8 +10,19 @@ from tests.jobs.test_jobs import training
 
 
 def queue_of(store: RunStore) -> RunQueue:
-    """Return a queue in which the first letter of an id tells the participant; `o` is none."""
-    return RunQueue(store, lambda run: None, lambda run_id: run_id[0].replace("o", "") or None)
+    """Return a queue in which the first letter of an id tells the owner.
+
+    `o` is an operator, other small letters are participants, capital ones visitors: the second
+    letter tells the address.
+    """
+
+    def owner_of(run_id: str) -> Owner | None:
+        name = run_id[0]
+        if name.isupper():
+            return Owner(name, run_id[1], is_visitor=True)
+        return None if name == "o" else Owner(name)
+
+    return RunQueue(store, lambda run: None, owner_of)
 
 
 def add(queue: RunQueue, *run_ids: str) -> None:
@@ -49,3 +60,43 @@ def test_a_full_class_leaves_the_places_of_others(store: RunStore) -> None:
     add(queue, "z1")
     with pytest.raises(Busy, match=f"{MAX_QUEUED} runs are waiting"):
         add(queue, "oo")
+
+
+def test_visitors_come_last_and_take_turns(store: RunStore) -> None:
+    queue = queue_of(store)
+    add(queue, "Ax1", "Ax2", "Ax3", "By1", "By2", "Cz1", "o1", "p1")
+    expected = ["o1", "p1", "Ax1", "By1", "Cz1", "Ax2", "By2", "Ax3"]
+    positions = {run_id: queue.position(run_id) for run_id in expected}
+    assert popped(queue) == expected
+    assert positions == {run_id: n for n, run_id in enumerate(expected, 1)}
+
+
+def test_an_address_that_poses_as_many_has_the_turns_of_one(store: RunStore) -> None:
+    queue = queue_of(store)
+    ids = [*(f"{letter}x{n}" for letter in "ABCDE" for n in (1, 2)), "Zy1", "Zy2", "Zy3"]
+    add(queue, *ids)
+    places = {run_id: queue.position(run_id) for run_id in ids}
+    order = popped(queue)
+    assert places == {run_id: n for n, run_id in enumerate(order, 1)}
+    order = [run_id[0] for run_id in order]
+    assert order[:6] == ["A", "Z", "B", "Z", "C", "Z"]
+    assert sorted(order[6:]) == sorted("ABCDEDE")
+
+
+def test_turns_of_visitors_are_remembered(store: RunStore) -> None:
+    queue = queue_of(store)
+    add(queue, "Ax1", "Ax2")
+    assert popped(queue) == ["Ax1", "Ax2"]
+    add(queue, "Ax3", "By1")
+    assert queue.position("Ax3") == 2
+    assert popped(queue) == ["By1", "Ax3"]
+
+
+def test_full_places_of_visitors_leave_those_of_others(store: RunStore) -> None:
+    queue = queue_of(store)
+    letters = "ABCDEFGH"
+    add(queue, *(f"{letter}x{n}" for letter in letters for n in range(MAX_OF_VISITORS // 8)))
+    add(queue, "o1", "p1")
+    with pytest.raises(Busy, match=f"{MAX_OF_VISITORS} runs are waiting"):
+        add(queue, "Ixx")
+    assert popped(queue)[:2] == ["o1", "p1"]

@@ -40,6 +40,11 @@ class Keys:
         row = {**key._asdict(), "run_id": " ".join(run_ids), "created_at": now}
         connection.execute(insert(_KEYS), [row])
 
+    def delete_expired(self) -> None:
+        """Delete the keys that were not used within their lifetime."""
+        statement = delete(_KEYS).where(_KEYS.c.created_at < datetime.now(UTC) - KEY_LIFETIME)
+        self._database.write(lambda connection: connection.execute(statement))
+
     def find(self, key: str) -> KeyRecord | None:
         """Look up an idempotency key; None if it was not used within its lifetime."""
         since = datetime.now(UTC) - KEY_LIFETIME

@@ -165,6 +165,11 @@ class RoomRows:
 
         self._database.write(work)
 
+    def delete_room(self, code: str) -> None:
+        """Delete a room, with its participants, predictions and links to runs."""
+        statement = delete(ROOMS).where(ROOMS.c.code == code)
+        self._database.write(lambda connection: connection.execute(statement))
+
     def remove_runs(self, run_ids: Collection[str]) -> None:
         """Delete the links of runs that were never stored."""
         statement = delete(ROOM_RUNS).where(ROOM_RUNS.c.run_id.in_(run_ids))

@@ -39,6 +39,7 @@ from app.storage.database.rows import decode_run, encode_fields, encode_run, try
 from app.storage.database.schema import RUNS
 from app.storage.database.tournament_rows import TournamentRows
 from app.storage.database.trials import Trials
+from app.storage.database.visitor_rows import VisitorRows
 from app.storage.disk_space import START_BYTES
 from app.storage.errors import Conflict, Damaged, StorageFailed
 from app.storage.run import (
@@ -79,6 +80,7 @@ class RunStore:
         lessons: those that were stored.
         rooms: rooms of classes, with their participants, predictions and runs.
         tournaments: with their entries, judgements and tables.
+        visitors: runs of visitors of a demo.
     """
 
     def __init__(self, database: Database, files: ArtifactFiles, robots: RobotStore) -> None:
@@ -89,6 +91,7 @@ class RunStore:
         self.sessions = SessionRows(database)
         self.lessons, self.rooms = LessonRows(database), RoomRows(database)
         self.tournaments = TournamentRows(database)
+        self.visitors = VisitorRows(database)
 
     def check_disk_space(self) -> None:
         """Check that there is disk space for one more run.

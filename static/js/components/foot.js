@@ -3,13 +3,14 @@ import {
   canStart, dismissProblem, missingLane, pause, pending, primaryAction, problems, resume, resumeRun,
   runPrimaryAction, secondaryActions, showOnStage, stop,
 } from "../actions.js";
+import { allowanceInWords } from "../demo.js";
 import { raceEstimate } from "../estimate.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
 import { sentence, whole } from "../format.js";
 import { ignored, page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
-import { isOperator } from "../selectors.js";
+import { isOperator, isVisitor, mayChange, mayStart } from "../selectors.js";
 import { agentOf, learners, placeOf } from "../settings.js";
 import { scene } from "../store.js";
 import { inFormWords, labelOf, messageOf } from "../titles.js";
@@ -18,7 +19,7 @@ import { EstimateNote, goToField, html, Icon, Loaded, ProgressBar, UnknownParts 
 
 /** @import { Run } from "../types.js" */
 
-export const Foot = () => (isOperator.value ? html`<${Actions} />` : html`<${Spectator} />`);
+export const Foot = () => (mayStart.value ? html`<${Actions} />` : html`<${Spectator} />`);
 
 function Actions() {
   const isBusy = Boolean(myWork.value) || pending.value.start;
@@ -37,6 +38,7 @@ function Actions() {
       ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
       ${!isBusy && html`<${EstimateNote} words=${raceEstimate} />`}
       ${!isBusy && html`<${MissingLane} />`}
+      ${isVisitor.value && html`<${AllowanceLine} />`}
       <${WorkActions} />
       ${!myWork.value && html`
         <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
@@ -108,8 +110,13 @@ const SecondaryActions = () => html`
 /** What is computed, and for those who try the ways to hold and to end it. */
 function WorkActions() {
   if (!work.value) return null;
-  return html`<${Progress} />${isAtLeast("try") && html`<${WorkButtons} />`}`;
+  return html`
+    <${Progress} />${(isAtLeast("try") || isVisitor.value) && html`<${WorkButtons} />`}
+  `;
 }
+
+/** What a visitor of a demo may still start, and what becomes of it. */
+const AllowanceLine = () => allowanceInWords.value && html`<p class="dim allowance">${allowanceInWords}</p>`;
 
 function WorkButtons() {
   const { kind, state } = work.value?.current ?? {};
@@ -119,10 +126,12 @@ function WorkButtons() {
   const isHeld = pending.value.work ? "true" : undefined;
   return html`
     <div class="row">
-      <button class="secondary" onClick=${isPaused ? resume : pause} aria-disabled=${isHeld}
-        disabled=${state === "queued"}>
-        <${Icon} name=${isPaused ? "play" : "pause"} />${isPaused ? "Resume" : "Pause"} ${kind}
-      </button>
+      ${isOperator.value && html`
+        <button class="secondary" onClick=${isPaused ? resume : pause} aria-disabled=${isHeld}
+          disabled=${state === "queued"}>
+          <${Icon} name=${isPaused ? "play" : "pause"} />${isPaused ? "Resume" : "Pause"} ${kind}
+        </button>
+      `}
       <button class="secondary" onClick=${stop} aria-disabled=${isHeld}>
         <${Icon} name="stop" />Stop
       </button>
@@ -161,12 +170,15 @@ const ResumeButton = ({ run }) => html`
 
 function Failure() {
   const run = shownRun.value;
-  if (run?.state !== "failed") return null;
+  if (run?.state !== "failed" || !mayChange(run)) return null;
   return html`
     <div class="notice bad">
       <p><b>The ${run.kind} failed.</b> ${inFormWords(run.error ?? "")}</p>
-      <p>Change what it names, or resume it from its last checkpoint. Other runs are not affected.</p>
-      ${run.can_resume && html`<${ResumeButton} run=${run} />`}
+      <p>
+        Change what it names${isOperator.value && ", or resume it from its last checkpoint"}. Other runs are not
+        affected.
+      </p>
+      ${isOperator.value && run.can_resume && html`<${ResumeButton} run=${run} />`}
     </div>
   `;
 }

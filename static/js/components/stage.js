@@ -12,7 +12,7 @@ import { closeReplay, drawIn, isBuffering, replayProblem } from "../replay.js";
 import {
   conditionsShown, isDecided, playbackName, resumableOnStage, shownRun,
 } from "../on-stage.js";
-import { isOperator } from "../selectors.js";
+import { isOperator, visitorRuns } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { connection, runs, scene, stage } from "../store.js";
 import { scale } from "../time.js";
@@ -281,6 +281,12 @@ function measureChips(labels) {
   if (JSON.stringify(boxes) !== JSON.stringify(covered.peek())) covered.value = boxes;
 }
 
+/** What the page plays by itself: to a visitor of a demo perhaps the own robot, as it learns. */
+function replayInWords() {
+  if (isBuffering.value) return "Loading your replay…";
+  return visitorRuns.value.includes(page.run.value ?? "") ? "Your robot" : "Your own replay";
+}
+
 function SceneChips() {
   const now = scene.value;
   return html`
@@ -290,7 +296,7 @@ function SceneChips() {
       ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that is still deciding</p>`}
       <${WorldChip} />
       ${page.run.value !== null
-        ? html`<p class="chip accent">${isBuffering.value ? "Loading your replay…" : "Your own replay"}</p>`
+        ? html`<p class="chip accent">${replayInWords()}</p>`
         : now?.replay && html`<p class="chip">Replay</p>`}
       ${page.ghost.value !== null && html`<${GhostChip} ghosts=${now?.ghost_lanes ?? []} />`}
       <${SpeedChip} now=${now} />

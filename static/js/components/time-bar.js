@@ -6,7 +6,7 @@ import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { closeReplay, openReplay, replayProblem, stepReplay } from "../replay.js";
 import { percent, shareOf, ticks } from "../scale.js";
-import { isOperator } from "../selectors.js";
+import { isOperator, isVisitor } from "../selectors.js";
 import { scene, stage } from "../store.js";
 import { laneRows, markInWords, marks, positionInWords, scale, seekTo, toggleTime } from "../time.js";
 import { isAtLeast } from "../workspace.js";
@@ -73,7 +73,7 @@ function ReplayButton() {
 
 const BackToStage = () => html`
   <button class="secondary compact to-stage" onClick=${closeReplay} title="Watch the stage with everybody">
-    <span class="dot" aria-hidden="true"></span>Live
+    <span class="dot" aria-hidden="true"></span>${isVisitor.value ? "Stage" : "Live"}
   </button>
 `;
 

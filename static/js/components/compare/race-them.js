@@ -1,6 +1,6 @@
 // Starts a race of runs against each other, or says why they cannot race.
 import { pending } from "../../actions.js";
-import { isOperator } from "../../selectors.js";
+import { mayStart } from "../../selectors.js";
 import { conditionsOfRace, obstacle, raceThem } from "../../table-race.js";
 import { html } from "../elements.js";
 import { Problem } from "../foot.js";
@@ -9,7 +9,7 @@ import { Problem } from "../foot.js";
 
 /** @param {{ runs: (Run | DamagedRun)[] }} props */
 export function RaceThem({ runs }) {
-  if (!isOperator.value || runs.length < 2) return null;
+  if (!mayStart.value || runs.length < 2) return null;
   const problem = obstacle(runs);
   const walks = /** @type {Run[]} */ (runs);
   return html`

@@ -5,7 +5,7 @@ import { annotate } from "../../actions.js";
 import { openDetails } from "../../run-details.js";
 import { filters, setFilters } from "../../run-list.js";
 import { folded } from "../../runs.js";
-import { isOperator } from "../../selectors.js";
+import { mayChange } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html, Icon } from "../elements.js";
 
@@ -32,7 +32,7 @@ export const isEdited = (run, field) => edited.value?.id === run.id && edited.va
 const VERBS = { name: "Rename", tags: "Change the tags", notes: "Change the notes" };
 
 /** @param {{ run: Run, field: AnnotatedField }} props */
-const EditButton = ({ run, field }) => isOperator.value && html`
+const EditButton = ({ run, field }) => mayChange(run) && html`
   <button class="quiet square small" id=${`edit-${field}`} aria-label=${VERBS[field]} title=${VERBS[field]}
     onClick=${() => edit(run, field)}><${Icon} name="edit" /></button>
 `;
@@ -63,7 +63,7 @@ export function Tags({ run }) {
 }
 
 /** @param {{ run: Run, field: AnnotatedField, words: string }} props */
-const Invitation = ({ run, field, words }) => isOperator.value && html`
+const Invitation = ({ run, field, words }) => mayChange(run) && html`
   <button class="secondary compact add" id=${`edit-${field}`} onClick=${() => edit(run, field)}>${words}</button>
 `;
 

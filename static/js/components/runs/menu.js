@@ -4,7 +4,7 @@ import { attempt, copySettings, deleteRun, pending, runAgain } from "../../actio
 import { archiveAddress, downloads, notInstalled, rendered, saveExport } from "../../files.js";
 import { listed } from "../../format.js";
 import { addressOf } from "../../page-state.js";
-import { isActive, isOperator } from "../../selectors.js";
+import { isActive, isOperator, mayChange, mayStart } from "../../selectors.js";
 import { html } from "../elements.js";
 import { edit } from "./annotations.js";
 import { showCode } from "./code.js";
@@ -54,15 +54,18 @@ export function RunMenu({ run, label }) {
   `;
 }
 
+/** @param {Run} run */
+const mayRunAgain = ({ kind }) => (kind === "experiment" ? isOperator.value : mayStart.value);
+
 /** @param {{ run: Run }} props */
 function Items({ run }) {
   const isWalk = run.kind !== "experiment";
   return html`
     ${!isWalk && html`<a href=${addressOf({ view: "experiments", report: run.id })}>Its report</a>`}
-    ${isOperator.value && isWalk && html`<a href="#" onClick=${() => copySettings(run)}>Use its settings</a>`}
+    ${mayStart.value && isWalk && html`<a href="#" onClick=${() => copySettings(run)}>Use its settings</a>`}
     <button onClick=${() => showCode(run)}>As code</button>
-    ${isOperator.value && html`
-      <button onClick=${() => runAgain(run)}>Run again</button>
+    ${mayRunAgain(run) && html`<button onClick=${() => runAgain(run)}>Run again</button>`}
+    ${mayChange(run) && html`
       <button onClick=${() => edit(run, "name")}>Rename</button>
       <button onClick=${() => edit(run, "tags")}>${run.tags?.length ? "Change its tags" : "Add tags"}</button>
       <button onClick=${() => edit(run, "notes")}>${run.notes ? "Change its notes" : "Add notes"}</button>
@@ -74,7 +77,7 @@ function Items({ run }) {
         <p class="dim">${listed(titles)}: not installed on the server; <code>${install}</code> adds it.</p>
       `)}
     `}
-    ${isOperator.value && !isActive(run) && html`<${DeleteButton} run=${run} />`}
+    ${mayChange(run) && !isActive(run) && html`<${DeleteButton} run=${run} />`}
   `;
 }
 

@@ -1,0 +1,203 @@
+"""Clean-up: after a day nothing of a visitor is left, whatever the server did meanwhile."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from app.classroom.rooms import Rooms
+from app.demo.expiry import Expiry
+from app.demo.visitors import Visitors
+from app.jobs.jobs import Jobs
+from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
+from app.storage.database.store import RunStore
+from app.storage.errors import NotFound
+from app.storage.run import IdempotencyKey
+from tests.demo.clock import Clock
+from tests.demo.test_visitors import start
+from tests.jobs.test_jobs import WALK, endless, training
+from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
+
+
+@pytest.fixture
+def expiry(store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock) -> Expiry:
+    return make_expiry(store, jobs, visitors, clock)
+
+
+def make_expiry(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, rooms: Rooms | None = None
+) -> Expiry:
+    return Expiry(store, jobs, visitors, rooms, now=clock.time, now_s=clock.seconds)
+
+
+def race_of(training: TrainingStart) -> RaceStart:
+    lanes = [LaneStart("q-learning", training=training), LaneStart("greedy")]
+    return RaceStart(WALK, lanes, 5, 0)
+
+
+def files_in(folder: Path) -> list[Path]:
+    return [path for path in (folder / "artifacts").rglob("*") if path.is_file()]
+
+
+def is_kept(store: RunStore, run_id: str) -> bool:
+    try:
+        store.get(run_id)
+    except NotFound:
+        return False
+    return True
+
+
+def test_a_day_later_no_row_and_no_file_is_left(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, tmp_path: Path
+) -> None:
+    expiry = make_expiry(store, jobs, visitors, clock)
+    before = files_in(tmp_path)
+    started = start(visitors, jobs, race_of(training()))
+    race = wait_until_ended(store, started.run)
+    (training_id,) = filter(None, race.lane_training_ids)
+    assert len(files_in(tmp_path)) > len(before)
+    clock.pass_time(hours=23, minutes=59)
+    expiry.sweep()
+    assert is_kept(store, race.id)
+    clock.pass_time(minutes=1)
+    expiry.sweep()
+    assert not is_kept(store, race.id)
+    assert not is_kept(store, training_id)
+    assert files_in(tmp_path) == before
+    assert store.visitors.all() == []
+    assert not visitors.is_known(started.key)
+
+
+def test_a_server_that_was_down_deletes_when_it_starts(
+    store: RunStore, jobs: Jobs, clock: Clock, make_visitors: Callable[[], Visitors]
+) -> None:
+    run = wait_until_ended(store, start(make_visitors(), jobs, training()).run)
+    clock.pass_time(days=3)
+    later = make_visitors()
+    assert later.count == 1
+    make_expiry(store, jobs, later, clock).sweep()
+    assert not is_kept(store, run.id)
+    assert store.visitors.all() == []
+
+
+def test_what_still_runs_or_waits_is_stopped_and_deleted(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, expiry: Expiry
+) -> None:
+    blocker = jobs.start(endless())
+    wait_for_progress(store, blocker)
+    waiting = start(visitors, jobs, race_of(training())).run
+    clock.pass_time(days=1)
+    expiry.sweep()
+    assert not is_kept(store, waiting.id)
+    assert store.counts() == {"running": 1}
+    jobs.stop(blocker.id)
+
+
+def test_a_run_that_takes_too_long_is_stopped_and_says_so(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, expiry: Expiry
+) -> None:
+    run = start(visitors, jobs, training(steps=60, pace=0.1)).run
+    wait_for_progress(store, run)
+    jobs.annotate(run.id, {"notes": "slow"})
+    expiry.sweep()
+    clock.pass_time(seconds=299)
+    expiry.sweep()
+    assert store.get(run.id).state == "running"
+    clock.pass_time(seconds=1)
+    expiry.sweep()
+    stopped = store.get(run.id)
+    assert stopped.state == "stopped"
+    assert stopped.notes == "slow\nStopped after 300 s, for which a run of this demo may compute."
+
+
+def test_an_operators_run_that_rests_on_a_visitors_stays_whole(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, expiry: Expiry
+) -> None:
+    theirs = wait_until_ended(store, start(visitors, jobs, training()).run)
+    lanes = [LaneStart("q-learning", training_id=theirs.id), LaneStart("greedy")]
+    race = wait_until_ended(store, jobs.start(RaceStart(WALK, lanes, 5, 0)))
+    continued = TrainingStart(training().config, continue_from=theirs.id)
+    longer = wait_until_ended(store, jobs.start(continued))
+    clock.pass_time(days=1)
+    expiry.sweep()
+    assert not is_kept(store, theirs.id)
+    assert store.get(race.id).result is not None
+    assert store.artifact_files(race.id)
+    assert store.get(longer.id).state == "finished"
+    again = wait_until_ended(
+        store, jobs.start(TrainingStart(training().config, continue_from=longer.id))
+    )
+    assert again.state == "finished"
+
+
+def test_an_operators_run_that_waits_for_a_visitors_keeps_it_until_it_has_started(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, expiry: Expiry
+) -> None:
+    theirs = wait_until_ended(store, start(visitors, jobs, training()).run)
+    blocker = jobs.start(endless())
+    wait_for_progress(store, blocker)
+    lanes = [LaneStart("q-learning", training_id=theirs.id), LaneStart("greedy")]
+    race = jobs.start(RaceStart(WALK, lanes, 5, 0))
+    clock.pass_time(days=1)
+    expiry.sweep()
+    assert is_kept(store, theirs.id)
+    assert visitors.count == 1
+    jobs.stop(blocker.id)
+    assert wait_until_ended(store, race).state == "finished"
+    expiry.sweep()
+    assert not is_kept(store, theirs.id)
+    assert visitors.count == 0
+
+
+def test_what_fails_is_tried_again(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, expiry: Expiry
+) -> None:
+    run = start(visitors, jobs, training(steps=60, pace=0.5)).run
+    wait_for_progress(store, run)
+    clock.pass_time(days=1)
+    expiry.sweep()
+    wait_until(lambda: expiry.sweep() == [] and not is_kept(store, run.id))
+    assert visitors.count == 0
+
+
+def test_keys_of_requests_go_too(store: RunStore, jobs: Jobs, expiry: Expiry) -> None:
+    run = jobs.start(training(), IdempotencyKey("one", "x"))
+    wait_until_ended(store, run)
+    expiry.sweep()
+    assert store.keys.find("one") is not None
+
+
+def test_a_visitor_is_ended_by_the_operator(
+    store: RunStore, jobs: Jobs, visitors: Visitors, expiry: Expiry
+) -> None:
+    started = start(visitors, jobs, race_of(training(steps=40, pace=0.5)))
+    other = start(visitors, jobs, training())
+    (visitor_id,) = (one for one, runs in visitors.by_visitor().items() if len(runs) == 2)
+    expiry.end_visitor(visitor_id)
+    assert not visitors.is_known(started.key)
+    assert visitors.is_known(other.key)
+    wait_until_ended(store, other.run)
+    assert store.counts() == {"finished": 1}
+    with pytest.raises(NotFound, match="GET /api/v1/visitors"):
+        expiry.end_visitor(visitor_id)
+
+
+def test_a_room_that_nobody_has_used_for_a_day_goes_with_its_runs(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock
+) -> None:
+    rooms = Rooms(store, now=clock.time)
+    expiry = make_expiry(store, jobs, visitors, clock, rooms)
+    ended, used = rooms.create(None), rooms.create(None)
+    rooms.join(ended.code)
+    rooms.end(ended.code)
+    clock.pass_time(hours=20)
+    key = rooms.join(used.code).key
+    clock.pass_time(hours=5)
+    assert expiry.sweep() == [ended.code]
+    assert [room.code for room in Rooms(store).all()] == [used.code]
+    assert rooms.seat(used.code, key) is not None
+    assert datetime.now(UTC) < clock.now
+    clock.pass_time(hours=20)
+    assert expiry.sweep() == [used.code]
+    assert (Rooms(store).all(), store.rooms.participants(), store.rooms.runs()) == ([], [], [])
