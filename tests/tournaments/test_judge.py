@@ -13,6 +13,7 @@ from app.storage.database.store import RunStore
 from app.tournaments.judge import MAX_DEATHS, Judge
 from app.tournaments.tournament import Entrant, Tournament
 from app.tournaments.tournaments import Tournaments
+from hexapods.processes import processor_s
 from hexapods.tournaments.entry import Entry
 from hexapods.tournaments.judging import Judgement, judge
 from hexapods.tournaments.rules import TournamentRules
@@ -81,20 +82,13 @@ def test_references_are_judged_as_soon_as_it_is_open(store: RunStore) -> None:
 
 def at_slow_draw(working: Judge, tournament: Tournament) -> int:
     """Wait until the linear model practises, and return the id of the process."""
-    quick = [tournament.entries[number] for number in (0, 1)]
-    until(
-        lambda: all(map(tournament.is_judged, quick)) and any(map(_is_busy, working.pids)),
-        lambda: (tournament.progress, working.pids),
-    )
-    return working.pids[0]
-
-
-def _is_busy(pid: int) -> bool:
-    # Importing what it needs takes less, as it is a fork of a process that has it.
-    try:
-        return psutil.Process(pid).cpu_times().user > 0.2
-    except psutil.NoSuchProcess:
-        return False
+    until(lambda: len(tournament.standings) == 2, lambda: tournament.progress)
+    until(lambda: bool(working.pids), lambda: None)
+    pid = working.pids[0]
+    # The process may have ranked before.
+    before_s = processor_s(pid)
+    until(lambda: processor_s(pid) > before_s + 0.2, lambda: processor_s(pid))
+    return pid
 
 
 def test_an_entry_that_ends_its_processes_has_failed(store: RunStore) -> None:
