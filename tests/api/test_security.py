@@ -19,7 +19,7 @@ from tests.api.calls import Api, refused
 TOKEN = "a-token-for-tests"
 COOKIE = f"{NAME}_8000"
 SAFE = {"GET", "HEAD"}
-EVERYWHERE = (
+EVERYWHERE: tuple[dict[str, str], ...] = (
     *(
         {"Host": "evil.example"},
         {"Origin": "http://evil.example"},
