@@ -4,7 +4,8 @@
 """
 
 import gc
-from collections.abc import Iterator
+import threading
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -49,6 +50,8 @@ _FEW_PICTURES = """if (window !== top) {
 }"""
 _WITHOUT_WEBGL = ["--disable-gpu", "--disable-software-rasterizer"]
 """A page without a 3D view is drawn with a sixth less work of the processor."""
+_OF_APPS = ("stage", "ownership", "pool worker")
+"""Beginnings of the names of threads that end when an app and its store are closed."""
 _WITHOUT_EVENT_LOOPS = ("agents", "domain", "runs")
 """Folders whose tests start none in the main thread."""
 
@@ -91,6 +94,20 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
     start_fork_server()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(
+    item: pytest.Item, nextitem: pytest.Item | None
+) -> Generator[None, None, None]:
+    """Fail the last test of a folder after which an app is still open in this process.
+
+    Its stages would go on drawing beside all the tests that follow.
+    """
+    yield
+    if nextitem is None or nextitem.path.parent != item.path.parent:
+        left = [one.name for one in threading.enumerate() if one.name.startswith(_OF_APPS)]
+        assert left == [], "a test in this folder has left an app open"
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> FileByFile:

@@ -10,6 +10,7 @@ import pytest
 from anyio.from_thread import start_blocking_portal
 from starlette.testclient import TestClient
 
+from app.api.deps import Services
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -53,13 +54,28 @@ def serve(data: Path) -> Iterator[Callable[..., Api]]:
 
 
 @pytest.fixture(scope="module")
-def shared(data: Path) -> Iterator[Callable[..., Api]]:
-    """Return a factory like `serve`, of one server per settings for the tests of a module.
-
-    For tests that change nothing on the server. It refuses no request for its rate.
-    """
+def made_once(data: Path) -> Iterator[Callable[..., Api]]:
     with serving(data) as make:
         yield cache(partial(make, starts_per_minute=1_000_000))
+
+
+@pytest.fixture
+def shared(made_once: Callable[..., Api]) -> Iterator[Callable[..., Api]]:
+    """Return a factory like `serve`, of one server per settings for the tests of a module.
+
+    For tests that change nothing on the server, but may open rooms. It refuses no request for its
+    rate.
+    """
+    used = dict[int, Api]()
+
+    def make(**settings: Any) -> Api:
+        api = made_once(**settings)
+        used[id(api)] = api
+        return api
+
+    yield make
+    for api in used.values():
+        _close_rooms(api.client)
 
 
 @contextmanager
@@ -74,7 +90,27 @@ def serving(data: Path) -> Iterator[Callable[..., Api]]:
             # One event loop for all requests; by default each has a new one in a new thread.
             client.portal = stack.enter_context(start_blocking_portal())
             client._transport = WholeAnswers(client)
-            stack.callback(client.close)
+            stack.callback(_close, client)
             return Api(client)
 
         yield make
+
+
+def _close(client: TestClient) -> None:
+    """End what requests have opened, as the lifespan does: stages that draw, and pools."""
+    _close_rooms(client)
+    services = _services_of(client)
+    for user in (services.what_if, services.estimates, services.renderer):
+        user.close()
+    client.close()
+
+
+def _close_rooms(client: TestClient) -> None:
+    assert client.portal is not None
+    client.portal.call(_services_of(client).room_stages.close_all)
+
+
+def _services_of(client: TestClient) -> Services:
+    app: Any = client.app
+    services: Services = app.state.services
+    return services

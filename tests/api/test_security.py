@@ -19,6 +19,15 @@ from tests.api.calls import Api, refused
 TOKEN = "a-token-for-tests"
 COOKIE = f"{NAME}_8000"
 SAFE = {"GET", "HEAD"}
+EVERYWHERE: tuple[dict[str, str], ...] = (
+    *(
+        {"Host": "evil.example"},
+        {"Origin": "http://evil.example"},
+        {"Sec-Fetch-Site": "cross-site"},
+    ),
+    *({}, {"Host": "lab.example", "Origin": "http://lab.example"}),
+)
+"""Headers that are tried on every route."""
 Serve = Callable[..., Api]
 
 
@@ -50,6 +59,17 @@ def answer(client: TestClient, method: str, path: str, headers: dict[str, str]) 
             return 101
     except WebSocketDisconnect as closed:
         return 403 if closed.code == 1008 else closed.code
+
+
+def routes_for(client: TestClient, headers: dict[str, str]) -> list[tuple[str, str]]:
+    """Return every route for one case of each header, and for the other cases one of each method.
+
+    What looks at these headers knows no routes: it stands before all of them.
+    """
+    routes = every_route(client)
+    if headers in EVERYWHERE:
+        return routes
+    return list({method: (method, path) for method, path in routes}.values())
 
 
 def without_stream(routes: list[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -99,7 +119,7 @@ def is_open_by_code(method: str, path: str) -> bool:
 )
 def test_foreign_hosts_and_origins_are_refused(shared: Serve, headers: dict[str, str]) -> None:
     client = shared().client
-    for method, path in [*every_route(client), ("GET", "/nothing")]:
+    for method, path in [*routes_for(client, headers), ("GET", "/nothing")]:
         assert answer(client, method, path, headers) == 403, (method, path)
 
 
@@ -126,7 +146,7 @@ def test_foreign_hosts_and_origins_are_refused(shared: Serve, headers: dict[str,
 def test_own_hosts_and_origins_are_accepted(shared: Serve, headers: dict[str, str]) -> None:
     client = shared(public_url="https://hexapods.example", allowed_hosts=("lab.example",)).client
     headers = {"X-Requested-With": "tests", **headers}
-    for method, path in without_stream(every_route(client)):
+    for method, path in without_stream(routes_for(client, headers)):
         assert answer(client, method, path, headers) not in (401, 403), (method, path)
 
 
@@ -170,7 +190,7 @@ def test_operator_has_access_to_every_route(serve: Serve, how: str) -> None:
         }
     else:
         headers["Authorization"] = f"{how} {TOKEN}"
-    for method, path in without_stream(every_route(client)):
+    for method, path in without_stream(routes_for(client, headers)):
         assert answer(client, method, path, headers) not in (401, 403), (method, path)
 
 

@@ -4,6 +4,8 @@ from typing import Any
 
 AGENTS = ("QLearning", "Beam")
 """The default one, which learns, and a search with settings of its own."""
+OWN = ("agent", "settings")
+"""Fields that are others for each agent."""
 DISTURBANCES = ("Limp", "Patch")
 """One of the robot, with a list, and one of the ground."""
 
@@ -11,6 +13,7 @@ DISTURBANCES = ("Limp", "Patch")
 def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     """Return an OpenAPI document whose bodies have few agents, few disturbances and their settings.
 
+    The fields that all agents have stand in the body of the first one.
     The operation that disturbs a running training keeps all kinds of disturbances.
     """
     short: dict[str, Any] = _with_few_choices(contract)
@@ -21,7 +24,19 @@ def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     kept = set().union(*(names for name, names in settings.items() if name.startswith(AGENTS)))
     for name in set().union(*settings.values()) - kept:
         schemas["ExperimentBody"]["properties"].pop(name, None)
+    for kind in ("Training", "Lane"):
+        first, *others = (schemas[agent + kind] for agent in AGENTS)
+        for one in others:
+            _leave_out_what_has(first, one)
     return short
+
+
+def _leave_out_what_has(first: dict[str, Any], other: dict[str, Any]) -> None:
+    """Leave out the fields of a body that those of another show, but those that it needs."""
+    shown = [name for name, field in first["properties"].items() if name not in OWN]
+    for name in set(shown) - set(other.get("required", ())):
+        if other["properties"].get(name) == first["properties"][name]:
+            del other["properties"][name]
 
 
 def _with_few_choices(part: Any) -> Any:

@@ -2,9 +2,9 @@
 
 In full by `make soak`: 5,000 cases of all of schemathesis's phases against a real server whose
 jobs run and are stopped meanwhile. The gate has the same phases with fewer cases per operation,
-leaves out the systematic cases (the phase "coverage") of two bodies: a what-if has a training's
-fields, and a race has those and its lanes; and tests the bodies of a few agents, since the same
-functions build those of all.
+leaves out the systematic cases (the phase "coverage") of bodies that others have: a what-if has a
+training's fields, the preview of a robot some of them, and a race has those and its lanes; and
+tests the bodies of a few agents, since the same functions build those of all.
 
 Every check is enabled, with these exceptions:
 
@@ -57,7 +57,7 @@ FEWER = """
 include-name = [
   "POST /api/v1/what-if", "POST /api/v1/races", "POST /api/v1/experiments",
   "POST /api/v1/trainings/estimate", "POST /api/v1/races/estimate",
-  "POST /api/v1/experiments/estimate",
+  "POST /api/v1/experiments/estimate", "POST /api/v1/robots/preview",
 ]
 phases.coverage.enabled = false
 """
