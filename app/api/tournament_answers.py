@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from app.api.answers import Answer, Count
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement
-from hexapods.tournaments.ranking import Standing
+from hexapods.tournaments.ranking import RankedEntry
 from hexapods.tournaments.rules import Draw, TournamentRules
 
 TournamentState = Literal["open", "ending", "ended"]
@@ -64,7 +64,7 @@ class EntryView(Answer):
     name: str | None
     is_reference: bool
     is_own: bool
-    entry: Entry | None
+    entry: EntryConfig | None
     training_id: str | None
     state: Literal["waiting", "judging", "judged", "withdrawn"]
     judged: Count
@@ -121,7 +121,7 @@ class TournamentView(Answer):
     address: str
     qr_code: str
     entries: list[EntryView]
-    standings: list[Standing]
+    standings: list[RankedEntry]
     own: OwnEntries
     is_operator: bool
     may_end: bool

@@ -21,7 +21,7 @@ from hexapods.domain.observation import Observation
 from hexapods.domain.robot import AnyRobot
 from hexapods.domain.settings import SettingValues, declared_fields
 from hexapods.runs.config import TrainingConfig
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.rules import MAX_ROBOTS, MAX_WORLDS, TournamentRules
 
 _MAX_WORLD = 500
@@ -88,11 +88,11 @@ class EntryBody(Body):
     ] = None
     name: Name | None = None
 
-    def entry(self) -> Entry:
+    def entry(self) -> EntryConfig:
         """Convert to an entry without a table."""
-        return Entry(
+        return EntryConfig(
             agent=self.agent,
-            observation=self.observation or Entry.observation,
+            observation=self.observation or EntryConfig.observation,
             settings=SettingValues(given_settings(self.settings)),
             steps=self.steps,
             robot=self.robot,

@@ -29,7 +29,7 @@ from app.tournaments.ended_file import file_of
 from app.tournaments.entered_tables import entry_of_training
 from app.tournaments.tournament import EnteredTable, Entrant, Tournament
 from hexapods.domain.errors import InvalidInput
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.tournament_file import MEDIA_TYPE
 
 TournamentPath = Annotated[str, Path(description="id of the tournament", max_length=64)]
@@ -184,7 +184,7 @@ def _known(services: Services, tournament_id: str, reader: Reader) -> Tournament
 
 def _entry(
     services: Services, tournament: Tournament, reader: Reader, body: Any
-) -> tuple[Entry, EnteredTable | None]:
+) -> tuple[EntryConfig, EnteredTable | None]:
     """Return what a body enters; the training of a participant is an own one.
 
     Raises:

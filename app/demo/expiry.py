@@ -21,7 +21,7 @@ _OVERLONG = "Stopped after {seconds:g} s, for which a run of this demo may compu
 _logger = logging.getLogger(__name__)
 
 
-class Rooms(Protocol):
+class RoomCleaner(Protocol):
     """Rooms of classes, of which ended and forgotten ones are deleted."""
 
     def last_used_before(self, time: datetime) -> list[str]:
@@ -46,7 +46,7 @@ class Expiry:
         store: RunStore,
         jobs: Jobs,
         visitors: Visitors,
-        rooms: Rooms | None,
+        rooms: RoomCleaner | None,
         *,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
         now_s: Callable[[], float] = time.monotonic,
@@ -104,7 +104,7 @@ class Expiry:
             "queued",
         )
 
-    def _sweep_rooms(self, rooms: Rooms, before: datetime) -> list[str]:
+    def _sweep_rooms(self, rooms: RoomCleaner, before: datetime) -> list[str]:
         gone = []
         for code in rooms.last_used_before(before):
             ids = rooms.runs_in(code)

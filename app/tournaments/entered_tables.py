@@ -8,7 +8,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.robot import Robot
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.tables import from_bytes
-from hexapods.tournaments.entry import Entry, check_table
+from hexapods.tournaments.entry import EntryConfig, check_table
 from hexapods.tournaments.rules import TournamentRules
 from hexapods.tournaments.tournament_file import sha256_of
 
@@ -17,7 +17,7 @@ MAX_TABLE_BYTES = 2 << 20
 
 def entry_of_training(
     store: RunStore, rules: TournamentRules, training_id: str, agent: str, robot: Robot | None
-) -> tuple[Entry, EnteredTable]:
+) -> tuple[EntryConfig, EnteredTable]:
     """Return the entry of a finished training, and a copy of its table.
 
     Args:
@@ -52,7 +52,9 @@ def entry_of_training(
             f"the table of training {training_id} has {len(data):,} bytes; one that enters has at "
             f"most {MAX_TABLE_BYTES:,}"
         )
-    entry = Entry(agent=agent, observation=config.observation, robot=robot, table=sha256_of(data))
+    entry = EntryConfig(
+        agent=agent, observation=config.observation, robot=robot, table=sha256_of(data)
+    )
     check_table(entry, rules, from_bytes(data, f"the table of training {training_id}"))
     return entry, EnteredTable(training_id, sha256_of(data), data)
 

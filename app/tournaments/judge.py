@@ -23,7 +23,7 @@ from hexapods.domain.text import message
 from hexapods.processes import processor_s
 from hexapods.runs.tables import from_bytes
 from hexapods.tournaments import judging
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.rules import Draw, TournamentRules
 from hexapods.tournaments.tournament_file import JudgedEntry, standings_of, tournament_file
@@ -50,7 +50,7 @@ class JudgingTask(NamedTuple):
     """
 
     rules: TournamentRules
-    entry: Entry
+    entry: EntryConfig
     draw: Draw
     table: bytes | None
 
@@ -299,7 +299,7 @@ def outcome_of(
     """
     rules, secret, judged = ended
     entries = [
-        JudgedEntry(number=number, name="", entry=Entry(agent=""), judgements=one)
+        JudgedEntry(number=number, name="", entry=EntryConfig(agent=""), judgements=one)
         for number, one in judged.items()
     ]
     plain = to_json(tournament_file("", rules, secret, entries))

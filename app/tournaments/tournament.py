@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple, get_args
 
 from app.storage.errors import Conflict
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement
-from hexapods.tournaments.ranking import Standing
+from hexapods.tournaments.ranking import RankedEntry
 from hexapods.tournaments.rules import MAX_ENTRIES, Draw, TournamentRules, commitment_of, draws_of
 
 TournamentState = Literal["open", "ending", "ended"]
@@ -65,7 +65,7 @@ class TournamentEntry:
     number: int
     entrant: Entrant
     is_reference: bool
-    entry: Entry
+    entry: EntryConfig
     training_id: str | None
     is_withdrawn: bool
     entered_at: datetime
@@ -106,7 +106,7 @@ class Tournament:
     ended_at: datetime | None
     entries: dict[int, TournamentEntry] = field(default_factory=dict)
     next_number: int = 0
-    standings: Sequence[Standing] = ()
+    standings: Sequence[RankedEntry] = ()
     outcome: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     @cached_property
@@ -167,7 +167,7 @@ class Tournament:
         """Return the entries of an entrant, oldest first."""
         return [one for one in self.listed if not one.is_reference and one.entrant == entrant]
 
-    def equal_entry(self, entrant: Entrant, entry: Entry) -> TournamentEntry | None:
+    def equal_entry(self, entrant: Entrant, entry: EntryConfig) -> TournamentEntry | None:
         """Return the entry of an entrant that is judged alike; None if there is none.
 
         Args:
@@ -178,7 +178,7 @@ class Tournament:
         own = self.of_entrant(entrant)
         return next((one for one in own if self._written_out(one.entry) == wanted), None)
 
-    def _written_out(self, entry: Entry) -> Entry:
+    def _written_out(self, entry: EntryConfig) -> EntryConfig:
         robot = self.rules.robot if entry.robot is None else entry.robot
         steps = self.rules.steps if entry.steps is None else entry.steps
         return replace(entry, robot=robot, steps=steps)

@@ -25,9 +25,9 @@ from app.tournaments.tournament import (
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import Robot
-from hexapods.tournaments.entry import Entry, completed, references
+from hexapods.tournaments.entry import EntryConfig, completed, references
 from hexapods.tournaments.judging import Judgement
-from hexapods.tournaments.ranking import Standing
+from hexapods.tournaments.ranking import RankedEntry
 from hexapods.tournaments.rules import TournamentRules
 
 MAX_OPEN = 16
@@ -199,7 +199,7 @@ class Tournaments:
         self,
         tournament_id: str,
         entrant: Entrant,
-        entry: Entry,
+        entry: EntryConfig,
         table: EnteredTable | None = None,
         check: Callable[[], object] = lambda: None,
     ) -> Entered:
@@ -317,7 +317,7 @@ class Tournaments:
             tournament.entries[number].judgements[draw] = judgement
         self._tell(tournament)
 
-    def rank(self, tournament: Tournament, standings: Sequence[Standing]) -> None:
+    def rank(self, tournament: Tournament, standings: Sequence[RankedEntry]) -> None:
         """Set the standings, unless newer ones are there already."""
         with self.changed:
             if len(standings) >= len(tournament.standings):
@@ -400,8 +400,8 @@ def _tournament(row: TournamentRow) -> Tournament:
     )
 
 
-def _standings(outcome: Mapping[str, Any]) -> tuple[Standing, ...]:
-    return tuple(from_json(Standing, one) for one in outcome.get("standings", ()))
+def _standings(outcome: Mapping[str, Any]) -> tuple[RankedEntry, ...]:
+    return tuple(from_json(RankedEntry, one) for one in outcome.get("standings", ()))
 
 
 def _entry(row: EntryRow) -> TournamentEntry:
@@ -409,7 +409,7 @@ def _entry(row: EntryRow) -> TournamentEntry:
         number=row.number,
         entrant=Entrant(row.seed, row.name),
         is_reference=row.is_reference,
-        entry=from_json(Entry, row.entry),
+        entry=from_json(EntryConfig, row.entry),
         training_id=row.training_id,
         is_withdrawn=row.is_withdrawn,
         entered_at=row.entered_at,

@@ -24,7 +24,7 @@ REFERENCES = ("greedy", "random-walk", "linear-model")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Entry(Record):
+class EntryConfig(Record):
     """An entry: an agent with its settings, a creature where allowed, or a trained table.
 
     Attributes:
@@ -47,7 +47,7 @@ class Entry(Record):
     table: str | None = None
 
 
-def training_of(entry: Entry, rules: TournamentRules) -> TrainingConfig:
+def training_of(entry: EntryConfig, rules: TournamentRules) -> TrainingConfig:
     """Return the training of an entry on any draw, of the seed 0 and undisturbed.
 
     Raises:
@@ -78,7 +78,7 @@ def training_of(entry: Entry, rules: TournamentRules) -> TrainingConfig:
     return config
 
 
-def check_table(entry: Entry, rules: TournamentRules, table: Checkpoint) -> None:
+def check_table(entry: EntryConfig, rules: TournamentRules, table: Checkpoint) -> None:
     """Check that what a table has learned may race for an entry.
 
     The robot and the simulator with which it was learned may be others than those of the rules.
@@ -98,12 +98,12 @@ def check_table(entry: Entry, rules: TournamentRules, table: Checkpoint) -> None
         )
 
 
-def references(rules: TournamentRules) -> Sequence[Entry]:
+def references(rules: TournamentRules) -> Sequence[EntryConfig]:
     """Return the entries that are judged in every tournament, each with the whole budget."""
-    return [completed(Entry(agent=agent), rules) for agent in REFERENCES]
+    return [completed(EntryConfig(agent=agent), rules) for agent in REFERENCES]
 
 
-def completed(entry: Entry, rules: TournamentRules) -> Entry:
+def completed(entry: EntryConfig, rules: TournamentRules) -> EntryConfig:
     """Return an entry with all settings of its agent, as it is judged.
 
     Raises:
@@ -115,7 +115,7 @@ def completed(entry: Entry, rules: TournamentRules) -> Entry:
     return replace(entry, settings=config.settings)
 
 
-def _check_steps(entry: Entry, rules: TournamentRules) -> None:
+def _check_steps(entry: EntryConfig, rules: TournamentRules) -> None:
     if entry.steps is None:
         return
     if entry.table is not None or not learns(entry.agent):
@@ -127,7 +127,7 @@ def _check_steps(entry: Entry, rules: TournamentRules) -> None:
         )
 
 
-def _check_table_allowed(entry: Entry, rules: TournamentRules) -> None:
+def _check_table_allowed(entry: EntryConfig, rules: TournamentRules) -> None:
     if not rules.tables:
         raise InvalidInput(
             "no trained tables enter this tournament; leave out the table, and the agent practises "

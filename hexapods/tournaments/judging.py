@@ -10,7 +10,7 @@ from hexapods.domain.text import message
 from hexapods.domain.world import parse_world
 from hexapods.experiments.trial import TrialConfig, run_trial
 from hexapods.runs.tables import Checkpoint
-from hexapods.tournaments.entry import Entry, check_table, training_of
+from hexapods.tournaments.entry import EntryConfig, check_table, training_of
 from hexapods.tournaments.rules import Draw, TournamentRules
 
 MAX_TRANSITIONS = 40_000
@@ -41,7 +41,7 @@ class Judgement(Record):
 
 
 def judge(
-    rules: TournamentRules, entry: Entry, draw: Draw, table: Checkpoint | None = None
+    rules: TournamentRules, entry: EntryConfig, draw: Draw, table: Checkpoint | None = None
 ) -> Judgement:
     """Judge an entry on a draw; the same arguments give the same result, to the last bit.
 

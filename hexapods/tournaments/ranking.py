@@ -15,7 +15,7 @@ _RESAMPLING_SEED = 0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Standing(Record):
+class RankedEntry(Record):
     """Standing of an entry that has been judged on all draws.
 
     Attributes:
@@ -42,7 +42,7 @@ class Standing(Record):
 
 def ranking(
     distances_m: Mapping[int, Sequence[float]], failures: Mapping[int, int]
-) -> list[Standing]:
+) -> list[RankedEntry]:
     """Rank entries by the interquartile mean of their distances on the same draws.
 
     Equal interquartile means are in the order of the numbers. The method is that of Agarwal et al.
@@ -80,7 +80,7 @@ def ranking(
     is_apart = _can_be_told_apart(iqms_m, resampled_m)
     k = len(numbers)
     return [
-        Standing(
+        RankedEntry(
             number=number,
             iqm_m=float(iqms_m[place]),
             low_m=float(low_m[place]),

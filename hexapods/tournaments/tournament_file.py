@@ -15,9 +15,9 @@ from hexapods.domain.robot import parse_document
 from hexapods.domain.text import check_name, visible
 from hexapods.experiments.worker import versions
 from hexapods.machine import description
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement
-from hexapods.tournaments.ranking import Standing, ranking
+from hexapods.tournaments.ranking import RankedEntry, ranking
 from hexapods.tournaments.rules import MAX_ENTRIES, TournamentRules, commitment_of
 
 FORMAT = 1
@@ -44,7 +44,7 @@ class JudgedEntry(Record):
 
     number: int
     name: str
-    entry: Entry
+    entry: EntryConfig
     judgements: tuple[Judgement, ...]
 
     def __post_init__(self) -> None:
@@ -78,7 +78,7 @@ class TournamentFile(Record):
     commitment: str
     secret: str
     entries: tuple[JudgedEntry, ...]
-    standings: tuple[Standing, ...]
+    standings: tuple[RankedEntry, ...]
     tables: Mapping[str, str] = field(default_factory=dict)
     robots: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
@@ -142,7 +142,7 @@ def own_versions() -> dict[str, str]:
     return {**versions(), "scipy": version("scipy")}
 
 
-def standings_of(judgements: Mapping[int, Sequence[Judgement]]) -> list[Standing]:
+def standings_of(judgements: Mapping[int, Sequence[Judgement]]) -> list[RankedEntry]:
     """Return the standings of entries by their judgements, by number; best first."""
     return ranking(
         {number: [one.distance_m for one in given] for number, given in judgements.items()},

@@ -12,9 +12,9 @@ from hexapods.experiments.local_workers import local_pool
 from hexapods.experiments.worker import difference
 from hexapods.machine import cores
 from hexapods.runs.tables import Checkpoint, from_bytes
-from hexapods.tournaments.entry import Entry, check_table, references, training_of
+from hexapods.tournaments.entry import EntryConfig, check_table, references, training_of
 from hexapods.tournaments.judging import Judgement, judge
-from hexapods.tournaments.ranking import Standing
+from hexapods.tournaments.ranking import RankedEntry
 from hexapods.tournaments.rules import Draw, commitment_of, draws_of
 from hexapods.tournaments.tournament_file import (
     JudgedEntry,
@@ -112,7 +112,7 @@ def _reference_differences(tournament: TournamentFile) -> Iterator[str]:
             yield f"Entry {number} is not the reference {expected.agent} with its usual settings."
 
 
-def _checked_table(entry: Entry, tournament: TournamentFile) -> Checkpoint | None:
+def _checked_table(entry: EntryConfig, tournament: TournamentFile) -> Checkpoint | None:
     """Return the table of an entry; None if it has none.
 
     Raises:
@@ -190,8 +190,8 @@ def _standing_differences(tournament: TournamentFile, repeated: Repeated) -> lis
     return told
 
 
-def _field_differences(name: str, given: Standing, expected: Standing) -> Iterator[str]:
-    for one in fields(Standing):
+def _field_differences(name: str, given: RankedEntry, expected: RankedEntry) -> Iterator[str]:
+    for one in fields(RankedEntry):
         in_file, again = getattr(given, one.name), getattr(expected, one.name)
         if in_file != again:
             yield f"Standing of {name}: {one.name} is {in_file!r} in the file, {again!r} repeated."

@@ -878,7 +878,7 @@ export interface Draw {
 /**
  * An entry: an agent with its settings, a creature where allowed, or a trained table.
  */
-export interface Entry {
+export interface EntryConfig {
   /**
    * a registered name.
    */
@@ -992,7 +992,7 @@ export interface EntryView {
   /**
    * with all settings; that of others is null until the end, but for operators.
    */
-  entry: Entry | null;
+  entry: EntryConfig | null;
   /**
    * of the training whose table entered; null where the entry is, or without one.
    */
@@ -3366,6 +3366,43 @@ export interface RacePage {
   items: RaceView[];
 }
 /**
+ * Standing of an entry that has been judged on all draws.
+ */
+export interface RankedEntry {
+  /**
+   * of the entry.
+   */
+  number: number;
+  /**
+   * interquartile mean of the distances over all draws [m].
+   */
+  iqm_m: number;
+  /**
+   * its 95 % bootstrap interval [m].
+   */
+  low_m: number;
+  /**
+   * its 95 % bootstrap interval [m].
+   */
+  high_m: number;
+  /**
+   * the ranks that it may have: 1 + the number of entries that are better and can be told apart from it, and the number of all without those that are worse and can be told apart.
+   */
+  best_rank: number;
+  /**
+   * the ranks that it may have: 1 + the number of entries that are better and can be told apart from it, and the number of all without those that are worse and can be told apart.
+   */
+  worst_rank: number;
+  /**
+   * numbers, ascending, of the entries of which the 95 % interval of the paired difference of the interquartile means includes 0, to a micrometre.
+   */
+  not_separable: number[];
+  /**
+   * on how many draws it could not walk to the end; it counts as 0 m there.
+   */
+  failures: number;
+}
+/**
  * Why a trial has no result, with its key and its description in words.
  */
 export interface Reason {
@@ -3630,43 +3667,6 @@ export interface SpectatorsView {
   qr_code: string | null;
   reason: string;
   watching: number;
-}
-/**
- * Standing of an entry that has been judged on all draws.
- */
-export interface Standing {
-  /**
-   * of the entry.
-   */
-  number: number;
-  /**
-   * interquartile mean of the distances over all draws [m].
-   */
-  iqm_m: number;
-  /**
-   * its 95 % bootstrap interval [m].
-   */
-  low_m: number;
-  /**
-   * its 95 % bootstrap interval [m].
-   */
-  high_m: number;
-  /**
-   * the ranks that it may have: 1 + the number of entries that are better and can be told apart from it, and the number of all without those that are worse and can be told apart.
-   */
-  best_rank: number;
-  /**
-   * the ranks that it may have: 1 + the number of entries that are better and can be told apart from it, and the number of all without those that are worse and can be told apart.
-   */
-  worst_rank: number;
-  /**
-   * numbers, ascending, of the entries of which the 95 % interval of the paired difference of the interquartile means includes 0, to a micrometre.
-   */
-  not_separable: number[];
-  /**
-   * on how many draws it could not walk to the end; it counts as 0 m there.
-   */
-  failures: number;
 }
 /**
  * A leg of a stored robot.
@@ -4245,7 +4245,7 @@ export interface TournamentView {
   /**
    * of the entries that are judged on all draws, best first.
    */
-  standings: Standing[];
+  standings: RankedEntry[];
   own: OwnEntries;
   /**
    * whether the reader is one, and may delete it.

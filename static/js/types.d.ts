@@ -65,7 +65,7 @@ export type {
   ListedTournament,
   OwnEntries,
   Judgement,
-  Standing as TournamentStanding,
+  RankedEntry,
   TournamentList,
   TournamentEvent,
   TimelineLane,

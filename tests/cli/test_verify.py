@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.tournament_file import write_file
 from tests.cli.running import hexapods, in_process, refusal
 from tests.tournaments.sample_tournaments import judged, rules_of
@@ -16,7 +16,7 @@ from tests.tournaments.sample_tournaments import judged, rules_of
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with a tournament, `t.json`, and one that was changed, `changed.json`."""
     place = tmp_path_factory.mktemp("tournament")
-    tournament = judged(rules_of(), [Entry(agent="q-learning")])
+    tournament = judged(rules_of(), [EntryConfig(agent="q-learning")])
     (place / "t.json").write_bytes(write_file(tournament))
     own = tournament.entries[3]
     better = tuple(replace(one, distance_m=0.9) for one in own.judgements[:1]) + own.judgements[1:]

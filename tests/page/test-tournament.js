@@ -14,7 +14,7 @@ import {
 import { OPTIONS } from "./options.js";
 
 /** @import { Draft } from "../../static/js/tournament/draft.js" */
-/** @import { EnteredAgent, TournamentEntry, TournamentRules, TournamentStanding } from "../../static/js/types.js" */
+/** @import { EnteredAgent, TournamentEntry, TournamentRules, RankedEntry } from "../../static/js/types.js" */
 
 beforeEach(() => (options.value = OPTIONS));
 
@@ -23,7 +23,7 @@ const RULES = /** @type {TournamentRules} */ (/** @type {unknown} */ ({
   tolerance: 0, steps: 500, draws: 20, worlds: ["flat", "limp-pair"], robots: [], gaits: [], tables: false,
 }));
 
-/** @type {(changes?: object) => TournamentStanding} */
+/** @type {(changes?: object) => RankedEntry} */
 const standing = (changes = {}) => ({
   number: 3, iqm_m: 0.5, low_m: 0.45, high_m: 0.55, best_rank: 1, worst_rank: 3, not_separable: [], failures: 0,
   ...changes,
@@ -76,7 +76,7 @@ test("all entries share an axis with zero on it and some room at its end", () =>
 
 test("of many standings the best are shown, and those that are kept in any case", () => {
   const all = Array.from({ length: 30 }, (_, number) => standing({ number }));
-  const numbers = (/** @type {TournamentStanding[]} */ some) => some.map(({ number }) => number);
+  const numbers = (/** @type {RankedEntry[]} */ some) => some.map(({ number }) => number);
   assert.deepEqual(numbers(shortened(all, (n) => n >= 28, 5)), [0, 1, 2, 28, 29]);
   assert.deepEqual(numbers(shortened(all, (n) => n >= 20, 5)), numbers(all.slice(20)), "all that are kept");
   assert.equal(shortened(all, () => false, 30).length, 30);

@@ -8,7 +8,7 @@ from hexapods.assembly import build_learner
 from hexapods.runs.config import training_config
 from hexapods.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
 from hexapods.runs.training import train
-from hexapods.tournaments.entry import Entry, completed, references
+from hexapods.tournaments.entry import EntryConfig, completed, references
 from hexapods.tournaments.judging import judge
 from hexapods.tournaments.rules import TournamentRules, draws_of
 from hexapods.tournaments.tournament_file import (
@@ -43,7 +43,7 @@ def table_of(steps: int = 40, **given: Any) -> Checkpoint:
 
 
 def judged(
-    rules: TournamentRules, entries: Sequence[Entry], tables: Sequence[bytes] = ()
+    rules: TournamentRules, entries: Sequence[EntryConfig], tables: Sequence[bytes] = ()
 ) -> TournamentFile:
     """Judge the references and some entries, and end the tournament."""
     by_digest = {sha256_of(one): from_bytes(one, "q.npz") for one in tables}

@@ -8,16 +8,16 @@ from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import PRESETS
 from hexapods.domain.settings import SettingValues
-from hexapods.tournaments.entry import Entry, check_table, completed, references, training_of
+from hexapods.tournaments.entry import EntryConfig, check_table, completed, references, training_of
 from tests.tournaments.sample_tournaments import rules_of, table_of
 
 DIGEST = "ab" * 32
 
 
-def entry_of(agent: str = "q-learning", **given: Any) -> Entry:
+def entry_of(agent: str = "q-learning", **given: Any) -> EntryConfig:
     if "settings" in given:
         given["settings"] = SettingValues(given["settings"])
-    return Entry(agent=agent, **given)
+    return EntryConfig(agent=agent, **given)
 
 
 def test_an_entry_practises_the_whole_budget_unless_it_says_less() -> None:
@@ -31,7 +31,7 @@ def test_a_completed_entry_has_all_settings() -> None:
     assert entry.settings["alpha"] == 0.5
     assert entry.settings["gamma"] == 0.9
     assert completed(entry, rules_of()) == entry
-    assert from_json(Entry, to_json(entry)) == entry
+    assert from_json(EntryConfig, to_json(entry)) == entry
 
 
 def test_a_creature_walks_in_its_gait() -> None:
@@ -63,7 +63,7 @@ def test_the_references_are_there() -> None:
         (entry_of(table=DIGEST), "no trained tables enter this tournament"),
     ],
 )
-def test_an_entry_that_the_rules_do_not_allow_is_refused(entry: Entry, message: str) -> None:
+def test_an_entry_that_the_rules_do_not_allow_is_refused(entry: EntryConfig, message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         training_of(entry, rules_of(robots=(PRESETS["dog"],)))
 
@@ -76,7 +76,7 @@ def test_an_entry_that_the_rules_do_not_allow_is_refused(entry: Entry, message: 
         (entry_of(table=DIGEST, settings={"alpha": 0.5}), "leave out alpha"),
     ],
 )
-def test_an_entry_with_a_table_says_no_more(entry: Entry, message: str) -> None:
+def test_an_entry_with_a_table_says_no_more(entry: EntryConfig, message: str) -> None:
     with pytest.raises(InvalidInput, match=message):
         training_of(entry, rules_of(tables=True))
 

@@ -14,7 +14,7 @@ from app.tournaments.judge import MAX_DEATHS, Judge
 from app.tournaments.tournament import Entrant, Tournament
 from app.tournaments.tournaments import Tournaments
 from hexapods.processes import processor_s
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement, judge
 from hexapods.tournaments.rules import TournamentRules
 from hexapods.tournaments.tournament_file import standings_of
@@ -59,7 +59,7 @@ def all_judged(tournament: Tournament) -> None:
 def test_what_is_judged_is_what_the_library_judges(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = tournaments.create(QUICK, "", None, 6)
-    tournaments.enter(tournament.id, Entrant(0), Entry(agent="q-learning"))
+    tournaments.enter(tournament.id, Entrant(0), EntryConfig(agent="q-learning"))
     with judging(tournaments, 2):
         all_judged(tournament)
         tournaments.end(tournament.id)
@@ -133,7 +133,7 @@ def test_the_judge_stops_at_once_and_goes_on_later(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = tournaments.create(QUICK, "", None, 6)
     for seed in range(3):
-        tournaments.enter(tournament.id, Entrant(seed), Entry(agent="q-learning"))
+        tournaments.enter(tournament.id, Entrant(seed), EntryConfig(agent="q-learning"))
     with judging(tournaments) as first:
         until(lambda: tournament.progress["judged"] > 4, lambda: tournament.progress)
         pids = first.pids

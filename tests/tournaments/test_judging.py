@@ -16,7 +16,7 @@ from hexapods.domain.robot import PRESETS, robot
 from hexapods.domain.settings import SettingValues
 from hexapods.domain.world import named_world
 from hexapods.experiments.trial import TrialConfig, run_trial
-from hexapods.tournaments.entry import Entry, training_of
+from hexapods.tournaments.entry import EntryConfig, training_of
 from hexapods.tournaments.judging import Judgement, judge
 from hexapods.tournaments.rules import Draw
 from hexapods.tournaments.tournament_file import sha256_of
@@ -53,7 +53,7 @@ class Seer:
 @pytest.mark.parametrize("agent", ["q-learning", "linear-model", "greedy", "random-walk"])
 def test_a_judgement_depends_on_neither_order_nor_thread_nor_process(agent: str) -> None:
     rules = rules_of(simulator="mujoco", steps=20, tolerance=0.03, worlds=("flat", "ice"))
-    entry, draws = Entry(agent=agent), [Draw(5, "flat"), Draw(2**53 - 1, "ice")]
+    entry, draws = EntryConfig(agent=agent), [Draw(5, "flat"), Draw(2**53 - 1, "ice")]
     expected = [judge(rules, entry, draw) for draw in draws]
     assert [judge(rules, entry, draw) for draw in draws[::-1]] == expected[::-1]
     with ThreadPoolExecutor(2) as threads:
@@ -72,16 +72,16 @@ def test_a_judgement_depends_on_neither_order_nor_thread_nor_process(agent: str)
 
 def test_a_learner_practises_and_walks_from_rest_as_in_a_trial() -> None:
     rules = rules_of(steps=50)
-    training = replace(training_of(Entry(agent="q-learning"), rules), seed=5)
+    training = replace(training_of(EntryConfig(agent="q-learning"), rules), seed=5)
     [distance_m] = run_trial(TrialConfig(training=training)).distances_m
-    assert judge(rules, Entry(agent="q-learning"), DRAW) == Judgement(distance_m)
-    less = judge(rules, Entry(agent="q-learning", steps=10), DRAW)
-    assert less != judge(rules, Entry(agent="q-learning"), DRAW)
+    assert judge(rules, EntryConfig(agent="q-learning"), DRAW) == Judgement(distance_m)
+    less = judge(rules, EntryConfig(agent="q-learning", steps=10), DRAW)
+    assert less != judge(rules, EntryConfig(agent="q-learning"), DRAW)
 
 
 def test_what_learns_in_races_by_default_does_here() -> None:
     rules = rules_of(simulator="mujoco", steps=5)
-    entry = Entry(agent="linear-model")
+    entry = EntryConfig(agent="linear-model")
     training = replace(training_of(entry, rules), seed=5)
     [goes_on], [stops] = (
         run_trial(TrialConfig(training=training, keep_learning=keeps)).distances_m
@@ -92,7 +92,7 @@ def test_what_learns_in_races_by_default_does_here() -> None:
 
 def test_the_world_and_the_tolerance_of_the_draw_hold() -> None:
     rules = rules_of(simulator="mujoco", steps=5, worlds=("flat", "ice"))
-    entry = Entry(agent="greedy")
+    entry = EntryConfig(agent="greedy")
     flat, ice = (judge(rules, entry, Draw(5, world)).distance_m for world in ("flat", "ice"))
     assert ice < flat
     built = rules_of(simulator="mujoco", steps=5, tolerance=0.1)
@@ -103,37 +103,37 @@ def test_the_world_and_the_tolerance_of_the_draw_hold() -> None:
 def test_a_search_plans_with_the_nominal_model() -> None:
     rules = rules_of(simulator="mujoco", steps=5, worlds=("limp-pair",))
     training = replace(
-        training_of(Entry(agent="greedy"), rules), seed=5, world=named_world("limp-pair")
+        training_of(EntryConfig(agent="greedy"), rules), seed=5, world=named_world("limp-pair")
     )
     informed, nominal = (
         run_trial(TrialConfig(training=training, blocks=0, plans_with=model)).distances_m[0]
         for model in ("start", "nominal")
     )
-    assert judge(rules, Entry(agent="greedy"), Draw(5, "limp-pair")).distance_m == nominal
+    assert judge(rules, EntryConfig(agent="greedy"), Draw(5, "limp-pair")).distance_m == nominal
     assert nominal < informed
 
 
 def test_a_table_walks_as_if_it_had_been_learned_on_the_draw() -> None:
     rules, draw = rules_of(tables=True), Draw(0, "flat")  # it was learned with the seed 0
-    entry = Entry(agent="q-learning", table=sha256_of(table_file()))
-    practised = judge(rules, Entry(agent="q-learning", steps=40), draw)
+    entry = EntryConfig(agent="q-learning", table=sha256_of(table_file()))
+    practised = judge(rules, EntryConfig(agent="q-learning", steps=40), draw)
     assert judge(rules, entry, draw, table_of()) == practised
 
 
 def test_a_table_of_another_robot_and_simulator_may_race() -> None:
     rules = rules_of(simulator="mujoco", robot=PRESETS["compliant"], tables=True)
-    entry = Entry(agent="q-learning", table=sha256_of(table_file()))
+    entry = EntryConfig(agent="q-learning", table=sha256_of(table_file()))
     assert judge(rules, entry, DRAW, table_of()).failure is None
 
 
 def test_a_table_that_does_not_fit_is_refused() -> None:
-    entry = Entry(agent="q-learning", table=sha256_of(table_file()))
+    entry = EntryConfig(agent="q-learning", table=sha256_of(table_file()))
     with pytest.raises(TableMismatch, match="divisions"):
         judge(rules_of(tables=True, divisions=3), entry, DRAW, table_of())
     with pytest.raises(InvalidInput, match="with its table"):
         judge(rules_of(tables=True), entry, DRAW)
     with pytest.raises(InvalidInput, match="with its table"):
-        judge(rules_of(tables=True), Entry(agent="q-learning"), DRAW, table_of())
+        judge(rules_of(tables=True), EntryConfig(agent="q-learning"), DRAW, table_of())
 
 
 @pytest.mark.parametrize("agent", ["q-learning", "greedy", "random-walk"])
@@ -142,7 +142,7 @@ def test_diverged_physics_is_a_failure(agent: str) -> None:
     stiff = {"servo_kp": 1000, "servo_kv": 100, "servo_torque_nm": 100}
     free = {"joint_armature": 0.0001, "joint_damping": 0.0001, "dt_s": 0.005}
     rules = rules_of(simulator="mujoco", steps=20, robot=robot({**light, **stiff, **free}))
-    judgement = judge(rules, Entry(agent=agent), Draw(3, "flat"))
+    judgement = judge(rules, EntryConfig(agent=agent), Draw(3, "flat"))
     assert judgement.distance_m == 0.0
     assert judgement.failure is not None
     assert "the physics diverged at step" in judgement.failure
@@ -151,7 +151,7 @@ def test_diverged_physics_is_a_failure(agent: str) -> None:
 @pytest.mark.usefixtures("clumsy")
 @pytest.mark.parametrize(("agent", "reason"), [("clumsy", "I tripped"), ("cheat", "action")])
 def test_an_agent_that_fails_is_a_failure(agent: str, reason: str) -> None:
-    judgement = judge(rules_of(), Entry(agent=agent), DRAW)
+    judgement = judge(rules_of(), EntryConfig(agent=agent), DRAW)
     assert judgement.distance_m == 0.0
     assert judgement.failure is not None
     assert reason in judgement.failure
@@ -160,13 +160,13 @@ def test_an_agent_that_fails_is_a_failure(agent: str, reason: str) -> None:
 @pytest.mark.usefixtures("clumsy")
 def test_an_agent_that_would_practise_with_a_model_of_the_secret_world_is_refused() -> None:
     with pytest.raises(InvalidInput, match="learns and plans with a simulator"):
-        judge(rules_of(), Entry(agent="seer"), DRAW)
+        judge(rules_of(), EntryConfig(agent="seer"), DRAW)
 
 
 def test_a_search_that_simulates_too_many_transitions_has_failed() -> None:
-    two_steps = Entry(agent="look-ahead", settings=SettingValues({"depth": 2}))
+    two_steps = EntryConfig(agent="look-ahead", settings=SettingValues({"depth": 2}))
     assert judge(rules_of(), two_steps, DRAW).failure is None
-    three_steps = Entry(agent="look-ahead", settings=SettingValues({"depth": 3}))
+    three_steps = EntryConfig(agent="look-ahead", settings=SettingValues({"depth": 3}))
     judged = judge(rules_of(), three_steps, DRAW)
     assert judged.failure is not None
     assert "over 40,000 transitions" in judged.failure

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hexapods.experiments.statistics import iqm_interval, paired_interval
-from hexapods.tournaments.ranking import Standing, ranking
+from hexapods.tournaments.ranking import RankedEntry, ranking
 
 DISTANCES = st.lists(
     st.lists(st.floats(-0.1, 0.6) | st.just(0.0), min_size=5, max_size=5), min_size=1, max_size=5
@@ -65,7 +65,7 @@ def test_equal_results_are_not_told_apart() -> None:
 def test_there_may_be_none_or_one() -> None:
     assert ranking({}, {}) == []
     assert ranking({4: [0.5] * 5}, {4: 1}) == [
-        Standing(
+        RankedEntry(
             number=4,
             iqm_m=0.5,
             low_m=0.5,

@@ -15,7 +15,7 @@ from app.tournaments.tournament import EnteredTable, Entrant, Tournament
 from app.tournaments.tournaments import MAX_OPEN, MAX_TABLES_BYTES, Tournaments
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import SettingValues
-from hexapods.tournaments.entry import REFERENCES, Entry
+from hexapods.tournaments.entry import REFERENCES, EntryConfig
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.rules import MAX_ENTRIES, TournamentRules, commitment_of
 from tests.postgresql import PostgresServer
@@ -42,8 +42,8 @@ def quick() -> Iterator[RunStore]:
         yield store
 
 
-def practised(alpha: float) -> Entry:
-    return Entry(agent="q-learning", settings=SettingValues({"alpha": alpha}))
+def practised(alpha: float) -> EntryConfig:
+    return EntryConfig(agent="q-learning", settings=SettingValues({"alpha": alpha}))
 
 
 def opened_one(tournaments: Tournaments, per_hour: int = 6) -> Tournament:
@@ -60,10 +60,10 @@ def test_all_is_there_after_a_restart(store: RunStore) -> None:
     tournament = opened_one(tournaments)
     table = EnteredTable("a training", "ab" * 32, b"\x00\xff" * 100)
     tournaments.enter(tournament.id, ONE, practised(0.25))
-    with_table = Entry(agent="q-learning", table=table.sha256)
+    with_table = EntryConfig(agent="q-learning", table=table.sha256)
     tournaments.enter(tournament.id, OTHER, with_table, table)
     tournaments.enter(tournament.id, ONE, with_table, table)
-    tournaments.enter(tournament.id, OPERATOR, Entry(agent="greedy"))
+    tournaments.enter(tournament.id, OPERATOR, EntryConfig(agent="greedy"))
     judged(tournaments, tournament, 0)
     tournaments.keep(tournament, 3, 1, Judgement(0.123456789012345678))
     tournaments.keep(tournament, 3, 0, Judgement(0.0, "The physics diverged."))
@@ -114,15 +114,15 @@ def test_a_damaged_row_is_left_out(store: RunStore) -> None:
 def test_equal_entries_of_an_entrant_are_one(quick: RunStore) -> None:
     tournaments = Tournaments(quick)
     tournament = opened_one(tournaments)
-    first = tournaments.enter(tournament.id, ONE, Entry(agent="q-learning"))
+    first = tournaments.enter(tournament.id, ONE, EntryConfig(agent="q-learning"))
     assert first.is_new
     # The defaults, written out.
-    same = Entry(agent="q-learning", steps=RULES.steps, settings=first.entry.entry.settings)
+    same = EntryConfig(agent="q-learning", steps=RULES.steps, settings=first.entry.entry.settings)
     again = tournaments.enter(tournament.id, ONE, same)
     assert (again.entry, again.is_new) == (first.entry, False)
     assert tournaments.enter(tournament.id, OTHER, same).is_new
     assert tournaments.enter(tournament.id, OPERATOR, same).is_new
-    assert tournaments.enter(tournament.id, ONE, Entry(agent="q-learning", steps=99)).is_new
+    assert tournaments.enter(tournament.id, ONE, EntryConfig(agent="q-learning", steps=99)).is_new
 
 
 def test_entries_of_an_hour_are_counted_by_the_database(quick: RunStore) -> None:
@@ -154,15 +154,18 @@ def test_limits_are_told(quick: RunStore) -> None:
     tournaments = Tournaments(quick)
     tournament = opened_one(tournaments)
     for message, entry in (
-        ("steps must be from 1 to 100", Entry(agent="q-learning", steps=101)),
-        ("unknown agent 'nobody'", Entry(agent="nobody")),
-        ("setting of q-learning", Entry(agent="q-learning", settings=SettingValues({"x": 1}))),
+        ("steps must be from 1 to 100", EntryConfig(agent="q-learning", steps=101)),
+        ("unknown agent 'nobody'", EntryConfig(agent="nobody")),
+        (
+            "setting of q-learning",
+            EntryConfig(agent="q-learning", settings=SettingValues({"x": 1})),
+        ),
     ):
         with pytest.raises(InvalidInput, match=message):
             tournaments.enter(tournament.id, ONE, entry)
     big = EnteredTable("a", "cd" * 32, b"0" * MAX_TABLES_BYTES)
     with pytest.raises(Conflict, match="MB, which is the most"):
-        tournaments.enter(tournament.id, ONE, Entry(agent="sarsa", table=big.sha256), big)
+        tournaments.enter(tournament.id, ONE, EntryConfig(agent="sarsa", table=big.sha256), big)
     for number in range(MAX_ENTRIES - len(REFERENCES)):
         entry = practised(0.5 * (number + 1) / MAX_ENTRIES)
         tournaments.enter(tournament.id, OPERATOR, entry)

@@ -10,7 +10,7 @@ import pytest
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.robot import PRESETS, document_of, read_document, robot
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.rules import MAX_ENTRIES
 from hexapods.tournaments.tournament_file import (
     TournamentFile,
@@ -26,8 +26,8 @@ from tests.tournaments.sample_tournaments import SECRET, judged, rules_of, table
 def tournament() -> TournamentFile:
     rules = rules_of(robots=(PRESETS["dog"],), tables=True)
     entries = [
-        Entry(agent="q-learning", steps=30, robot=PRESETS["dog"]),
-        Entry(agent="q-learning", table=sha256_of(table_file())),
+        EntryConfig(agent="q-learning", steps=30, robot=PRESETS["dog"]),
+        EntryConfig(agent="q-learning", table=sha256_of(table_file())),
     ]
     return judged(rules, entries, [table_file()])
 

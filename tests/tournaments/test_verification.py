@@ -9,7 +9,7 @@ from hexapods.domain import robot_documents
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.model_robot import model_robot
 from hexapods.domain.robot import PRESETS, document_of, read_document
-from hexapods.tournaments.entry import Entry
+from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.tournament_file import (
     JudgedEntry,
     TournamentFile,
@@ -28,8 +28,8 @@ OTHER_SECRET = "fedcba9876543210" * 4
 @pytest.fixture(scope="module")
 def kinematic() -> TournamentFile:
     rules = rules_of(tables=True)
-    table = Entry(agent="q-learning", table=sha256_of(table_file()))
-    return judged(rules, [Entry(agent="q-learning"), table], [table_file()])
+    table = EntryConfig(agent="q-learning", table=sha256_of(table_file()))
+    return judged(rules, [EntryConfig(agent="q-learning"), table], [table_file()])
 
 
 def edited(tournament: TournamentFile, number: int, **changes: object) -> TournamentFile:
@@ -53,7 +53,7 @@ def test_a_tournament_in_mujoco_repeats_with_any_number_of_processes() -> None:
         worlds=("flat", "ice"),
         robots=(PRESETS["dog"],),
     )
-    tournament = judged(rules, [Entry(agent="q-learning", robot=PRESETS["dog"])])
+    tournament = judged(rules, [EntryConfig(agent="q-learning", robot=PRESETS["dog"])])
     counted: list[tuple[int, int]] = []
     read = read_file(write_file(tournament), "it")
     assert verify(read, 2, lambda *counts: counted.append(counts)) == []
@@ -76,7 +76,7 @@ def test_a_tournament_of_an_imported_robot_repeats_where_it_is_not_known(importe
     own = read_document(robot_documents.find(imported), "Own")
     rules = rules_of(simulator="mujoco", steps=10, robots=(own,))
     assert rules.gaits == ("tripod",)
-    data = write_file(judged(rules, [Entry(agent="q-learning", robot=own)]))
+    data = write_file(judged(rules, [EntryConfig(agent="q-learning", robot=own)]))
     robot_documents.forget([imported])
     assert verify(read_file(data, "it"), workers=1) == []
     with pytest.raises(InvalidInput, match="no stored robot"):
@@ -159,7 +159,7 @@ def test_a_missing_and_a_weakened_reference_are_told(kinematic: TournamentFile) 
 
 
 def test_an_entry_that_the_rules_do_not_allow_is_told(kinematic: TournamentFile) -> None:
-    told = sentences(edited(kinematic, 3, entry=Entry(agent="q-learning", steps=61)))
+    told = sentences(edited(kinematic, 3, entry=EntryConfig(agent="q-learning", steps=61)))
     assert told == [
         "Entry 3 (entrant 3) cannot be judged: steps must be from 1 to 60, the budget of this "
         "tournament, not 61.",
@@ -173,7 +173,7 @@ def test_a_table_that_is_not_there_and_another_one_are_told(kinematic: Tournamen
     assert told == f"Entry 4 (entrant 4) cannot be judged: its table {digest} is not in the file."
     other = judged(
         kinematic.rules,
-        [Entry(agent="q-learning", table=sha256_of(table_file(41)))],
+        [EntryConfig(agent="q-learning", table=sha256_of(table_file(41)))],
         [table_file(41)],
     )
     exchanged = edited(replace(kinematic, tables=other.tables), 4, entry=other.entries[3].entry)

@@ -10,7 +10,7 @@ import { fileOf } from "../tournaments-api.js";
 import { entries, id, isWhole, known, nameOfNumber, shownStandings } from "./tournament.js";
 import { failuresInWords, intervalInWords, shortName } from "./words.js";
 
-/** @import { Judgement, TournamentStanding } from "../types.js" */
+/** @import { Judgement, RankedEntry } from "../types.js" */
 
 const HEADROOM = 1.04;
 const LEAST_M = 0.1;
@@ -76,7 +76,7 @@ function Strips() {
   `;
 }
 
-/** @param {{ standing: TournamentStanding, axis: { low: number, high: number }, hasNumbers: boolean }} props */
+/** @param {{ standing: RankedEntry, axis: { low: number, high: number }, hasNumbers: boolean }} props */
 function Strip({ standing, axis, hasNumbers }) {
   const { number, iqm_m, low_m, high_m } = standing;
   const judgements = judgementsOf(number);

@@ -11,7 +11,7 @@ import {
   spokenRank,
 } from "./words.js";
 
-/** @import { TournamentEntry, TournamentStanding } from "../types.js" */
+/** @import { TournamentEntry, RankedEntry } from "../types.js" */
 
 /** @typedef {{ low: number, high: number }} Axis [m] */
 
@@ -48,7 +48,7 @@ export function Ranking() {
 
 /**
  * @param {object} props
- * @param {TournamentStanding[]} props.standings best first
+ * @param {RankedEntry[]} props.standings best first
  * @param {boolean} [props.isShort] without what cannot be told apart, for a projector
  */
 export function Table({ standings, isShort = false }) {
@@ -93,7 +93,7 @@ function useFocusOf(number) {
   return element;
 }
 
-/** @param {{ standing: TournamentStanding, axis: Axis, line_m: number | null, isShort: boolean }} props */
+/** @param {{ standing: RankedEntry, axis: Axis, line_m: number | null, isShort: boolean }} props */
 function Row({ standing, axis, line_m, isShort }) {
   const { number, iqm_m } = standing;
   const entry = entries.value.get(number);
@@ -130,7 +130,7 @@ function Who({ entry, isShort = false }) {
   `;
 }
 
-/** @param {{ standing: TournamentStanding }} props */
+/** @param {{ standing: RankedEntry }} props */
 function Remarks({ standing }) {
   const failed = failuresInWords(standing, known().rules.draws);
   const others = notSeparable(standing, nameOfNumber);
@@ -157,7 +157,7 @@ const Numbers = ({ axis: { low, high } }) => html`
 `;
 
 /** The interval with the mean, on the axis of all. */
-/** @param {{ standing: TournamentStanding, axis: Axis, line_m: number | null }} props */
+/** @param {{ standing: RankedEntry, axis: Axis, line_m: number | null }} props */
 function Mark({ standing, axis: { low, high }, line_m }) {
   const { iqm_m, low_m, high_m } = standing;
   const at = (/** @type {number} */ value) => percent(shareOf(value, low, high));

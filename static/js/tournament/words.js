@@ -5,7 +5,7 @@ import { largest } from "../scale.js";
 import { agentOf, settingInWords } from "../settings.js";
 import { gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
 
-/** @import { OwnEntries, Tournament, TournamentEntry, TournamentStanding } from "../types.js" */
+/** @import { OwnEntries, Tournament, TournamentEntry, RankedEntry } from "../types.js" */
 
 /** Steps that an entry walks on each draw, as in every race. */
 const RACE_STEPS = 50;
@@ -70,11 +70,11 @@ export const progressInWords = ({ state, judged, of }) =>
 // ---- the ranking
 
 /** "1", or "1–3" where ranks cannot be told apart. */
-/** @param {Pick<TournamentStanding, "best_rank" | "worst_rank">} standing */
+/** @param {Pick<RankedEntry, "best_rank" | "worst_rank">} standing */
 export const rankInWords = ({ best_rank, worst_rank }) =>
   (best_rank === worst_rank ? `${best_rank}` : `${best_rank}${TO}${worst_rank}`);
 
-/** The same, to be read out. @param {Pick<TournamentStanding, "best_rank" | "worst_rank">} standing */
+/** The same, to be read out. @param {Pick<RankedEntry, "best_rank" | "worst_rank">} standing */
 export const spokenRank = ({ best_rank, worst_rank }) =>
   (best_rank === worst_rank ? `Rank ${best_rank}` : `Rank ${best_rank} to ${worst_rank}`);
 
@@ -87,7 +87,7 @@ export const shortName = (name) => (name.length > LONGEST_NAME ? `${name.slice(0
 
 /**
  * The others that cannot be told apart from an entry: "Greedy, Keen Ant, Shy Hare and 4 others"; empty where all can.
- * @param {Pick<TournamentStanding, "not_separable">} standing
+ * @param {Pick<RankedEntry, "not_separable">} standing
  * @param {(number: number) => string} nameOfNumber
  */
 export function notSeparable({ not_separable }, nameOfNumber) {
@@ -96,19 +96,19 @@ export function notSeparable({ not_separable }, nameOfNumber) {
   return listed(names.length <= TOLD + 1 ? names : [...names.slice(0, TOLD), `${names.length - TOLD} others`]);
 }
 
-/** The 95 % interval, without the unit that stands beside it. @param {TournamentStanding} standing */
+/** The 95 % interval, without the unit that stands beside it. @param {RankedEntry} standing */
 export const intervalInWords = ({ low_m, high_m }) => `${centimetres(low_m)} to ${centimetres(high_m)}`;
 
 /** @param {number} value [m] */
 const centimetres = (value) => metres(value).replace(/\s?m$/, "");
 
-/** "failed on 2 of 20"; empty without failures. @type {(standing: TournamentStanding, draws: number) => string} */
+/** "failed on 2 of 20"; empty without failures. @type {(standing: RankedEntry, draws: number) => string} */
 export const failuresInWords = ({ failures }, draws) => (failures ? `failed on ${failures} of ${draws}` : "");
 
 const HEADROOM = 1.04;
 const LEAST_M = 0.1;
 
-/** The ends of the axis that all entries share [m]. @param {TournamentStanding[]} standings */
+/** The ends of the axis that all entries share [m]. @param {RankedEntry[]} standings */
 export const axisOf = (standings) => ({
   low: Math.min(0, ...standings.map(({ low_m }) => low_m)),
   high: HEADROOM * largest(standings.map(({ high_m }) => high_m), LEAST_M),
@@ -116,7 +116,7 @@ export const axisOf = (standings) => ({
 
 /**
  * As many standings as there is room for: those that are kept in any case, and the best of the others.
- * @param {TournamentStanding[]} standings best first
+ * @param {RankedEntry[]} standings best first
  * @param {(number: number) => boolean} isKept by the number of the entry
  * @param {number} most
  */
