@@ -4,6 +4,8 @@ from typing import Any
 
 AGENTS = ("QLearning", "Beam")
 """The default one, which learns, and a search with settings of its own."""
+KINDS = ("Training", "Lane", "Entry")
+"""Ends of the names of bodies that are others for each agent."""
 OWN = ("agent", "settings")
 """Fields that are others for each agent."""
 DISTURBANCES = ("Limp", "Patch")
@@ -13,7 +15,8 @@ DISTURBANCES = ("Limp", "Patch")
 def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     """Return an OpenAPI document whose bodies have few agents, few disturbances and their settings.
 
-    The fields that all agents have stand in the body of the first one.
+    The fields that all agents have stand in the body of the first one, and those of a walk in that
+    of a training, not in the rules of a tournament.
     The operation that disturbs a running training keeps all kinds of disturbances.
     """
     short: dict[str, Any] = _with_few_choices(contract)
@@ -24,10 +27,11 @@ def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     kept = set().union(*(names for name, names in settings.items() if name.startswith(AGENTS)))
     for name in set().union(*settings.values()) - kept:
         schemas["ExperimentBody"]["properties"].pop(name, None)
-    for kind in ("Training", "Lane"):
+    for kind in KINDS:
         first, *others = (schemas[agent + kind] for agent in AGENTS)
         for one in others:
             _leave_out_what_has(first, one)
+    _leave_out_what_has(schemas[f"{AGENTS[0]}Training"], schemas["TournamentRulesBody"])
     return short
 
 
@@ -45,7 +49,7 @@ def _with_few_choices(part: Any) -> Any:
     if not isinstance(part, dict):
         return part
     short = {name: _with_few_choices(one) for name, one in part.items()}
-    if _is_choice_of("QLearningTraining", short) or _is_choice_of("QLearningLane", short):
+    if any(_is_choice_of(AGENTS[0] + kind, short) for kind in KINDS):
         short["oneOf"] = [one for one in short["oneOf"] if _name_of(one).startswith(AGENTS)]
     disturbances = short.get("disturbances", {}).get("items", {})
     if _is_choice_of("LimpDisturbance", disturbances):
