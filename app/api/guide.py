@@ -29,6 +29,7 @@ CONTENTS = (
             "comparing",
             "spectators",
             "classroom",
+            "tournaments",
             "exports",
         ),
     ),
