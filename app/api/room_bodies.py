@@ -50,8 +50,12 @@ class PredictionBody(CardBody):
 
 
 class RunBody(Body):
-    """The settings that the card opens, by name; those that are left out are the card's."""
+    """The settings that the card opens, by name; those that are left out are the card's.
 
+    With `card` it is refused unless that is the card that is shown.
+    """
+
+    card: Annotated[CardNumber, Field(strict=True), INTEGRAL] | None = None
     settings: Annotated[
         dict[Annotated[str, Field(max_length=MAX_SETTING_NAME)], JsonValue],
         Field(max_length=MAX_SETTINGS),

@@ -19,7 +19,7 @@ from app.api.classroom_answers import (
 )
 from app.api.contract import LOCATION, TEXT, Schema, answers
 from app.api.cookies import SessionCookie, is_secure
-from app.api.deps import EventListener, ReaderDep, Services, ServicesDep
+from app.api.deps import EventListener, IdempotencyKeyHeader, ReaderDep, Services, ServicesDep
 from app.api.events import EVENT_STREAM, client_slot, stream_events
 from app.api.formats import attachment, negotiated
 from app.api.rate_limit import asker_of, whole_seconds
@@ -47,10 +47,13 @@ from app.limits.addresses import client_of
 from app.storage.errors import Busy, Forbidden, NotFound
 from app.storage.json_text import finite
 from app.viewer.shared_stage import SharedStage
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.text import MAX_NAME, check_name
 
 CodePath = Annotated[str, Path(description="code of the room", max_length=20)]
 SeedPath = Annotated[int, Path(description="seed of the participant", ge=0)]
+MIN_JOIN_KEY = 16
+"""Characters of the Idempotency-Key of a request to join, which is a secret."""
 _SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
 _JOINS_USED_UP = "Too many have joined from this address within a short time; try again later."
 
@@ -150,19 +153,29 @@ def get_room(
     },
 )
 def join_room(
-    services: ServicesDep, request: Request, code: CodePath, body: JoinBody | None = None
+    services: ServicesDep,
+    request: Request,
+    code: CodePath,
+    body: JoinBody | None = None,
+    idempotency_key: IdempotencyKeyHeader = None,
 ) -> Response:
     """Join by the code, with neither account nor data: the name is from a list of words.
 
-    A cookie keeps name and seed; who has it gets both again, with 200.
+    A cookie keeps name and seed; who has it gets both again, with 200, as does who repeats the
+    request with the same Idempotency-Key, since the answer was lost on the way.
     """
     del body
+    if idempotency_key is not None and len(idempotency_key) < MIN_JOIN_KEY:
+        raise InvalidInput(
+            f"the Idempotency-Key must have at least {MIN_JOIN_KEY} characters here: who has it "
+            "is the participant"
+        )
     rooms, cookie = services.rooms, _cookie(services, request, code)
-    if rooms.seat(normalized(code), cookie.value) is None:
+    if not rooms.is_seated(code, cookie.value, idempotency_key):
         rooms.get(code).check_open()
         if (wait_s := services.joins.take(f"{normalized(code)} {client_of(request.scope)}")) > 0:
             raise Busy(_JOINS_USED_UP, whole_seconds(wait_s))
-    joined = rooms.join(code, cookie.value)
+    joined = rooms.join(code, cookie.value, idempotency_key)
     shown = {"name": joined.participant.name, "seed": joined.participant.seed}
     response = JSONResponse(shown, 201 if joined.is_new else 200)
     response.headers.append("Set-Cookie", cookie.set_header(joined.key))
@@ -278,8 +291,8 @@ def start_run(
     Only the settings that the card opens may be given, within its bounds. What was started alike is
     returned again; one run of a participant goes on at a time.
     """
-    settings = (body or RunBody()).settings
-    starts, room = services.card_starts, services.rooms.check_run(code)
+    card, settings = (body := body or RunBody()).card, body.settings
+    starts, room = services.card_starts, services.rooms.check_run(code, card)
     given = starts.given(room.shown, settings)
     if room.shown.go == "what-if":
         asker = spectators_asker(services, asker_of(request.scope))
@@ -292,6 +305,7 @@ def start_run(
             now.shown, starts.given(now.shown, settings), seed, _name(now, seed)
         ),
         services.jobs.start,
+        card=card,
     )
     return located(services, request, run, 202)
 

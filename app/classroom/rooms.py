@@ -16,7 +16,7 @@ from app.classroom.lessons import FoundLesson
 from app.classroom.names import Choose, new_code, normalized
 from app.classroom.room import Deed, Room
 from app.classroom.room_runs import RoomRuns
-from app.classroom.seats import Joined, Seats, new_participant
+from app.classroom.seats import Joined, Seats, key_of, new_key, new_participant
 from app.jobs.submissions import Start
 from app.storage.database.room_rows import ParticipantRow, PredictionRow, RoomRow, Seat
 from app.storage.database.store import RunStore
@@ -269,8 +269,14 @@ class Rooms:
 
     # ---- of participants
 
-    def join(self, code: str, key: str = "") -> Joined:
+    def join(self, code: str, key: str = "", request_key: str | None = None) -> Joined:
         """Join a room; who was in it before, by the key, has the same name and seed again.
+
+        Args:
+            code: of the room.
+            key: of who was in it before; "" for none.
+            request_key: idempotency key of the request, a secret: with it the same request, of
+                which the answer was lost, finds the participant of the first again.
 
         Raises:
             NotFound: if there is no such room.
@@ -280,14 +286,33 @@ class Rooms:
         with self._lock:
             room = self.get(code)
             room.check_open()
-            seat = self.seat(room.code, key)
-            if seat is not None:
-                return Joined(seat, key, is_new=False)
-            joined = new_participant(room, self._choose, self._now())
+            seated = self._seated(room, key, request_key)
+            if seated is not None:
+                return seated
+            requested = None if request_key is None else key_of(room.code, request_key)
+            if requested is None or self._seats.has(requested):
+                requested = new_key()
+            joined = new_participant(room, self._choose, self._now(), requested)
             self._rows.add_participant(joined.participant)
             self._seats.add(room, joined.participant)
         self.on_changed(room)
         return joined
+
+    def is_seated(self, code: str, key: str, request_key: str | None) -> bool:
+        """Whether a request to join would find a participant again; arguments as of `join`.
+
+        Raises:
+            NotFound: if there is no such room.
+        """
+        return self._seated(self.get(code), key, request_key) is not None
+
+    def _seated(self, room: Room, key: str, request_key: str | None) -> Joined | None:
+        requested = "" if request_key is None else key_of(room.code, request_key)
+        for known in (key, requested):
+            seat = self._seats.of(room, known)
+            if seat is not None:
+                return Joined(seat, known, is_new=False)
+        return None
 
     def leave(self, code: str, seed: int) -> None:
         """Leave a room; what was answered and run stays."""
@@ -313,9 +338,7 @@ class Rooms:
         """
         with self._lock:
             room = self.get(code)
-            room.check_card(card)
-            if card != room.card:
-                raise Forbidden(f"card {card} is not shown; the class is at card {room.card}")
+            _check_shown(room, card)
             _check_allowed(room, "predict")
             room.check_going_on()
             ask = room.lesson.cards[card].ask
@@ -331,14 +354,20 @@ class Rooms:
         self.on_changed(room)
         return answer
 
-    def check_run(self, code: str) -> Room:
+    def check_run(self, code: str, card: int | None = None) -> Room:
         """Return the room, if the card that is shown lets its participants start a run.
 
+        Args:
+            code: of the room.
+            card: number of the card that is meant; None for the one that is shown.
+
         Raises:
-            Forbidden: if the card runs nothing.
+            NotFound: if there is no such card.
+            Forbidden: if another card is shown, or it runs nothing.
             Conflict: if the room has ended or is frozen.
         """
         room = self.get(code)
+        _check_shown(room, card)
         _check_allowed(room, "run")
         room.check_going_on()
         return room
@@ -350,6 +379,8 @@ class Rooms:
         given: Mapping[str, Any],
         make: Callable[[Room], Start],
         queue: Callable[[Start], Run],
+        *,
+        card: int | None = None,
     ) -> Run:
         """Start what the card that is shown runs; what was started alike is returned again.
 
@@ -359,13 +390,15 @@ class Rooms:
             given: settings that the participant gave, by name, as they were checked.
             make: makes the start.
             queue: queues it.
+            card: number of the card that is meant; None for the one that is shown.
 
         Raises:
-            Forbidden, Conflict: as `check_run`; also if a run of the participant has not ended.
+            NotFound, Forbidden, Conflict: as `check_run`; also if a run of the participant has not
+                ended.
             Busy: if there were too many.
         """
         with self._lock:
-            room = self.check_run(code)
+            room = self.check_run(code, card)
             run = self._runs.start(room, seed, given, make, queue)
         self.on_changed(room)
         return run
@@ -389,6 +422,13 @@ class Rooms:
         """Return the ids of interrupted runs of open rooms, which were asked for."""
         with self._lock:
             return [one for room in self.open_rooms() for one in self._runs.interrupted(room)]
+
+
+def _check_shown(room: Room, card: int | None) -> None:
+    if card is not None:
+        room.check_card(card)
+        if card != room.card:
+            raise Forbidden(f"card {card} is not shown; the class is at card {room.card}")
 
 
 def _check_allowed(room: Room, deed: Deed) -> None:

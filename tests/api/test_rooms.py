@@ -172,6 +172,32 @@ def test_who_joins_again_has_the_same_name_and_seed(school: Class) -> None:
     assert other.json()["seed"] == first.json()["seed"] + 1
 
 
+def test_a_join_whose_answer_was_lost_is_repeated(school: Class) -> None:
+    code = school.room()
+    path, secret = f"/rooms/{code}/participants", {"Idempotency-Key": "a-long-secret-of-a-phone"}
+    first = school.pupil().call("POST", path, headers=secret)
+    again, other = (school.pupil() for _ in range(2))
+    answer = again.call("POST", path, headers=secret)
+    assert (first.status_code, answer.status_code) == (201, 200)
+    assert answer.json() == first.json()
+    assert again.get(f"/rooms/{code}")["me"]["seed"] == first.json()["seed"]
+    assert school.teacher.get(f"/rooms/{code}")["participants"] == 1
+    # Who has left does not come back by it.
+    again.call("DELETE", f"/rooms/{code}/me")
+    assert other.call("POST", path, headers=secret).json()["seed"] == 1
+    refused(other.call("POST", path, headers={"Idempotency-Key": "short"}), 422, "at least 16")
+
+
+def test_a_run_of_a_card_that_is_shown_no_more_is_refused(school: Class) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, 2)
+    answer = pupil.call("POST", f"/rooms/{code}/runs", json={"card": 1})
+    refused(answer, 403, "class is at card 2")
+    refused(pupil.call("POST", f"/rooms/{code}/runs", json={"card": 9}), 404, "0 to 5")
+    started(pupil.call("POST", f"/rooms/{code}/runs", json={"card": 2}))
+
+
 def test_who_leaves_behind_a_proxy_loses_the_cookie(serve: Callable[..., Api]) -> None:
     api = serve(token=TOKEN, public_url="https://hexapods.example")
     teacher = {"Authorization": f"Bearer {TOKEN}"}
@@ -408,7 +434,7 @@ def test_one_address_cannot_fill_a_room(school: Class) -> None:
         ("POST", "/participants", {"name": "<b>Bad</b>"}, "unknown field 'name'"),
         ("POST", "/predictions", {"card": 1}, "value"),
         ("POST", "/predictions", {"card": "one", "value": 1}, "card"),
-        ("POST", "/runs", {"steps": 4}, "unknown field 'steps'; choose one of: settings"),
+        ("POST", "/runs", {"steps": 4}, "unknown field 'steps'; choose one of: card, settings"),
         ("PUT", "/card", {"card": -1}, "card"),
         ("PUT", "/card", {"card": 1.5}, "card"),
         ("POST", "/freeze", {"frozen": "yes"}, "frozen"),
