@@ -261,12 +261,13 @@ class Teacher:
         return answer.json()
 
     async def keep_in_motion(self, code: str) -> None:
-        """Play the run in the spotlight from its beginning again and again."""
+        """Play the run in the spotlight in real time, from its beginning again and again."""
+        await self.call("PUT", f"/r/{code}/api/v1/stage", {"time_s": 0, "speed": 1})
         while True:
             with suppress(httpx2.HTTPError):
                 stage = await self.call("GET", f"/r/{code}/api/v1/stage")
                 if stage["ended"] or not stage["playing"]:
-                    body = {"time_s": 0, "playing": True}
+                    body = {"time_s": 0, "playing": True, "speed": 1}
                     await self.call("PUT", f"/r/{code}/api/v1/stage", body)
             await asyncio.sleep(1.0)
 

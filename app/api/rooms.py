@@ -41,7 +41,7 @@ from app.api.spectators import qr_image
 from app.api.starts import spectators_asker
 from app.classroom.lesson import CardNumber, read_lesson
 from app.classroom.names import normalized
-from app.classroom.results import MEDIA_TYPE, as_csv, results_of
+from app.classroom.results import MEDIA_TYPE, Reader, as_csv, results_of
 from app.classroom.room import Room
 from app.limits.addresses import client_of
 from app.storage.errors import Busy, Forbidden, NotFound
@@ -289,14 +289,20 @@ def start_run(
     """Start the training or race of the card with the seed of the participant who asks.
 
     Only the settings that the card opens may be given, within its bounds. What was started alike is
-    returned again; one run of a participant goes on at a time.
+    returned again; one run of a participant goes on at a time. A what-if is answered at once, with
+    200, and is kept as a result of the card.
     """
     card, settings = (body := body or RunBody()).card, body.settings
     starts, room = services.card_starts, services.rooms.check_run(code, card)
-    given = starts.given(room.shown, settings)
-    if room.shown.go == "what-if":
-        asker = spectators_asker(services, asker_of(request.scope))
-        return JSONResponse(services.what_if.ask(starts.what_if(room.shown, given), asker))
+    number, shown = (room.card, room.shown) if card is None else (card, room.lesson.cards[card])
+    given = starts.given(shown, settings)
+    if shown.go == "what-if":
+        what_if, asker = starts.what_if(shown, given), asker_of(request.scope)
+
+        def compute() -> dict[str, Any]:
+            return services.what_if.ask(what_if, spectators_asker(services, asker))
+
+        return JSONResponse(services.rooms.ask(code, seed, given, compute, card=number))
     run = services.rooms.start(
         code,
         seed,
@@ -305,7 +311,7 @@ def start_run(
             now.shown, starts.given(now.shown, settings), seed, _name(now, seed)
         ),
         services.jobs.start,
-        card=card,
+        card=number,
     )
     return located(services, request, run, 202)
 
@@ -328,6 +334,9 @@ def get_results(
     reader: ReaderDep,
     *,
     card: Annotated[CardNumber | None, Query(description="of one card; of all if absent")] = None,
+    projector: Annotated[
+        bool, Query(description="as the class sees it: without those who are not approved")
+    ] = False,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
     """Return by card what was predicted, what came of the runs, and how both compare.
@@ -338,8 +347,9 @@ def get_results(
     if card is not None:
         room.check_card(card)
     cards = range(len(room.lesson.cards)) if card is None else [card]
-    own, is_teacher = dict(reader or ()).get(room.code), reader is None
-    results = results_of(room, services.store, cards, own, is_teacher=is_teacher)
+    own = dict(reader or ()).get(room.code)
+    who = Reader(own, is_teacher=reader is None, is_projector=projector)
+    results = results_of(room, services.store, cards, who)
     if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(
             as_csv(results).encode(), f"{MEDIA_TYPE}; charset=utf-8", f"{room.code}.csv"

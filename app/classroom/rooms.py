@@ -204,7 +204,7 @@ class Rooms:
             room.check_open()
             runs = []
             if run_id is not None:
-                if run_id not in room.runs:
+                if run_id not in room.runs or room.runs[run_id].answer is not None:
                     raise NotFound(f"the room {room.code} has no run {run_id!r}")
                 runs = [room.runs[run_id]]
                 participant = room.participants[runs[0].seed]
@@ -402,6 +402,43 @@ class Rooms:
             run = self._runs.start(room, seed, given, make, queue)
         self.on_changed(room)
         return run
+
+    def ask(
+        self,
+        code: str,
+        seed: int,
+        given: Mapping[str, Any],
+        compute: Callable[[], Mapping[str, Any]],
+        *,
+        card: int,
+    ) -> Mapping[str, Any]:
+        """Return what the what-if of the card that is shown gives, and keep it; see `start`.
+
+        Args:
+            code: of the room.
+            seed: of the participant.
+            given: settings that the participant gave, by name, as they were checked.
+            compute: computes the answer, which may take seconds; it is called without a lock.
+            card: number of the card.
+
+        Raises:
+            NotFound, Forbidden, Conflict: as `check_run`.
+            Busy: if there were too many.
+        """
+        with self._lock:
+            known = self._runs.answer_of(self.check_run(code, card), seed, card, given)
+        if known is not None:
+            return known
+        answer = compute()
+        with self._lock:
+            # It was asked while the card was shown, so it is kept whatever is shown now.
+            room = self.get(code)
+            known = self._runs.answer_of(room, seed, card, given)
+            if known is not None:
+                return known
+            self._runs.keep_answer(room, seed, card, given, answer=answer, now=self._now())
+        self.on_changed(room)
+        return answer
 
     # ---- who sees what
 

@@ -425,8 +425,11 @@ export interface ScoreView {
  * A participant's run on a card.
  */
 export interface RunOutcome {
+  /**
+   * of the run; of a what-if that of its record.
+   */
   id: string;
-  kind: "training" | "race" | "experiment";
+  kind: ("training" | "race" | "experiment") | "what-if";
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   /**
    * settings that they gave, by name.
@@ -435,7 +438,7 @@ export interface RunOutcome {
     [k: string]: unknown;
   };
   /**
-   * how far the robot walked; of a race the learner, at time-out.
+   * how far the robot walked; of a race the learner, at time-out; of a what-if the interquartile mean with the chosen settings.
    */
   distance_m: number | null;
   /**
@@ -446,6 +449,35 @@ export interface RunOutcome {
    * among the seeds, 1 for the longest distance; null before the reveal.
    */
   rank: number | null;
+  /**
+   * of one's own what-if.
+   */
+  answer: WhatIfView | null;
+}
+/**
+ * Result of a what-if: the chosen settings compared with the defaults.
+ */
+export interface WhatIfView {
+  seeds: number;
+  greedy_m: number;
+  chosen: WhatIfHalf;
+  default: WhatIfHalf;
+  compute_s: number;
+}
+/**
+ * Result of 30 seeds with these settings: their distances [m] and interquartile mean.
+ */
+export interface WhatIfHalf {
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
+  steps_per_episode: number;
+  distances_m: number[];
+  walkers: number;
+  iqm_m: number;
 }
 /**
  * Interquartile mean of the distances [m] with its 95 % interval, from three seeds on.
@@ -4335,31 +4367,6 @@ export interface VisitorView {
    * ids of the runs, oldest first; some may have been deleted.
    */
   runs: string[];
-}
-/**
- * Result of 30 seeds with these settings: their distances [m] and interquartile mean.
- */
-export interface WhatIfHalf {
-  /**
-   * settings of the agent, by name
-   */
-  settings: {
-    [k: string]: number | string | boolean | null;
-  };
-  steps_per_episode: number;
-  distances_m: number[];
-  walkers: number;
-  iqm_m: number;
-}
-/**
- * Result of a what-if: the chosen settings compared with the defaults.
- */
-export interface WhatIfView {
-  seeds: number;
-  greedy_m: number;
-  chosen: WhatIfHalf;
-  default: WhatIfHalf;
-  compute_s: number;
 }
 /**
  * A stored robot with all its numbers, and what is known of it before it walks.

@@ -43,10 +43,12 @@ export const leaveRoom = (code) => call("DELETE", `${pathOf(code)}/me`);
 /** @type {(code: string, card: number, value: unknown) => Promise<unknown>} */
 export const predict = (code, card, value) => call("POST", `${pathOf(code)}/predictions`, { card, value });
 /** Run what the card runs; a what-if is answered at once. */
-/** @type {(code: string, settings: Record<string, unknown>) => Promise<Run | WhatIfAnswer>} */
-export const startRun = (code, settings) => start(`${pathOf(code)}/runs`, { settings });
-/** @type {(code: string, card: number) => Promise<Results>} */
-export const getResults = (code, card) => call("GET", `${pathOf(code)}/results?card=${card}`);
+/** @type {(code: string, card: number, settings: Record<string, unknown>) => Promise<Run | WhatIfAnswer>} */
+export const startRun = (code, card, settings) => start(`${pathOf(code)}/runs`, { card, settings });
+/** Results of a card; on a projector as the class may see them. */
+/** @type {(code: string, card: number, isProjector: boolean) => Promise<Results>} */
+export const getResults = (code, card, isProjector) =>
+  call("GET", `${pathOf(code)}/results?card=${card}${isProjector ? "&projector=true" : ""}`);
 /** Where the file of the results is. @param {string} code */
 export const resultsFile = (code) => addressOf(`${pathOf(code)}/results?format=csv`);
 

@@ -354,6 +354,82 @@ def test_names_are_hidden_and_participants_approved(school: Class) -> None:
     refused(one.call("PATCH", path, json={"is_approved": True}), 403)
 
 
+def test_nothing_of_a_participant_is_shown_before_the_approval(school: Class) -> None:
+    code = school.room(needs_approval=True)
+    one, other = school.joined(code), school.joined(code)
+    school.show(code, 1)
+    for pupil in (one, other):
+        body = {"card": 1, "value": 0.1}
+        assert pupil.call("POST", f"/rooms/{code}/predictions", json=body).status_code == 201
+        school.finished(started(pupil.call("POST", f"/rooms/{code}/runs")))
+
+    def seen(api: Api, query: str = "") -> tuple[list[int], int]:
+        (result,) = api.get(f"/rooms/{code}/results?card=1{query}")["cards"]
+        TypeAdapter(ResultsView).validate_python({"code": code, "cards": [result]})
+        return [entry["seed"] for entry in result["entries"]], len(result["distances_m"])
+
+    projector = "&projector=true"
+    assert seen(school.teacher) == ([0, 1], 2)
+    assert seen(school.teacher, projector) == ([], 0)
+    school.teacher.call("POST", f"/rooms/{code}/reveal")
+    # Each sees the own one alone, also among the distances without a name.
+    assert seen(one) == ([0], 1)
+    path = f"/rooms/{code}/participants/1"
+    school.teacher.call("PATCH", path, json={"is_approved": True})
+    assert seen(one) == ([0, 1], 2)
+    assert seen(other) == ([1], 1)
+    assert seen(school.teacher, projector) == ([1], 1)
+    assert seen(other, projector) == ([1], 1)
+
+
+def test_a_what_if_is_kept_as_a_result_of_the_card(school: Class) -> None:
+    card = {
+        **LESSON["cards"][3],
+        "may": {"alpha": {"choices": [0.1, 0.5]}},
+        "ask": {"kind": "number", "text": "How far?", "unit": "m"},
+    }
+    code = school.room({"title": "x", "cards": [card]})
+    one, other = school.joined(code), school.joined(code)
+    path = f"/rooms/{code}/runs"
+    prediction = {"card": 0, "value": 0.1}
+    assert one.call("POST", f"/rooms/{code}/predictions", json=prediction).status_code == 201
+    settings = {"settings": {"alpha": 0.1}, "card": 0}
+    answer = one.call("POST", path, json=settings).json()
+    assert one.call("POST", path, json=settings).json() == answer
+    assert other.call("POST", path, json={}).status_code == 200
+
+    def entries(api: Api) -> list[dict[str, Any]]:
+        view = api.get(f"/rooms/{code}/results?card=0")
+        TypeAdapter(ResultsView).validate_python(view)
+        found: list[dict[str, Any]] = view["cards"][0]["entries"]
+        return found
+
+    (own,) = entries(one)
+    assert own["run"]["kind"] == "what-if"
+    assert own["run"]["given"] == {"alpha": 0.1}
+    assert own["run"]["distance_m"] == answer["chosen"]["iqm_m"]
+    assert own["run"]["answer"] == answer
+    # Others see it after the reveal alone, and are told how many have asked.
+    assert [entry["seed"] for entry in entries(other)] == [1]
+    assert other.get(f"/rooms/{code}")["started"] == 2
+    view = school.teacher.get(f"/rooms/{code}")
+    assert [(x["run_id"], x["run_state"]) for x in view["people"]] == [(None, "finished")] * 2
+    assert one.get(f"/rooms/{code}")["me"]["runs"] == []
+    spotlight = {"run_id": own["run"]["id"]}
+    refused(school.teacher.call("PUT", f"/rooms/{code}/spotlight", json=spotlight), 404)
+    csv = school.teacher.call("GET", f"/rooms/{code}/results?format=csv").text
+    row = csv.splitlines()[1].split(",")
+    assert row[8:10] == ["what-if", "finished"]
+    assert float(row[-2]) == answer["chosen"]["iqm_m"]
+    school.teacher.call("POST", f"/rooms/{code}/reveal")
+    seen = entries(other)
+    assert [(x["run"]["rank"], x["run"]["answer"] is None) for x in seen if not x["is_own"]] in (
+        [(1, True)],
+        [(2, True)],
+    )
+    assert seen[0]["score"]["quantile"] is not None
+
+
 def test_a_class_behind_one_address_may_ask_what_ifs(school: Class) -> None:
     code = school.room({"title": "x", "cards": [LESSON["cards"][3]]})
     pupils = [school.joined(code) for _ in range(3)]

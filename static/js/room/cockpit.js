@@ -116,7 +116,7 @@ function Counts({ known }) {
   const figures = [
     [participants, "joined"],
     ...(shown.ask ? [[predicted, "locked"]] : []),
-    ...(shown.go && shown.go !== "what-if" ? [[started, "started"], [finished, "finished"]] : []),
+    ...(shown.go ? [[started, "started"], [finished, "finished"]] : []),
   ];
   return html`
     <dl class="counts" aria-label="How far the class is">

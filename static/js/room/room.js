@@ -9,7 +9,7 @@ import { applyEvent, connection, eventNames, openEvents, options, runs, setEntry
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../api.js" */
-/** @import { CardResults, Classroom, RoomState, Run, WhatIfAnswer } from "../types.js" */
+/** @import { CardResults, Classroom, RoomState, Run } from "../types.js" */
 
 /** The code of the address, as it was typed; and whether the page is for the projector. */
 export const { code, isProjector } = ofRoom();
@@ -20,8 +20,6 @@ export const room = signal(null);
 export const refusal = signal("");
 /** Card → its results, as far as who asks may see them. @type {Signal<Record<string, CardResults>>} */
 export const results = signal({});
-/** Card → the answer to its what-if. @type {Signal<Record<string, WhatIfAnswer>>} */
-export const answers = signal({});
 const requests = makeRequests();
 export const { busy, failures } = requests;
 const { perform } = requests;
@@ -45,6 +43,9 @@ export const ownRunId = computed(() =>
 
 /** The newest own run of any card, or null. */
 export const lastRunId = computed(() => room.value?.me?.runs.at(-1)?.run_id ?? null);
+
+/** What the own what-if of the card that is shown gave; null without one. */
+export const ownWhatIf = computed(() => ownEntry.value?.run?.answer ?? null);
 
 /** @type {import("@preact/signals").ReadonlySignal<Run | null>} */
 export const ownRun = computed(() => runs.value.get(ownRunId.value ?? "") ?? null);
@@ -78,7 +79,7 @@ export async function refreshResults() {
   const { card, role } = room.peek() ?? {};
   if (card === undefined || role === "spectator" && !isProjector) return;
   try {
-    const { cards: [found] } = await api.getResults(code, card);
+    const { cards: [found] } = await api.getResults(code, card, isProjector);
     setEntry(results, `${card}`, found);
   } catch {
     // The next event asks again.
@@ -204,9 +205,9 @@ export const lock = (value) => perform("lock", async () => {
 /** Run what the card runs, with these settings. @param {Record<string, unknown>} settings */
 export const go = (settings) => perform("go", async () => {
   const { card = 0 } = room.peek() ?? {};
-  const answer = await api.startRun(code, settings);
+  const answer = await api.startRun(code, card, settings);
   if ("chosen" in answer) {
-    setEntry(answers, `${card}`, answer);
+    await refreshResults();
     return;
   }
   runs.value = new Map(runs.peek()).set(answer.id, answer);
