@@ -24,6 +24,7 @@ import time
 from collections import defaultdict
 from collections.abc import Awaitable, Callable, Coroutine
 from contextlib import suppress
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from urllib.parse import urljoin, urlsplit
@@ -328,6 +329,9 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
             "lowest": round(min(rates), 1),
             "below_25": sum(one < 25 for one in rates),
         },
+        "frames_per_s_while_they_come": round(
+            statistics.median(_steady(p, lit_s, watched_s) for p in phones), 1
+        ),
         "kB_per_s_each": round(size_bytes / watched_s / len(phones) / 1e3, 1),
         "seconds": {
             deed: {"median": round(statistics.median(each), 2), "most": round(max(each), 2)}
@@ -340,6 +344,13 @@ async def measure(options: argparse.Namespace) -> dict[str, Any]:
             "memory_MB": round(meter.memory_bytes() / 1e6),
         },
     }
+
+
+def _steady(phone: Phone, from_s: float, for_s: float) -> float:
+    """Return the frames a second without the gaps of a second or more, as after a drop."""
+    times = [one for one in phone.frames_s if from_s <= one < from_s + for_s]
+    gaps = [b - a for a, b in pairwise([from_s, *times, from_s + for_s])]
+    return len(times) / max(1e-9, sum(one for one in gaps if one < 1.0))
 
 
 async def _all_finished(phones: list[Phone]) -> None:

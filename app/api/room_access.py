@@ -8,6 +8,7 @@ it is shown to others.
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from urllib.parse import parse_qsl
 
 from starlette.datastructures import Headers
@@ -85,8 +86,9 @@ class RoomAccess:
         found = []
         for code, cookie in _room_cookies(headers, is_secure):
             participant = self._rooms.seat(code, cookie.value)
-            if participant is not None and self._rooms.get(code).is_open:
-                found.append((code, participant.seed))
+            with suppress(NotFound):  # deleted meanwhile
+                if participant is not None and self._rooms.get(code).is_open:
+                    found.append((code, participant.seed))
         return tuple(found)
 
     def refuse(self, scope: Scope, seats: tuple[Seat, ...], *, is_public: bool) -> Response | None:

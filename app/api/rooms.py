@@ -8,7 +8,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import ServerSentEvent
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import AnyRunView, WhatIfView
+from app.api.answers import AnyRunView, DeletedView, WhatIfView
 from app.api.classroom_answers import (
     JoinedView,
     NewRoom,
@@ -36,7 +36,7 @@ from app.api.room_bodies import (
     SpotlightBody,
 )
 from app.api.room_views import results_view, room_address, room_view
-from app.api.runs import located
+from app.api.runs import delete_each, located
 from app.api.spectators import qr_image
 from app.api.starts import spectators_asker
 from app.classroom.lesson import CardNumber, read_lesson
@@ -244,6 +244,24 @@ async def end_room(services: ServicesDep, request: Request, code: CodePath) -> R
     await services.room_stages.close(room.code)
     view = await run_in_threadpool(room_view, request, services, room, None)
     return JSONResponse(view)
+
+
+@router.delete("/{code}", summary="Delete a room that has ended", response_model=DeletedView)
+def delete_room(
+    services: ServicesDep,
+    code: CodePath,
+    *,
+    runs: Annotated[bool, Query(description="delete its runs, too")] = False,
+) -> Response:
+    """Delete a room with its participants, answers and results.
+
+    Its runs stay without `runs`, as ordinary runs that all may see. The answer names the runs that
+    were deleted, and why others were kept.
+    """
+    room = services.rooms.ended(code)
+    deleted = delete_each(services, services.rooms.runs_in(room.code) if runs else [])
+    services.rooms.delete(code)
+    return JSONResponse(deleted)
 
 
 @router.put(

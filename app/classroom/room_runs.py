@@ -39,6 +39,11 @@ class RoomRuns:
             if run.room in rooms and run.seed in rooms[run.room].participants:
                 rooms[run.room].runs[run.run_id] = run
 
+    def forget(self, room: Room) -> None:
+        """Leave the runs of a room to all: they are ordinary ones from then on."""
+        for run_id in room.runs:
+            self._runs.pop(run_id, None)
+
     def owner_of(self, run_id: str) -> str | None:
         """Return the participant who waits for a run, as a text; None if there is none."""
         run = self._runs.get(run_id)
@@ -130,11 +135,6 @@ class RoomRuns:
             answer=answer,
         )
         self._keep(room, [row])
-
-    def forget(self, room: Room) -> None:
-        """Forget the runs of a room that is deleted."""
-        for one in room.runs:
-            self._runs.pop(one, None)
 
     def _link(self, room: Room, seed: int, given: Mapping[str, Any], runs: Sequence[Run]) -> None:
         """Note whose runs these are before they are stored; a link to none has no effect."""

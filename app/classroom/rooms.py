@@ -146,7 +146,8 @@ class Rooms:
 
     def runs_in(self, code: str) -> list[str]:
         """Return the ids of a room's runs, the newest first: races before their trainings."""
-        return [one.run_id for one in reversed(list(self.get(code).runs.values()))]
+        runs = reversed(list(self.get(code).runs.values()))
+        return [one.run_id for one in runs if one.answer is None]
 
     def forget(self, code: str) -> None:
         """End a room, and delete all that is known of it but its runs.
@@ -253,6 +254,27 @@ class Rooms:
                 room.ended_at = now
         self.on_changed(room)
         return room
+
+    def ended(self, code: str) -> Room:
+        """Return a room that has ended.
+
+        Raises:
+            NotFound: if there is no such room.
+            Conflict: if it is open.
+        """
+        room = self.get(code)
+        if room.is_open:
+            raise Conflict(f"the room {room.code} is open; end it first", "open")
+        return room
+
+    def delete(self, code: str) -> None:
+        """Delete a room that has ended, with its participants, answers and what-ifs.
+
+        Its runs stay, and are nobody's: all may see them. Errors as `ended`.
+        """
+        with self._lock:
+            self.ended(code)
+            self.forget(code)
 
     def _change(
         self, code: str, check: Callable[[Room], object] = Room.check_open, **changes: Any

@@ -475,6 +475,30 @@ def test_a_room_has_a_page_and_an_end(school: Class) -> None:
     assert school.teacher.get(f"/rooms/{code}/results")["code"] == code
 
 
+@pytest.mark.parametrize("runs", [False, True])
+def test_a_room_that_has_ended_can_be_deleted(school: Class, runs: bool) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, 2)
+    race = started(pupil.call("POST", f"/rooms/{code}/runs"))
+    school.finished(race)
+    training = race["config"]["lanes"][0]["training_id"]
+    path = f"/rooms/{code}"
+    refused(school.teacher.call("DELETE", path), 409, "end it first")
+    school.teacher.call("POST", f"{path}/end")
+    refused(pupil.call("DELETE", path), 401)
+    listed = school.teacher.get("/rooms")["items"]
+    assert next(one["state"] for one in listed if one["code"] == code) == "ended"
+    answer = school.teacher.call("DELETE", path, params={"runs": runs})
+    assert answer.status_code == 200
+    assert answer.json() == {"deleted": [race["id"], training] if runs else [], "kept": []}
+    refused(school.teacher.call("GET", path), 404)
+    refused(pupil.call("POST", f"{path}/participants"), 404)
+    # What stays is an ordinary run, which all may see.
+    status = school.pupil().call("GET", f"/races/{race['id']}").status_code
+    assert status == (404 if runs else 200)
+
+
 def test_codes_cannot_be_guessed(serve: Callable[..., Api]) -> None:
     api = serve(token=TOKEN)
     statuses = [api.call("GET", f"/rooms/WRONG{n % 9}").status_code for n in range(WRONG_CODES)]

@@ -58,6 +58,25 @@ def test_all_is_there_after_a_restart(store: RunStore) -> None:
         Rooms(store).join(code)
 
 
+def test_nothing_is_left_of_a_deleted_room(store: RunStore) -> None:
+    rooms = Rooms(store)
+    code, other = (rooms.create(LESSON).code for _ in range(2))
+    joined = rooms.join(code)
+    rooms.join(other)
+    rooms.predict(code, 0, 0, 0.5)
+    with pytest.raises(Conflict, match="end it first"):
+        rooms.delete(code)
+    rooms.end(code)
+    rooms.delete(code)
+    assert rooms.seat(code, joined.key) is None
+    for one in (rooms, Rooms(store)):
+        assert [room.code for room in one.all()] == [other]
+        with pytest.raises(NotFound):
+            one.get(code)
+    assert store.rooms.predictions() == []
+    assert [one.room for one in store.rooms.participants()] == [other]
+
+
 def test_what_ifs_are_there_after_a_restart(store: RunStore) -> None:
     card = {"text": "c", "state": {"form": {"steps": 20}}, "go": "what-if"}
     rooms = Rooms(store)

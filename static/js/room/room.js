@@ -1,7 +1,8 @@
 // The room of this page as signals: what the server tells who asks, kept by its events, and what can be done in it.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { getAnyRun, getOptions } from "../api.js";
+import { getAnyRun, getOptions, randomKey } from "../api.js";
 import * as api from "../classroom-api.js";
+import { storedText } from "../page.js";
 import { ofRoom } from "../page-state.js";
 import { makeRequests } from "../requests.js";
 import { soon } from "../soon.js";
@@ -186,7 +187,9 @@ const changed = (send) => async () => {
 };
 
 export const join = () => perform("join", async () => {
-  await api.joinRoom(code);
+  // Kept, so that it is the same for both tabs of a browser, and after a reload that came before the answer.
+  const key = storedText(`join:${room.peek()?.code}`, randomKey());
+  await api.joinRoom(code, key.peek());
   await refresh();
 });
 
@@ -198,8 +201,12 @@ export const leave = () => perform("join", async () => {
 /** Lock the own answer to the card that is shown. @param {unknown} value */
 export const lock = (value) => perform("lock", async () => {
   const { card = 0 } = room.peek() ?? {};
-  await api.predict(code, card, value);
-  await refresh();
+  try {
+    await api.predict(code, card, value);
+  } finally {
+    // Where the answer was lost, or another tab was first, the locked one is shown.
+    await refresh();
+  }
 });
 
 /** Run what the card runs, with these settings. @param {Record<string, unknown>} settings */
@@ -223,6 +230,14 @@ export const reveal = () => perform("reveal", async () => {
   await refreshResults();
 });
 export const end = () => perform("end", changed(() => api.endRoom(code)));
+/** Delete the room, which has ended. @param {boolean} withRuns */
+export const remove = (withRuns) => perform("end", async () => {
+  await api.deleteRoom(code, withRuns);
+  batch(() => {
+    room.value = null;
+    refusal.value = "You have deleted this room.";
+  });
+});
 /** @param {string | null} run_id */
 export const spotlight = (run_id) => perform("spotlight", changed(() => api.spotlightRun(code, run_id)));
 /** @type {(seed: number, changes: { is_name_hidden?: boolean, is_approved?: boolean }) => Promise<boolean>} */
