@@ -83,7 +83,7 @@ class NewRoom(Answer):
 
 
 class RoomState(Answer):
-    """What all in a room may know of it.
+    """State of a room that all in it may know.
 
     Attributes:
         state: `open`, `frozen`: nothing can be answered or started, or `ended`.
@@ -119,7 +119,7 @@ class OwnRun(Answer):
 
 
 class OwnAnswer(Answer):
-    """What a participant has answered to the question of a card."""
+    """Answer of a participant to the question of a card."""
 
     card: Count
     value: JsonValue

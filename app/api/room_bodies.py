@@ -69,7 +69,7 @@ class SpotlightBody(Body):
 
 
 class ParticipantBody(Body):
-    """What others see of a participant; what is left out stays as it is."""
+    """Changes of how others see a participant; a field that is left out stays as it is."""
 
     is_name_hidden: Annotated[bool, Field(strict=True)] | None = None
     is_approved: Annotated[bool, Field(strict=True)] | None = None
