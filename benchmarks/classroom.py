@@ -257,7 +257,11 @@ class Teacher:
         Raises:
             httpx2.HTTPStatusError: if it was refused.
         """
-        answer = await self._client.request(method, path, json=body)
+        while True:
+            # As the page does where a connection was closed in between.
+            with suppress(httpx2.TransportError):
+                answer = await self._client.request(method, path, json=body)
+                break
         answer.raise_for_status()
         return answer.json()
 

@@ -216,7 +216,7 @@ export interface BetterGroups {
   states: number;
 }
 /**
- * What may be chosen for a setting; without any of it, all that is valid.
+ * Allowed values of a setting; without any bound, all that are valid.
  */
 export interface Bounds {
   /**
@@ -337,7 +337,7 @@ export interface PageState {
   hidden: ("panel" | "card")[];
 }
 /**
- * What is revealed after the answers.
+ * Text and answer that are revealed after the answers.
  */
 export interface Reveal {
   /**
@@ -1814,7 +1814,7 @@ export interface StageView {
   presentation: Presentation;
 }
 /**
- * What presenters' windows show beside the stage; told by their keys or by a remote.
+ * State of presenters' windows beside the stage; set by their keys or by a remote.
  */
 export interface Presentation {
   /**
@@ -2223,7 +2223,7 @@ export interface ExportOption {
   install: string | null;
 }
 /**
- * What was found in the file of a robot, from which a person may choose otherwise.
+ * Findings in the file of a robot, from which a person may choose otherwise.
  */
 export interface FoundView {
   file_format: "mjcf" | "urdf";
@@ -2480,7 +2480,7 @@ export interface GivenAsk {
   unit?: string | null;
 }
 /**
- * What may be chosen for a setting; without any of it, all that is valid.
+ * Allowed values of a setting; without any bound, all that are valid.
  */
 export interface GivenBounds {
   /**
@@ -2588,7 +2588,7 @@ export interface GivenPageState {
   hidden?: ("panel" | "card")[];
 }
 /**
- * What is revealed after the answers.
+ * Text and answer that are revealed after the answers.
  */
 export interface GivenReveal {
   /**
@@ -2820,7 +2820,7 @@ export interface Me {
   runs: OwnRun[];
 }
 /**
- * What a participant has answered to the question of a card.
+ * Answer of a participant to the question of a card.
  */
 export interface OwnAnswer {
   card: number;
@@ -3240,7 +3240,7 @@ export interface PredictionView {
   value: JsonValue;
 }
 /**
- * What is known of a walking problem beforehand.
+ * Preview of a walking problem.
  */
 export interface Preview {
   /**

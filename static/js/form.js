@@ -1,5 +1,6 @@
 // The form's values, what was typed that is none, and the request bodies that they make.
 import { batch, computed, signal } from "@preact/signals";
+import { bounded } from "./card-limits.js";
 import { isSimulated, parseText } from "./disturbances.js";
 import { listed } from "./format.js";
 import { makeTexts, parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
@@ -64,7 +65,7 @@ const REPEATED = "disturb";
  * @returns {Parsed<any>}
  */
 function read(field, text, agents) {
-  const declared = settingsOf(agents)[field] ?? laneSettings(agents)[field] ?? served().settings[field];
+  const declared = bounded(field, settingsOf(agents)[field] ?? laneSettings(agents)[field] ?? served().settings[field]);
   return (READERS[field] ?? ((/** @type {string} */ one) => parseSetting(one, declared)))(text);
 }
 
@@ -257,7 +258,8 @@ export const openForm = () => batch(() => {
   const others = given.filter(([field]) => !(field in known)).map((part) => part.join("="));
   ignored.query.value = [...ignored.query.peek(), ...others];
   page.form.value = new URLSearchParams(given.filter(([field]) => field in known));
-  leaveOutDefaults();
+  // Of a lesson's link what is typed goes before what the card presets, the default too.
+  if (page.lesson.peek() === null) leaveOutDefaults();
 });
 
 /** Whether the editor of the robot's body is open. */

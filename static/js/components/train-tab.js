@@ -1,4 +1,5 @@
 // The tab of the next training and race: their settings, and how far the learner walks by now.
+import { closesSome, isFreed } from "../card-limits.js";
 import { practiseAtPaceOfPicture } from "../live-changes.js";
 import { whole } from "../format.js";
 import { steering } from "../on-stage.js";
@@ -9,12 +10,21 @@ import { TrainSettings } from "./settings.js";
 export function TrainTab() {
   return html`
     <div class="train-tab">
+      <${OfCard} />
       <${TrainSettings} />
       <${Steering} />
       <${LearningChart} />
     </div>
   `;
 }
+
+/** What the card of a lesson closes, and the way out. */
+const OfCard = () => closesSome.value && html`
+  <div class="steering" role="note">
+    <p>The lesson's card sets what is grey. Nothing is locked here.</p>
+    <button type="button" class="link" onClick=${() => (isFreed.value = true)}>Open all settings</button>
+  </div>
+`;
 
 /** What a live setting acts on while the computation is ahead of the picture: its next step, or the next training. */
 function Steering() {
