@@ -382,7 +382,8 @@ async def limits(options: argparse.Namespace) -> dict[str, Any]:
         if answer.status_code == httpx2.codes.CREATED:
             joined += 1
             continue
-        refused.setdefault(f"join {joined + 1}", _refusal(answer))
+        if len(refused) == 1:
+            refused[f"join {joined + 1} at once"] = _refusal(answer)
         if "which is the most" in answer.text:
             refused[f"participant {joined + 1}"] = _refusal(answer)
             break

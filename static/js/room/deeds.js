@@ -11,6 +11,12 @@ import {
 
 const GO = { "training": "Go: let it practise", "race": "Go: race", "what-if": "Go: try it on thirty robots" };
 
+/** The words of the button that runs what a card runs. @param {LessonCard} card */
+function wordsOf({ go: kind }) {
+  if (busy.value.go) return kind === "what-if" ? "Thirty robots practise…" : "Your robot starts…";
+  return ownRun.value || ownWhatIf.value ? "Go again with these settings" : GO[kind ?? "training"];
+}
+
 /** Whether the card asks, and waits for the own answer. @param {LessonCard} card */
 const needsAnswer = (card) => Boolean(card.ask) && ownAnswer.value === undefined && !isRevealed.value;
 
@@ -42,7 +48,7 @@ export function Deeds({ card, number, isOpen }) {
       `}
       ${!isAsked && isNew && html`
         <${Button} style="primary" canPress=${canGo} onPress=${() => go(settings ?? {})}
-          words=${ownRun.value || ownWhatIf.value ? "Go again with these settings" : GO[card.go ?? "training"]} />
+          words=${wordsOf(card)} />
       `}
     </div>
   `;
