@@ -1,12 +1,11 @@
 // The form's values, what was typed that is none, and the request bodies that they make.
 import { batch, computed, signal } from "@preact/signals";
-import { bounded } from "./card-limits.js";
 import { isSimulated, parseText } from "./disturbances.js";
 import { listed } from "./format.js";
 import { makeTexts, parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
 import { ignored, page } from "./page-state.js";
 import { linkedText, unlinked } from "./robots.js";
-import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
+import { agentOf, bounded, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, role, served } from "./store.js";
 
 /** @import { Parsed } from "./parse.js" */

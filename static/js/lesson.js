@@ -1,13 +1,12 @@
 // The lesson of this page, the first one or that of the address: its cards, and how far this page is. A card of the
 // first one may ask for a prediction, which is revealed at time-out.
 import { computed, effect, signal } from "@preact/signals";
-import { cardMay, isFreed } from "./card-limits.js";
 import { asTexts, change, page } from "./page-state.js";
 import { storedText } from "./page.js";
 import { isTimedOut, standings } from "./race.js";
 import { mayStart } from "./selectors.js";
 import { raceInView } from "./on-stage.js";
-import { agentOf, laneTitle } from "./settings.js";
+import { agentOf, cardMay, isFreed, laneTitle } from "./settings.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { PageState } from "./page-state.js" */

@@ -2,11 +2,10 @@
 // stays as it is; while it is not valid, the field says why.
 import { useState } from "preact/hooks";
 import { refusedFields } from "../actions.js";
-import { bounded, isAllowed, isClosed } from "../card-limits.js";
 import { enter, form, setField, wrong } from "../form.js";
 import { parseSetting } from "../parse.js";
 import { shareOf } from "../scale.js";
-import { choiceTitle, fullTitle, kindOf, settingOf, sliderOf } from "../settings.js";
+import { bounded, choiceTitle, fullTitle, isAllowed, isClosed, kindOf, settingOf, sliderOf } from "../settings.js";
 import { options } from "../store.js";
 import { html, Mistake } from "./elements.js";
 

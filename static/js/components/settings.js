@@ -1,15 +1,14 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
 import { tune } from "../live-changes.js";
 import { presentRates, rateInWords } from "../changes.js";
-import { isAllowed, isClosed } from "../card-limits.js";
 import { chooseLearner, chooseRobot, enter, form, setField, wrong, isReadOnly } from "../form.js";
 import { count, listed } from "../format.js";
 import { liveTraining, trainingInView } from "../on-stage.js";
 import { numberOfLegs } from "../robots.js";
 import { isOperator } from "../selectors.js";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,
-  ROBOT_FIELDS, settingOf, sliderOf,
+  agentOf, beginningOf, fullTitle, furtherSettings, isAllowed, isClosed, kindOf, laneSettings, learners,
+  mainSettings, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
 import {

@@ -1,8 +1,8 @@
 // The tab of the next training and race: their settings, and how far the learner walks by now.
-import { closesSome, isFreed } from "../card-limits.js";
 import { practiseAtPaceOfPicture } from "../live-changes.js";
 import { whole } from "../format.js";
 import { steering } from "../on-stage.js";
+import { closesSome, isFreed } from "../settings.js";
 import { html } from "./elements.js";
 import { LearningChart } from "./learning.js";
 import { TrainSettings } from "./settings.js";
