@@ -113,8 +113,8 @@ _PRELOADED = [
     "hexapods.imports.reading",
     "hexapods.physics.mujoco_simulator",
 ]
-"""What jobs, pools and readers of robots import: the program that started them, and what is
-imported late."""
+"""Modules that jobs, pools and readers of robots import: the program that started them, and those
+that are imported late."""
 _DESCRIPTION = (
     "Hexapods that learn to walk, and race against look-ahead search. Errors are problem "
     "documents (RFC 9457), and each says what is valid; requests that prefer text/html get a page."

@@ -1,118 +1,441 @@
-"""Load by a class: `python benchmarks/classroom.py http://127.0.0.1:8000 --token … --pupils 40`.
+"""A class over a network: `python benchmarks/classroom.py http://10.77.0.1:8000 --token …`.
 
-Opens rooms of a server that runs on this machine, and lets pupils join, follow the events, load the
-room, answer and start, over a poor network: of a share of requests the answer is lost, so that it
-is sent again, and streams are dropped. Prints one JSON object: how long each deed took [s], and
-what was lost at the end, which is promised to be nothing.
+Opens rooms, and lets pupils do what the page of a room does: load it with its files, join, follow
+the events, keep the stage's websocket open, answer, start, replay the own robot, and look at the
+results. Every pupil loses all connections once a minute. `poor_network.py` makes a network with
+losses and delays.
+
+Prints one JSON object: what was lost, which is promised to be nothing; the frames of the stage a
+second that each pupil gets while a run is in the spotlight, which are promised to be 25 or more;
+how long each deed took [s]; and with `--server PID` the cores and the memory of the server's
+processes. With `--limits` it tells instead what is refused: the 17th room, the 49th join at once,
+and the 65th participant.
 """
 
 import argparse
-import http.client
+import asyncio
 import json
+import os
 import random
+import re
 import statistics
-import threading
+import sys
 import time
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Coroutine
+from contextlib import suppress
+from itertools import pairwise
+from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import urljoin, urlsplit
 
-_TIMEOUT_S = 120.0
-_DROPPED_AFTER_S = (5.0, 15.0)
+import httpx2
+import viser
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import InvalidHandshake, WebSocketException
+from websockets.typing import Subprotocol
+
 _LESSON, _CARD = "one-run-proves-nothing", 1
-_PATIENCE_S = 600.0
+_FILE = re.compile(r'(?:href|src)="([^"]+\.(?:js|css|svg))"')
+_AT_ONCE = 6
+"""Connections of a browser to a server."""
+_TIMEOUT_S = 60.0
+_ARRIVE_WITHIN_S = 10.0
+_PATIENCE_S = 900.0
+_REPLAY_LEVEL, _SEGMENTS = 1, 6
+_EVENT_RETRY_S, _VIEWER_RETRY_S, _AGAIN_S = 1.0, 1.0, 1.0
+_HEADERS = {"X-Requested-With": "hexapods", "Accept-Encoding": "gzip"}
 
 
-class Client:
-    """A client that repeats what it got no answer to.
+class Phone:
+    """A browser that repeats what it gets no answer to, and is offline now and then.
 
     Attributes:
-        cookie: of the room, once it has joined.
-        lost: how many answers were lost.
+        took_s: how long each deed took, by its name.
+        frames_s: times at which a frame of the stage came.
+        size_bytes: of the frames.
+        drops: how often all connections were lost.
     """
 
-    def __init__(self, address: str, token: str = "", loss: float = 0.0, seed: int = 0) -> None:
-        """Create it; `loss` is the share of answers that are lost."""
-        self._address, self._token = urlsplit(address), token
-        self._loss, self._chance = loss, random.Random(seed)
-        self.cookie, self.lost = "", 0
+    def __init__(self, address: str, room: str, number: int) -> None:
+        """Create it for a room, by its code."""
+        self._address, self._room = address, room
+        self._chance = random.Random(number)
+        self._cookies = httpx2.Cookies()
+        self._client = self._new_client()
+        self._ongoing: set[asyncio.Task[Any]] = set()
+        self._stage: ClientConnection | None = None
+        self._is_online = asyncio.Event()
+        self._is_online.set()
+        self._changed = asyncio.Event()
+        self._texts: dict[str, str] = {}
         self.took_s: defaultdict[str, list[float]] = defaultdict(list)
+        self.frames_s: list[float] = []
+        self.size_bytes = 0
+        self.drops = 0
 
-    def call(self, deed: str, method: str, path: str, body: Any = None) -> tuple[int, Any]:
-        """Send a request until there is an answer to it; return its status and its body."""
-        began_s = time.perf_counter()
+    def _new_client(self) -> httpx2.AsyncClient:
+        limits = httpx2.Limits(max_connections=_AT_ONCE + 1)
+        return httpx2.AsyncClient(
+            base_url=self._address, cookies=self._cookies, limits=limits, timeout=_TIMEOUT_S,
+            headers=_HEADERS, trust_env=False,
+        )  # fmt: skip
+
+    async def attend(self, until: asyncio.Event, dropped_every_s: float) -> dict[str, Any]:
+        """Go through the card; return what of it was still there at the end."""
+        path = f"/api/v1/rooms/{self._room}"
+        await asyncio.sleep(self._chance.uniform(0, _ARRIVE_WITHIN_S))
+        following = [asyncio.create_task(self._be_dropped(dropped_every_s))]
+        try:
+            await self._timed("load the page", self._load_page())
+            key = f"{self._chance.getrandbits(128):032x}"
+            who = await self.call("join", "POST", f"{path}/participants", {}, key)
+            following += [
+                asyncio.create_task(self._follow_events(f"{path}/events")),
+                asyncio.create_task(self._watch_stage()),
+            ]
+            await self.call("see the room", "GET", path)
+            await self._timed("load the picture", self._get(f"/r/{self._room}/viewer/?view=leader"))
+            value = round(self._chance.uniform(0, 0.6), 2)
+            answer = {"card": _CARD, "value": value}
+            kept = await self.call("answer", "POST", f"{path}/predictions", answer)
+            began_s = time.monotonic()
+            run = await self.call("start", "POST", f"{path}/runs", {"settings": {}, "card": _CARD})
+            await self._finished(path)
+            self.took_s["run"].append(time.monotonic() - began_s)
+            await self._timed("replay", self._replay(run["id"]))
+            await until.wait()
+            results = await self.call("results", "GET", f"{path}/results?card={_CARD}")
+            view = await self.call("see the room", "GET", path)
+        finally:
+            for task in following:
+                task.cancel()
+            await asyncio.gather(*following, return_exceptions=True)
+            await self._client.aclose()
+        own = next((one for one in results["cards"][0]["entries"] if one["is_own"]), None)
+        me = view["me"]
+        is_refused = "detail" in kept and "already" not in kept["detail"]
+        return {
+            "seed": me is not None and (me["seed"], me["name"]) == (who["seed"], who["name"]),
+            "answer": not is_refused and me is not None and me["predictions"] == [answer],
+            "run": own is not None and own["run"] is not None and own["run"]["id"] == run["id"]
+            and own["run"]["distance_m"] is not None,
+        }  # fmt: skip
+
+    async def call(
+        self, deed: str, method: str, path: str, body: Any = None, key: str = ""
+    ) -> dict[str, Any]:
+        """Send a request until an answer comes; return its JSON."""
+        headers = {"Idempotency-Key": key} if key else {}
+        response = await self._timed(deed, self._send(method, path, body, headers))
+        answer: dict[str, Any] = response.json()
+        return answer
+
+    async def _get(self, path: str) -> httpx2.Response:
+        return await self._send("GET", path, None, {})
+
+    async def _send(
+        self, method: str, path: str, body: Any, headers: dict[str, str]
+    ) -> httpx2.Response:
         while True:
-            connection = http.client.HTTPConnection(self._address.netloc, timeout=_TIMEOUT_S)
-            try:
-                connection.request(method, f"/api/v1{path}", *self._content(body))
-                if self._chance.random() < self._loss:
-                    self.lost += 1
-                    time.sleep(0.3)
-                    continue
-                answer = connection.getresponse()
-                cookie, content = answer.getheader("Set-Cookie"), answer.read()
-            finally:
-                connection.close()
-            if cookie:
-                self.cookie = cookie.partition(";")[0]
-            self.took_s[deed].append(time.perf_counter() - began_s)
-            return answer.status, json.loads(content) if content else None
+            response = await self._tried(
+                lambda: self._client.request(method, path, json=body, headers=headers)
+            )
+            if response is not None and response.status_code not in (429, 503):
+                self._cookies.update(response.cookies)
+                return response
+            await asyncio.sleep(_AGAIN_S)
 
-    def follow(self, path: str, until: threading.Event) -> int:
-        """Follow a stream of events, which is dropped again and again; return how often it was."""
-        drops = 0
-        while not until.is_set():
-            connection = http.client.HTTPConnection(self._address.netloc, timeout=_TIMEOUT_S)
-            connection.request("GET", f"/api/v1{path}", headers=self._headers())
-            stream, drop_s = connection.getresponse(), self._chance.uniform(*_DROPPED_AFTER_S)
-            until_s = time.perf_counter() + drop_s
-            while time.perf_counter() < until_s and not until.is_set():
-                if not stream.readline():
-                    break
-            connection.close()
-            drops += 1
-        return drops
+    async def _tried(
+        self, send: Callable[[], Coroutine[Any, Any, httpx2.Response]]
+    ) -> httpx2.Response | None:
+        """Return the answer to a request; None if the connection was lost."""
+        await self._is_online.wait()
+        task = asyncio.create_task(send())
+        self._ongoing.add(task)
+        try:
+            await asyncio.wait([task])
+        finally:
+            task.cancel()
+            self._ongoing.discard(task)
+        if task.cancelled() or isinstance(task.exception(), httpx2.TransportError):
+            return None
+        return task.result()
 
-    def _headers(self) -> dict[str, str]:
-        headers = {"X-Requested-With": "benchmark"}
-        if self._token:
-            headers["Authorization"] = f"Bearer {self._token}"
-        return headers | ({"Cookie": self.cookie} if self.cookie else {})
+    async def _timed(self, deed: str, work: Awaitable[Any]) -> Any:
+        began_s = time.monotonic()
+        result = await work
+        self.took_s[deed].append(time.monotonic() - began_s)
+        return result
 
-    def _content(self, body: Any) -> tuple[bytes | None, dict[str, str]]:
-        if body is None:
-            return None, self._headers()
-        return json.dumps(body).encode(), {**self._headers(), "Content-Type": "application/json"}
+    async def _load_page(self) -> None:
+        address = f"/r/{self._room}"
+        page = await self._get(address)
+        files = dict.fromkeys(urljoin(address, one) for one in _FILE.findall(page.text))
+        await asyncio.gather(*map(self._get, files), self._get("/api/v1/options"))
+
+    async def _finished(self, path: str) -> None:
+        """Ask for the own result whenever an event tells of a change, until it is there."""
+        while True:
+            answer = await self.call("results", "GET", f"{path}/results?card={_CARD}")
+            own = next((one for one in answer["cards"][0]["entries"] if one["is_own"]), None)
+            if own is not None and own["run"] is not None and own["run"]["state"] == "finished":
+                return
+            self._changed.clear()
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self._changed.wait(), 30)
+
+    async def _replay(self, run_id: str) -> None:
+        path = f"/api/v1/runs/{run_id}/replay"
+        await asyncio.gather(self._get(path), self._get(f"{path}/scene"))
+        for number in range(_SEGMENTS):
+            await self._get(f"{path}/segments/{_REPLAY_LEVEL}/{number}")
+
+    async def _follow_events(self, path: str) -> None:
+        while True:
+            with suppress(httpx2.HTTPError, RuntimeError):
+                await self._is_online.wait()
+                async with self._client.stream("GET", path, timeout=None) as stream:
+                    async for line in stream.aiter_lines():
+                        if '"finished"' in line:
+                            self._changed.set()
+            await asyncio.sleep(_EVENT_RETRY_S)
+
+    async def _watch_stage(self) -> None:
+        url = f"ws{self._address[4:]}/r/{self._room}/viewer/?view=leader"
+        cookies = "; ".join(f"{name}={value}" for name, value in self._cookies.items())
+        while True:
+            with suppress(OSError, WebSocketException, InvalidHandshake, TimeoutError):
+                await self._is_online.wait()
+                async with connect(
+                    url,
+                    subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
+                    additional_headers={"Cookie": cookies},
+                    compression=None,
+                    max_size=None,
+                    ping_interval=None,
+                    close_timeout=0.1,
+                    open_timeout=_TIMEOUT_S,
+                    proxy=None,
+                ) as self._stage:
+                    while True:
+                        self.size_bytes += len(await self._stage.recv(decode=False))
+                        self.frames_s.append(time.monotonic())
+            self._stage = None
+            await asyncio.sleep(_VIEWER_RETRY_S)
+
+    async def _be_dropped(self, every_s: float) -> None:
+        """Lose all connections every so often, for one to three seconds."""
+        await asyncio.sleep(self._chance.uniform(0.2, 1.0) * every_s)
+        while True:
+            self.drops += 1
+            self._is_online.clear()
+            for task in self._ongoing:
+                task.cancel()
+            if self._stage is not None:
+                self._stage.transport.abort()
+            client, self._client = self._client, self._new_client()
+            await client.aclose()
+            await asyncio.sleep(self._chance.uniform(1.0, 3.0))
+            self._is_online.set()
+            await asyncio.sleep(every_s)
 
 
-def attend(pupil: Client, room: str, number: int, until: threading.Event) -> dict[str, Any]:
-    """Go through a card as a pupil; return what was acknowledged, and what was there at the end."""
-    _, who = pupil.call("join", "POST", f"{room}/participants", {})
-    drops: list[int] = []
-    follower = threading.Thread(target=lambda: drops.append(pupil.follow(f"{room}/events", until)))
-    follower.start()
-    pupil.call("load", "GET", room)
-    value = round(number / 100, 2)
-    pupil.call("answer", "POST", f"{room}/predictions", {"card": _CARD, "value": value})
-    began_s = time.perf_counter()
-    _, run = pupil.call("start", "POST", f"{room}/runs", {})
-    state = ""
-    while state != "finished" and time.perf_counter() - began_s < _PATIENCE_S:
-        time.sleep(1.0)
-        _, results = pupil.call("results", "GET", f"{room}/results?card={_CARD}")
-        own = next(one for one in results["cards"][0]["entries"] if one["is_own"])
-        state = own["run"]["state"] if own["run"] else ""
-    pupil.took_s["run"].append(time.perf_counter() - began_s)
-    until.wait()
-    follower.join()
-    _, view = pupil.call("load", "GET", room)
+class Teacher:
+    """The operator, whose requests are lost as those of others are."""
+
+    def __init__(self, address: str, token: str) -> None:
+        """Create it."""
+        headers = {**_HEADERS, "Authorization": f"Bearer {token}"}
+        self._client = httpx2.AsyncClient(
+            base_url=address, headers=headers, timeout=_TIMEOUT_S, trust_env=False
+        )
+
+    async def call(self, method: str, path: str, body: Any = None) -> Any:
+        """Send a request, and return the JSON of its answer.
+
+        Raises:
+            httpx2.HTTPStatusError: if it was refused.
+        """
+        while True:
+            # As the page does where a connection was closed in between.
+            with suppress(httpx2.TransportError):
+                answer = await self._client.request(method, path, json=body)
+                break
+        answer.raise_for_status()
+        return answer.json()
+
+    async def keep_in_motion(self, code: str) -> None:
+        """Play the run in the spotlight in real time, from its beginning again and again."""
+        await self.call("PUT", f"/r/{code}/api/v1/stage", {"time_s": 0, "speed": 1})
+        while True:
+            with suppress(httpx2.HTTPError):
+                stage = await self.call("GET", f"/r/{code}/api/v1/stage")
+                if stage["ended"] or not stage["playing"]:
+                    body = {"time_s": 0, "playing": True, "speed": 1}
+                    await self.call("PUT", f"/r/{code}/api/v1/stage", body)
+            await asyncio.sleep(1.0)
+
+
+async def measure(options: argparse.Namespace) -> dict[str, Any]:
+    """Teach the rooms, and return what is reported."""
+    teacher = Teacher(options.address, options.token)
+    codes = []
+    for _ in range(options.rooms):
+        code = (await teacher.call("POST", "/api/v1/rooms", {"lesson": _LESSON}))["code"]
+        await teacher.call("PUT", f"/api/v1/rooms/{code}/card", {"card": _CARD})
+        codes.append(code)
+    until, meter = asyncio.Event(), Meter(options.server)
+    phones = [Phone(options.address, codes[n % len(codes)], n) for n in range(options.pupils)]
+    attending = [asyncio.create_task(one.attend(until, options.dropped_every)) for one in phones]
+    began_s, began_cpu_s = time.monotonic(), meter.cpu_s()
+    await _all_finished(phones)
+    lesson_s, lesson_cpu_s = time.monotonic() - began_s, meter.cpu_s() - began_cpu_s
+    showing = []
+    for code in codes:
+        (found,) = (await teacher.call("GET", f"/api/v1/rooms/{code}/results?card={_CARD}"))[
+            "cards"
+        ]
+        run_id = next(one["run"]["id"] for one in found["entries"] if one["run"])
+        await teacher.call("PUT", f"/api/v1/rooms/{code}/spotlight", {"run_id": run_id})
+        showing.append(asyncio.create_task(teacher.keep_in_motion(code)))
+    await asyncio.sleep(5.0)
+    lit_s, lit_cpu_s = time.monotonic(), meter.cpu_s()
+    bytes_before = sum(one.size_bytes for one in phones)
+    await asyncio.sleep(options.watch)
+    watched_s, watched_cpu_s = time.monotonic() - lit_s, meter.cpu_s() - lit_cpu_s
+    size_bytes = sum(one.size_bytes for one in phones) - bytes_before
+    for task in showing:
+        task.cancel()
+    for code in codes:
+        await teacher.call("POST", f"/api/v1/rooms/{code}/reveal", {"card": _CARD})
+    until.set()
+    found = await asyncio.gather(*attending)
+    for code in codes:
+        await teacher.call("POST", f"/api/v1/rooms/{code}/end")
+    rates = [
+        sum(lit_s <= one < lit_s + watched_s for one in p.frames_s) / watched_s for p in phones
+    ]
+    took: defaultdict[str, list[float]] = defaultdict(list)
+    for phone in phones:
+        for deed, each in phone.took_s.items():
+            took[deed] += each
     return {
-        "seed": view["me"] is not None and view["me"]["seed"] == who["seed"],
-        "answer": view["me"]["predictions"] == [{"card": _CARD, "value": value}],
-        "run": state == "finished" and view["me"]["runs"][0]["run_id"] == run["id"],
-        "drops": sum(drops),
+        "pupils": len(phones),
+        "rooms": len(codes),
+        "drops": sum(phone.drops for phone in phones),
+        **{
+            f"{what}s_lost": sum(not one[what] for one in found)
+            for what in ("seed", "answer", "run")
+        },
+        "frames_per_s": {
+            "median": round(statistics.median(rates), 1),
+            "lowest": round(min(rates), 1),
+            "below_25": sum(one < 25 for one in rates),
+        },
+        "frames_per_s_while_they_come": round(
+            statistics.median(_steady(p, lit_s, watched_s) for p in phones), 1
+        ),
+        "kB_per_s_each": round(size_bytes / watched_s / len(phones) / 1e3, 1),
+        "seconds": {
+            deed: {"median": round(statistics.median(each), 2), "most": round(max(each), 2)}
+            for deed, each in took.items()
+        },
+        "server": {
+            "lesson_s": round(lesson_s, 1),
+            "lesson_cores": round(lesson_cpu_s / lesson_s, 2),
+            "watching_cores": round(watched_cpu_s / watched_s, 2),
+            "memory_MB": round(meter.memory_bytes() / 1e6),
+        },
     }
+
+
+def _steady(phone: Phone, from_s: float, for_s: float) -> float:
+    """Return the frames a second without the gaps of a second or more, as after a drop."""
+    times = [one for one in phone.frames_s if from_s <= one < from_s + for_s]
+    gaps = [b - a for a, b in pairwise([from_s, *times, from_s + for_s])]
+    return len(times) / max(1e-9, sum(one for one in gaps if one < 1.0))
+
+
+async def _all_finished(phones: list[Phone]) -> None:
+    began_s = time.monotonic()
+    while any(not phone.took_s["replay"] for phone in phones):
+        if time.monotonic() - began_s > _PATIENCE_S:
+            raise RuntimeError("not all runs have finished")
+        await asyncio.sleep(0.5)
+
+
+async def limits(options: argparse.Namespace) -> dict[str, Any]:
+    """Return the status and the words by which more than the limits is refused."""
+    teacher, refused = Teacher(options.address, options.token), {}
+    codes: list[str] = []
+    try:
+        while True:
+            codes.append((await teacher.call("POST", "/api/v1/rooms", {}))["code"])
+    except httpx2.HTTPStatusError as error:
+        refused[f"room {len(codes) + 1}"] = _refusal(error.response)
+    join = f"/api/v1/rooms/{codes[0]}/participants"
+    joined, last_wait_s = 0, 0
+    while True:
+        async with httpx2.AsyncClient(base_url=options.address, trust_env=False) as stranger:
+            answer = await stranger.post(join, json={}, headers=_HEADERS)
+        if answer.status_code == httpx2.codes.CREATED:
+            joined += 1
+            continue
+        if len(refused) == 1:
+            refused[f"join {joined + 1} at once"] = _refusal(answer)
+        if "which is the most" in answer.text:
+            refused[f"participant {joined + 1}"] = _refusal(answer)
+            break
+        last_wait_s = int(answer.headers["Retry-After"])
+        await asyncio.sleep(last_wait_s)
+    for code in codes:
+        await teacher.call("POST", f"/api/v1/rooms/{code}/end")
+    return refused
+
+
+def _refusal(answer: httpx2.Response) -> str:
+    wait = answer.headers.get("Retry-After")
+    return f"{answer.status_code}, Retry-After {wait}: {answer.json()['detail']}"
+
+
+class Meter:
+    """Measures a server's processes on this machine: the one with an id, and its children."""
+
+    def __init__(self, pid: int | None) -> None:
+        """Create it; without an id it measures nothing."""
+        self._pid = pid
+
+    def cpu_s(self) -> float:
+        """Return the time that they, and their children that have ended, had of all cores [s]."""
+        ticks = sum(sum(map(int, fields[11:15])) for fields in self._stats())
+        return ticks / os.sysconf("SC_CLK_TCK")
+
+    def memory_bytes(self) -> int:
+        """Return the resident memory of all, in which what they share counts once [B]."""
+        total = 0
+        for pid in self._pids():
+            with suppress(OSError):
+                found = re.search(
+                    r"^Pss:\s+(\d+)", Path(f"/proc/{pid}/smaps_rollup").read_text(), re.MULTILINE
+                )
+                total += 1024 * int(found[1]) if found else 0
+        return total
+
+    def _stats(self) -> list[list[str]]:
+        found = []
+        for pid in self._pids():
+            with suppress(OSError):
+                found.append(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split())
+        return found
+
+    def _pids(self) -> list[int]:
+        pids = [] if self._pid is None else [self._pid]
+        for pid in pids:
+            for task in Path(f"/proc/{pid}/task").glob("*/children"):
+                with suppress(OSError):
+                    pids += map(int, task.read_text().split())
+        return pids
 
 
 def main() -> None:
@@ -122,56 +445,16 @@ def main() -> None:
     parser.add_argument("--token", default="")
     parser.add_argument("--pupils", type=int, default=40)
     parser.add_argument("--rooms", type=int, default=2)
-    parser.add_argument("--loss", type=float, default=0.05)
+    parser.add_argument("--dropped-every", type=float, default=60.0, help="[s]")
+    parser.add_argument("--watch", type=float, default=65.0, help="for how long [s]")
+    parser.add_argument("--server", type=int, help="id of the server's process, on this machine")
+    parser.add_argument("--limits", action="store_true", help="try what is more than the limits")
     options = parser.parse_args()
-    teacher, rooms = Client(options.address, options.token), []
-    for _ in range(options.rooms):
-        _, room = teacher.call("open", "POST", "/rooms", {"lesson": _LESSON})
-        rooms.append(f"/rooms/{room['code']}")
-        teacher.call("show", "PUT", f"{rooms[-1]}/card", {"card": _CARD})
-    until, found = threading.Event(), list[dict[str, Any]]()
-    pupils = [Client(options.address, "", options.loss, n) for n in range(options.pupils)]
-    attending: list[Callable[[], None]] = [
-        lambda n=n, pupil=pupil: found.append(attend(pupil, rooms[n % len(rooms)], n, until))
-        for n, pupil in enumerate(pupils)
-    ]
-    threads = [threading.Thread(target=one) for one in attending]
-    began_s = time.perf_counter()
-    for thread in threads:
-        thread.start()
-    while sum(len(pupil.took_s["run"]) for pupil in pupils) < len(pupils):
-        time.sleep(0.5)
-        if time.perf_counter() - began_s > _PATIENCE_S:
-            break
-    for room in rooms:
-        teacher.call("reveal", "POST", f"{room}/reveal", {"card": _CARD})
-    until.set()
-    for thread in threads:
-        thread.join()
-    for room in rooms:
-        teacher.call("end", "POST", f"{room}/end", {})
-    took: defaultdict[str, list[float]] = defaultdict(list)
-    for client in (*pupils, teacher):
-        for deed, each in client.took_s.items():
-            took[deed] += each
-    print(
-        json.dumps(
-            {
-                "pupils": len(pupils),
-                "rooms": len(rooms),
-                "answers_lost_on_the_way": sum(pupil.lost for pupil in pupils),
-                "streams_dropped": sum(one["drops"] for one in found),
-                **{
-                    f"{what}s_lost": len(pupils) - sum(bool(one[what]) for one in found)
-                    for what in ("seed", "answer", "run")
-                },
-                "seconds": {
-                    deed: {"median": round(statistics.median(each), 3), "most": round(max(each), 3)}
-                    for deed, each in took.items()
-                },
-            }
-        )
-    )
+    options.address = options.address.rstrip("/")
+    if not urlsplit(options.address).hostname:
+        sys.exit("the address must look like http://127.0.0.1:8000")
+    json.dump(asyncio.run((limits if options.limits else measure)(options)), sys.stdout, indent=1)
+    print()
 
 
 if __name__ == "__main__":

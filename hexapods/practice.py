@@ -235,7 +235,7 @@ class Practice(Iterator[TrainingRecord]):
 
     @property
     def training(self) -> Training:
-        """What was learned so far; at the end it is what `train` returns.
+        """The training so far; at the end it is the one that `train` returns.
 
         Before the end its reference distance is known only if it was measured already.
         """

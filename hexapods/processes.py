@@ -42,7 +42,7 @@ _RETURNED_BYTES = 1 << 20
 
 @dataclass(frozen=True, kw_only=True)
 class SetUp:
-    """What a process does before anything else.
+    """Actions of a process before anything else.
 
     Attributes:
         name: shown by `top` and `ps -o comm`.

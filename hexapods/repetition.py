@@ -56,10 +56,10 @@ OneOrMore = Union[T, Sequence[T], NDArray[Any]]  # noqa: UP007  # mypy takes no 
 
 
 class SettingResult(NamedTuple):
-    """What was reached in one setting of an experiment, over its seeds."""
+    """Results of one setting of an experiment, over its seeds."""
 
     name: str
-    """What differs from the other settings, in words."""
+    """Differences from the other settings, in words."""
     seeds: int
     iqm_m: float | None
     """Interquartile mean of the distances in 50 steps [m]."""

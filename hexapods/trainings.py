@@ -19,7 +19,7 @@ from hexapods.runs.results import TrainingResult
 from hexapods.runs.tables import Checkpoint, from_bytes, load_agent, to_bytes
 
 Table = Union["Training", str, os.PathLike[str]]
-"""What was learned: a training, or the path of its file."""
+"""A trained agent: a training, or the path of its file."""
 
 
 class CurvePoint(NamedTuple):

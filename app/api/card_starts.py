@@ -1,4 +1,4 @@
-"""What the button of a lesson's card runs: its form, and what a participant gives, as a start."""
+"""Starts of a lesson's cards: the form of a card with the settings that a participant gives."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -23,7 +23,7 @@ from hexapods.shows.scene_spec import PAPERS_LANES
 _WALK = ("gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "world")
 _PRACTICE = ("steps", "observation", "steps_per_episode", "evaluate_every")
 _LEFT_OUT = ("seed", "name", "pace")
-"""What a page's form may have: the room says seed and name, and none is slower than it can be."""
+"""Fields of a page's form that are ignored: the room sets seed, name and the highest pace."""
 _GAIT = "left-right-origin"
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, JsonValue
 
-from app.api.answers import Answer, Count
+from app.api.answers import Answer, Count, WhatIfView
 from app.api.tournament_answers import RoomTournament
 from app.classroom.lesson import Ask, Card, Lesson
 from app.storage.run import Kind, State
@@ -83,7 +83,7 @@ class NewRoom(Answer):
 
 
 class RoomState(Answer):
-    """What all in a room may know of it.
+    """State of a room that all in it may know.
 
     Attributes:
         state: `open`, `frozen`: nothing can be answered or started, or `ended`.
@@ -119,7 +119,7 @@ class OwnRun(Answer):
 
 
 class OwnAnswer(Answer):
-    """What a participant has answered to the question of a card."""
+    """Answer of a participant to the question of a card."""
 
     card: Count
     value: JsonValue
@@ -230,19 +230,23 @@ class RunOutcome(Answer):
     """A participant's run on a card.
 
     Attributes:
+        id: of the run; of a what-if that of its record.
         given: settings that they gave, by name.
-        distance_m: how far the robot walked; of a race the learner, at time-out.
+        distance_m: how far the robot walked; of a race the learner, at time-out; of a what-if the
+            interquartile mean with the chosen settings.
         winners: agents of the lanes that won a race.
         rank: among the seeds, 1 for the longest distance; null before the reveal.
+        answer: of one's own what-if.
     """
 
     id: str
-    kind: Kind
+    kind: Kind | Literal["what-if"]
     state: State
     given: dict[str, Any]
     distance_m: float | None
     winners: list[str]
     rank: Annotated[int, Field(ge=1)] | None
+    answer: WhatIfView | None
 
 
 class ResultEntry(Answer):

@@ -151,15 +151,20 @@ async def _body(request: Request) -> bytes:
         raise HTTPException(400) from error
 
 
+IdempotencyKeyHeader = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        pattern=rf"^[\x21-\x7e]{{1,{MAX_KEY_LENGTH}}}$",
+        description=VALID["idempotency-key"],
+    ),
+]
+
+
 async def _start_request(
     request: Request,
     body: Annotated[bytes, Depends(_body)],
-    idempotency_key: Annotated[
-        str | None,
-        Header(
-            pattern=rf"^[\x21-\x7e]{{1,{MAX_KEY_LENGTH}}}$", description=VALID["idempotency-key"]
-        ),
-    ] = None,
+    idempotency_key: IdempotencyKeyHeader = None,
 ) -> StartRequest:
     return StartRequest(f"{request.url.path}?{request.url.query}", body, idempotency_key)
 

@@ -67,7 +67,7 @@ class StoredRobotsView(Answer):
 
 
 class FoundView(Answer):
-    """What was found in the file of a robot, from which a person may choose otherwise.
+    """Findings in the file of a robot, from which a person may choose otherwise.
 
     Attributes:
         file: path in the zip of what was read; null if it was given alone.

@@ -1,4 +1,4 @@
-"""What those who are no operators may do with rooms: the one place where that is decided.
+"""Authorization of spectators and participants for rooms, all of it in this module.
 
 A participant is a spectator whom a room knows by a cookie. By default a participant changes
 nothing: only the room's own routes are open, as far as the card that is shown allows it, and the
@@ -8,6 +8,7 @@ it is shown to others.
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from urllib.parse import parse_qsl
 
 from starlette.datastructures import Headers
@@ -59,7 +60,7 @@ OF_PARTICIPANTS = frozenset(
 OF_BOTH = frozenset({("post", f"/api/v1/tournaments/{{tournament_id}}{_ENTER}")})
 """Operations for operators and for participants."""
 _TAUGHT = re.compile(r"/api/v1/lessons(/.*)?")
-"""What a participant does not read: lessons have the answers."""
+"""Paths that a participant may not read: lessons have the answers."""
 _READ_IN_ROOM = re.compile(
     r"/|/favicon\.ico|/static/.*|/viewer/?.*|/healthz|/readyz|/api/v1/(stage|events|options|tournaments)"
 )
@@ -85,8 +86,9 @@ class RoomAccess:
         found = []
         for code, cookie in _room_cookies(headers, is_secure):
             participant = self._rooms.seat(code, cookie.value)
-            if participant is not None and self._rooms.get(code).is_open:
-                found.append((code, participant.seed))
+            with suppress(NotFound):  # deleted meanwhile
+                if participant is not None and self._rooms.get(code).is_open:
+                    found.append((code, participant.seed))
         return tuple(found)
 
     def refuse(self, scope: Scope, seats: tuple[Seat, ...], *, is_public: bool) -> Response | None:

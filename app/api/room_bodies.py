@@ -50,8 +50,12 @@ class PredictionBody(CardBody):
 
 
 class RunBody(Body):
-    """The settings that the card opens, by name; those that are left out are the card's."""
+    """The settings that the card opens, by name; those that are left out are the card's.
 
+    With `card` it is refused unless that is the card that is shown.
+    """
+
+    card: Annotated[CardNumber, Field(strict=True), INTEGRAL] | None = None
     settings: Annotated[
         dict[Annotated[str, Field(max_length=MAX_SETTING_NAME)], JsonValue],
         Field(max_length=MAX_SETTINGS),
@@ -65,7 +69,7 @@ class SpotlightBody(Body):
 
 
 class ParticipantBody(Body):
-    """What others see of a participant; what is left out stays as it is."""
+    """Changes of how others see a participant; a field that is left out stays as it is."""
 
     is_name_hidden: Annotated[bool, Field(strict=True)] | None = None
     is_approved: Annotated[bool, Field(strict=True)] | None = None

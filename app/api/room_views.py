@@ -74,7 +74,7 @@ def _me(room: Room, seed: int) -> dict[str, Any]:
         "runs": [
             {"run_id": one.run_id, "card": one.card}
             for one in room.runs.values()
-            if one.is_main and one.seed == seed
+            if one.is_main and one.seed == seed and one.answer is None
         ],
     }
 
@@ -83,8 +83,8 @@ def _people(room: Room, store: RunStore) -> list[dict[str, Any]]:
     people = []
     for seed, one in sorted(room.participants.items()):
         newest = next(iter(reversed(room.runs_of(seed, room.card))), None)
-        run = None
-        if newest is not None:
+        run, is_answered = None, newest is not None and newest.answer is not None
+        if newest is not None and not is_answered:
             try:
                 run = store.find(newest.run_id)
             except NotFound:
@@ -99,7 +99,7 @@ def _people(room: Room, store: RunStore) -> list[dict[str, Any]]:
                 "joined_at": one.joined_at.isoformat(),
                 "has_predicted": (seed, room.card) in room.predictions,
                 "run_id": None if run is None else run.id,
-                "run_state": None if run is None else run.state,
+                "run_state": "finished" if is_answered else None if run is None else run.state,
             }
         )
     return people
@@ -125,10 +125,10 @@ def _card(one: CardResults) -> dict[str, Any]:
 def _entry(one: Entry) -> dict[str, Any]:
     run, score = one.run, one.score
     shown = {**one._asdict(), "score": None if score is None else score._asdict()}
-    return {**shown, "run": None if run is None else _run(run)}
+    return {**shown, "run": None if run is None else _run(run, is_own=one.is_own)}
 
 
-def _run(run: RunResult) -> dict[str, Any]:
+def _run(run: RunResult, *, is_own: bool) -> dict[str, Any]:
     return {
         "id": run.id,
         "kind": run.kind,
@@ -137,4 +137,5 @@ def _run(run: RunResult) -> dict[str, Any]:
         "distance_m": run.outcome.distance_m,
         "winners": list(run.outcome.winners),
         "rank": run.rank,
+        "answer": run.answer if is_own else None,
     }

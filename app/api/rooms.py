@@ -8,7 +8,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import ServerSentEvent
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import AnyRunView, WhatIfView
+from app.api.answers import AnyRunView, DeletedView, WhatIfView
 from app.api.classroom_answers import (
     JoinedView,
     NewRoom,
@@ -19,7 +19,7 @@ from app.api.classroom_answers import (
 )
 from app.api.contract import LOCATION, TEXT, Schema, answers
 from app.api.cookies import SessionCookie, is_secure
-from app.api.deps import EventListener, ReaderDep, Services, ServicesDep
+from app.api.deps import EventListener, IdempotencyKeyHeader, ReaderDep, Services, ServicesDep
 from app.api.events import EVENT_STREAM, client_slot, stream_events
 from app.api.formats import attachment, negotiated
 from app.api.rate_limit import asker_of, whole_seconds
@@ -36,21 +36,24 @@ from app.api.room_bodies import (
     SpotlightBody,
 )
 from app.api.room_views import results_view, room_address, room_view
-from app.api.runs import located
+from app.api.runs import delete_each, located
 from app.api.spectators import qr_image
 from app.api.starts import spectators_asker
 from app.classroom.lesson import CardNumber, read_lesson
 from app.classroom.names import normalized
-from app.classroom.results import MEDIA_TYPE, as_csv, results_of
+from app.classroom.results import MEDIA_TYPE, Reader, as_csv, results_of
 from app.classroom.room import Room
 from app.limits.addresses import client_of
 from app.storage.errors import Busy, Forbidden, NotFound
 from app.storage.json_text import finite
 from app.viewer.shared_stage import SharedStage
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.text import MAX_NAME, check_name
 
 CodePath = Annotated[str, Path(description="code of the room", max_length=20)]
 SeedPath = Annotated[int, Path(description="seed of the participant", ge=0)]
+MIN_JOIN_KEY = 16
+"""Characters of the Idempotency-Key of a request to join, which is a secret."""
 _SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
 _JOINS_USED_UP = "Too many have joined from this address within a short time; try again later."
 
@@ -150,19 +153,29 @@ def get_room(
     },
 )
 def join_room(
-    services: ServicesDep, request: Request, code: CodePath, body: JoinBody | None = None
+    services: ServicesDep,
+    request: Request,
+    code: CodePath,
+    body: JoinBody | None = None,
+    idempotency_key: IdempotencyKeyHeader = None,
 ) -> Response:
     """Join by the code, with neither account nor data: the name is from a list of words.
 
-    A cookie keeps name and seed; who has it gets both again, with 200.
+    A cookie keeps name and seed; who has it gets both again, with 200, as does who repeats the
+    request with the same Idempotency-Key, since the answer was lost on the way.
     """
     del body
+    if idempotency_key is not None and len(idempotency_key) < MIN_JOIN_KEY:
+        raise InvalidInput(
+            f"the Idempotency-Key must have at least {MIN_JOIN_KEY} characters here: who has it "
+            "is the participant"
+        )
     rooms, cookie = services.rooms, _cookie(services, request, code)
-    if rooms.seat(normalized(code), cookie.value) is None:
+    if not rooms.is_seated(code, cookie.value, idempotency_key):
         rooms.get(code).check_open()
         if (wait_s := services.joins.take(f"{normalized(code)} {client_of(request.scope)}")) > 0:
             raise Busy(_JOINS_USED_UP, whole_seconds(wait_s))
-    joined = rooms.join(code, cookie.value)
+    joined = rooms.join(code, cookie.value, idempotency_key)
     shown = {"name": joined.participant.name, "seed": joined.participant.seed}
     response = JSONResponse(shown, 201 if joined.is_new else 200)
     response.headers.append("Set-Cookie", cookie.set_header(joined.key))
@@ -233,6 +246,24 @@ async def end_room(services: ServicesDep, request: Request, code: CodePath) -> R
     return JSONResponse(view)
 
 
+@router.delete("/{code}", summary="Delete a room that has ended", response_model=DeletedView)
+def delete_room(
+    services: ServicesDep,
+    code: CodePath,
+    *,
+    runs: Annotated[bool, Query(description="delete its runs, too")] = False,
+) -> Response:
+    """Delete a room with its participants, answers and results.
+
+    Its runs stay without `runs`, as ordinary runs that all may see. The answer names the runs that
+    were deleted, and why others were kept.
+    """
+    room = services.rooms.ended(code)
+    deleted = delete_each(services, services.rooms.runs_in(room.code) if runs else [])
+    services.rooms.delete(code)
+    return JSONResponse(deleted)
+
+
 @router.put(
     "/{code}/spotlight", summary="Show a participant's run on the stage", response_model=RoomView
 )
@@ -276,14 +307,20 @@ def start_run(
     """Start the training or race of the card with the seed of the participant who asks.
 
     Only the settings that the card opens may be given, within its bounds. What was started alike is
-    returned again; one run of a participant goes on at a time.
+    returned again; one run of a participant goes on at a time. A what-if is answered at once, with
+    200, and is kept as a result of the card.
     """
-    settings = (body or RunBody()).settings
-    starts, room = services.card_starts, services.rooms.check_run(code)
-    given = starts.given(room.shown, settings)
-    if room.shown.go == "what-if":
-        asker = spectators_asker(services, asker_of(request.scope))
-        return JSONResponse(services.what_if.ask(starts.what_if(room.shown, given), asker))
+    card, settings = (body := body or RunBody()).card, body.settings
+    starts, room = services.card_starts, services.rooms.check_run(code, card)
+    number, shown = (room.card, room.shown) if card is None else (card, room.lesson.cards[card])
+    given = starts.given(shown, settings)
+    if shown.go == "what-if":
+        what_if, asker = starts.what_if(shown, given), asker_of(request.scope)
+
+        def compute() -> dict[str, Any]:
+            return services.what_if.ask(what_if, spectators_asker(services, asker))
+
+        return JSONResponse(services.rooms.ask(code, seed, given, compute, card=number))
     run = services.rooms.start(
         code,
         seed,
@@ -292,6 +329,7 @@ def start_run(
             now.shown, starts.given(now.shown, settings), seed, _name(now, seed)
         ),
         services.jobs.start,
+        card=number,
     )
     return located(services, request, run, 202)
 
@@ -314,6 +352,9 @@ def get_results(
     reader: ReaderDep,
     *,
     card: Annotated[CardNumber | None, Query(description="of one card; of all if absent")] = None,
+    projector: Annotated[
+        bool, Query(description="as the class sees it: without those who are not approved")
+    ] = False,
     format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
     """Return by card what was predicted, what came of the runs, and how both compare.
@@ -324,8 +365,9 @@ def get_results(
     if card is not None:
         room.check_card(card)
     cards = range(len(room.lesson.cards)) if card is None else [card]
-    own, is_teacher = dict(reader or ()).get(room.code), reader is None
-    results = results_of(room, services.store, cards, own, is_teacher=is_teacher)
+    own = dict(reader or ()).get(room.code)
+    who = Reader(own, is_teacher=reader is None, is_projector=projector)
+    results = results_of(room, services.store, cards, who)
     if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(
             as_csv(results).encode(), f"{MEDIA_TYPE}; charset=utf-8", f"{room.code}.csv"

@@ -3,7 +3,7 @@
 `/runs` lists and finds runs of every kind; the other routes are of one kind each.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Annotated, Any
 
@@ -146,6 +146,11 @@ def list_runs(
 @router.delete("", summary="Delete runs that have ended", response_model=DeletedView)
 def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     """Delete each run that can be deleted; the answer names the others, and why they are kept."""
+    return JSONResponse(delete_each(services, ids))
+
+
+def delete_each(services: Services, ids: Iterable[str]) -> dict[str, Any]:
+    """Delete each run that can be deleted, in this order; return the JSON of `DeletedView`."""
     deleted, kept = [], []
     for one in dict.fromkeys(ids):
         try:
@@ -154,7 +159,7 @@ def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
             kept.append({"id": one, "reason": str(error)})
         else:
             deleted.append(one)
-    return JSONResponse({"deleted": deleted, "kept": kept})
+    return {"deleted": deleted, "kept": kept}
 
 
 @router.get(

@@ -20,7 +20,7 @@ Curve = Sequence[tuple[float, float]]
 
 
 class WalkOutcome(NamedTuple):
-    """What came of a participant's run.
+    """Outcome of a participant's run.
 
     Attributes:
         distance_m: how far the robot walked [m]; of a race that of the learner, at time-out.

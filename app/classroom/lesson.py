@@ -37,7 +37,7 @@ Kind = Literal["choice", "number", "point", "curve"]
 
 @dataclass(frozen=True, kw_only=True)
 class Bounds(Record):
-    """What may be chosen for a setting; without any of it, all that is valid.
+    """Allowed values of a setting; without any bound, all that are valid.
 
     Attributes:
         minimum: least number, inclusive.
@@ -75,7 +75,7 @@ class Ask(Record):
 
 @dataclass(frozen=True, kw_only=True)
 class Reveal(Record):
-    """What is revealed after the answers.
+    """Text and answer that are revealed after the answers.
 
     Attributes:
         text: in Markdown.
@@ -116,7 +116,7 @@ class Card(Record):
 
     @property
     def revealed(self) -> Reveal:
-        """What is revealed afterwards."""
+        """Text and answer that are revealed afterwards."""
         given = self.reveal
         return given if isinstance(given, Reveal) else Reveal(text=given or "")
 

@@ -1,4 +1,4 @@
-"""What a card opens of the page: a part of its state document (`static/js/page-state.js`)."""
+"""Page state of a card: a part of its state document (`static/js/page-state.js`)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

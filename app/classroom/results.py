@@ -3,9 +3,9 @@
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from app.classroom.answers import Score, WalkOutcome, scorer
 from app.classroom.lesson import Ask
@@ -26,23 +26,25 @@ MEDIA_TYPE = "text/csv"
 
 
 class RunResult(NamedTuple):
-    """A participant's run on a card.
+    """A participant's run on a card, or what-if.
 
     Attributes:
-        id: of the run.
+        id: of the run, or the what-if.
         kind: of the run.
-        state: of the run.
+        state: of the run; a what-if is kept once it is finished.
         given: settings that the participant gave, by name.
         outcome: what came of it, once it is finished.
         rank: among the seeds by distance, 1 for the longest; None before the reveal.
+        answer: of a what-if; its distance is the interquartile mean with the chosen settings.
     """
 
     id: str
-    kind: Kind
+    kind: Kind | Literal["what-if"]
     state: State
     given: dict[str, Any]
     outcome: WalkOutcome
     rank: int | None = None
+    answer: Mapping[str, Any] | None = None
 
 
 class Entry(NamedTuple):
@@ -78,7 +80,8 @@ class CardResults:
         predicted: number of those who have answered.
         finished: number of those whose run has finished.
         entries: of those whom the reader may see, by seed.
-        distances_m: of all seeds, shortest first; empty before the reveal but for teachers.
+        distances_m: of all seeds that the reader may see, shortest first; empty before the reveal
+            but for teachers.
         interval: interquartile mean of the distances [m] with its 95 % interval.
         answer: what the lesson says; None before the reveal.
     """
@@ -96,8 +99,29 @@ class CardResults:
     answer: float | str | None
 
 
+class Reader(NamedTuple):
+    """A reader of results.
+
+    Attributes:
+        seed: of the participant who reads; None for others.
+        is_teacher: whether what is not revealed is seen.
+        is_projector: whether the class reads along, so that only those who are approved are seen.
+    """
+
+    seed: int | None
+    is_teacher: bool = False
+    is_projector: bool = False
+
+    def sees(self, room: Room, seed: int) -> bool:
+        """Whether the reader may see a participant, of a card that is open to the reader."""
+        is_own = seed == self.seed
+        if self.is_teacher and not self.is_projector:
+            return True
+        return is_own or room.participants[seed].is_approved
+
+
 def results_of(
-    room: Room, store: RunStore, cards: Sequence[int], reader: int | None, *, is_teacher: bool
+    room: Room, store: RunStore, cards: Sequence[int], reader: Reader
 ) -> list[CardResults]:
     """Return the results of some cards, as a reader may see them.
 
@@ -105,10 +129,9 @@ def results_of(
         room: the room.
         store: of its runs.
         cards: numbers of the cards.
-        reader: seed of the participant who reads; None for others.
-        is_teacher: whether the reader sees all.
+        reader: the reader.
     """
-    return [_card_results(room, store, card, reader, is_teacher=is_teacher) for card in cards]
+    return [_card_results(room, store, card, reader) for card in cards]
 
 
 def as_csv(results: Sequence[CardResults]) -> str:
@@ -141,21 +164,21 @@ def _text(given: dict[str, Any]) -> str:
     return json.dumps(given) if given else ""
 
 
-def _card_results(
-    room: Room, store: RunStore, card: int, reader: int | None, *, is_teacher: bool
-) -> CardResults:
+def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> CardResults:
     found = {seed: _newest(room, store, seed, card) for seed in sorted(room.participants)}
     runs = {seed: run for seed, run in found.items() if run is not None}
     ended = {seed: run.outcome for seed, run in runs.items() if run.state == "finished"}
-    ranked = sorted(one.distance_m for one in ended.values() if one.distance_m is not None)
-    is_open = is_teacher or card in room.revealed
-    score = scorer(room.lesson.cards[card], list(ended.values()))
+    seen = [outcome for seed, outcome in ended.items() if reader.sees(room, seed)]
+    ranked = sorted(one.distance_m for one in seen if one.distance_m is not None)
+    is_open = reader.is_teacher or card in room.revealed
+    score = scorer(room.lesson.cards[card], seen)
     entries = []
     for seed, participant in sorted(room.participants.items()):
-        is_own = seed == reader
-        if not (is_teacher or is_own or room.shows(seed, card)):
+        is_own = seed == reader.seed
+        if not is_own and not (is_open and reader.sees(room, seed)):
             continue
-        name = participant.name if is_teacher or is_own else room.name_for_others(seed)
+        is_named = is_own or (reader.is_teacher and not reader.is_projector)
+        name = participant.name if is_named else room.name_for_others(seed)
         prediction, run = room.predictions.get((seed, card)), runs.get(seed)
         if run is not None and is_open and run.outcome.distance_m is not None:
             over = sum(one > run.outcome.distance_m for one in ranked)
@@ -203,6 +226,11 @@ def _result(room: Room, one: RoomRun, store: RunStore) -> RunResult | None:
     known: RunResult | None = room.finished.get(one.run_id)
     if known is not None:
         return known  # a run that has finished changes no more, and a class asks again and again
+    if one.answer is not None:
+        outcome = WalkOutcome(one.answer["chosen"]["iqm_m"])
+        return RunResult(
+            one.run_id, "what-if", "finished", dict(one.given), outcome, answer=one.answer
+        )
     try:
         run = store.find(one.run_id)
     except NotFound:

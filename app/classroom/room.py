@@ -11,7 +11,7 @@ from app.storage.errors import Conflict, NotFound
 
 Phase = Literal["open", "frozen", "ended"]
 Deed = Literal["predict", "run"]
-"""What a participant may do, if the card allows it."""
+"""Actions of a participant that the card may allow."""
 _ASKS_NOTHING = "card {number} asks nothing; wait for one with a question"
 _RUNS_NOTHING = "card {number} runs nothing; wait for one with a button to go"
 
@@ -76,7 +76,7 @@ class Room:
 
     @property
     def state(self) -> dict[str, Any]:
-        """What all in the room may know of it, in plain types, as its `room` event has it."""
+        """State that all in the room may know, in plain types, as its `room` event has it."""
         runs = list(self.runs.values())
         started = {one.seed for one in runs if one.is_main and one.card == self.card}
         return {

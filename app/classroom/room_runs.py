@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
+from datetime import datetime
 from typing import Any
 
 from app.classroom.room import Room, given_key
@@ -38,6 +39,11 @@ class RoomRuns:
             if run.room in rooms and run.seed in rooms[run.room].participants:
                 rooms[run.room].runs[run.run_id] = run
 
+    def forget(self, room: Room) -> None:
+        """Leave the runs of a room to all: they are ordinary ones from then on."""
+        for run_id in room.runs:
+            self._runs.pop(run_id, None)
+
     def owner_of(self, run_id: str) -> str | None:
         """Return the participant who waits for a run, as a text; None if there is none."""
         run = self._runs.get(run_id)
@@ -60,7 +66,8 @@ class RoomRuns:
 
     def interrupted(self, room: Room) -> list[str]:
         """Return the ids of the runs of a room that were asked for, and are interrupted."""
-        found = [(one.run_id, self._find(one)) for one in room.runs.values() if one.is_main]
+        mains = [one for one in room.runs.values() if one.is_main]
+        found = [(one.run_id, self._find(one)) for one in mains]
         return [run_id for run_id, run in found if run is not None and run.state == "interrupted"]
 
     def start(
@@ -77,16 +84,12 @@ class RoomRuns:
             Conflict: if a run of the participant has not ended.
             Busy: if there were too many.
         """
-        before = room.runs_of(seed, room.card)
-        for one in before:
+        for one in _alike(room, seed, room.card, given):
             run = self._find(one)
-            if run is None or run.state in _FAILED:
-                continue
-            if given_key(one.given) == given_key(given):
+            if run is not None and run.state not in _FAILED:
                 return run
         self._check_none_goes_on(room, seed)
-        if len(before) >= MAX_RUNS:
-            raise Busy(f"you have started {MAX_RUNS} runs on this card, the most", _RETRY_S)
+        _check_few(room, seed, room.card)
         start = LinkedStart(make(room), lambda runs: self._link(room, seed, given, runs))
         try:
             return queue(start)
@@ -94,10 +97,44 @@ class RoomRuns:
             self._unlink(room, start.links)
             raise
 
-    def forget(self, room: Room) -> None:
-        """Forget the runs of a room that is deleted."""
-        for one in room.runs:
-            self._runs.pop(one, None)
+    def answer_of(
+        self, room: Room, seed: int, card: int, given: Mapping[str, Any]
+    ) -> Mapping[str, Any] | None:
+        """Return what the same what-if of a participant gave; None if it was not asked yet.
+
+        Raises:
+            Busy: if it was not, and too much was started on the card.
+        """
+        for one in _alike(room, seed, card, given):
+            if one.answer is not None:
+                return one.answer
+        _check_few(room, seed, card)
+        return None
+
+    def keep_answer(
+        self,
+        room: Room,
+        seed: int,
+        card: int,
+        given: Mapping[str, Any],
+        *,
+        answer: Mapping[str, Any],
+        now: datetime,
+    ) -> None:
+        """Keep what a what-if of a participant gave; others see it as they would see a run."""
+        number = len(room.runs_of(seed, card))
+        row = RoomRun(
+            run_id=f"what-if-{room.code}-{seed}-{card}-{number}",
+            room=room.code,
+            seed=seed,
+            card=card,
+            given=given,
+            is_main=True,
+            is_shown=room.shows(seed, card),
+            created_at=now,
+            answer=answer,
+        )
+        self._keep(room, [row])
 
     def _link(self, room: Room, seed: int, given: Mapping[str, Any], runs: Sequence[Run]) -> None:
         """Note whose runs these are before they are stored; a link to none has no effect."""
@@ -115,6 +152,9 @@ class RoomRuns:
             )
             for run in runs
         ]
+        self._keep(room, links)
+
+    def _keep(self, room: Room, links: Sequence[RoomRun]) -> None:
         self._rows.add_runs(links)
         for one in links:
             self._runs[one.run_id] = room.runs[one.run_id] = one
@@ -135,7 +175,20 @@ class RoomRuns:
 
     def _find(self, one: RoomRun) -> Run | None:
         found = None
+        if one.answer is not None:
+            return None
         with suppress(NotFound):
             run = self._store.find(one.run_id)
             found = run if isinstance(run, Run) else None
         return found
+
+
+def _alike(room: Room, seed: int, card: int, given: Mapping[str, Any]) -> list[RoomRun]:
+    """Return what a participant started on a card with the same settings."""
+    key = given_key(given)
+    return [one for one in room.runs_of(seed, card) if given_key(one.given) == key]
+
+
+def _check_few(room: Room, seed: int, card: int) -> None:
+    if len(room.runs_of(seed, card)) >= MAX_RUNS:
+        raise Busy(f"you have started {MAX_RUNS} runs on this card, the most", _RETRY_S)

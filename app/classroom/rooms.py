@@ -16,7 +16,7 @@ from app.classroom.lessons import FoundLesson
 from app.classroom.names import Choose, new_code, normalized
 from app.classroom.room import Deed, Room
 from app.classroom.room_runs import RoomRuns
-from app.classroom.seats import Joined, Seats, new_participant
+from app.classroom.seats import Joined, Seats, key_of, new_key, new_participant
 from app.jobs.submissions import Start
 from app.storage.database.room_rows import ParticipantRow, PredictionRow, RoomRow, Seat
 from app.storage.database.store import RunStore
@@ -146,7 +146,8 @@ class Rooms:
 
     def runs_in(self, code: str) -> list[str]:
         """Return the ids of a room's runs, the newest first: races before their trainings."""
-        return [one.run_id for one in reversed(list(self.get(code).runs.values()))]
+        runs = reversed(list(self.get(code).runs.values()))
+        return [one.run_id for one in runs if one.answer is None]
 
     def forget(self, code: str) -> None:
         """End a room, and delete all that is known of it but its runs.
@@ -204,7 +205,7 @@ class Rooms:
             room.check_open()
             runs = []
             if run_id is not None:
-                if run_id not in room.runs:
+                if run_id not in room.runs or room.runs[run_id].answer is not None:
                     raise NotFound(f"the room {room.code} has no run {run_id!r}")
                 runs = [room.runs[run_id]]
                 participant = room.participants[runs[0].seed]
@@ -254,6 +255,27 @@ class Rooms:
         self.on_changed(room)
         return room
 
+    def ended(self, code: str) -> Room:
+        """Return a room that has ended.
+
+        Raises:
+            NotFound: if there is no such room.
+            Conflict: if it is open.
+        """
+        room = self.get(code)
+        if room.is_open:
+            raise Conflict(f"the room {room.code} is open; end it first", "open")
+        return room
+
+    def delete(self, code: str) -> None:
+        """Delete a room that has ended, with its participants, answers and what-ifs.
+
+        Its runs stay, and are nobody's: all may see them. Errors as `ended`.
+        """
+        with self._lock:
+            self.ended(code)
+            self.forget(code)
+
     def _change(
         self, code: str, check: Callable[[Room], object] = Room.check_open, **changes: Any
     ) -> Room:
@@ -269,8 +291,14 @@ class Rooms:
 
     # ---- of participants
 
-    def join(self, code: str, key: str = "") -> Joined:
+    def join(self, code: str, key: str = "", request_key: str | None = None) -> Joined:
         """Join a room; who was in it before, by the key, has the same name and seed again.
+
+        Args:
+            code: of the room.
+            key: of who was in it before; "" for none.
+            request_key: idempotency key of the request, a secret: with it the same request, of
+                which the answer was lost, finds the participant of the first again.
 
         Raises:
             NotFound: if there is no such room.
@@ -280,14 +308,33 @@ class Rooms:
         with self._lock:
             room = self.get(code)
             room.check_open()
-            seat = self.seat(room.code, key)
-            if seat is not None:
-                return Joined(seat, key, is_new=False)
-            joined = new_participant(room, self._choose, self._now())
+            seated = self._seated(room, key, request_key)
+            if seated is not None:
+                return seated
+            requested = None if request_key is None else key_of(room.code, request_key)
+            if requested is None or self._seats.has(requested):
+                requested = new_key()
+            joined = new_participant(room, self._choose, self._now(), requested)
             self._rows.add_participant(joined.participant)
             self._seats.add(room, joined.participant)
         self.on_changed(room)
         return joined
+
+    def is_seated(self, code: str, key: str, request_key: str | None) -> bool:
+        """Whether a request to join would find a participant again; arguments as of `join`.
+
+        Raises:
+            NotFound: if there is no such room.
+        """
+        return self._seated(self.get(code), key, request_key) is not None
+
+    def _seated(self, room: Room, key: str, request_key: str | None) -> Joined | None:
+        requested = "" if request_key is None else key_of(room.code, request_key)
+        for known in (key, requested):
+            seat = self._seats.of(room, known)
+            if seat is not None:
+                return Joined(seat, known, is_new=False)
+        return None
 
     def leave(self, code: str, seed: int) -> None:
         """Leave a room; what was answered and run stays."""
@@ -313,9 +360,7 @@ class Rooms:
         """
         with self._lock:
             room = self.get(code)
-            room.check_card(card)
-            if card != room.card:
-                raise Forbidden(f"card {card} is not shown; the class is at card {room.card}")
+            _check_shown(room, card)
             _check_allowed(room, "predict")
             room.check_going_on()
             ask = room.lesson.cards[card].ask
@@ -331,14 +376,20 @@ class Rooms:
         self.on_changed(room)
         return answer
 
-    def check_run(self, code: str) -> Room:
+    def check_run(self, code: str, card: int | None = None) -> Room:
         """Return the room, if the card that is shown lets its participants start a run.
 
+        Args:
+            code: of the room.
+            card: number of the card that is meant; None for the one that is shown.
+
         Raises:
-            Forbidden: if the card runs nothing.
+            NotFound: if there is no such card.
+            Forbidden: if another card is shown, or it runs nothing.
             Conflict: if the room has ended or is frozen.
         """
         room = self.get(code)
+        _check_shown(room, card)
         _check_allowed(room, "run")
         room.check_going_on()
         return room
@@ -350,6 +401,8 @@ class Rooms:
         given: Mapping[str, Any],
         make: Callable[[Room], Start],
         queue: Callable[[Start], Run],
+        *,
+        card: int | None = None,
     ) -> Run:
         """Start what the card that is shown runs; what was started alike is returned again.
 
@@ -359,16 +412,55 @@ class Rooms:
             given: settings that the participant gave, by name, as they were checked.
             make: makes the start.
             queue: queues it.
+            card: number of the card that is meant; None for the one that is shown.
 
         Raises:
-            Forbidden, Conflict: as `check_run`; also if a run of the participant has not ended.
+            NotFound, Forbidden, Conflict: as `check_run`; also if a run of the participant has not
+                ended.
             Busy: if there were too many.
         """
         with self._lock:
-            room = self.check_run(code)
+            room = self.check_run(code, card)
             run = self._runs.start(room, seed, given, make, queue)
         self.on_changed(room)
         return run
+
+    def ask(
+        self,
+        code: str,
+        seed: int,
+        given: Mapping[str, Any],
+        compute: Callable[[], Mapping[str, Any]],
+        *,
+        card: int,
+    ) -> Mapping[str, Any]:
+        """Return what the what-if of the card that is shown gives, and keep it; see `start`.
+
+        Args:
+            code: of the room.
+            seed: of the participant.
+            given: settings that the participant gave, by name, as they were checked.
+            compute: computes the answer, which may take seconds; it is called without a lock.
+            card: number of the card.
+
+        Raises:
+            NotFound, Forbidden, Conflict: as `check_run`.
+            Busy: if there were too many.
+        """
+        with self._lock:
+            known = self._runs.answer_of(self.check_run(code, card), seed, card, given)
+        if known is not None:
+            return known
+        answer = compute()
+        with self._lock:
+            # It was asked while the card was shown, so it is kept whatever is shown now.
+            room = self.get(code)
+            known = self._runs.answer_of(room, seed, card, given)
+            if known is not None:
+                return known
+            self._runs.keep_answer(room, seed, card, given, answer=answer, now=self._now())
+        self.on_changed(room)
+        return answer
 
     # ---- who sees what
 
@@ -389,6 +481,13 @@ class Rooms:
         """Return the ids of interrupted runs of open rooms, which were asked for."""
         with self._lock:
             return [one for room in self.open_rooms() for one in self._runs.interrupted(room)]
+
+
+def _check_shown(room: Room, card: int | None) -> None:
+    if card is not None:
+        room.check_card(card)
+        if card != room.card:
+            raise Forbidden(f"card {card} is not shown; the class is at card {room.card}")
 
 
 def _check_allowed(room: Room, deed: Deed) -> None:

@@ -46,6 +46,10 @@ class Seats:
         for one in room.participants.values():
             self._seats.pop(one.key_sha256, None)
 
+    def has(self, key: str) -> bool:
+        """Whether a participant has, or had, this key."""
+        return _sha256(key) in self._seats
+
     def of(self, room: Room, key: str) -> ParticipantRow | None:
         """Return the participant of a room who has a key; None if none has, or has left."""
         seat = self._seats.get(_sha256(key)) if key else None
@@ -55,20 +59,20 @@ class Seats:
         return participant if participant.left_at is None else None
 
 
-def new_participant(room: Room, choose: Choose, now: datetime) -> Joined:
-    """Return a participant with a name, a seed and a key that none of the room has.
+def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Joined:
+    """Return a participant with a name and a seed that none of the room has.
 
     Args:
         room: the room; it is not changed.
         choose: draws the name.
         now: when the participant joins.
+        key: of the participant.
 
     Raises:
         Busy: if the room is full.
     """
     if len(room.present) >= MAX_PARTICIPANTS:
         raise Busy(f"{MAX_PARTICIPANTS} are in the room {room.code}, which is the most", _RETRY_S)
-    key = secrets.token_urlsafe(32)
     row = ParticipantRow(
         room=room.code,
         seed=max(room.participants, default=-1) + 1,
@@ -80,6 +84,16 @@ def new_participant(room: Room, choose: Choose, now: datetime) -> Joined:
         left_at=None,
     )
     return Joined(row, key, is_new=True)
+
+
+def new_key() -> str:
+    """Return a key that cannot be guessed."""
+    return secrets.token_urlsafe(32)
+
+
+def key_of(code: str, request_key: str) -> str:
+    """Return the key that a request to join a room gets, by its idempotency key, a secret."""
+    return _sha256(f"{code} {request_key}")
 
 
 def _sha256(text: str) -> str:

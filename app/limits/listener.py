@@ -1,5 +1,6 @@
 """Listening socket that applies the connection limits at `accept`."""
 
+import contextlib
 import errno
 import os
 import socket
@@ -131,6 +132,11 @@ def listen(settings: Settings, table: ConnectionTable) -> Listener:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _BUFFER_BYTES)
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+        if sys.platform == "linux":
+            with contextlib.suppress(OSError):  # not in every kernel
+                # The usual ones halve their rate at each loss, as if it told of a full link; on a
+                # poor network that has more losses than that.
+                listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_CONGESTION, b"bbr")
         listener.bind(address)
         listener.listen(BACKLOG)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What presenters' windows show beside the stage: a card of the lesson, and how."""
+"""State of presenters' windows beside the stage: the card of the lesson, and how it is shown."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -13,7 +13,7 @@ MAX_CARDS = 99
 
 @dataclass(frozen=True, kw_only=True)
 class Presentation(Record):
-    """What presenters' windows show beside the stage; told by their keys or by a remote."""
+    """State of presenters' windows beside the stage; set by their keys or by a remote."""
 
     card: Annotated[
         Annotated[int, Ge(1), Le(MAX_CARDS)] | None,

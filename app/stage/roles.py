@@ -14,7 +14,7 @@ Role = Literal["operator", "spectator"]
 
 
 class Roles:
-    """Who is an operator of a stage, and whether others may watch it. Thread-safe."""
+    """Roles of clients on a stage: operators, and spectators if others may watch. Thread-safe."""
 
     def __init__(
         self, token: str | None, rows: SessionRows | None = None, *, is_public: bool = True

@@ -52,7 +52,7 @@ class StagedRun(NamedTuple):
 
 @dataclass(frozen=True)
 class StageState:
-    """What is on stage; immutable.
+    """Content of the stage; immutable.
 
     Attributes:
         phase: see the table of this module.

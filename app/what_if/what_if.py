@@ -35,7 +35,7 @@ OPERATORS_LIMIT_S, SPECTATORS_LIMIT_S = 60.0, 10.0
 
 @dataclass(frozen=True)
 class Asker:
-    """Who asks a what-if.
+    """Client that asks a what-if, with its limits.
 
     Attributes:
         is_operator: whether it is an operator, whose what-ifs come first and may take longer.

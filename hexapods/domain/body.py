@@ -55,7 +55,7 @@ class LegMount:
 
 
 class ServoStrength(NamedTuple):
-    """What a position servo can do."""
+    """Limits of a position servo."""
 
     kp: float
     """Position gain [N·m/rad]."""

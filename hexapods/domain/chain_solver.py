@@ -45,7 +45,7 @@ _MONOMIALS = 19
 
 
 class FootParameters(NamedTuple):
-    """What `ChainSolver.solve` needs of each foot: parts of the rows of its leg; see `_Rows`."""
+    """Inputs of `ChainSolver.solve` for each foot: parts of the rows of its leg; see `_Rows`."""
 
     to_first: FloatArray
     stages: FloatArray

@@ -32,7 +32,7 @@ _MAX_READ = 16
 
 
 class About(NamedTuple):
-    """What is known of a stored robot beside its document.
+    """Data of a stored robot beside its document.
 
     Attributes:
         name: by which people know it.
@@ -44,7 +44,7 @@ class About(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What a process knows of stored robots, to be given to another one.
+    """Stored robots that a process knows, to be given to another one.
 
     Attributes:
         folders: where documents are.

@@ -61,7 +61,7 @@ class ModelGeom(Record):
 
 @dataclass(frozen=True)
 class ModelMesh(Record):
-    """What is drawn of a link.
+    """Drawn shape of a link.
 
     Attributes:
         vertices: coordinates in the frame of the link [m], float32, little-endian, (n, 3), in

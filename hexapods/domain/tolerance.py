@@ -27,7 +27,7 @@ VARIED = (
 )
 """Fields of a robot that vary: lengths of links, masses, servo gains, friction."""
 VARIED_OF_MODELS = ("torso_kg", "legs_kg", "servo_kp", "servo_kv", "friction")
-"""What varies of a robot from a file: masses of the torso and of the links, gains, friction."""
+"""Quantities that vary of a robot from a file: masses of torso and links, gains, friction."""
 _FULL_TURN_DEG = 360.0
 
 

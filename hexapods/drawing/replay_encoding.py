@@ -34,7 +34,7 @@ _ALIGNMENT_BYTES = 8
 _HEADER = struct.Struct("<I")
 _COMPRESSION = 1
 _Frame = tuple[Recorded, dict[str, Any]]
-"""What a frame changes, and its other fields."""
+"""Changes of a frame, and its other fields."""
 Check = Callable[[], None]
 """Raises if the encoding is not needed any more; called before each frame."""
 

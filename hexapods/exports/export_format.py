@@ -1,4 +1,4 @@
-"""What is declared of an export format, and what its function is given."""
+"""Declaration of an export format, and the arguments of its function."""
 
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -14,7 +14,7 @@ from hexapods.exports.recorded_walks import RecordedWalks
 from hexapods.runs.clocks import Clock
 
 Load = Literal["stream", "encode", "render"]
-"""What an export costs a server.
+"""Cost of an export for a server.
 
 - `stream`: little; it is computed chunk by chunk while a client reads it.
 - `encode`: seconds to minutes before its first byte.

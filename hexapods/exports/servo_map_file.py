@@ -28,7 +28,7 @@ _FRAME_US = 20_000.0
 _ZERO_US = (-2 * _FRAME_US, 2 * _FRAME_US)
 """Limits of the pulse at angle 0, which may be an angle that the servo does not reach."""
 _OF_ALL = ("limits_us", "speed_deg_s")
-"""What a map may say of all servos, and a servo of itself."""
+"""Fields of a map for all servos, and of a servo for itself."""
 _BY_SLOPE = ("us_at_zero", "us_per_rad")
 _BY_POINTS = ("us_at_minus_45_deg", "us_at_plus_45_deg")
 _OF_SERVO = ("board", "channel", *_BY_SLOPE, *_BY_POINTS, "zero_deg", *_OF_ALL)

@@ -34,7 +34,7 @@ MAX_FRAMES = 9000
 
 @dataclass(frozen=True)
 class ShownPoses:
-    """What each picture of a video shows; small, so that a process can be sent it.
+    """Content of the pictures of a video; small, so that it can be sent to a process.
 
     Attributes:
         problem: the walking problem, with the robot.

@@ -43,7 +43,7 @@ _logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class ReadingLimits:
-    """What reading a file may take.
+    """Limits of the resources for reading a file.
 
     Attributes:
         seconds: of the processor.

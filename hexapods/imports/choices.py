@@ -1,4 +1,4 @@
-"""What a person may decide about a robot from a file, instead of what is guessed."""
+"""Decisions of a person about a robot from a file, in place of guesses."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -17,7 +17,7 @@ Angle = Annotated[float, Ge(-7.0), Le(7.0)]
 
 @dataclass(frozen=True)
 class Choices(Record):
-    """What a person decides about a robot from a file; what is null is found out.
+    """Decisions of a person about a robot from a file; fields that are null are found out.
 
     Attributes:
         file: of several robots in a zip the path of the one that is meant.

@@ -1,4 +1,4 @@
-"""What is drawn of a robot: its own meshes, merged for each link and simplified."""
+"""Drawn shape of a robot: its own meshes, merged for each link and simplified."""
 
 import base64
 from collections.abc import Mapping, Sequence

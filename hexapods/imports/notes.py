@@ -1,4 +1,4 @@
-"""What was guessed and repaired while a robot was read, as sentences."""
+"""Guesses and repairs made while a robot was read, as sentences."""
 
 from collections.abc import Iterable
 

@@ -1,4 +1,4 @@
-"""What of a robot touches the ground beside its feet: simple shapes in place of meshes."""
+"""Parts of a robot that touch the ground beside its feet: simple shapes in place of meshes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -42,7 +42,7 @@ Angles = list[FloatArray]
 
 @dataclass(frozen=True, eq=False)
 class Legged:
-    """What a stance depends on.
+    """Inputs of a stance.
 
     Attributes:
         chains: the legs.

@@ -1,4 +1,4 @@
-"""What is known of a walking problem before anything runs: support, reach, states, the law."""
+"""Preview of a walking problem before anything runs: support, reach, states, the law."""
 
 import math
 from bisect import bisect_left
@@ -85,7 +85,7 @@ class BetterGroups(Record):
 
 @dataclass(frozen=True)
 class Preview(Record):
-    """What is known of a walking problem beforehand.
+    """Preview of a walking problem.
 
     Attributes:
         gait: the gait with its groups leg by leg.

@@ -101,7 +101,7 @@ def race_recording(arrays: Mapping[str, NDArray[Any]]) -> list[LaneRecording]:
 
 
 class LaneHead(NamedTuple):
-    """What a file has of a lane besides its steps.
+    """Data of a lane in a file, besides its steps.
 
     Attributes:
         agent, rest_qpos, failure: see `LaneRecording`.

@@ -216,7 +216,7 @@ export interface BetterGroups {
   states: number;
 }
 /**
- * What may be chosen for a setting; without any of it, all that is valid.
+ * Allowed values of a setting; without any bound, all that are valid.
  */
 export interface Bounds {
   /**
@@ -337,7 +337,7 @@ export interface PageState {
   hidden: ("panel" | "card")[];
 }
 /**
- * What is revealed after the answers.
+ * Text and answer that are revealed after the answers.
  */
 export interface Reveal {
   /**
@@ -425,8 +425,11 @@ export interface ScoreView {
  * A participant's run on a card.
  */
 export interface RunOutcome {
+  /**
+   * of the run; of a what-if that of its record.
+   */
   id: string;
-  kind: "training" | "race" | "experiment";
+  kind: ("training" | "race" | "experiment") | "what-if";
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
   /**
    * settings that they gave, by name.
@@ -435,7 +438,7 @@ export interface RunOutcome {
     [k: string]: unknown;
   };
   /**
-   * how far the robot walked; of a race the learner, at time-out.
+   * how far the robot walked; of a race the learner, at time-out; of a what-if the interquartile mean with the chosen settings.
    */
   distance_m: number | null;
   /**
@@ -446,6 +449,35 @@ export interface RunOutcome {
    * among the seeds, 1 for the longest distance; null before the reveal.
    */
   rank: number | null;
+  /**
+   * of one's own what-if.
+   */
+  answer: WhatIfView | null;
+}
+/**
+ * Result of a what-if: the chosen settings compared with the defaults.
+ */
+export interface WhatIfView {
+  seeds: number;
+  greedy_m: number;
+  chosen: WhatIfHalf;
+  default: WhatIfHalf;
+  compute_s: number;
+}
+/**
+ * Result of 30 seeds with these settings: their distances [m] and interquartile mean.
+ */
+export interface WhatIfHalf {
+  /**
+   * settings of the agent, by name
+   */
+  settings: {
+    [k: string]: number | string | boolean | null;
+  };
+  steps_per_episode: number;
+  distances_m: number[];
+  walkers: number;
+  iqm_m: number;
 }
 /**
  * Interquartile mean of the distances [m] with its 95 % interval, from three seeds on.
@@ -1782,7 +1814,7 @@ export interface StageView {
   presentation: Presentation;
 }
 /**
- * What presenters' windows show beside the stage; told by their keys or by a remote.
+ * State of presenters' windows beside the stage; set by their keys or by a remote.
  */
 export interface Presentation {
   /**
@@ -2191,7 +2223,7 @@ export interface ExportOption {
   install: string | null;
 }
 /**
- * What was found in the file of a robot, from which a person may choose otherwise.
+ * Findings in the file of a robot, from which a person may choose otherwise.
  */
 export interface FoundView {
   file_format: "mjcf" | "urdf";
@@ -2448,7 +2480,7 @@ export interface GivenAsk {
   unit?: string | null;
 }
 /**
- * What may be chosen for a setting; without any of it, all that is valid.
+ * Allowed values of a setting; without any bound, all that are valid.
  */
 export interface GivenBounds {
   /**
@@ -2556,7 +2588,7 @@ export interface GivenPageState {
   hidden?: ("panel" | "card")[];
 }
 /**
- * What is revealed after the answers.
+ * Text and answer that are revealed after the answers.
  */
 export interface GivenReveal {
   /**
@@ -2788,7 +2820,7 @@ export interface Me {
   runs: OwnRun[];
 }
 /**
- * What a participant has answered to the question of a card.
+ * Answer of a participant to the question of a card.
  */
 export interface OwnAnswer {
   card: number;
@@ -3208,7 +3240,7 @@ export interface PredictionView {
   value: JsonValue;
 }
 /**
- * What is known of a walking problem beforehand.
+ * Preview of a walking problem.
  */
 export interface Preview {
   /**
@@ -4335,31 +4367,6 @@ export interface VisitorView {
    * ids of the runs, oldest first; some may have been deleted.
    */
   runs: string[];
-}
-/**
- * Result of 30 seeds with these settings: their distances [m] and interquartile mean.
- */
-export interface WhatIfHalf {
-  /**
-   * settings of the agent, by name
-   */
-  settings: {
-    [k: string]: number | string | boolean | null;
-  };
-  steps_per_episode: number;
-  distances_m: number[];
-  walkers: number;
-  iqm_m: number;
-}
-/**
- * Result of a what-if: the chosen settings compared with the defaults.
- */
-export interface WhatIfView {
-  seeds: number;
-  greedy_m: number;
-  chosen: WhatIfHalf;
-  default: WhatIfHalf;
-  compute_s: number;
 }
 /**
  * A stored robot with all its numbers, and what is known of it before it walks.

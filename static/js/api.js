@@ -213,10 +213,11 @@ const RETRY_MS = 500;
  * Make a run, or several. Where no answer comes the request is repeated once; its idempotency key makes both one.
  * @param {string} path
  * @param {unknown} body
+ * @param {string} [idempotencyKey]
  * @returns {Promise<any>}
  */
-export async function start(path, body) {
-  const key = { "Idempotency-Key": randomKey() };
+export async function start(path, body, idempotencyKey = randomKey()) {
+  const key = { "Idempotency-Key": idempotencyKey };
   try {
     return await call("POST", path, body, key);
   } catch (error) {
@@ -229,7 +230,7 @@ export async function start(path, body) {
 }
 
 // Not randomUUID, which pages have only over https and on loopback.
-const randomKey = () => Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
+export const randomKey = () => Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
 
 /** How long a run would take. @type {(path: string, body: object) => Promise<Estimate>} */
 export const estimate = (path, body) => call("POST", `${path}/estimate`, body);

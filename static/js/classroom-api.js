@@ -36,17 +36,19 @@ const pathOf = (code) => `rooms/${encodeURIComponent(code)}`;
 export const getRoom = (code) => call("GET", pathOf(code));
 /** Where the events of a room are. @param {string} code */
 export const eventsOf = (code) => addressOf(`${pathOf(code)}/events`);
-/** @type {(code: string) => Promise<Joined>} */
-export const joinRoom = (code) => call("POST", `${pathOf(code)}/participants`, {});
+/** Join; with the same key it is the same participant. @type {(code: string, key: string) => Promise<Joined>} */
+export const joinRoom = (code, key) => start(`${pathOf(code)}/participants`, {}, key);
 /** @type {(code: string) => Promise<null>} */
 export const leaveRoom = (code) => call("DELETE", `${pathOf(code)}/me`);
 /** @type {(code: string, card: number, value: unknown) => Promise<unknown>} */
 export const predict = (code, card, value) => call("POST", `${pathOf(code)}/predictions`, { card, value });
 /** Run what the card runs; a what-if is answered at once. */
-/** @type {(code: string, settings: Record<string, unknown>) => Promise<Run | WhatIfAnswer>} */
-export const startRun = (code, settings) => start(`${pathOf(code)}/runs`, { settings });
-/** @type {(code: string, card: number) => Promise<Results>} */
-export const getResults = (code, card) => call("GET", `${pathOf(code)}/results?card=${card}`);
+/** @type {(code: string, card: number, settings: Record<string, unknown>) => Promise<Run | WhatIfAnswer>} */
+export const startRun = (code, card, settings) => start(`${pathOf(code)}/runs`, { card, settings });
+/** Results of a card; on a projector as the class may see them. */
+/** @type {(code: string, card: number, isProjector: boolean) => Promise<Results>} */
+export const getResults = (code, card, isProjector) =>
+  call("GET", `${pathOf(code)}/results?card=${card}${isProjector ? "&projector=true" : ""}`);
 /** Where the file of the results is. @param {string} code */
 export const resultsFile = (code) => addressOf(`${pathOf(code)}/results?format=csv`);
 
@@ -56,6 +58,8 @@ export const showCard = (code, card) => call("PUT", `${pathOf(code)}/card`, { ca
 export const freezeRoom = (code, frozen) => call("POST", `${pathOf(code)}/freeze`, { frozen });
 /** @type {(code: string, card: number) => Promise<Classroom>} */
 export const revealCard = (code, card) => call("POST", `${pathOf(code)}/reveal`, { card });
+/** Delete a room that has ended. @type {(code: string, withRuns: boolean) => Promise<unknown>} */
+export const deleteRoom = (code, withRuns) => call("DELETE", `${pathOf(code)}?runs=${withRuns}`);
 /** @type {(code: string) => Promise<Classroom>} */
 export const endRoom = (code) => call("POST", `${pathOf(code)}/end`);
 /** @type {(code: string, run_id: string | null) => Promise<Classroom>} */

@@ -5,7 +5,7 @@ import { listed } from "./format.js";
 import { makeTexts, parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
 import { ignored, page } from "./page-state.js";
 import { linkedText, unlinked } from "./robots.js";
-import { agentOf, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
+import { agentOf, bounded, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, role, served } from "./store.js";
 
 /** @import { Parsed } from "./parse.js" */
@@ -64,7 +64,7 @@ const REPEATED = "disturb";
  * @returns {Parsed<any>}
  */
 function read(field, text, agents) {
-  const declared = settingsOf(agents)[field] ?? laneSettings(agents)[field] ?? served().settings[field];
+  const declared = bounded(field, settingsOf(agents)[field] ?? laneSettings(agents)[field] ?? served().settings[field]);
   return (READERS[field] ?? ((/** @type {string} */ one) => parseSetting(one, declared)))(text);
 }
 
@@ -257,7 +257,8 @@ export const openForm = () => batch(() => {
   const others = given.filter(([field]) => !(field in known)).map((part) => part.join("="));
   ignored.query.value = [...ignored.query.peek(), ...others];
   page.form.value = new URLSearchParams(given.filter(([field]) => field in known));
-  leaveOutDefaults();
+  // Of a lesson's link what is typed goes before what the card presets, the default too.
+  if (page.lesson.peek() === null) leaveOutDefaults();
 });
 
 /** Whether the editor of the robot's body is open. */

@@ -6,7 +6,7 @@ import { storedText } from "./page.js";
 import { isTimedOut, standings } from "./race.js";
 import { mayStart } from "./selectors.js";
 import { raceInView } from "./on-stage.js";
-import { agentOf, laneTitle } from "./settings.js";
+import { agentOf, cardMay, isFreed, laneTitle } from "./settings.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { PageState } from "./page-state.js" */
@@ -63,9 +63,22 @@ function asCard({ title, ask, state }, n) {
   };
 }
 
+/** Fields of a card's state that are null unless a link says them. */
+const SAID_BY_LINKS = /** @type {const} */ (["run", "ghost", "moment", "depth", "tab", "pinned"]);
+
 /** Show the lesson that the address names, from its open card on. */
 export const followLesson = () =>
-  followLinkedLesson(() => openCard(Math.min(page.card.peek() ?? 1, cards.peek().length)));
+  followLinkedLesson(() => {
+    const number = Math.min(page.card.peek() ?? 1, cards.peek().length);
+    const { state = {} } = cards.peek()[number - 1];
+    // What the link says itself goes before what the card presets.
+    const said = SAID_BY_LINKS.filter((name) => page[name].peek() !== null);
+    const typed = page.form.peek();
+    const preset = [...state.form ?? []].filter(([name]) => !typed.has(name));
+    const own = Object.fromEntries(said.map((name) => [name, page[name].peek()]));
+    openCard(number);
+    change({ ...own, ...(state.form && { form: new URLSearchParams([...preset, ...typed]) }) });
+  });
 
 /** The number of the open card, from 1; null where the lesson is hidden. At a first visit it is the first. */
 export const cardNumber = computed(() => {
@@ -111,12 +124,18 @@ export const linkedCard = computed(() => linked.value?.cards[(page.card.value ??
 /** Whether a tab of the panel is shown by the open card. @param {string} tab */
 export const isShown = (tab) => linkedCard.value?.show?.some((one) => one === tab) ?? true;
 
+effect(() => {
+  // A card that runs nothing has no settings.
+  cardMay.value = linkedCard.value?.go ? linkedCard.value.may ?? {} : null;
+});
+
 /** Load the lesson that the address names, and tell once it is there. @param {() => unknown} onLoaded */
 export const followLinkedLesson = (onLoaded) => effect(() => {
   const id = page.lesson.value;
   linkProblem.value = "";
   if (id === linked.peek()?.id) return;
   linked.value = null;
+  isFreed.value = false;
   if (id === null) return;
   // Most visits have none.
   import("./classroom-api.js").then(({ getLesson }) => getLesson(id)).then((lesson) => {

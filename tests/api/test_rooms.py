@@ -172,6 +172,32 @@ def test_who_joins_again_has_the_same_name_and_seed(school: Class) -> None:
     assert other.json()["seed"] == first.json()["seed"] + 1
 
 
+def test_a_join_whose_answer_was_lost_is_repeated(school: Class) -> None:
+    code = school.room()
+    path, secret = f"/rooms/{code}/participants", {"Idempotency-Key": "a-long-secret-of-a-phone"}
+    first = school.pupil().call("POST", path, headers=secret)
+    again, other = (school.pupil() for _ in range(2))
+    answer = again.call("POST", path, headers=secret)
+    assert (first.status_code, answer.status_code) == (201, 200)
+    assert answer.json() == first.json()
+    assert again.get(f"/rooms/{code}")["me"]["seed"] == first.json()["seed"]
+    assert school.teacher.get(f"/rooms/{code}")["participants"] == 1
+    # Who has left does not come back by it.
+    again.call("DELETE", f"/rooms/{code}/me")
+    assert other.call("POST", path, headers=secret).json()["seed"] == 1
+    refused(other.call("POST", path, headers={"Idempotency-Key": "short"}), 422, "at least 16")
+
+
+def test_a_run_of_a_card_that_is_shown_no_more_is_refused(school: Class) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, 2)
+    answer = pupil.call("POST", f"/rooms/{code}/runs", json={"card": 1})
+    refused(answer, 403, "class is at card 2")
+    refused(pupil.call("POST", f"/rooms/{code}/runs", json={"card": 9}), 404, "0 to 5")
+    started(pupil.call("POST", f"/rooms/{code}/runs", json={"card": 2}))
+
+
 def test_who_leaves_behind_a_proxy_loses_the_cookie(serve: Callable[..., Api]) -> None:
     api = serve(token=TOKEN, public_url="https://hexapods.example")
     teacher = {"Authorization": f"Bearer {TOKEN}"}
@@ -328,6 +354,82 @@ def test_names_are_hidden_and_participants_approved(school: Class) -> None:
     refused(one.call("PATCH", path, json={"is_approved": True}), 403)
 
 
+def test_nothing_of_a_participant_is_shown_before_the_approval(school: Class) -> None:
+    code = school.room(needs_approval=True)
+    one, other = school.joined(code), school.joined(code)
+    school.show(code, 1)
+    for pupil in (one, other):
+        body = {"card": 1, "value": 0.1}
+        assert pupil.call("POST", f"/rooms/{code}/predictions", json=body).status_code == 201
+        school.finished(started(pupil.call("POST", f"/rooms/{code}/runs")))
+
+    def seen(api: Api, query: str = "") -> tuple[list[int], int]:
+        (result,) = api.get(f"/rooms/{code}/results?card=1{query}")["cards"]
+        TypeAdapter(ResultsView).validate_python({"code": code, "cards": [result]})
+        return [entry["seed"] for entry in result["entries"]], len(result["distances_m"])
+
+    projector = "&projector=true"
+    assert seen(school.teacher) == ([0, 1], 2)
+    assert seen(school.teacher, projector) == ([], 0)
+    school.teacher.call("POST", f"/rooms/{code}/reveal")
+    # Each sees the own one alone, also among the distances without a name.
+    assert seen(one) == ([0], 1)
+    path = f"/rooms/{code}/participants/1"
+    school.teacher.call("PATCH", path, json={"is_approved": True})
+    assert seen(one) == ([0, 1], 2)
+    assert seen(other) == ([1], 1)
+    assert seen(school.teacher, projector) == ([1], 1)
+    assert seen(other, projector) == ([1], 1)
+
+
+def test_a_what_if_is_kept_as_a_result_of_the_card(school: Class) -> None:
+    card = {
+        **LESSON["cards"][3],
+        "may": {"alpha": {"choices": [0.1, 0.5]}},
+        "ask": {"kind": "number", "text": "How far?", "unit": "m"},
+    }
+    code = school.room({"title": "x", "cards": [card]})
+    one, other = school.joined(code), school.joined(code)
+    path = f"/rooms/{code}/runs"
+    prediction = {"card": 0, "value": 0.1}
+    assert one.call("POST", f"/rooms/{code}/predictions", json=prediction).status_code == 201
+    settings = {"settings": {"alpha": 0.1}, "card": 0}
+    answer = one.call("POST", path, json=settings).json()
+    assert one.call("POST", path, json=settings).json() == answer
+    assert other.call("POST", path, json={}).status_code == 200
+
+    def entries(api: Api) -> list[dict[str, Any]]:
+        view = api.get(f"/rooms/{code}/results?card=0")
+        TypeAdapter(ResultsView).validate_python(view)
+        found: list[dict[str, Any]] = view["cards"][0]["entries"]
+        return found
+
+    (own,) = entries(one)
+    assert own["run"]["kind"] == "what-if"
+    assert own["run"]["given"] == {"alpha": 0.1}
+    assert own["run"]["distance_m"] == answer["chosen"]["iqm_m"]
+    assert own["run"]["answer"] == answer
+    # Others see it after the reveal alone, and are told how many have asked.
+    assert [entry["seed"] for entry in entries(other)] == [1]
+    assert other.get(f"/rooms/{code}")["started"] == 2
+    view = school.teacher.get(f"/rooms/{code}")
+    assert [(x["run_id"], x["run_state"]) for x in view["people"]] == [(None, "finished")] * 2
+    assert one.get(f"/rooms/{code}")["me"]["runs"] == []
+    spotlight = {"run_id": own["run"]["id"]}
+    refused(school.teacher.call("PUT", f"/rooms/{code}/spotlight", json=spotlight), 404)
+    csv = school.teacher.call("GET", f"/rooms/{code}/results?format=csv").text
+    row = csv.splitlines()[1].split(",")
+    assert row[8:10] == ["what-if", "finished"]
+    assert float(row[-2]) == answer["chosen"]["iqm_m"]
+    school.teacher.call("POST", f"/rooms/{code}/reveal")
+    seen = entries(other)
+    assert [(x["run"]["rank"], x["run"]["answer"] is None) for x in seen if not x["is_own"]] in (
+        [(1, True)],
+        [(2, True)],
+    )
+    assert seen[0]["score"]["quantile"] is not None
+
+
 def test_a_class_behind_one_address_may_ask_what_ifs(school: Class) -> None:
     code = school.room({"title": "x", "cards": [LESSON["cards"][3]]})
     pupils = [school.joined(code) for _ in range(3)]
@@ -373,6 +475,30 @@ def test_a_room_has_a_page_and_an_end(school: Class) -> None:
     assert school.teacher.get(f"/rooms/{code}/results")["code"] == code
 
 
+@pytest.mark.parametrize("runs", [False, True])
+def test_a_room_that_has_ended_can_be_deleted(school: Class, runs: bool) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, 2)
+    race = started(pupil.call("POST", f"/rooms/{code}/runs"))
+    school.finished(race)
+    training = race["config"]["lanes"][0]["training_id"]
+    path = f"/rooms/{code}"
+    refused(school.teacher.call("DELETE", path), 409, "end it first")
+    school.teacher.call("POST", f"{path}/end")
+    refused(pupil.call("DELETE", path), 401)
+    listed = school.teacher.get("/rooms")["items"]
+    assert next(one["state"] for one in listed if one["code"] == code) == "ended"
+    answer = school.teacher.call("DELETE", path, params={"runs": runs})
+    assert answer.status_code == 200
+    assert answer.json() == {"deleted": [race["id"], training] if runs else [], "kept": []}
+    refused(school.teacher.call("GET", path), 404)
+    refused(pupil.call("POST", f"{path}/participants"), 404)
+    # What stays is an ordinary run, which all may see.
+    status = school.pupil().call("GET", f"/races/{race['id']}").status_code
+    assert status == (404 if runs else 200)
+
+
 def test_codes_cannot_be_guessed(serve: Callable[..., Api]) -> None:
     api = serve(token=TOKEN)
     statuses = [api.call("GET", f"/rooms/WRONG{n % 9}").status_code for n in range(WRONG_CODES)]
@@ -408,7 +534,7 @@ def test_one_address_cannot_fill_a_room(school: Class) -> None:
         ("POST", "/participants", {"name": "<b>Bad</b>"}, "unknown field 'name'"),
         ("POST", "/predictions", {"card": 1}, "value"),
         ("POST", "/predictions", {"card": "one", "value": 1}, "card"),
-        ("POST", "/runs", {"steps": 4}, "unknown field 'steps'; choose one of: settings"),
+        ("POST", "/runs", {"steps": 4}, "unknown field 'steps'; choose one of: card, settings"),
         ("PUT", "/card", {"card": -1}, "card"),
         ("PUT", "/card", {"card": 1.5}, "card"),
         ("POST", "/freeze", {"frozen": "yes"}, "frozen"),

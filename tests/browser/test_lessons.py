@@ -105,10 +105,39 @@ def opens_its_link(dashboard: Dashboard) -> None:
     expect(reader).to_contain_text("Most do.")
     reader.get_by_role("button", name="To the page").click()
     expect(page.get_by_role("tab")).to_have_text(["Board", "Train", "Why"])
-    expect(page.get_by_role("spinbutton", name=re.compile("Learning rate"))).to_have_value("0.5")
+    closes_what_the_card_does_not_open(dashboard)
     expect(dashboard.lesson).to_contain_text("Card 1 of 1")
     dashboard.lesson.get_by_role("button", name="Done").click()
     expect(page).not_to_have_url(re.compile("lesson="))
+
+
+def closes_what_the_card_does_not_open(dashboard: Dashboard) -> None:
+    page = dashboard.page
+    alpha = page.get_by_role("spinbutton", name=re.compile("Learning rate"))
+    gamma = page.get_by_role("spinbutton", name=re.compile("Discount"))
+    expect(alpha).to_have_value("0.5")
+    expect(alpha).to_be_enabled()
+    for closed in (gamma, page.get_by_label("Robot", exact=True), page.locator("#field-gait")):
+        expect(closed).to_be_disabled()
+    alpha.fill("0.9")
+    expect(page.get_by_text(re.compile("0.2.*0.8")).first).to_be_visible()
+    alpha.fill("0.7")
+    assert dashboard.violations_in_both_themes() == []
+    # It is courtesy, says so, and has a way out.
+    note = page.get_by_role("note").filter(has_text="Nothing is locked here")
+    expect(note).to_be_visible()
+    note.get_by_role("button", name="Open all settings").click()
+    expect(gamma).to_be_enabled()
+    expect(alpha).to_have_value("0.7")
+    expect(note).to_have_count(0)
+    # Typed parameters go before the card's; what is unknown is told.
+    link = page.url.partition("?")[0] + "l/" + page.url.partition("lesson=")[2].partition("&")[0]
+    dashboard.open(f"{link}?alpha=0.3&depth=study&alhpa=0.5")
+    page.get_by_role("dialog", name="How far?").get_by_role("button", name="To the page").click()
+    expect(alpha).to_have_value("0.3")
+    expect(page.locator("#field-steps")).to_have_value("100")
+    expect(page.get_by_text("alhpa=0.5")).to_be_visible()
+    expect(page.locator("#field-observation")).to_be_disabled()
 
 
 def imports_it(other: Dashboard, elsewhere: Serving, file: Path) -> str:

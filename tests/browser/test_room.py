@@ -98,6 +98,7 @@ def test_a_lesson_from_the_code_to_the_reveal(flat_browser: Browser, school: Ser
         draws_a_curve_by_keys(teacher, projector, one)
         taps_a_point(teacher, two)
         stands_still_and_ends(teacher, projector, one)
+        deletes_the_room(teacher, school, code)
         assert projector.complaints == []
 
 
@@ -237,6 +238,19 @@ def stands_still_and_ends(teacher: RoomPage, projector: RoomPage, pupil: RoomPag
     projector.sees("The lesson has ended")
     is_accessible(teacher)
     is_accessible(pupil)
+
+
+def deletes_the_room(teacher: RoomPage, school: Serving, code: str) -> None:
+    teacher.page.goto(f"{school.address}r/{code}")
+    teacher.press("Delete the room")
+    teacher.sees("Save the results before")
+    is_accessible(teacher)
+    teacher.press("Delete it with its runs")
+    teacher.sees("You have deleted this room.")
+    is_accessible(teacher)
+    with school.api(TOKEN) as api:
+        assert api.get("rooms").json()["items"] == []
+        assert api.get("runs").json()["items"] == []
 
 
 def test_a_wrong_code_leads_to_a_field_for_the_right_one(

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import text
@@ -10,7 +11,7 @@ from sqlalchemy import text
 from app.classroom.lesson import read_lesson
 from app.classroom.rooms import IDLE, MAX_OPEN, Rooms
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Conflict, NotFound
+from app.storage.errors import Busy, Conflict, Forbidden, NotFound
 from tests.postgresql import PostgresServer
 from tests.storage.stores import BACKENDS, database_url, opened
 
@@ -55,6 +56,53 @@ def test_all_is_there_after_a_restart(store: RunStore) -> None:
     again.end(code)
     with pytest.raises(Conflict, match="has ended"):
         Rooms(store).join(code)
+
+
+def test_nothing_is_left_of_a_deleted_room(store: RunStore) -> None:
+    rooms = Rooms(store)
+    code, other = (rooms.create(LESSON).code for _ in range(2))
+    joined = rooms.join(code)
+    rooms.join(other)
+    rooms.predict(code, 0, 0, 0.5)
+    with pytest.raises(Conflict, match="end it first"):
+        rooms.delete(code)
+    rooms.end(code)
+    rooms.delete(code)
+    assert rooms.seat(code, joined.key) is None
+    for one in (rooms, Rooms(store)):
+        assert [room.code for room in one.all()] == [other]
+        with pytest.raises(NotFound):
+            one.get(code)
+    assert store.rooms.predictions() == []
+    assert [one.room for one in store.rooms.participants()] == [other]
+
+
+def test_what_ifs_are_there_after_a_restart(store: RunStore) -> None:
+    card = {"text": "c", "state": {"form": {"steps": 20}}, "go": "what-if"}
+    rooms = Rooms(store)
+    code = rooms.create(read_lesson({"title": "x", "cards": [card, {"text": "d"}]})).code
+    rooms.join(code)
+    answer = {"chosen": {"iqm_m": 0.25}}
+    asked: list[str] = []
+
+    def compute() -> dict[str, Any]:
+        asked.append("once")
+        # The teacher goes on meanwhile; what was asked is kept.
+        rooms.show_card(code, 1)
+        return answer
+
+    assert rooms.ask(code, 0, {"alpha": 0.5}, compute, card=0) == answer
+    after = Rooms(store)
+    assert after.get(code) == rooms.get(code)
+    (kept,) = after.get(code).runs_of(0, 0)
+    assert (kept.answer, kept.given, kept.is_shown) == (answer, {"alpha": 0.5}, False)
+    with pytest.raises(Forbidden, match="is at card 1"):
+        after.ask(code, 0, {}, compute, card=0)
+    after.show_card(code, 0)
+    assert after.ask(code, 0, {"alpha": 0.5}, compute, card=0) == answer
+    assert len(asked) == 1
+    after.reveal(code, 0)
+    assert Rooms(store).get(code).runs_of(0, 0)[0].is_shown
 
 
 def test_a_damaged_row_is_left_out(store: RunStore) -> None:

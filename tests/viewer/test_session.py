@@ -102,14 +102,38 @@ def test_fast_viewer_gets_each_frame() -> None:
     assert (counters.frames_sent, counters.frames_merged) == (4, 0)
 
 
-def test_few_frames_are_queued_in_order() -> None:
+@pytest.mark.parametrize("letters", ["BCDE", "BCDEFGHIJKLMNOPQRSTUVWXYZ"])
+def test_frames_of_less_than_a_second_are_queued_in_order(letters: str) -> None:
     async def act(session: Session, browser: FakeBrowser, scene: FakeScene) -> None:
         await browser.read(1)
-        scene.show("BCDE", session)
-        await browser.read(4)
-        assert browser.received == [b"A", b"B", b"C", b"D", b"E"]
+        scene.show(letters, session)
+        await browser.read(len(letters))
+        assert browser.received == [letter.encode() for letter in f"A{letters}"]
 
     assert run_session(act).frames_merged == 0
+
+
+def test_slow_viewer_is_not_a_second_late_all_the_time() -> None:
+    async def act(session: Session, browser: FakeBrowser, scene: FakeScene) -> None:
+        await browser.read(1)
+
+        async def stall(frames: int) -> int:
+            """Stop reading for so many frames; return how many arrive after it."""
+            before = len(browser.received)
+            scene.show("B" * frames + "C", session)
+            while not browser.received[-1].endswith(b"C"):
+                await browser.read(1)
+            return len(browser.received) - before
+
+        assert await stall(60) <= 2
+        assert await stall(8) <= 2
+        # Once it has kept up again, a stall loses nothing again.
+        for _ in range(Session.STEADY_FRAMES):
+            scene.show("D", session)
+            await browser.read(1)
+        assert await stall(8) == 9
+
+    run_session(act)
 
 
 def test_further_frames_are_coalesced_when_the_viewer_is_ready() -> None:
@@ -133,7 +157,7 @@ def test_further_frames_are_coalesced_when_the_viewer_is_ready() -> None:
 def test_viewer_gets_single_frames_again_after_catching_up() -> None:
     async def act(session: Session, browser: FakeBrowser, scene: FakeScene) -> None:
         await browser.read(1)
-        scene.show("BCDEFGH", session)
+        scene.show("BCDEFGH" * 10, session)
         while not browser.received[-1].endswith(b"H"):
             await browser.read(1)
         scene.show("IJ", session)
@@ -180,7 +204,7 @@ def test_error_in_the_session_is_raised() -> None:
     async def act(session: Session, browser: FakeBrowser, scene: FakeScene) -> None:
         await browser.read(1)
         scene.is_broken = True
-        scene.show("BCDEFGH", session)
+        scene.show("BCDEFGH" * 10, session)
 
     with pytest.raises(ZeroDivisionError):
         run_session(act)

@@ -80,16 +80,17 @@ class PredictionRow(NamedTuple):
 
 
 class RoomRun(NamedTuple):
-    """A run of a participant.
+    """A run of a participant, or a what-if, which is no run but has an answer.
 
     Attributes:
-        run_id: id of the run, which may have been deleted.
+        run_id: id of the run, which may have been deleted; of a what-if that of this row alone.
         room, seed: whose it is.
         card: on which it was started.
         given: settings that the participant gave, by name.
         is_main: whether it is what was started, not a training that it needs.
         is_shown: whether others may see it.
         created_at: in UTC.
+        answer: of a what-if, as `WhatIf.ask` returns it; None of a run.
     """
 
     run_id: str
@@ -100,6 +101,7 @@ class RoomRun(NamedTuple):
     is_main: bool
     is_shown: bool
     created_at: datetime
+    answer: Mapping[str, Any] | None = None
 
 
 class RoomRows:

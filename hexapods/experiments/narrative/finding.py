@@ -1,4 +1,4 @@
-"""What came of an experiment in a sentence: the headline of its report, and its line in lists."""
+"""Finding of an experiment in a sentence: the headline of its report, and its line in lists."""
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping, Sequence

@@ -5,11 +5,21 @@ import { refusedFields } from "../actions.js";
 import { enter, form, setField, wrong } from "../form.js";
 import { parseSetting } from "../parse.js";
 import { shareOf } from "../scale.js";
-import { choiceTitle, fullTitle, kindOf, settingOf, sliderOf } from "../settings.js";
+import { bounded, choiceTitle, fullTitle, isAllowed, isClosed, kindOf, settingOf, sliderOf } from "../settings.js";
 import { options } from "../store.js";
 import { html, Mistake } from "./elements.js";
 
 /** @import { Changed, FormValue, SettingOption, SettingValue } from "../types.js" */
+
+/**
+ * A field that is disabled where the card of a lesson closes it.
+ * @param {string} field
+ * @param {import("preact").ComponentChildren} drawn
+ * @param {boolean} [isOfForm]
+ */
+export const closable = (field, drawn, isOfForm = true) => (isOfForm && isClosed(field)
+  ? html`<fieldset class="closed" disabled>${drawn}</fieldset>`
+  : drawn);
 
 // ---- help: a sentence below each field
 
@@ -74,8 +84,9 @@ function shownIn(field, setting, { value, draft, isOfForm }) {
  * @param {boolean} [props.isDisabled]
  */
 export function NumberField({
-  field, setting = settingOf(field), value, onValue, step = 1, label, isOfForm = true, isDisabled = false,
+  field, setting: declared = settingOf(field), value, onValue, step = 1, label, isOfForm = true, isDisabled = false,
 }) {
+  const setting = isOfForm ? bounded(field, declared) : declared;
   const [draft, setDraft] = useState(/** @type {string | null} */ (null));
   const { text, mistake } = shownIn(field, setting, { value, draft, isOfForm });
   /** @param {string} typed */
@@ -145,12 +156,14 @@ export function NumberInput({
  * @param {boolean} [props.isOfForm]
  */
 export function Slider({
-  field, setting = settingOf(field), title, unit, value, onValue, min, max, step, isOfForm = true,
+  field, setting = settingOf(field), title, unit, value, onValue, min: from, max: to, step, isOfForm = true,
 }) {
   const { symbol, help } = setting;
+  const { minimum, maximum } = isOfForm ? bounded(field, setting) : setting;
+  const [min, max] = [Math.max(from, minimum ?? from), Math.min(to, maximum ?? to)];
   const name = title ?? setting.title;
   const reached = Math.min(Math.max(value ?? min, min), max);
-  return html`
+  return closable(field, html`
     <div class="slider">
       <label for=${`slide-${field}`} title=${name}>${name} ${symbol && html`<b>${symbol}</b>`}</label>
       <input type="range" id=${`slide-${field}`} min=${min} max=${max} step=${step}
@@ -162,7 +175,7 @@ export function Slider({
       <span class="unit">${unit ?? setting.unit}</span>
       <${Description} field=${field} words=${help} />
     </div>
-  `;
+  `, isOfForm);
 }
 
 // ---- a choice out of a list
@@ -183,19 +196,19 @@ export function SelectField({
   const kept = wrong.value[field];
   /** @param {{ target: HTMLSelectElement }} event */
   const onChange = ({ target }) => onValue(choices.find(([one]) => textOf(one) === target.value)?.[0] ?? null);
-  return html`
+  return closable(field, html`
     <div class="field">
       <label for=${`field-${field}`}>${label}</label>
       <select ...${attributesOf(field)} onChange=${onChange}>
         ${kept && html`<${InvalidOption} text=${kept.text} />`}
-        ${choices.map(([one, title]) => html`
+        ${choices.filter(([one]) => isAllowed(field, one)).map(([one, title]) => html`
           <option value=${textOf(one)} selected=${!kept && textOf(one) === textOf(value)}>${title}</option>
         `)}
       </select>
       <${MistakeOf} field=${field} />
       ${words !== "" && html`<${Description} field=${field} words=${words || helpFor(field)} />`}
     </div>
-  `;
+  `);
 }
 
 /** The choice that a link made and that is none; it cannot be chosen again. @param {{ text: string }} props */
@@ -212,14 +225,14 @@ const textOf = (value) => (typeof value === "object" ? JSON.stringify(value) : S
  * A setting among the fields that are seldom changed, with its help below it.
  * @param {{ name: string, setting: SettingOption }} props
  */
-export const SettingField = ({ name, setting }) => html`
+export const SettingField = ({ name, setting }) => closable(name, html`
   <div class="field">
     <label for=${`field-${name}`}>${fullTitle(setting)}</label>
     <${SettingControl} name=${name} setting=${setting} value=${form.value[name]} isOfForm=${true}
       onValue=${(/** @type {SettingValue} */ value) => setField(name, value)} />
     <${Description} field=${name} words=${setting.help} />
   </div>
-`;
+`);
 
 /**
  * A setting without a slider in a row among the sliders.
@@ -232,7 +245,7 @@ export const SettingField = ({ name, setting }) => html`
  */
 export function SettingRow({ name, setting, value, onValue, isOfForm = true }) {
   const { title, symbol, unit, help } = setting;
-  return html`
+  return closable(name, html`
     <div class="slider">
       <label for=${`field-${name}`} title=${title}>${title} ${symbol && html`<b>${symbol}</b>`}</label>
       <div class="control">
@@ -241,7 +254,7 @@ export function SettingRow({ name, setting, value, onValue, isOfForm = true }) {
       <span class="unit">${unit}</span>
       <${Description} field=${name} words=${help} />
     </div>
-  `;
+  `, isOfForm);
 }
 
 /** @param {{ name: string, setting: SettingOption } & { [prop: string]: unknown }} props */
@@ -256,7 +269,7 @@ function NumberControl({ name, setting, ...rest }) {
 
 /** @param {Control} props */
 function Choice({ name, setting, value, onValue }) {
-  const { choices, default: first } = setting;
+  const { choices, default: first } = bounded(name, setting);
   const kept = wrong.value[name];
   return html`
     <select ...${attributesOf(name)} onChange=${(/** @type {Changed} */ { target }) => onValue(target.value || null)}>

@@ -7,8 +7,8 @@ import { liveTraining, trainingInView } from "../on-stage.js";
 import { numberOfLegs } from "../robots.js";
 import { isOperator } from "../selectors.js";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, kindOf, laneSettings, learners, mainSettings, quantityOf,
-  ROBOT_FIELDS, settingOf, sliderOf,
+  agentOf, beginningOf, fullTitle, furtherSettings, isAllowed, isClosed, kindOf, laneSettings, learners,
+  mainSettings, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
 import {
@@ -19,7 +19,7 @@ import { Beforehand } from "./beforehand.js";
 import { EditBody } from "./edit-body.js";
 import { HexapodGlyph, html } from "./elements.js";
 import {
-  attributesOf, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
+  attributesOf, closable, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
 import { Disturbances, WorldPicker } from "./world.js";
 
@@ -50,7 +50,7 @@ export function TrainSettings() {
             choices=${served().worlds.map(({ name, title }) => [name, title])} />
         </div>
       `}
-      ${isFull && html`<${EditBody} />`}
+      ${isFull && closable("robot", html`<${EditBody} />`)}
       <${GaitPicker} />
       ${isFull && html`
         <${SeedAndObservation} />
@@ -224,14 +224,13 @@ const HEXAPOD_LEGS = 6;
 
 /** The gaits that the robot's legs can have. A robot of one's own may have any: the server tells if not. */
 function gaitChoices() {
-  const { gait: chosen } = form.value;
-  const fitting = chosenRobot()?.gaits;
-  const known = served().gaits.filter(({ name }) => !fitting || fitting.includes(name));
+  const [chosen, fitting] = [form.value.gait, chosenRobot()?.gaits];
+  const known = served().gaits.filter(({ name }) => isAllowed("gait", name) && (!fitting || fitting.includes(name)));
   return known.filter(({ name }, number) => isAtLeast("study") || number < FEW_GAITS || name === chosen);
 }
 
 const GaitPicker = () => html`
-  <fieldset role="radiogroup" aria-invalid=${wrong.value.gait ? "true" : undefined}
+  <fieldset role="radiogroup" disabled=${isClosed("gait")} aria-invalid=${wrong.value.gait ? "true" : undefined}
     aria-describedby=${wrong.value.gait ? "mistake-gait help-gait" : "help-gait"}>
     <legend><h2>Gait</h2></legend>
     <div class="gait-row">
@@ -331,7 +330,7 @@ function Figure({ field, step }) {
   return html`
     <div class="field">
       <label for=${`field-${field}`}>${fullTitle(settingOf(field))}</label>
-      <${NumberField} field=${field} value=${form.value[field]} step=${step}
+      <${NumberField} field=${field} value=${form.value[field]} step=${step} isDisabled=${isClosed(field)}
         onValue=${(/** @type {number} */ value) => setField(field, value)} />
       <${Description} field=${field} />
     </div>

@@ -2,6 +2,7 @@
 import { practiseAtPaceOfPicture } from "../live-changes.js";
 import { whole } from "../format.js";
 import { steering } from "../on-stage.js";
+import { closesSome, isFreed } from "../settings.js";
 import { html } from "./elements.js";
 import { LearningChart } from "./learning.js";
 import { TrainSettings } from "./settings.js";
@@ -9,12 +10,21 @@ import { TrainSettings } from "./settings.js";
 export function TrainTab() {
   return html`
     <div class="train-tab">
+      <${OfCard} />
       <${TrainSettings} />
       <${Steering} />
       <${LearningChart} />
     </div>
   `;
 }
+
+/** What the card of a lesson closes, and the way out. */
+const OfCard = () => closesSome.value && html`
+  <div class="steering" role="note">
+    <p>The lesson's card sets what is grey. Nothing is locked here.</p>
+    <button type="button" class="link" onClick=${() => (isFreed.value = true)}>Open all settings</button>
+  </div>
+`;
 
 /** What a live setting acts on while the computation is ahead of the picture: its next step, or the next training. */
 function Steering() {

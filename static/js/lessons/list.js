@@ -10,7 +10,7 @@ import { begin, discard, documentOf, draft, toSend } from "./draft.js";
 
 /** Null until the server has answered. @type {Signal<ListedLesson[] | null>} */
 export const lessons = signal(null);
-/** The rooms that have not ended. @type {Signal<ListedRoom[]>} */
+/** The rooms, those that have ended too, oldest first. @type {Signal<ListedRoom[]>} */
 export const rooms = signal([]);
 /** Why the last request failed; empty while none has. */
 export const problem = signal("");
@@ -40,12 +40,12 @@ async function perform(send) {
   }
 }
 
-/** Ask for the lessons, and the rooms that are open. */
+/** Ask for the lessons and the rooms. */
 export const refresh = async () => {
   try {
     lessons.value = (await api.listLessons()).items;
     const all = await call("GET", "rooms");
-    rooms.value = all.items.filter((/** @type {ListedRoom} */ { state }) => state !== "ended");
+    rooms.value = all.items;
   } catch (error) {
     problem.value = /** @type {RequestError} */ (error).message;
   }

@@ -10,14 +10,14 @@ import { connection, options } from "../store.js";
 import { stateInWords, tournamentPage } from "../tournament/states.js";
 import { Failure } from "./doors.js";
 import { People } from "./people.js";
-import { busy, end, freeze, isRevealed, reveal, room, showCard, shownResults, spotlight } from "./room.js";
+import { busy, end, freeze, isRevealed, remove, reveal, room, showCard, shownResults, spotlight } from "./room.js";
 import { axisOf } from "./scores.js";
 
 /** @import { Classroom, LessonCard } from "../types.js" */
 
 const codeIsOpen = signal(false);
-/** Whether the next press ends the room. */
-const willEnd = signal(false);
+/** Whether the end of the room, and its removal, were asked for once. */
+const [willEnd, willDelete] = [signal(false), signal(false)];
 /** Whether a tournament was to be opened. */
 const tournamentIsWanted = signal(false);
 
@@ -116,7 +116,7 @@ function Counts({ known }) {
   const figures = [
     [participants, "joined"],
     ...(shown.ask ? [[predicted, "locked"]] : []),
-    ...(shown.go && shown.go !== "what-if" ? [[started, "started"], [finished, "finished"]] : []),
+    ...(shown.go ? [[started, "started"], [finished, "finished"]] : []),
   ];
   return html`
     <dl class="counts" aria-label="How far the class is">
@@ -195,30 +195,36 @@ const RoomTournaments = ({ known }) => html`
 // ---- the projector, the results, the end
 
 /** @param {{ known: Classroom }} props */
-function Ways({ known }) {
-  const isOver = known.state === "ended";
-  const press = () => {
-    if (willEnd.peek()) end();
-    willEnd.value = !willEnd.peek();
-  };
-  return html`
-    <footer class="ways">
-      <a class="secondary as-button" href=${`${known.code}?projector`} target="_blank">
-        <${Icon} name="present" />Projector
-      </a>
-      <a class="secondary as-button" href=${resultsFile(known.code)} download>
-        <${Icon} name="import" />Results (CSV)
-      </a>
-      <a class="secondary as-button" href="../">Dashboard</a>
-      ${!isOver && html`
-        <button class=${willEnd.value ? "danger" : "quiet"} onClick=${press}>
-          ${willEnd.value ? "End it for everybody" : "End the room"}
-        </button>
-      `}
-      ${willEnd.value && !isOver && html`
-        <button class="quiet" onClick=${() => (willEnd.value = false)}>No, go on</button>
-      `}
-      <${Failure} at="end" />
-    </footer>
-  `;
-}
+const Ways = ({ known }) => html`
+  <footer class="ways">
+    <a class="secondary as-button" href=${`${known.code}?projector`} target="_blank">
+      <${Icon} name="present" />Projector
+    </a>
+    <a class="secondary as-button" href=${resultsFile(known.code)} download>
+      <${Icon} name="import" />Results (CSV)
+    </a>
+    <a class="secondary as-button" href="../">Dashboard</a>
+    ${known.state === "ended" ? html`<${Removal} />` : html`<${End} />`}
+    <${Failure} at="end" />
+  </footer>
+`;
+
+/** The end of the room, which is asked once more. */
+const End = () => (willEnd.value
+  ? html`
+    <button class="danger" disabled=${busy.value.end} onClick=${end}>End it for everybody</button>
+    <button class="quiet" onClick=${() => (willEnd.value = false)}>No, go on</button>
+  `
+  : html`<button class="quiet" onClick=${() => (willEnd.value = true)}>End the room</button>`);
+
+/** The removal of a room that has ended, and of its runs. */
+const Removal = () => (willDelete.value
+  ? html`
+    <p class="dim">Names, answers and results are deleted. Save the results before.</p>
+    <button class="danger" disabled=${busy.value.end} onClick=${() => remove(true)}>Delete it with its runs</button>
+    <button class="secondary" disabled=${busy.value.end} onClick=${() => remove(false)}>
+      Delete it; the runs stay in the list
+    </button>
+    <button class="quiet" onClick=${() => (willDelete.value = false)}>No, keep it</button>
+  `
+  : html`<button class="quiet" onClick=${() => (willDelete.value = true)}>Delete the room</button>`);

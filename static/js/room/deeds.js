@@ -3,23 +3,34 @@ import { html } from "../components/elements.js";
 import { Failure } from "./doors.js";
 import { chosenSettings } from "./may.js";
 import { draftOf } from "./questions.js";
-import { answers, busy, go, goesOn, isRevealed, lock, ownAnswer, ownEntry, ownRun, room } from "./room.js";
+import {
+  busy, go, goesOn, isRevealed, lock, ownAnswer, ownEntry, ownRun, ownWhatIf, room,
+} from "./room.js";
 
 /** @import { LessonCard } from "../types.js" */
 
 const GO = { "training": "Go: let it practise", "race": "Go: race", "what-if": "Go: try it on thirty robots" };
+
+/** The words of the button that runs what a card runs. @param {LessonCard} card */
+function wordsOf({ go: kind }) {
+  if (busy.value.go) return kind === "what-if" ? "Thirty robots practise…" : "Your robot starts…";
+  return ownRun.value || ownWhatIf.value ? "Go again with these settings" : GO[kind ?? "training"];
+}
 
 /** Whether the card asks, and waits for the own answer. @param {LessonCard} card */
 const needsAnswer = (card) => Boolean(card.ask) && ownAnswer.value === undefined && !isRevealed.value;
 
 /** Whether the card runs what has been run already: the same settings give the same run. */
 /** @type {(card: LessonCard, settings: Record<string, unknown> | null) => boolean} */
-function isSameAgain({ may }, settings) {
+function isSameAgain({ may, go: kind }, settings) {
+  const isAlike = (/** @type {Record<string, unknown>} */ given) =>
+    Object.keys(may ?? {}).every((name) => given[name] === settings?.[name]);
+  if (kind === "what-if") return ownWhatIf.value !== null && isAlike(ownEntry.value?.run?.given ?? {});
   if (ownRun.value === null || ownRun.value.state !== "finished") return false;
   const { id = null, given = {} } = ownEntry.value?.run ?? {};
   // What it was given comes with the results, soon after its end.
   if (id !== ownRun.value.id) return true;
-  return Object.keys(may ?? {}).every((name) => given[name] === settings?.[name]);
+  return isAlike(given);
 }
 
 /** @param {{ card: LessonCard, number: number, isOpen: boolean }} props */
@@ -37,7 +48,7 @@ export function Deeds({ card, number, isOpen }) {
       `}
       ${!isAsked && isNew && html`
         <${Button} style="primary" canPress=${canGo} onPress=${() => go(settings ?? {})}
-          words=${ownRun.value ? "Go again with these settings" : GO[card.go ?? "training"]} />
+          words=${wordsOf(card)} />
       `}
     </div>
   `;
@@ -76,7 +87,7 @@ const Button = ({ style, canPress, onPress, words }) => html`
 export function Next({ card }) {
   const known = room.value;
   if (known === null || needsAnswer(card) || goesOn(ownRun.value)) return null;
-  if (card.go && !ownRun.value && !answers.value[`${known.card}`]) return null;
+  if (card.go && !ownRun.value && !ownWhatIf.value) return null;
   return html`<p class="dim waiting" role="status">${waitingFor(card, known.card === known.cards - 1)}</p>`;
 }
 

@@ -2,7 +2,7 @@
 import { useState } from "preact/hooks";
 import { html } from "../components/elements.js";
 import { connection } from "../store.js";
-import { busy, code, failures, join, refusal, room } from "./room.js";
+import { busy, code, failures, isProjector, join, refusal, room } from "./room.js";
 
 /** Why something failed, beside its button. @param {{ at: string }} props */
 export const Failure = ({ at }) => html`
@@ -59,6 +59,7 @@ export function Door() {
 /** Whether the page hears of the room; nothing while it does. */
 export const Away = () => connection.value === "reconnecting" && html`
   <p class="strip-note warn" role="status">
-    <span class="spinner" aria-hidden="true"></span> Reconnecting. Your name and your seed are kept.
+    <span class="spinner" aria-hidden="true"></span>
+    ${isProjector ? "Reconnecting…" : "Reconnecting. Your name and your seed are kept."}
   </p>
 `;

@@ -13,7 +13,9 @@ import { CLOSER, closerLink, replayed } from "./picture.js";
 import { Answer } from "./questions.js";
 import { axisOf, scoreInWords } from "./scores.js";
 import { presentTournaments, tournamentPage } from "../tournament/states.js";
-import { answers, goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, room, shownResults } from "./room.js";
+import {
+  goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, room, shownResults,
+} from "./room.js";
 
 /** @import { Ask, Classroom, LessonCard, WhatIfAnswer } from "../types.js" */
 
@@ -60,7 +62,7 @@ function Present({ known }) {
     ${shown.go && Object.keys(shown.may ?? {}).length > 0 && html`
       <${May} card=${shown} number=${card} isDisabled=${!isOpen || goesOn(ownRun.value)} />
     `}
-    ${answers.value[`${card}`] && html`<${WhatIfDots} answer=${answers.value[`${card}`]} />`}
+    ${ownWhatIf.value && html`<${WhatIfDots} answer=${ownWhatIf.value} />`}
     <${Closer} card=${shown} />
     <${ToTournaments} known=${known} />
     <${Next} card=${shown} />

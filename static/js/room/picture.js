@@ -4,6 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { html, Icon } from "../components/elements.js";
 import { page } from "../page-state.js";
 import { shownTheme } from "../page.js";
+import { connection } from "../store.js";
 import {
   closeReplay, drawIn, endTime, followReplay, isBuffering, openReplay, playReplay, plan, replayProblem, replayTime,
   setReplaySpeed,
@@ -75,7 +76,9 @@ export function Picture({ source }) {
       <iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>
       ${status === "loading" && html`<p class="over" role="status">The robot walks to the start line…</p>`}
       ${status !== "loading" && status !== "connected" && html`
-        <p class="over" role="status">The picture comes when there is room; all figures are live.</p>
+        <p class="over" role="status">${connection.value === "reconnecting"
+          ? "The picture comes back with the connection."
+          : "The picture comes when there is room; all figures are live."}</p>
       `}
     </div>
   `;

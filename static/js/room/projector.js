@@ -102,8 +102,8 @@ function Side({ known }) {
   const hasDots = (found?.distances_m ?? []).length > 0;
   const parts = [];
   if (shown.ask && !isRevealed.value) parts.push(html`<${Of} number=${predicted} all=${participants} word="locked" />`);
-  if (hasDots) parts.push(html`<${Landing} ask=${shown.ask ?? null} />`);
-  else if (["training", "race"].includes(shown.go ?? "")) {
+  if (hasDots) parts.push(html`<${Landing} card=${shown} />`);
+  else if (shown.go) {
     parts.push(html`<${Of} number=${started} all=${participants} word="started" />`);
   }
   return parts.length > 0 && html`<${Beside}>${parts}<//>`;
@@ -120,14 +120,12 @@ const Of = ({ number, all, word }) => html`
 /** The run of a participant that the teacher shows to all. @param {{ known: Classroom }} props */
 function Lit({ known }) {
   const entry = shownResults.value?.entries.find(({ run }) => run?.id === known.spotlight);
-  const person = known.people.find(({ seed }) => seed === entry?.seed);
-  const name = person?.is_name_hidden ? null : entry?.name;
   const distance_m = entry?.run?.distance_m ?? null;
   return html`
     <div class="lit">
       <${Picture} source="stage" key=${known.spotlight} />
       <p>
-        <b>${name ?? "One of you"}</b>
+        <b>${entry?.name ?? "One of you"}</b>
         ${distance_m !== null && html`<span class="num">${metres(distance_m)}</span>`}
       </p>
     </div>
@@ -136,9 +134,9 @@ function Lit({ known }) {
 
 /**
  * The distances as they land, and after the reveal what was predicted on the same axis.
- * @param {{ ask: Ask | null }} props
+ * @param {{ card: LessonCard }} props
  */
-function Landing({ ask }) {
+function Landing({ card: { ask = null, go } }) {
   const { distances_m, interval, entries } = /** @type {CardResults} */ (shownResults.value);
   const values = entries.map(({ prediction }) => prediction).filter((one) => one !== null);
   const predicted = isRevealed.value ? predictedMetres(ask, values) : null;
@@ -150,7 +148,7 @@ function Landing({ ask }) {
       <p class="typical-figure">
         <b class="num">${metres(interval?.iqm_m)}</b>
         <span>
-          typical of ${count(distances_m.length, "robot")}
+          typical of ${count(distances_m.length, go === "what-if" ? "class of thirty robots" : "robot")}
           ${interval && interval.low_m !== null && html`
             <br />95 %: ${interval.low_m.toFixed(2)} to ${metres(interval.high_m)}
           `}

@@ -1,7 +1,8 @@
 // The room of this page as signals: what the server tells who asks, kept by its events, and what can be done in it.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { getAnyRun, getOptions } from "../api.js";
+import { getAnyRun, getOptions, randomKey } from "../api.js";
 import * as api from "../classroom-api.js";
+import { storedText } from "../page.js";
 import { ofRoom } from "../page-state.js";
 import { makeRequests } from "../requests.js";
 import { soon } from "../soon.js";
@@ -9,7 +10,7 @@ import { applyEvent, connection, eventNames, openEvents, options, runs, setEntry
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "../api.js" */
-/** @import { CardResults, Classroom, RoomState, Run, WhatIfAnswer } from "../types.js" */
+/** @import { CardResults, Classroom, RoomState, Run } from "../types.js" */
 
 /** The code of the address, as it was typed; and whether the page is for the projector. */
 export const { code, isProjector } = ofRoom();
@@ -20,8 +21,6 @@ export const room = signal(null);
 export const refusal = signal("");
 /** Card → its results, as far as who asks may see them. @type {Signal<Record<string, CardResults>>} */
 export const results = signal({});
-/** Card → the answer to its what-if. @type {Signal<Record<string, WhatIfAnswer>>} */
-export const answers = signal({});
 const requests = makeRequests();
 export const { busy, failures } = requests;
 const { perform } = requests;
@@ -45,6 +44,9 @@ export const ownRunId = computed(() =>
 
 /** The newest own run of any card, or null. */
 export const lastRunId = computed(() => room.value?.me?.runs.at(-1)?.run_id ?? null);
+
+/** What the own what-if of the card that is shown gave; null without one. */
+export const ownWhatIf = computed(() => ownEntry.value?.run?.answer ?? null);
 
 /** @type {import("@preact/signals").ReadonlySignal<Run | null>} */
 export const ownRun = computed(() => runs.value.get(ownRunId.value ?? "") ?? null);
@@ -78,7 +80,7 @@ export async function refreshResults() {
   const { card, role } = room.peek() ?? {};
   if (card === undefined || role === "spectator" && !isProjector) return;
   try {
-    const { cards: [found] } = await api.getResults(code, card);
+    const { cards: [found] } = await api.getResults(code, card, isProjector);
     setEntry(results, `${card}`, found);
   } catch {
     // The next event asks again.
@@ -185,7 +187,9 @@ const changed = (send) => async () => {
 };
 
 export const join = () => perform("join", async () => {
-  await api.joinRoom(code);
+  // Kept, so that it is the same for both tabs of a browser, and after a reload that came before the answer.
+  const key = storedText(`join:${room.peek()?.code}`, randomKey());
+  await api.joinRoom(code, key.peek());
   await refresh();
 });
 
@@ -197,16 +201,20 @@ export const leave = () => perform("join", async () => {
 /** Lock the own answer to the card that is shown. @param {unknown} value */
 export const lock = (value) => perform("lock", async () => {
   const { card = 0 } = room.peek() ?? {};
-  await api.predict(code, card, value);
-  await refresh();
+  try {
+    await api.predict(code, card, value);
+  } finally {
+    // Where the answer was lost, or another tab was first, the locked one is shown.
+    await refresh();
+  }
 });
 
 /** Run what the card runs, with these settings. @param {Record<string, unknown>} settings */
 export const go = (settings) => perform("go", async () => {
   const { card = 0 } = room.peek() ?? {};
-  const answer = await api.startRun(code, settings);
+  const answer = await api.startRun(code, card, settings);
   if ("chosen" in answer) {
-    setEntry(answers, `${card}`, answer);
+    await refreshResults();
     return;
   }
   runs.value = new Map(runs.peek()).set(answer.id, answer);
@@ -222,6 +230,14 @@ export const reveal = () => perform("reveal", async () => {
   await refreshResults();
 });
 export const end = () => perform("end", changed(() => api.endRoom(code)));
+/** Delete the room, which has ended. @param {boolean} withRuns */
+export const remove = (withRuns) => perform("end", async () => {
+  await api.deleteRoom(code, withRuns);
+  batch(() => {
+    room.value = null;
+    refusal.value = "You have deleted this room.";
+  });
+});
 /** @param {string | null} run_id */
 export const spotlight = (run_id) => perform("spotlight", changed(() => api.spotlightRun(code, run_id)));
 /** @type {(seed: number, changes: { is_name_hidden?: boolean, is_approved?: boolean }) => Promise<boolean>} */

@@ -5,7 +5,7 @@ import { chosenLesson, isBusy, lessons, opened, openRoom, problem, roomIsOpen, r
 import { count, shortAddress } from "../../format.js";
 import { Dialog, html } from "../elements.js";
 
-/** @import { NewRoom } from "../../types.js" */
+/** @import { ListedRoom, NewRoom } from "../../types.js" */
 
 export function OpenRoom() {
   const [needsApproval, setApproval] = useState(false);
@@ -29,7 +29,9 @@ export function OpenRoom() {
         <div role="alert">${problem.value && html`<p class="problem">${problem}</p>`}</div>
         <button class="primary" aria-disabled=${isBusy.value || !chosenLesson.value ? "true" : undefined}
           onClick=${() => chosenLesson.value && openRoom(needsApproval)}>Open the room</button>
-        ${rooms.value.length > 0 && html`<${OpenRooms} />`}
+        <${Rooms} title="Open rooms" found=${rooms.value.filter(({ state }) => state !== "ended")} />
+        <${Rooms} title="Rooms that have ended"
+          found=${rooms.value.filter(({ state }) => state === "ended").reverse()} />
       `}
     <//>
   `;
@@ -68,13 +70,14 @@ const Opened = ({ room }) => html`
   <a class="secondary button-link" href=${`r/${room.code}?projector`} target="_blank">Open the projector</a>
 `;
 
-const OpenRooms = () => html`
-  <section aria-label="Rooms that are open">
-    <h3>Open rooms</h3>
+/** @param {{ title: string, found: ListedRoom[] }} props */
+const Rooms = ({ title, found }) => found.length > 0 && html`
+  <section aria-label=${title}>
+    <h3>${title}</h3>
     <ul class="open-rooms">
-      ${rooms.value.map(({ code, title, participants }) => html`
+      ${found.map(({ code, title: lesson, participants }) => html`
         <li key=${code}>
-          <a href=${`r/${code}`}><b>${code}</b> ${title}</a><span class="dim">${participants} in it</span>
+          <a href=${`r/${code}`}><b>${code}</b> ${lesson}</a><span class="dim">${participants} in it</span>
         </li>
       `)}
     </ul>
