@@ -1,28 +1,17 @@
 // The page of a demo's visitor: what is left of the allowance, which runs are theirs, and the picture of their robot.
-import { batch, computed, effect, signal, untracked } from "@preact/signals";
+// It is loaded there alone.
+import { batch, computed, effect, untracked } from "@preact/signals";
 import { followed } from "./actions.js";
 import { getAllowance } from "./api.js";
-import { count, whole } from "./format.js";
 import { page } from "./page-state.js";
 import { openReplay, setReplaySpeed } from "./replay.js";
 import { followRuns } from "./runs.js";
-import { isActive, isKnown, isVisitor, ownRuns, runOf, trainingIds, visitorRuns } from "./selectors.js";
+import {
+  allowance, isActive, isKnown, isVisitor, ownRuns, runOf, trainingIds, visitorRuns,
+} from "./selectors.js";
 import { connection, ownStage } from "./store.js";
 
-/** @import { Signal } from "@preact/signals" */
-/** @import { Allowance, Run } from "./types.js" */
-
-/** Null on the page of any other. @type {Signal<Allowance | null>} */
-const allowance = signal(null);
-
-/** What a visitor may still start, and what becomes of it; empty until it is known. */
-export const allowanceInWords = computed(() => {
-  if (!isVisitor.value || allowance.value === null) return "";
-  const { steps_left, steps_per_hour, hours } = allowance.value;
-  const left = `${whole(steps_left)} of ${count(steps_per_hour, "step")} an hour left`;
-  const after = hours === 24 ? "a day" : count(hours, "hour");
-  return `A demo: ${left}. What you make is public, and deleted after ${after}.`;
-});
+/** @import { Run } from "./types.js" */
 
 /** Steps come back with time, and runs are deleted. */
 const REFRESH_MS = 60_000;
@@ -47,8 +36,12 @@ const changes = computed(() =>
 
 const NEWEST = 10;
 
+let isFollowed = false;
+
 /** Keep what the visitor of a demo may do, for as long as this is the page of one. */
 export function followDemo() {
+  if (isFollowed) return;
+  isFollowed = true;
   followRuns(computed(() => visitorRuns.value.slice(-NEWEST)));
   effect(() => {
     if (!isVisitor.value || connection.value !== "live") return undefined;

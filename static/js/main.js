@@ -7,7 +7,6 @@ import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
 import { openExperimentForm } from "./experiments/form.js";
 import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
-import { followDemo } from "./demo.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
 import { followLesson } from "./lesson.js";
@@ -18,6 +17,7 @@ import { announceOutcomes, headline, practiceTitle } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
+import { isVisitor } from "./selectors.js";
 import {
   applyEvent, connection, eventNames, isLockedOut, openEvents, options, robotChanges, role, version,
 } from "./store.js";
@@ -41,7 +41,7 @@ async function loadOptions(attempt = 0) {
   }
   openForm();
   openExperimentForm();
-  followSpectators();
+  followAs(() => role.value === "spectator", () => import("./spectators.js"), (own) => own.followStageSettings());
   followRobots();
 }
 
@@ -56,15 +56,22 @@ function followRobots() {
   });
 }
 
-/** Load the module of spectators' pages; if that fails, again once the connection is back. */
-function followSpectators() {
-  const loaded = signal(/** @type {typeof import("./spectators.js") | null} */ (null));
+/**
+ * Load the module of pages of a role; if that fails, again once the connection is back.
+ * @template Module
+ * @param {() => boolean} isRole
+ * @param {() => Promise<Module>} load
+ * @param {(own: Module) => void} follow called whenever the page becomes one of the role
+ */
+function followAs(isRole, load, follow) {
+  const loaded = signal(/** @type {Module | null} */ (null));
   effect(() => {
-    const isMissing = role.value === "spectator" && connection.value === "live" && loaded.value === null;
-    if (isMissing) import("./spectators.js").then((module) => (loaded.value = module), () => {});
+    const isMissing = isRole() && connection.value === "live" && loaded.value === null;
+    if (isMissing) load().then((own) => (loaded.value = own), () => {});
   });
   effect(() => {
-    if (role.value === "spectator" && loaded.value) untracked(loaded.value.followStageSettings);
+    const own = loaded.value;
+    if (isRole() && own) untracked(() => follow(own));
   });
 }
 
@@ -93,7 +100,7 @@ followRuns(stageIds);
 followCurves(trainingsInView);
 followTimeline();
 followReplay();
-followDemo();
+followAs(() => isVisitor.value, () => import("./demo.js"), (own) => own.followDemo());
 followExperiments();
 followSummary();
 announceOutcomes();

@@ -4,7 +4,7 @@ import { disturbancesOf } from "./disturbances.js";
 import { options, role, runs } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { GaitConfig, LaneConfig, Run, State } from "./types.js" */
+/** @import { Allowance, GaitConfig, LaneConfig, Run, State } from "./types.js" */
 
 /** @type {Set<State>} */
 const ACTIVE = new Set(["queued", "running", "paused"]);
@@ -25,6 +25,8 @@ export const isOperator = computed(() => role.value === "operator");
 export const isVisitor = computed(() => role.value === "visitor");
 /** Whether this page may start trainings and races. */
 export const mayStart = computed(() => isOperator.value || isVisitor.value);
+/** What the visitor of a demo may still start; null until it is known. @type {Signal<Allowance | null>} */
+export const allowance = signal(null);
 /** Ids of the runs of a demo's visitor, oldest first. @type {Signal<string[]>} */
 export const visitorRuns = signal([]);
 /** Whether this page may stop, rename or delete a run. @param {{ id: string }} run */

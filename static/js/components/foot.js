@@ -3,14 +3,13 @@ import {
   canStart, dismissProblem, missingLane, pause, pending, primaryAction, problems, resume, resumeRun,
   runPrimaryAction, secondaryActions, showOnStage, stop,
 } from "../actions.js";
-import { allowanceInWords } from "../demo.js";
 import { raceEstimate } from "../estimate.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
-import { sentence, whole } from "../format.js";
+import { count, sentence, whole } from "../format.js";
 import { ignored, page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
-import { isOperator, isVisitor, mayChange, mayStart } from "../selectors.js";
+import { allowance, isOperator, isVisitor, mayChange, mayStart } from "../selectors.js";
 import { agentOf, learners, placeOf } from "../settings.js";
 import { scene } from "../store.js";
 import { inFormWords, labelOf, messageOf } from "../titles.js";
@@ -116,7 +115,13 @@ function WorkActions() {
 }
 
 /** What a visitor of a demo may still start, and what becomes of it. */
-const AllowanceLine = () => allowanceInWords.value && html`<p class="dim allowance">${allowanceInWords}</p>`;
+function AllowanceLine() {
+  if (!isVisitor.value || allowance.value === null) return null;
+  const { steps_left, steps_per_hour, hours } = allowance.value;
+  const left = `${whole(steps_left)} of ${count(steps_per_hour, "step")} an hour left`;
+  const after = hours === 24 ? "a day" : count(hours, "hour");
+  return html`<p class="dim allowance">A demo: ${left}. What you make is public, and deleted after ${after}.</p>`;
+}
 
 function WorkButtons() {
   const { kind, state } = work.value?.current ?? {};
