@@ -212,8 +212,8 @@ def problems_of(method: str, path: str, operation: Mapping[str, Any]) -> set[int
         statuses |= {409, 422, 507}
     if "requestBody" in operation:
         statuses |= {404, 413, 415}
-    if "Idempotency-Key" in map(str.title, parameters):
-        statuses |= {410}
+    if "idempotency-key" in parameters and "/rooms/" not in path:
+        statuses |= {410}  # the run was deleted
     return statuses
 
 

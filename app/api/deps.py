@@ -154,7 +154,6 @@ async def _body(request: Request) -> bytes:
 IdempotencyKeyHeader = Annotated[
     str | None,
     Header(
-        alias="Idempotency-Key",
         pattern=rf"^[\x21-\x7e]{{1,{MAX_KEY_LENGTH}}}$",
         description=VALID["idempotency-key"],
     ),
