@@ -77,6 +77,19 @@ def test_nothing_is_left_of_a_deleted_room(store: RunStore) -> None:
     assert [one.room for one in store.rooms.participants()] == [other]
 
 
+def test_the_newest_of_many_what_ifs_is_the_same_after_a_restart(store: RunStore) -> None:
+    rooms = Rooms(store)
+    card = {"text": "c", "state": {"form": {"steps": 20}}, "go": "what-if"}
+    code = rooms.create(read_lesson({"title": "x", "cards": [card]})).code
+    rooms.join(code)
+    for number in range(12):
+        answer = {"chosen": {"iqm_m": number / 100}}
+        rooms.ask(code, 0, {"alpha": number / 100}, lambda answer=answer: answer, card=0)
+    assert [one.given["alpha"] for one in Rooms(store).get(code).runs_of(0, 0)] == [
+        one.given["alpha"] for one in rooms.get(code).runs_of(0, 0)
+    ]
+
+
 def test_what_ifs_are_there_after_a_restart(store: RunStore) -> None:
     card = {"text": "c", "state": {"form": {"steps": 20}}, "go": "what-if"}
     rooms = Rooms(store)

@@ -124,7 +124,9 @@ class RoomRows:
 
     def runs(self) -> list[RoomRun]:
         """Return all runs of rooms that can be decoded, oldest first."""
-        return all_rows(self._database, ROOM_RUNS, RoomRun, ROOM_RUNS.c.run_id)
+        # Ids of what-ifs do not sort by time; those of runs do, also of one moment.
+        order = ROOM_RUNS.c.created_at, ROOM_RUNS.c.run_id
+        return all_rows(self._database, ROOM_RUNS, RoomRun, *order)
 
     def add_room(self, row: RoomRow) -> None:
         """Insert a room."""
