@@ -1,5 +1,6 @@
 """Pages of the classroom: of a room, of a tournament, links to lessons, a room's dashboard."""
 
+from collections.abc import Callable, Mapping
 from urllib.parse import quote
 
 from starlette.requests import Request
@@ -23,19 +24,7 @@ def classroom_routes(page: CompressedContent) -> list[BaseRoute]:
     Args:
         page: of a room, the same for all.
     """
-
-    def show_room(request: Request) -> Response:
-        services: Services = request.app.state.services
-        response = page.response(request.scope)
-        try:
-            services.rooms.get(request.path_params["code"])
-        except NotFound as error:
-            if not prefers_html(request.headers):
-                return problem(404, as_sentence(str(error)))
-            # The page asks for the room itself, and has a field for another code.
-            response.status_code = 404
-        return response
-
+    show_room = _found_page(page, lambda own, params: own.rooms.get(params["code"]))
     return [
         Route("/l/{lesson_id}", _lesson, name="lesson_page"),
         Route("/r/{code}", show_room, name="room_page"),
@@ -49,20 +38,29 @@ def tournament_routes(page: CompressedContent) -> list[BaseRoute]:
     Args:
         page: of a tournament, the same for all.
     """
+    show_tournament = _found_page(
+        page, lambda own, params: own.tournaments.get(params["tournament_id"])
+    )
+    return [Route("/t/{tournament_id}", show_tournament, name="tournament_page")]
 
-    def show_tournament(request: Request) -> Response:
-        services: Services = request.app.state.services
+
+def _found_page(
+    page: CompressedContent, find: Callable[[Services, Mapping[str, str]], object]
+) -> Callable[[Request], Response]:
+    """Return the endpoint of a page; where `find` raises `NotFound` its status is 404."""
+
+    def show(request: Request) -> Response:
         response = page.response(request.scope)
         try:
-            services.tournaments.get(request.path_params["tournament_id"])
+            find(request.app.state.services, request.path_params)
         except NotFound as error:
             if not prefers_html(request.headers):
                 return problem(404, as_sentence(str(error)))
-            # The page asks for the tournament itself, and tells what came of that.
+            # The page itself asks again, and tells what came of that.
             response.status_code = 404
         return response
 
-    return [Route("/t/{tournament_id}", show_tournament, name="tournament_page")]
+    return show
 
 
 def _lesson(request: Request) -> Response:

@@ -15,7 +15,7 @@ from app.storage.errors import Forbidden, NotFound
 VisitorPath = Annotated[str, Path(description="id of the visitor", max_length=64)]
 
 router = APIRouter(tags=["demo"])
-_OF_A_DEMO = "User-agent: *\nDisallow: /api/\nDisallow: /viewer/\nDisallow: /r/\n"
+_OF_A_DEMO = "User-agent: *\nDisallow: /api/\nDisallow: /viewer/\nDisallow: /r/\nDisallow: /t/\n"
 _OF_OTHERS = "User-agent: *\nDisallow: /\n"
 
 

@@ -174,13 +174,13 @@ class RoomRuns:
                 raise Conflict(f"your {run.kind} is {run.state}; wait for its end", run.state)
 
     def _find(self, one: RoomRun) -> Run | None:
-        found = None
         if one.answer is not None:
             return None
-        with suppress(NotFound):
+        try:
             run = self._store.find(one.run_id)
-            found = run if isinstance(run, Run) else None
-        return found
+        except NotFound:
+            return None
+        return run if isinstance(run, Run) else None
 
 
 def _alike(room: Room, seed: int, card: int, given: Mapping[str, Any]) -> list[RoomRun]:

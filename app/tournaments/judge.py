@@ -223,7 +223,8 @@ class Judge:
                 raise  # no process could be started
             judgement = None
         if judgement is None and not self._stopping.is_set():
-            deaths = self._work.deaths[draw.key] = self._work.deaths.get(draw.key, 0) + 1
+            with self._changed:
+                deaths = self._work.deaths[draw.key] = self._work.deaths.get(draw.key, 0) + 1
             _logger.warning("a process ended that judged entry %d of %s", entry.number, draw.key[0])
             if deaths >= MAX_DEATHS:
                 return Judgement(0.0, f"{MAX_DEATHS} processes ended while they judged it.")
