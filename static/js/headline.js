@@ -342,6 +342,13 @@ function endOfPractice({ state, progress: { done, total } }) {
   return `The training ${verb} at step ${whole(done)} of ${whole(total)}.`;
 }
 
+/** When the first test of a practice comes; null without one, as where it ended before. @param {Run} training */
+function firstTest(training) {
+  const step = training.config.evaluate_every;
+  const isTested = step > 0 && (isActive(training) || training.progress.done > step);
+  return isTested ? `Its first test is at step ${whole(step)}.` : null;
+}
+
 /** The training on stage: how far it walks and what it does, by its newest evaluation that is shown. */
 const practice = computed(() => {
   const training = shownRun.value?.kind === "training" ? shownRun.value : null;
@@ -354,10 +361,7 @@ const practice = computed(() => {
     const what = walk === null ? "has practised" : `walked ${walk} in its last test`;
     return { title: `${title} ${what}`, reason: endOfPractice(training) };
   }
-  if (walk === null) {
-    const first = training.config.evaluate_every;
-    return { title: `${title} practises`, reason: first ? `Its first test is at step ${whole(first)}.` : null };
-  }
+  if (walk === null) return { title: `${title} practises`, reason: firstTest(training) };
   return { title: `${title} walks ${walk} so far`, reason: practiceReason(newest?.epsilon) };
 });
 

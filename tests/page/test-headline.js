@@ -141,6 +141,10 @@ test("the last picture of a practice that has ended says how it ended, and nothi
       run_id: run.id, kind: "training", phase: "practice", ended: isEnded, lanes: [makeSceneLane({ step: 120 })],
     },
   });
+  end({ progress: { done: 50, total: 500 } }, false);
+  assert.deepEqual([practiceTitle.value, reason.value], ["Learner practises", null]);
+  end({ progress: { done: 51, total: 500 } }, false);
+  assert.equal(reason.value, "Its first test is at step 50.");
   end({});
   assert.deepEqual([practiceTitle.value, reason.value],
     ["Learner has practised", "The training was stopped at step 120 of 500."]);
