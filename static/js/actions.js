@@ -135,7 +135,8 @@ export const secondaryActions = computed(() => {
 });
 
 export const canStart = computed(
-  () => mayStart.value && options.value !== null && !myWork.value && Object.keys(mistakes.value).length === 0,
+  () => mayStart.value && options.value !== null && !myWork.value && !pending.value.robot &&
+    Object.keys(mistakes.value).length === 0,
 );
 
 export const runPrimaryAction = () => (canStart.value ? primaryAction.value.run() : null);

@@ -1,7 +1,9 @@
 // The correction of a robot from a file: what was found in it, what a person decides, and its file read again.
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
+import { pending } from "./actions.js";
 import { call } from "./api.js";
 import { form } from "./form.js";
+import { setEntry } from "./store.js";
 import { chooseStored, refresh } from "./stored-robots.js";
 import { messageOf } from "./titles.js";
 
@@ -22,7 +24,8 @@ export const whole = signal(null);
 export const fields = signal(null);
 /** What is wrong, or what the server refused; "" if nothing is. */
 export const wrongChoice = signal("");
-export const isReading = signal(false);
+/** Its file is being read: until then the chosen robot may be one that is replaced, so nothing can be started. */
+export const isReading = computed(() => Boolean(pending.value.robot));
 
 /** Open the correction of a robot, or close it. @param {string | null} id */
 export async function correct(id) {
@@ -123,7 +126,7 @@ function gaitOf(now, before) {
 export async function readAgain() {
   const [now, before] = [fields.peek(), whole.peek()];
   if (!now || !before || isReading.peek()) return;
-  isReading.value = true;
+  setEntry(pending, "robot", true);
   wrongChoice.value = "";
   const isChosen = form.peek().robot === before.id;
   try {
@@ -137,5 +140,5 @@ export async function readAgain() {
   } catch (error) {
     wrongChoice.value = messageOf(/** @type {Error} */ (error));
   }
-  isReading.value = false;
+  setEntry(pending, "robot", false);
 }

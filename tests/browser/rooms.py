@@ -62,7 +62,7 @@ def phone(browser: Browser) -> Iterator[RoomPage]:
     with new_page(browser, viewport=PHONE, has_touch=True, is_mobile=True) as page:
         watched = RoomPage(page, has_3d=False)
         yield watched
-        assert watched.complaints == []
+        assert watched.complaints == [], watched.complaints
 
 
 def is_accessible(page: RoomPage, *, is_touched: bool = True) -> None:

@@ -73,8 +73,6 @@ def test_a_lesson_from_the_code_to_the_reveal(flat_browser: Browser, school: Ser
     with (
         school.api(TOKEN) as api,
         phone(flat_browser) as teacher,
-        phone(flat_browser) as one,
-        phone(flat_browser) as two,
         new_page(flat_browser, viewport=SCREEN) as screen,
     ):
         code = api.post("rooms", json={"lesson": LESSON}).raise_for_status().json()["code"]
@@ -86,20 +84,22 @@ def test_a_lesson_from_the_code_to_the_reveal(flat_browser: Browser, school: Ser
         projector.enter(school, code, "?projector")
         projector.sees(f"/r/{code}")
         is_read_from_afar(projector)
-
-        gets_to_its_robot_in_three_taps(one, school, code)
-        keeps_name_and_seed(one, school, code)
-        two.enter(school, code)
-        two.press("Join")
-        assert two.who[1] != one.who[1]
-        answers_in_two_steps(two)
-        shows_the_class(teacher, projector, one, two)
-        follows_to_a_choice(teacher, projector, one, two)
-        draws_a_curve_by_keys(teacher, projector, one)
-        taps_a_point(teacher, two)
-        stands_still_and_ends(teacher, projector, one)
-        deletes_the_room(teacher, school, code)
+        with phone(flat_browser) as one, phone(flat_browser) as two:
+            gets_to_its_robot_in_three_taps(one, school, code)
+            keeps_name_and_seed(one, school, code)
+            two.enter(school, code)
+            two.press("Join")
+            assert two.who[1] != one.who[1]
+            answers_in_two_steps(two)
+            shows_the_class(teacher, projector, one, two)
+            follows_to_a_choice(teacher, projector, one, two)
+            draws_a_curve_by_keys(teacher, projector, one)
+            taps_a_point(teacher, two)
+            stands_still_and_ends(teacher, projector, one)
+        # A page of it that asks just now would be told that there is no such room.
         assert projector.complaints == []
+        screen.goto("about:blank")
+        deletes_the_room(teacher, school, code)
 
 
 def gets_to_its_robot_in_three_taps(pupil: RoomPage, school: Serving, code: str) -> None:

@@ -150,6 +150,8 @@ def test_a_file_is_dropped_corrected_and_trained(
     )
     (after,) = dashboard.get("/api/v1/robots")["items"]
     assert after["choices"] == {**dict.fromkeys(after["choices"]), **CHOSEN}
+    # Until the page has it, nothing can be started.
+    expect(page).to_have_url(re.compile(f"robot={after['id']}"))
     expect(robots.get_by_role("button", name="Chosen")).to_be_visible()
     page.keyboard.press("Escape")
     expect(dashboard.button("Edit the body…")).to_be_disabled()

@@ -167,6 +167,14 @@ def test_a_link_is_kept_as_it_says(dashboard: Dashboard, shared_server: Serving)
     expect(page.locator("#held-start")).to_have_count(0)
     expect(dashboard.primary).not_to_have_attribute("aria-disabled", "true")
     expect(page).to_have_url(re.compile(r"seed=6.*alpha=0\.05"))
+    # A held button starts nothing, however it is pressed.
+    alpha.fill("7")
+    expect(dashboard.button("Train, don’t race")).to_have_attribute("aria-disabled", "true")
+    methods: list[str] = []
+    page.on("request", lambda request: methods.append(request.method))
+    dashboard.button("Train, don’t race").dispatch_event("click")
+    page.evaluate("() => fetch('healthz').then(answer => answer.text())")
+    assert "POST" not in methods
 
 
 def test_a_custom_robot_stays_whole_from_link_to_run_to_form(

@@ -101,7 +101,8 @@ const hasRoomForOthers = () =>
 const SecondaryActions = () => html`
   <div class="others">
     ${secondaryActions.value.map(({ label, run }) => html`
-      <button class="secondary" onClick=${run} aria-disabled=${canStart.value ? undefined : "true"}>${label}</button>
+      <button class="secondary" aria-disabled=${canStart.value ? undefined : "true"}
+        onClick=${() => canStart.peek() && run()}>${label}</button>
     `)}
   </div>
 `;
