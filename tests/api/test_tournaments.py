@@ -325,7 +325,7 @@ def test_robots_of_the_rules_are_in_the_file(school: Contest) -> None:
 
 
 def test_what_waits_is_withdrawn_or_deleted(school: Contest) -> None:
-    tournament = school.open(rules={"simulator": "mujoco", "steps": 200})
+    tournament = school.open(rules={"simulator": "mujoco", "steps": 50})
     for number in range(4):
         entered(
             school.teacher, tournament, agent="q-learning", settings={"alpha": number / 10 + 0.1}

@@ -10,16 +10,19 @@ OWN = ("agent", "settings")
 """Fields that are others for each agent."""
 DISTURBANCES = ("Limp", "Patch")
 """One of the robot, with a list, and one of the ground."""
+STORES_ROBOTS = "/api/v1/robots"
 
 
 def shortened(contract: dict[str, Any]) -> dict[str, Any]:
-    """Return an OpenAPI document whose bodies have few agents, few disturbances and their settings.
+    """Return an OpenAPI document whose bodies have few agents, disturbances and parts of robots.
 
     The fields that all agents have stand in the body of the first one, and those of a walk in that
     of a training, not in the rules of a tournament.
-    The operation that disturbs a running training keeps all kinds of disturbances.
+    The operation that disturbs a running training keeps all kinds of disturbances, and that which
+    stores a robot its parts, where others have the name of a robot.
     """
     short: dict[str, Any] = _with_few_choices(contract)
+    short["paths"][STORES_ROBOTS]["post"] = contract["paths"][STORES_ROBOTS]["post"]
     schemas = short["components"]["schemas"]
     settings = {
         name: set(one["properties"]) for name, one in schemas.items() if name.endswith("Training")
@@ -51,6 +54,10 @@ def _with_few_choices(part: Any) -> Any:
     short = {name: _with_few_choices(one) for name, one in part.items()}
     if any(_is_choice_of(AGENTS[0] + kind, short) for kind in KINDS):
         short["oneOf"] = [one for one in short["oneOf"] if _name_of(one).startswith(AGENTS)]
+    if any("preset" in one.get("properties", ()) for one in short.get("anyOf", ())):
+        short["anyOf"] = [
+            one for one in short["anyOf"] if "preset" not in one.get("properties", ())
+        ]
     disturbances = short.get("disturbances", {}).get("items", {})
     if _is_choice_of("LimpDisturbance", disturbances):
         few = [one for one in disturbances["oneOf"] if _name_of(one).startswith(DISTURBANCES)]

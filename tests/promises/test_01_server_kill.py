@@ -1,6 +1,6 @@
 """Promise 1: kill -9 of the server loses at most one checkpoint, 5 s of training.
 
-Promised: 50 kills at random times. Here 2 of one training, 50 by `make soak`; the store's part is
+Promised: 50 kills at random times. Here one of a training, 50 by `make soak`; the store's part is
 in `test_01_kill.py`. After each kill the training is resumed from its newest checkpoint.
 """
 
@@ -18,11 +18,11 @@ from tests.promises.length import at_length
 from tests.served import BODY, Served
 from tests.storage.stores import opened
 
-KILLS = at_length(2, 50)
+KILLS = at_length(1, 50)
 LOST_S = 5.0
 
 
-@pytest.mark.timeout(60 * KILLS)
+@pytest.mark.timeout(60 + 60 * KILLS)
 def test_a_kill_loses_at_most_one_checkpoint(launch: Callable[..., Served], tmp_path: Path) -> None:
     chance = random.Random(1)
     server = launch()

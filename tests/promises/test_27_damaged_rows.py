@@ -58,7 +58,7 @@ BELOW = {
     "races": ["", "/recording", "/recording?format=npz", "/timeline", "/export"],
     "experiments": ["", "/summary", "/report", "/trials", "/trials?format=csv", "/export"],
 }
-FIELDS_A_FILE, COLUMNS = at_length(12, None), at_length(14, None)
+FIELDS_A_FILE, COLUMNS = at_length(6, None), at_length(7, None)
 """Number of adverse values tried per file, and of columns of each kind of run; None for all."""
 File = tuple[str, bytes]
 

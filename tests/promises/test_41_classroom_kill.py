@@ -1,6 +1,6 @@
 """A server that is killed in the middle of a lesson goes on with it: nothing that counted is lost.
 
-Ten kills at random moments, 3 in the gate: while pupils join, answer, start and wait, and while the
+Ten kills at random moments, 2 in the gate: while pupils join, answer, start and wait, and while the
 teacher turns pages. Each client repeats what was not acknowledged, as a page does.
 """
 
@@ -20,7 +20,7 @@ from tests.promises.length import at_length
 from tests.served import Served
 from tests.timeouts import LONG_S, ProgressTimeout
 
-KILLS = at_length(3, 10)
+KILLS = at_length(2, 10)
 PUPILS = 3
 FORM = {"gait": "left-right-origin", "simulator": "mujoco", "steps": 150, "evaluate_every": 50}
 LESSON: dict[str, Any] = {

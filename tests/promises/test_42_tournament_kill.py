@@ -1,6 +1,6 @@
 """A server that is killed while it judges goes on: nothing is lost, and the ranking is the same.
 
-Ten kills at random moments, 3 in the gate. What was judged stays judged; in the end the file
+Ten kills at random moments, 2 in the gate. What was judged stays judged; in the end the file
 repeats to the last digit: each judgement is that of an unbroken tournament.
 """
 
@@ -18,7 +18,7 @@ from tests.promises.length import at_length
 from tests.served import Served
 from tests.timeouts import ProgressTimeout
 
-KILLS = at_length(3, 10)
+KILLS = at_length(2, 10)
 RULES: dict[str, Any] = {
     "gait": "left-right-origin",
     "simulator": "kinematic",
