@@ -7,18 +7,24 @@ choice between experts as a non-stationary bandit with discounted rewards (Gariv
 2011) and optimistic initial values (Sutton & Barto 2018, §2.6).
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from annotated_types import Ge, Le
 
-from hexapods.agents.bayesian_regression import BayesianRegression, sum_rule
+from hexapods.agents.experts import (
+    FORGETTING,
+    NOISE,
+    Expert,
+    MeasuredExpert,
+    PlannedExpert,
+    Prior,
+    Readings,
+)
 from hexapods.agents.explanation import (
     Belief,
     ChoiceExplanation,
-    Term,
     UpdateExplanation,
     ValueUpdate,
     in_millimetres,
@@ -27,14 +33,6 @@ from hexapods.agents.protocol import AgentState, Observe, Problem, Transition
 from hexapods.domain.settings import Setting, declare
 from hexapods.domain.types import Action, Cells, FloatArray, IntArray
 
-Prior = Annotated[
-    Literal["none", "kinematic"],
-    Setting(
-        title="Prior",
-        phrase="prior\u00a0{}",
-        help="What it assumes before its first step: nothing, or the law of a step without slip.",
-    ),
-]
 Optimism = Annotated[
     float,
     Ge(0),
@@ -48,14 +46,8 @@ Optimism = Annotated[
     ),
 ]
 
-# All lengths are shares of h, half the side of the foot grid: at h = 0.02 m the deviations are
-# those of the prototypes, 0.02 m a priori and 0.003 m of noise.
-_NOISE = 0.15
-_DEVIATION, _LATERAL_DEVIATION = 1.0, 0.1
 _TURNS = 2
 """Turns of every group for which a policy decides: six steps of a robot with three groups."""
-_FORGETTING = 0.98
-"""Share of the evidence, and of what policies earned, that remains at each further step."""
 _UNTRIED, _UNTRIED_MEASURED = 1.0, 0.5
 """Reward per step that a policy is expected to earn before it was tried, counted as one step, as a
 share of the best possible without slip, so that orders are tried early: they cost little where they
@@ -68,115 +60,6 @@ _CHANGE_RATIO, _CHANGE_LEAST = 4.0, 4.0
 variance by that one."""
 _KEPT = 0.1
 """Share of the evidence that remains after a change."""
-
-
-class Readings(NamedTuple):
-    """The state before a step, as the experts read it."""
-
-    cells: Cells
-    """The measured cells, whatever the run's observation is."""
-    planned_m: FloatArray
-    """Offset (x, y) of each group from home by dead reckoning, (groups, 2)."""
-
-
-class Expert(ABC):
-    """One reading of the state, as features of where the feet stand after landing."""
-
-    name: str
-
-    def __init__(self, problem: Problem, prior: Prior) -> None:
-        self._cells_m = problem.cells_m
-        self._half_side_m = float(np.abs(problem.cells_m).max()) or 1.0
-        self._shares = problem.shares
-        weights, deviations = self._prior(len(problem.groups))
-        weights = weights if prior == "kinematic" else np.zeros_like(weights)
-        half = self._half_side_m
-        self.model = BayesianRegression(
-            weights * half, deviations * half, _NOISE * half, _FORGETTING
-        )
-
-    @abstractmethod
-    def _prior(self, groups: int) -> tuple[FloatArray, FloatArray]:
-        """Return the weights of the kinematic law, and their prior deviations [h], (d,)."""
-
-    @abstractmethod
-    def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:
-        """Return the features of each of n actions, (n, d)."""
-
-    def expected_m(self, before: Readings, actions: Sequence[Action]) -> FloatArray:
-        """Return the expected rewards of n actions [m], (n,)."""
-        return self.model.expected(self.features(before, actions))
-
-    def explain(self, features: FloatArray) -> tuple[str, Sequence[Term]]:
-        """Return the rule of the expected reward for features (d,), with its terms."""
-        used = np.flatnonzero(features).tolist()
-        terms, products = [], {}
-        for number, index in enumerate(used, 1):
-            name = self.feature_name(index)
-            terms += [
-                Term(f"w{number}", float(self.model.mean[index]), f"weight of {name} [m]"),
-                Term(f"x{number}", float(features[index]), name),
-            ]
-            products[index] = f"x{number} · w{number}"
-        return sum_rule(products, len(features)) or "0", terms
-
-    @abstractmethod
-    def feature_name(self, index: int) -> str:
-        """Return what a feature is, in words."""
-
-    def upper_bound_m(
-        self, before: Readings, actions: Sequence[Action], optimism: float
-    ) -> FloatArray:
-        """Return the upper confidence bounds of the rewards of n actions [m], (n,)."""
-        features = self.features(before, actions)
-        return self.model.expected(features) + optimism * self.model.deviation(features)
-
-
-class MeasuredExpert(Expert):
-    """One-hot features of each group's observed cell after landing: groups × cells weights."""
-
-    name = "measured"
-
-    def _prior(self, groups: int) -> tuple[FloatArray, FloatArray]:
-        weights = np.outer(self._shares, self._cells_m[:, 1] / self._half_side_m).ravel() / groups
-        return weights, np.full(len(weights), _DEVIATION)
-
-    def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:  # noqa: D102
-        landed = np.tile(before.cells, (len(actions), 1))  # (n, groups)
-        for row, action in enumerate(actions):
-            landed[row, action.group] = action.cell
-        one_hot: FloatArray = np.eye(len(self._cells_m))[landed]
-        return one_hot.reshape(len(actions), -1)
-
-    def feature_name(self, index: int) -> str:  # noqa: D102
-        group, cell = divmod(index, len(self._cells_m))
-        return f"group {group + 1} on cell {cell}"
-
-
-class PlannedExpert(Expert):
-    """Features of the planned offsets after landing, which are continuous: 1 + groups weights.
-
-    They are the mean forward offset of all feet, by which the body would move without slip, and
-    each group's lateral offset, as a wider or narrower stance slips less or more. One weight for
-    all forward offsets: with a weight for each group, greedy steps favour the groups that push well
-    and never bring the others forward.
-    """
-
-    name = "planned"
-
-    def _prior(self, groups: int) -> tuple[FloatArray, FloatArray]:
-        deviations = np.array([_DEVIATION, *[_LATERAL_DEVIATION] * groups])
-        return np.array([1.0, *[0.0] * groups]), deviations
-
-    def features(self, before: Readings, actions: Sequence[Action]) -> FloatArray:  # noqa: D102
-        landed = np.tile(before.planned_m, (len(actions), 1, 1))  # (n, groups, 2)
-        for row, action in enumerate(actions):
-            landed[row, action.group] = self._cells_m[action.cell]
-        landed /= self._half_side_m
-        return np.column_stack(((landed[:, :, 1] * self._shares).mean(1), landed[:, :, 0]))
-
-    def feature_name(self, index: int) -> str:  # noqa: D102
-        return f"how far group {index} stands out" if index else "how far forward the feet stand"
 
 
 class Policy(NamedTuple):
@@ -254,7 +137,7 @@ class LinearModel:
         self._deciding, self._decided, self._last_group = 0, 0, groups - 1
         self._earned: FloatArray = np.zeros((len(self._policies), 2))
         """Discounted steps that each policy decided, and the rewards [m] in them."""
-        self._noise_variance = (_NOISE * self._half_side_m) ** 2
+        self._noise_variance = (NOISE * self._half_side_m) ** 2
         self._errors: FloatArray = np.array([[0.0, self._noise_variance]] * len(self._experts))
         """Short and long moving average of each expert's squared errors [m²]."""
         self._predicted: FloatArray = np.zeros(len(self._experts))
@@ -308,7 +191,7 @@ class LinearModel:
             (features,) = expert.features(self._before, [action])
             expert.model.update(features, reward)
         self._visits[action] += 1
-        self._earned *= _FORGETTING
+        self._earned *= FORGETTING
         self._earned[self._deciding] += 1, reward
         self._errors[:, 0] += _FAST * (errors - self._errors[:, 0])
         self._errors[:, 1] += _SLOW * (errors - self._errors[:, 1])
