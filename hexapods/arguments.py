@@ -9,7 +9,8 @@ import numpy as np
 
 from hexapods.agents import registry
 from hexapods.agents.registry import AgentClass
-from hexapods.domain.disturbances import Disturbance, as_text, disturbance, parse_disturbance
+from hexapods.domain.disturbance_documents import as_text, disturbance, parse_disturbance
+from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import GaitSpec, read_gait
 from hexapods.domain.model_robot import model_robot

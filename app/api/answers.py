@@ -18,7 +18,7 @@ from pydantic_core import CoreSchema
 from app.stage.presentation import Presentation
 from app.stage.state_machine import Origin, Phase
 from app.storage.run import State
-from hexapods.domain.disturbances import AnyDisturbance
+from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.records import described_attributes, summary_of
 from hexapods.domain.settings import Value
 from hexapods.experiments.config import ExperimentConfig

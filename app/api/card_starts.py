@@ -14,7 +14,7 @@ from app.classroom.lesson import Card, Lesson
 from app.jobs.submissions import RaceStart, Start, TrainingStart, check_training
 from app.storage.database.store import RunStore
 from hexapods.agents.registry import find, learns
-from hexapods.domain.disturbances import as_mapping, parse_disturbance
+from hexapods.domain.disturbance_documents import as_mapping, parse_disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.runs.config import TrainingConfig, agent_settings
 from hexapods.runs.lane import LANE_FIELDS

@@ -5,7 +5,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict
 
 from app.api.answers import Answer, Settings
-from hexapods.domain.disturbances import AnyDisturbance
+from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.gait import AnyGait
 from hexapods.domain.robot import AnyRobot
 from hexapods.domain.settings import Value

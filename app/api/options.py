@@ -42,6 +42,7 @@ from hexapods.agents.registry import (
 )
 from hexapods.domain import disturbances
 from hexapods.domain.creatures import CREATURES
+from hexapods.domain.disturbance_documents import SHORT, as_mapping
 from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot
@@ -191,7 +192,7 @@ def _worlds() -> list[dict[str, Any]]:
             "name": name,
             "title": one.title,
             "description": one.help,
-            "disturbances": [disturbances.as_mapping(each) for each in one.world.disturbances],
+            "disturbances": [as_mapping(each) for each in one.world.disturbances],
         }
         for name, one in WORLDS.items()
     ]
@@ -227,7 +228,7 @@ def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]
     """Return the fields of a kind of disturbance, its own before the steps."""
     declared = declared_fields(kind)  # type: ignore[arg-type]  # of a class, not of an instance
     options = {}
-    short = {field: name for name, field in disturbances.SHORT.items()}
+    short = {field: name for name, field in SHORT.items()}
     for one in sorted(fields(kind), key=lambda field: field.name in ("at_step", "until_step")):
         setting = declared.get(one.name, _LEGS)
         is_list, is_required = setting is _LEGS, one.default is MISSING

@@ -16,7 +16,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Damaged, NotFound
 from app.storage.run import Run, robots_of, world_of
 from hexapods.agents.registry import keeps_learning
-from hexapods.domain.disturbances import as_text
+from hexapods.domain.disturbance_documents import as_text
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import PRESETS, Robot, as_mapping

@@ -22,7 +22,7 @@ from app.api.fields import (
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
 from app.stage.presentation import Presentation
 from app.storage.run import ANNOTATIONS
-from hexapods.domain.disturbances import AnyDisturbance
+from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, world_from

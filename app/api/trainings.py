@@ -22,7 +22,7 @@ from app.storage.errors import Conflict
 from app.storage.json_text import finite
 from app.storage.run import Run, world_of
 from app.storage.stored_tables import open_table, read_rows
-from hexapods.domain.disturbances import AnyDisturbance, as_mapping
+from hexapods.domain.disturbance_documents import AnyDisturbance, as_mapping
 from hexapods.domain.errors import InvalidInput
 from hexapods.runs import tables
 from hexapods.runs.best_known import best_known_m

@@ -9,7 +9,7 @@ import numpy as np
 from app.archive.untrusted_input import Metres, Name, Share, Step
 from hexapods.agents import registry
 from hexapods.agents.tabular import TabularAgent
-from hexapods.domain.disturbances import disturbance
+from hexapods.domain.disturbance_documents import disturbance
 from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
 from hexapods.domain.records import from_json
 from hexapods.domain.settings import complete

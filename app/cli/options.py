@@ -10,7 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 from app.cli.robot_names import stored_robot
-from hexapods.domain.disturbances import KINDS, parse_disturbance
+from hexapods.domain.disturbance_documents import parse_disturbance
+from hexapods.domain.disturbances import KINDS
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.gait import NAMED_GAITS, GaitSpec
 from hexapods.domain.gait import read_gait as gait_of_legs

@@ -33,7 +33,8 @@ from app.storage.run import (
     world_of,
 )
 from app.storage.run_ids import RunIds
-from hexapods.domain.disturbances import Disturbance, as_mapping, disturbance
+from hexapods.domain.disturbance_documents import as_mapping, disturbance
+from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
 from hexapods.domain.world import check_ends
 from hexapods.runs.config import TrainingConfig, changeable_settings

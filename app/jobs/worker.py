@@ -33,7 +33,7 @@ from app.jobs.messages import (
     TrainingTask,
 )
 from hexapods.assembly import build_learner, build_walkers
-from hexapods.domain.disturbances import as_mapping, disturbance
+from hexapods.domain.disturbance_documents import as_mapping, disturbance
 from hexapods.domain.errors import HexapodError
 from hexapods.runs.racing import race
 from hexapods.runs.records import LaneStep, StepTaken

@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, get_args
 
 from app.storage.stored_robot import StoredRobot
-from hexapods.domain.disturbances import disturbance
+from hexapods.domain.disturbance_documents import disturbance
 from hexapods.domain.robot import Robot
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.experiments.config import ExperimentConfig

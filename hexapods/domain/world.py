@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, NamedTuple, TypeVar
 
+from hexapods.domain.disturbance_documents import SENT, as_mapping, disturbance, parse_disturbance
 from hexapods.domain.disturbances import (
-    SENT,
     Disturbance,
     Friction,
     Key,
@@ -26,9 +26,6 @@ from hexapods.domain.disturbances import (
     Slope,
     Stuck,
     Weak,
-    as_mapping,
-    disturbance,
-    parse_disturbance,
 )
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import JsonForm

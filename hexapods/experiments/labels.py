@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from hexapods.domain.disturbances import Disturbance, as_mapping
+from hexapods.domain.disturbance_documents import as_mapping
+from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.gait import GAIT_TITLES
 from hexapods.domain.settings import declared_fields

@@ -18,7 +18,7 @@ import numpy as np
 from hexapods.agents.protocol import Agent, Tabular
 from hexapods.agents.q_table import check_arrays, check_size
 from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
-from hexapods.domain.disturbances import as_mapping
+from hexapods.domain.disturbance_documents import as_mapping
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json

@@ -4,18 +4,13 @@ from dataclasses import fields
 
 import pytest
 
-from hexapods.domain.disturbances import (
-    KINDS,
-    Disturbance,
-    Limp,
-    Slope,
-    Stuck,
+from hexapods.domain.disturbance_documents import (
     as_mapping,
     as_text,
     disturbance,
-    is_nothing,
     parse_disturbance,
 )
+from hexapods.domain.disturbances import KINDS, Disturbance, Limp, Slope, Stuck, is_nothing
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.robot import PRESETS, Robot
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from hexapods.domain.disturbance_documents import as_text, parse_disturbance
 from hexapods.domain.disturbances import (
     KINDS,
     Friction,
@@ -21,8 +22,6 @@ from hexapods.domain.disturbances import (
     Slope,
     Stuck,
     Weak,
-    as_text,
-    parse_disturbance,
 )
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.robot import Robot, robot

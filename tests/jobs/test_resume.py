@@ -17,7 +17,8 @@ from app.storage.recordings import Recordings
 from app.storage.run import CHECKPOINT, TABLE, Run
 from hexapods.agents.protocol import Tabular
 from hexapods.assembly import build_learner, rebuild_learner
-from hexapods.domain.disturbances import Limp, SensorNoise, disturbance
+from hexapods.domain.disturbance_documents import disturbance
+from hexapods.domain.disturbances import Limp, SensorNoise
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.runs.config import TrainingConfig, WalkingProblem, training_config
 from hexapods.runs.lane import LaneConfig
