@@ -9,9 +9,9 @@ from typing import Any
 from playwright.sync_api import ConsoleMessage, FloatRect, FrameLocator, Locator, Page, expect
 
 PATIENCE_MS = 60_000
+"""A race in software WebGL beside the browser that shows it, on two cores, takes its time."""
 _RULES_OF_COLORS = ("color-contrast", "link-in-text-block")
 """Those of axe's rules for which another theme is another page."""
-"""A race in software WebGL beside the browser that shows it, on two cores, takes its time."""
 
 expect.set_options(timeout=PATIENCE_MS)
 
