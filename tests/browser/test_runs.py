@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from app.storage.run_ids import RunIds
-from tests.browser.dashboard import Dashboard
+from tests.browser.dashboard import PATIENCE_MS, Dashboard
 from tests.browser.serving import Serving, serving
 from tests.storage.stores import opened, training
 
@@ -57,7 +57,7 @@ def test_runs_older_than_a_page_are_found_and_shown(
     page.go_back()
     expect(rows).to_have_count(1)
     page.get_by_label("More for this race").click()
-    with page.expect_download() as download:
+    with page.expect_download(timeout=2 * PATIENCE_MS) as download:
         dashboard.button("Video (MP4)").click()
     assert Path(download.value.path()).read_bytes()[4:8] == b"ftyp"
     page.get_by_role("button", name="All", exact=True).click()

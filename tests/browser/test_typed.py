@@ -28,7 +28,7 @@ def wrong_value(chance: random.Random) -> str:
             f"{letters} {digits}",
             f"−{digits}",
             f"-{digits},5",
-            f"{digits}.{digits}.{digits}",
+            f"{digits}.2.{digits}",  # of three digits each, its points would group thousands
             f"{digits};;{digits}",
             f"{digits}e{digits}{digits}{digits}",
             " " * chance.randint(1, 3),

@@ -8,6 +8,7 @@ message names an array by its index in the frame: `{"__binary_index": 3, "dtype"
 """
 
 import struct
+import threading
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -49,8 +50,17 @@ _INDEX_KEY = "__binary_index"
 
 _decoder = msgspec.msgpack.Decoder(dict[str, Any])
 _encoder = msgspec.msgpack.Encoder()
-_decompressor = zstandard.ZstdDecompressor()
-_compressor = zstandard.ZstdCompressor(level=1)
+
+
+class _Zstd(threading.local):
+    """Coders of a thread: two threads in one of them at once garble each other's data."""
+
+    def __init__(self) -> None:
+        self.compressor = zstandard.ZstdCompressor(level=1)
+        self.decompressor = zstandard.ZstdDecompressor()
+
+
+_zstd = _Zstd()
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +101,7 @@ def parse(raw: bytes) -> Frame:
     try:
         inner_size, packed_size = _SIZES.unpack_from(raw)
         packed = raw[_SIZES.size : _SIZES.size + packed_size]
-        body = _decoder.decode(_decompressor.decompress(packed, max_output_size=inner_size))
+        body = _decoder.decode(_zstd.decompressor.decompress(packed, max_output_size=inner_size))
         lengths = body["binaryBufferLengths"]
         buffers = _split_buffers(raw, _SIZES.size + packed_size, lengths)
         return Frame(raw, tuple(body["messages"]), buffers, body["timestampSec"])
@@ -115,7 +125,7 @@ def pack(messages: Iterable[Message], buffers: Sequence[memoryview], timestamp_s
             "binaryBufferLengths": [buffer.nbytes for buffer in buffers],
         }
     )
-    packed = _compressor.compress(body)
+    packed = _zstd.compressor.compress(body)
     raw = bytearray(_SIZES.pack(len(body), len(packed)) + packed)
     for buffer in buffers:
         raw += bytes(-len(raw) % _ALIGNMENT_BYTES)

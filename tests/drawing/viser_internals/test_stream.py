@@ -1,5 +1,7 @@
 """Encoding and decoding of viser's wire format, byte for byte."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 
 from hexapods.drawing.viser_internals import stream
@@ -28,6 +30,17 @@ def test_pack_reproduces_the_bytes_of_viser(replay: list[stream.Frame]) -> None:
 
         assert packed.raw == frame.raw
         assert stream.parse(packed.raw) == frame
+
+
+def test_threads_pack_and_parse_at_once() -> None:
+    def repeated(number: int) -> None:
+        message = {"type": "Text", "texts": [f"{number} {n}" for n in range(4_000)]}
+        for _ in range(40):
+            packed = stream.pack([message], (), 0.0)
+            assert stream.parse(packed.raw).messages == (message,)
+
+    with ThreadPoolExecutor(4) as threads:
+        assert list(threads.map(repeated, range(4))) == [None] * 4
 
 
 def test_without_blocked_keeps_all_other_messages(replay: list[stream.Frame]) -> None:
