@@ -1,5 +1,6 @@
 """FastAPI dependencies of routes: the services, the stage, the client's role, a start request."""
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from threading import Lock
@@ -114,6 +115,12 @@ class StartRequest(NamedTuple):
     body: bytes
     key: str | None
     """Idempotency key of the client, which makes a repeated request safe; None if none was sent."""
+
+    def with_hashed_key(self) -> "StartRequest":
+        """Return it with a hash in place of its key, for keys that are secrets."""
+        if self.key is None:
+            return self
+        return self._replace(key=hashlib.sha256(self.key.encode()).hexdigest())
 
     def runs(self, services: Services, create: Create) -> Sequence[Run]:
         """Return the runs that `create` creates, or that an earlier request with this key did."""

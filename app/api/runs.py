@@ -101,22 +101,24 @@ def start_run(
 ) -> Response:
     """Queue a run, unless this request did before; return the response with its Location.
 
-    A visitor of a demo starts within the allowance, and is known by a cookie from then on.
+    A visitor of a demo starts within the allowance, and is known by a cookie from then on. Of the
+    visitor's idempotency key a hash is stored: who has the key of a first start owns its run.
     """
     visitor: SessionCookie | None = request.state.visitor
     if visitor is None:
         (run,) = start_request.runs(services, lambda key: [services.jobs.start(start, key)])
         return located(services, request, run, 202)
     visitors, address = services.visitors, client_of(request.scope)
-    visitor_key = ""
+    visitor_key, request_key = "", start_request.key
 
     def create(key: IdempotencyKey | None) -> list[Run]:
         nonlocal visitor_key
         queue = partial(services.jobs.start, key=key)
-        started, visitor_key = visitors.start(visitor.value, address, start, queue)
+        started, visitor_key = visitors.start(visitor.value, address, start, queue, request_key)
         return [started]
 
-    (run,) = start_request.runs(services, create)
+    (run,) = start_request.with_hashed_key().runs(services, create)
+    visitor_key = visitor_key or visitors.claim(visitor.value, request_key, run.id)
     response = located(services, request, run, 202)
     if visitor_key:
         age_s = int(visitors.allowance.lifetime.total_seconds())

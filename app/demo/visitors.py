@@ -26,6 +26,8 @@ from hexapods.runs.race_config import RaceConfig
 
 ID_LENGTH = 12
 """Letters of the hash by which operators call a visitor."""
+MIN_SECRET = 16
+"""Characters of an idempotency key from which on it is a secret, which can prove whose a run is."""
 
 
 class Use(NamedTuple):
@@ -76,10 +78,10 @@ class Visitors:
         """Whether a run of others is hidden, so that nothing may be started from it."""
         self._store, self._rows, self._now = store, store.visitors, now
         self._lock = threading.RLock()
-        self._runs = {one.run_id: one for one in self._rows.all()}
+        self._runs: dict[str, VisitorRun] = {}
         self._by_visitor: defaultdict[str, dict[str, VisitorRun]] = defaultdict(dict)
-        for one in self._runs.values():
-            self._by_visitor[one.visitor][one.run_id] = one
+        for one in self._rows.all():
+            self._add(one)
         self._addresses: dict[str, str] = {}
         """By visitor, since the server started."""
         per_hour = allowance.steps_per_hour_of_address
@@ -138,21 +140,33 @@ class Visitors:
         """Return what a visitor has used; nothing if it is not known."""
         return self._use(_sha256(key)) if self.is_known(key) else Use()
 
-    def start(self, key: str, address: str, start: Start, queue: Callable[[Start], Run]) -> Started:
+    def start(
+        self,
+        key: str,
+        address: str,
+        start: Start,
+        queue: Callable[[Start], Run],
+        request_key: str | None = None,
+    ) -> Started:
         """Queue a start of a visitor; one who is not known by the key is a new one.
+
+        The key of a new one follows from the idempotency key, if that is a secret: else nobody
+        could show to be the visitor whose first answer was lost, and with it the cookie.
 
         Args:
             key: of the cookie; "" without one.
             address: from which it is asked for, which is not stored.
             start: makes the runs.
             queue: queues them.
+            request_key: idempotency key of the request; None without one.
 
         Raises:
             Busy: if the allowance is used up; it says when it is not any more.
             Forbidden, InvalidInput: if a visitor may not start this.
         """
         with self._lock:
-            key = key if self.is_known(key) else secrets.token_urlsafe(32)
+            if not self.is_known(key):
+                key = _key_of(request_key) or secrets.token_urlsafe(32)
             visitor = _sha256(key)
             linked = LinkedStart(start, lambda runs: self._link(visitor, address, runs))
             try:
@@ -162,6 +176,37 @@ class Visitors:
                 raise
             self._of_address.charge(address, sum(self._runs[one].steps for one in linked.links))
         return Started(run, key)
+
+    def claim(self, key: str, request_key: str | None, run_id: str) -> str:
+        """Return the key of the visitor who repeats a start, if the run is theirs; else "".
+
+        A run of a first start is of who repeats it with its idempotency key. One who has become
+        another visitor meanwhile, as the cookie of that start was lost, is given it.
+
+        Args:
+            key: of the cookie; "" without one.
+            request_key: idempotency key of the request; None without one.
+            run_id: of the run that was made by the first of these requests.
+        """
+        requested = _key_of(request_key)
+        with self._lock:
+            if self.owns(key, run_id):
+                return key
+            if not self.owns(requested, run_id):
+                return ""
+            if not self.is_known(key):
+                return requested
+            made_at, visitor = self._runs[run_id].created_at, _sha256(key)
+            of_start = [
+                one
+                for one in self._by_visitor[_sha256(requested)].values()
+                if one.created_at == made_at
+            ]
+            self._rows.give([one.run_id for one in of_start], visitor)
+            for one in of_start:
+                self._drop(one.run_id)
+                self._add(one._replace(visitor=visitor))
+        return key
 
     def _link(self, visitor: str, address: str, runs: Sequence[Run]) -> None:
         """Check the allowance, and note whose these runs are before they are stored."""
@@ -195,7 +240,7 @@ class Visitors:
         self._rows.add(links)
         self._addresses[visitor] = address
         for one in links:
-            self._runs[one.run_id] = self._by_visitor[visitor][one.run_id] = one
+            self._add(one)
 
     def _use(self, visitor: str) -> Use:
         states = self._rows.states(visitor=visitor)
@@ -257,14 +302,20 @@ class Visitors:
             with suppress(HexapodError):  # the next clean-up finds them again
                 self._rows.remove(run_ids)
                 for run_id in run_ids:
-                    one = self._runs.pop(run_id, None)
-                    if one is None:
-                        continue
-                    of_visitor = self._by_visitor[one.visitor]
-                    of_visitor.pop(run_id, None)
-                    if not of_visitor:
-                        del self._by_visitor[one.visitor]
-                        self._addresses.pop(one.visitor, None)
+                    self._drop(run_id)
+
+    def _add(self, one: VisitorRun) -> None:
+        self._runs[one.run_id] = self._by_visitor[one.visitor][one.run_id] = one
+
+    def _drop(self, run_id: str) -> None:
+        one = self._runs.pop(run_id, None)
+        if one is None:
+            return
+        of_visitor = self._by_visitor[one.visitor]
+        of_visitor.pop(run_id, None)
+        if not of_visitor:
+            del self._by_visitor[one.visitor]
+            self._addresses.pop(one.visitor, None)
 
 
 def _used_by(runs: Sequence[Run]) -> Iterator[str | None]:
@@ -273,6 +324,17 @@ def _used_by(runs: Sequence[Run]) -> Iterator[str | None]:
         yield from (run.continued_from, *run.lane_training_ids)
         if isinstance(run.config, RaceConfig) and run.config.branch_from is not None:
             yield run.config.branch_from.race_id
+
+
+def _key_of(request_key: str | None) -> str:
+    """Return the key of a new visitor, by the idempotency key of the first start.
+
+    Returns:
+        "" if that could be guessed, or is none.
+    """
+    if request_key is None or len(request_key) < MIN_SECRET:
+        return ""
+    return _sha256(f"visitor {request_key}")
 
 
 def _sha256(text: str) -> str:

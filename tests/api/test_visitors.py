@@ -1,6 +1,9 @@
 """A demo over REST: what is told to a visitor, within the allowance and beyond it."""
 
+import secrets
+import sqlite3
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +23,16 @@ SLOW = {**WALK, "steps": 900, "pace": 0.05}
 
 
 @pytest.fixture(scope="module")
-def demo(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Api]:
+def demo_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("demo")
+
+
+@pytest.fixture(scope="module")
+def demo(demo_folder: Path) -> Iterator[Api]:
     """A demo whose visitors have a thousand steps an hour."""
-    data: Path = tmp_path_factory.mktemp("demo")
-    settings = Settings(data=data, job_niceness=0, token=TOKEN, demo=True, demo_steps_per_hour=1000)
+    settings = Settings(
+        data=demo_folder, job_niceness=0, token=TOKEN, demo=True, demo_steps_per_hour=1000
+    )
     with running(settings) as api:
         yield api
 
@@ -124,6 +133,76 @@ def test_a_repeated_start_is_one_run_and_one_charge(stranger: Api) -> None:
     assert third.json()["id"] == first.json()["id"]
     assert "set-cookie" not in third.headers
     assert stranger.get("/allowance")["runs"] == []
+
+
+def lost(api: Api, key: str) -> str:
+    """Start a training as a stranger whose answer is lost; return the id of the run."""
+    api.client.cookies.clear()
+    answer = api.call("POST", "/trainings", json=SHORT, headers={"Idempotency-Key": key})
+    assert answer.status_code == 202, answer.text
+    api.client.cookies.clear()
+    return str(answer.json()["id"])
+
+
+def test_a_first_start_whose_answer_was_lost_is_of_who_repeats_it(stranger: Api) -> None:
+    key = secrets.token_urlsafe(16)
+    run_id = lost(stranger, key)
+    again = stranger.call("POST", "/trainings", json=SHORT, headers={"Idempotency-Key": key})
+    assert again.json()["id"] == run_id
+    left = stranger.get("/allowance")
+    assert (left["runs"], left["steps_left"]) == ([run_id], 800)
+    stranger.finished(again.json())
+    assert stranger.call("DELETE", f"/trainings/{run_id}", headers=X).status_code == 204
+
+
+def test_it_is_also_of_one_who_has_become_a_visitor_meanwhile(stranger: Api) -> None:
+    key = secrets.token_urlsafe(16)
+    run_id = lost(stranger, key)
+    other = stranger.start("/trainings", SHORT)
+    cookie = dict(stranger.client.cookies)
+    for _ in range(2):
+        again = stranger.call("POST", "/trainings", json=SHORT, headers={"Idempotency-Key": key})
+        assert again.json()["id"] == run_id
+        assert dict(stranger.client.cookies) == cookie
+        left = stranger.get("/allowance")
+        assert sorted(left["runs"]) == sorted([run_id, other["id"]])
+        assert left["steps_left"] == 600
+
+
+def test_a_key_that_could_be_guessed_makes_no_one_the_owner(stranger: Api) -> None:
+    key = "0123456789abcde"
+    run_id = lost(stranger, key)
+    again = stranger.call("POST", "/trainings", json=SHORT, headers={"Idempotency-Key": key})
+    assert again.json()["id"] == run_id
+    assert "set-cookie" not in again.headers
+    assert stranger.get("/allowance")["runs"] == []
+    assert "none of yours" in refused(
+        stranger.call("POST", f"/trainings/{run_id}/stop", headers=X), 403
+    )
+
+
+def test_the_key_of_a_known_visitors_start_is_worth_nothing_to_another(stranger: Api) -> None:
+    stranger.start("/trainings", SHORT)
+    key = {"Idempotency-Key": secrets.token_urlsafe(16)}
+    mine = stranger.call("POST", "/trainings", json=SHORT, headers=key)
+    stranger.client.cookies.clear()
+    again = stranger.call("POST", "/trainings", json=SHORT, headers=key)
+    assert again.json()["id"] == mine.json()["id"]
+    assert "set-cookie" not in again.headers
+    assert stranger.get("/allowance")["runs"] == []
+
+
+def test_neither_the_key_of_a_request_nor_of_a_visitor_is_stored(
+    stranger: Api, demo_folder: Path
+) -> None:
+    key = secrets.token_urlsafe(16)
+    lost(stranger, key)
+    stranger.call("POST", "/trainings", json=SHORT, headers={"Idempotency-Key": key})
+    cookie = next(iter(stranger.client.cookies.values()))
+    with closing(sqlite3.connect(demo_folder / "hexapods.db")) as connection:
+        rows = "\n".join(connection.iterdump())
+    assert key not in rows
+    assert cookie not in rows
 
 
 def test_a_forged_cookie_is_a_new_visitor(stranger: Api) -> None:

@@ -8,7 +8,7 @@ import pytest
 from app.demo.visitors import Started, Visitors
 from app.jobs.jobs import Jobs
 from app.jobs.queue import MAX_OF_VISITORS
-from app.jobs.submissions import Start, TrainingStart
+from app.jobs.submissions import LaneStart, RaceStart, Start, TrainingStart
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Forbidden
 from app.storage.run import Run
@@ -16,7 +16,7 @@ from app.storage.run_ids import RunIds
 from hexapods.domain.errors import InvalidInput
 from tests.demo.clock import Clock
 from tests.demo.conftest import SMALL
-from tests.jobs.test_jobs import endless, training
+from tests.jobs.test_jobs import WALK, endless, training
 from tests.jobs.waiting import wait_for_progress, wait_until_ended
 from tests.postgresql import PostgresServer
 from tests.storage.stores import BACKENDS, database_url, opened
@@ -65,6 +65,25 @@ def test_a_visitor_is_known_by_a_key_of_which_a_hash_is_stored(
     forged = visitors.start("of-another-server", HOME, training(), stored(store))
     assert forged.key != "of-another-server"
     assert visitors.count == 2
+
+
+def test_all_runs_of_a_claimed_start_are_given_and_a_restart_keeps_that(
+    store: RunStore, clock: Clock, make_visitors: Callable[[], Visitors]
+) -> None:
+    visitors, secret = make_visitors(), "a-secret-of-a-request"
+    race = RaceStart(WALK, [LaneStart("q-learning", training=training(steps=5))], 5, 0)
+    first = visitors.start("", HOME, race, stored(store), secret)
+    clock.pass_time(hours=1)
+    kept = visitors.start(first.key, HOME, training(steps=50), stored(store))
+    other = visitors.start("", HOME, training(steps=50), stored(store))
+    assert visitors.claim(other.key, "not-" + secret, first.run.id) == ""
+    assert visitors.claim(other.key, secret, first.run.id) == other.key
+    for one in (visitors, make_visitors()):
+        assert len(one.use(other.key).kept) == 3
+        assert one.use(first.key).kept == (kept.run.id,)
+        assert one.owns(other.key, first.run.lane_training_ids[0] or "")
+        assert one.claim("", secret, first.run.id) == ""
+        assert one.claim("", secret, kept.run.id) == first.key
 
 
 def test_the_steps_of_an_hour_come_back_and_a_restart_forgets_none(

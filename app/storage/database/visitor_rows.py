@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
 from typing import NamedTuple
 
-from sqlalchemy import delete, insert, select
+from sqlalchemy import delete, insert, select, update
 
 from app.storage.database.engine import Database
 from app.storage.database.named_rows import all_rows
@@ -64,6 +64,13 @@ class VisitorRows:
         values = [row._asdict() for row in rows]
         statement = insert(VISITOR_RUNS)
         self._database.write(lambda connection: connection.execute(statement, values))
+
+    def give(self, run_ids: Collection[str], visitor: str) -> None:
+        """Make runs those of another visitor, all or none."""
+        statement = (
+            update(VISITOR_RUNS).where(VISITOR_RUNS.c.run_id.in_(run_ids)).values(visitor=visitor)
+        )
+        self._database.write(lambda connection: connection.execute(statement))
 
     def remove(self, run_ids: Collection[str]) -> None:
         """Delete the links of runs."""
