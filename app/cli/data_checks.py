@@ -104,6 +104,18 @@ def _robots(settings: Settings) -> str:
     return f"{len(robots):,} stored, which can all be read" if robots else "none is stored"
 
 
+def _visitors(settings: Settings) -> str:
+    with open_read_only(settings) as store:
+        count, damaged = len(store.visitors.all()), store.visitors.damaged()
+    if damaged:
+        named = "; ".join(f"run {one}: {why}" for one, why in [*damaged.items()][:_MAX_NAMED])
+        raise CheckFailed(
+            f"{len(damaged):,} of the links from runs to visitors cannot be read, {named}; a "
+            "server that starts on this data folder deletes these runs in time"
+        )
+    return f"{count:,} runs are of a demo's visitors" if count else "no run is of a demo's visitor"
+
+
 def _address(settings: Settings) -> str:
     where = f"{settings.host} port {settings.port}"
     if _can_listen(settings):
@@ -148,5 +160,6 @@ CHECKS: Mapping[str, Callable[[Settings], str]] = {
     "lock": _lock,
     "database": _database,
     "robots": _robots,
+    "visitors": _visitors,
     "address": _address,
 }

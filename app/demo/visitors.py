@@ -9,7 +9,7 @@ import threading
 from collections import defaultdict
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import suppress
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import NamedTuple
 
 from app.demo.allowance import HOUR, Allowance
@@ -28,6 +28,9 @@ ID_LENGTH = 12
 """Letters of the hash by which operators call a visitor."""
 MIN_SECRET = 16
 """Characters of an idempotency key from which on it is a secret, which can prove whose a run is."""
+
+
+_MAX_CLOCK_LEAD = timedelta(days=1)
 
 
 class Use(NamedTuple):
@@ -290,8 +293,14 @@ class Visitors:
         return list(self._rows.states(RUNNING))
 
     def made_before(self, time: datetime) -> list[VisitorRun]:
-        """Return the runs that were made before a time, races before the trainings they need."""
-        found = [one for one in list(self._runs.values()) if one.created_at <= time]
+        """Return the runs that were made before a time, races before the trainings they need.
+
+        A time that is further ahead than a clock may have been set back is damaged: such a run is
+        returned too, as its age is not known.
+        """
+        latest = self._now() + _MAX_CLOCK_LEAD
+        runs = list(self._runs.values())
+        found = [one for one in runs if one.created_at <= time or one.created_at > latest]
         return sorted(found, key=lambda one: (one.created_at, one.is_main), reverse=True)
 
     def forget(self, run_ids: Collection[str]) -> None:

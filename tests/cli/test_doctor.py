@@ -2,12 +2,16 @@
 
 import json
 import socket
+import sqlite3
+from contextlib import closing
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from app.storage.database.opening import DATABASE_FILE
+from app.storage.database.visitor_rows import VisitorRun
 from app.storage.server_lock import lock_folder, write_address_file
 from hexapods.domain.robot import document_of, robot
 from tests.cli.running import hexapods, in_process, output
@@ -41,7 +45,8 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     names = [line[2:].partition(":")[0] for line in lines]
     assert names[:5] == ["python", "packages", "physics", "browser", "cores"]
     assert names[5:7] == ["exports", "settings"]
-    assert names[7:] == ["data folder", "room", "lock", "database", "robots", "address"]
+    checked = ["data folder", "room", "lock", "database", "robots", "visitors", "address"]
+    assert names[7:] == checked
     assert list(tmp_path.iterdir()) == []
 
 
@@ -68,6 +73,21 @@ def test_stored_robots_that_cannot_be_read_are_named(tmp_path: Path) -> None:
     assert f"Rex ({made['id']})" in failures(found)["robots"]
     assert "put a backup" in failures(found)["robots"]
     assert found["database"][0]
+
+
+def test_runs_of_visitors_whose_rows_are_damaged_are_named(tmp_path: Path) -> None:
+    assert examined(tmp_path)["visitors"] == (True, "no run is of a demo's visitor")
+    with opened(tmp_path / "data", None) as store:
+        row = VisitorRun("1m8agbvj657z5", 64 * "a", 100, True, datetime.now(UTC))
+        store.visitors.add([row])
+    assert examined(tmp_path)["visitors"] == (True, "1 runs are of a demo's visitors")
+    with closing(sqlite3.connect(tmp_path / "data" / DATABASE_FILE)) as database, database:
+        database.execute("UPDATE visitor_runs SET created_at = 'yesterday', visitor = 'x'")
+    said = failures(examined(tmp_path))["visitors"]
+    assert said.startswith("1 of the links from runs to visitors")
+    assert "run 1m8agbvj657z5: created_at: " in said
+    assert "visitor: it is no SHA-256" in said
+    assert "a server that starts on this data folder" in said
 
 
 def test_unusable_data_folder_is_named(tmp_path: Path) -> None:

@@ -1,8 +1,11 @@
 """Clean-up: after a day nothing of a visitor is left, whatever the server did meanwhile."""
 
+import sqlite3
 from collections.abc import Callable
+from contextlib import closing
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -11,7 +14,9 @@ from app.demo.expiry import Expiry
 from app.demo.visitors import Visitors
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
+from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.store import RunStore
+from app.storage.database.visitor_rows import UNREADABLE
 from app.storage.errors import NotFound
 from app.storage.run import IdempotencyKey
 from tests.demo.clock import Clock
@@ -79,6 +84,121 @@ def test_a_server_that_was_down_deletes_when_it_starts(
     make_expiry(store, jobs, later, clock).sweep()
     assert not is_kept(store, run.id)
     assert store.visitors.all() == []
+
+
+class Restarted(NamedTuple):
+    """What a server finds that starts again."""
+
+    visitors: Visitors
+    expiry: Expiry
+    clock: Clock
+
+    def sweep_after(self, **time: float) -> None:
+        """Let time pass, and clean up."""
+        self.clock.pass_time(**time)
+        self.expiry.sweep()
+
+
+@pytest.fixture
+def after(
+    tmp_path: Path, store: RunStore, jobs: Jobs, clock: Clock, make_visitors: Callable[[], Visitors]
+) -> Callable[[str], Restarted]:
+    """Returns what a server finds that starts after a change of the database."""
+
+    def changed(statement: str) -> Restarted:
+        with closing(sqlite3.connect(tmp_path / DATABASE_FILE)) as database, database:
+            assert database.execute(statement).rowcount
+        later = make_visitors()
+        return Restarted(later, make_expiry(store, jobs, later, clock), clock)
+
+    return changed
+
+
+DAMAGE = {
+    "time": "UPDATE visitor_runs SET created_at = 'yesterday'",
+    "time without a day": "UPDATE visitor_runs SET created_at = '2026'",
+    "future": "UPDATE visitor_runs SET created_at = '9001-01-01 00:00:00'",
+    "steps": "UPDATE visitor_runs SET steps = 'many'",
+    "part": "UPDATE visitor_runs SET is_main = 'perhaps'",
+    "visitor": "UPDATE visitor_runs SET visitor = CAST(x'ff' AS TEXT)",
+    "all": "UPDATE visitor_runs SET visitor = 5, steps = 'x', is_main = 'x', created_at = 'x'",
+    "run": "UPDATE runs SET config = 'x', state = 'x', created_at = 'x'",
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_no_damage_lets_a_run_outlive_its_day(
+    damage: str,
+    store: RunStore,
+    visitors: Visitors,
+    jobs: Jobs,
+    after: Callable[[str], Restarted],
+) -> None:
+    run = wait_until_ended(store, start(visitors, jobs, race_of(training())).run)
+    kept = wait_until_ended(store, jobs.start(training()))
+    later = after(DAMAGE[damage])
+    later.sweep_after(days=1)
+    with pytest.raises(NotFound):
+        store.find(run.id)
+    assert store.find(kept.id).id == kept.id
+    assert sum(store.counts().values()) == 1
+    assert later.visitors.count == 0
+    assert store.visitors.all() == []
+
+
+@pytest.mark.parametrize("run_id", ["CAST(x'ff' AS TEXT)", "x'00ff'", "'not an id'", "''"])
+def test_a_row_with_no_id_of_a_run_keeps_no_other_run(
+    run_id: str,
+    store: RunStore,
+    visitors: Visitors,
+    jobs: Jobs,
+    after: Callable[[str], Restarted],
+) -> None:
+    run = wait_until_ended(store, start(visitors, jobs, training()).run)
+    columns = "visitor, steps, is_main, created_at"
+    later = after(
+        f"INSERT INTO visitor_runs (run_id, {columns}) SELECT {run_id}, {columns} FROM visitor_runs"
+    )
+    later.sweep_after(days=1)
+    assert not is_kept(store, run.id)
+    assert later.visitors.count == 0
+
+
+def test_who_made_a_run_is_known_though_another_part_of_its_row_is_damaged(
+    store: RunStore,
+    visitors: Visitors,
+    jobs: Jobs,
+    after: Callable[[str], Restarted],
+) -> None:
+    started = start(visitors, jobs, training())
+    run = wait_until_ended(store, started.run)
+    later = after(DAMAGE["steps"])
+    assert later.visitors.owns(started.key, run.id)
+    later.sweep_after(hours=23)
+    assert is_kept(store, run.id)
+
+
+def test_a_run_of_a_visitor_who_cannot_be_read_is_shown_to_operators_who_can_end_it(
+    store: RunStore,
+    visitors: Visitors,
+    jobs: Jobs,
+    after: Callable[[str], Restarted],
+) -> None:
+    run = wait_until_ended(store, start(visitors, jobs, training()).run)
+    later = after(DAMAGE["visitor"])
+    assert list(later.visitors.by_visitor()) == [UNREADABLE]
+    later.expiry.end_visitor(UNREADABLE)
+    assert not is_kept(store, run.id)
+
+
+def test_a_clock_that_is_set_back_deletes_nothing_early(
+    store: RunStore, jobs: Jobs, clock: Clock, make_visitors: Callable[[], Visitors]
+) -> None:
+    clock.pass_time(hours=23)
+    run = wait_until_ended(store, start(make_visitors(), jobs, training()).run)
+    clock.pass_time(hours=-23)
+    make_expiry(store, jobs, make_visitors(), clock).sweep()
+    assert is_kept(store, run.id)
 
 
 def test_what_still_runs_or_waits_is_stopped_and_deleted(

@@ -1,15 +1,23 @@
 """Rows of the `visitor_runs` table: runs of strangers who visit a demo."""
 
+import re
 from collections.abc import Collection, Mapping, Sequence
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import NamedTuple
 
 from sqlalchemy import delete, insert, select, update
 
 from app.storage.database.engine import Database
-from app.storage.database.named_rows import all_rows
+from app.storage.database.named_rows import ReadRow, read_rows
 from app.storage.database.schema import RUNS, VISITOR_RUNS
 from app.storage.run import STATES, State
+from hexapods.domain.text import visible
+
+UNREADABLE = "unreadable"
+"""Visitor of the runs of which that cannot be read; no key has such a hash."""
+
+
+_HASH = re.compile("[0-9a-f]{64}")
 
 
 class VisitorRun(NamedTuple):
@@ -30,6 +38,15 @@ class VisitorRun(NamedTuple):
     created_at: datetime
 
 
+_IF_DAMAGED = {
+    "visitor": UNREADABLE,
+    "steps": 0,
+    "is_main": False,
+    "created_at": datetime(1970, 1, 1, tzinfo=UTC),
+}
+"""In place of what cannot be read of a row. A run whose age is not known has lived long enough."""
+
+
 class VisitorRows:
     """Reads and writes the runs of visitors in a database."""
 
@@ -37,8 +54,34 @@ class VisitorRows:
         self._database = database
 
     def all(self) -> list[VisitorRun]:
-        """Return all that can be decoded, oldest first."""
-        return all_rows(self._database, VISITOR_RUNS, VisitorRun, VISITOR_RUNS.c.run_id)
+        """Return all, oldest first; what cannot be read of one is as in `_IF_DAMAGED`.
+
+        So each run is deleted in time: one that is left out here would stay for ever.
+        """
+        return [
+            VisitorRun(**{**_IF_DAMAGED, **one.values})
+            for one in self._read()
+            if "run_id" not in one.damaged
+        ]
+
+    def damaged(self) -> dict[str, str]:
+        """Return what cannot be read, a sentence each, by id of the run."""
+        return {
+            visible(str(one.values.get("run_id", "?"))): "; ".join(
+                f"{name}: {visible(reason)}" for name, reason in one.damaged.items()
+            )
+            for one in self._read()
+            if one.damaged
+        }
+
+    def _read(self) -> list[ReadRow]:
+        rows = read_rows(self._database, VISITOR_RUNS, VISITOR_RUNS.c.run_id)
+        for one in rows:
+            visitor = one.values.get("visitor", "")
+            if "visitor" not in one.damaged and not _HASH.fullmatch(visitor):
+                del one.values["visitor"]
+                one.damaged["visitor"] = "it is no SHA-256"
+        return rows
 
     def states(
         self, states: Collection[State] = STATES, *, visitor: str | None = None
