@@ -101,14 +101,18 @@ async def hexapod_error(request: Request, error: Exception) -> Response:
         return await _unexpected(request, error)
     match error:
         case Conflict(state=state):
-            return problem(status, sentence, state=state)
+            more: dict[str, Any] = {"state": state}
         case Busy(retry_after_s=seconds) | NotAnswering(retry_after_s=seconds):
-            return problem(status, sentence, headers={"Retry-After": str(seconds)})
+            more = {"headers": {"Retry-After": str(seconds)}}
         case StorageFailed():
-            return problem(status, sentence, headers={"Retry-After": str(_STORAGE_RETRY_S)})
+            more = {"headers": {"Retry-After": str(_STORAGE_RETRY_S)}}
         case ImpossibleLegs(legs=legs):
-            return problem(status, sentence, legs=list(legs))
-    return problem(status, sentence)
+            more = {"legs": list(legs)}
+        case InvalidInput(field=field) if field:
+            more = {"errors": [{"field": field, "detail": sentence}]}
+        case _:
+            more = {}
+    return problem(status, sentence, **more)
 
 
 async def _validation_error(request: Request, error: Exception) -> Response:

@@ -48,7 +48,11 @@ class RulesBody(Body):
         """
         given: dict[str, Any] = {name: getattr(self, name) for name in type(self).model_fields}
         worlds, robots = tuple(self.worlds), tuple(self.robots)
-        return TournamentRules(**{**given, "worlds": worlds, "robots": robots})
+        try:
+            return TournamentRules(**{**given, "worlds": worlds, "robots": robots})
+        except InvalidInput as error:
+            error.field = f"rules.{error.field}" if error.field else ""
+            raise
 
 
 # Robots walk in the gaits that suit them.
@@ -111,7 +115,9 @@ class EntryBody(Body):
         }
         for name, value in given.items():
             if value:
-                raise InvalidInput(f"{name} of a table are those of its training; leave {name} out")
+                raise InvalidInput(
+                    f"{name} of a table are those of its training; leave {name} out", field=name
+                )
 
 
 class EndBody(Body):

@@ -28,7 +28,7 @@ from app.storage.errors import Forbidden
 from app.tournaments.ended_file import file_of
 from app.tournaments.entered_tables import entry_of_training
 from app.tournaments.tournament import EnteredTable, Entrant, Tournament
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import InvalidInput, about
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.tournament_file import MEDIA_TYPE
 
@@ -195,8 +195,16 @@ def _entry(
     if training_id is None:
         return body.entry(), None
     body.check_of_training()
+    store, rules = services.store, tournament.rules
+    with about("training_id"):
+        _check_own(services, tournament, reader, training_id)
+        return entry_of_training(store, rules, training_id, body.agent, body.robot)
+
+
+def _check_own(
+    services: Services, tournament: Tournament, reader: Reader, training_id: str
+) -> None:
     seed = seed_of(tournament, reader)
     owner = services.rooms.owner_of(training_id)
     if reader is not None and owner != f"{tournament.room} {seed}":
         raise InvalidInput(f"you have no training {training_id!r} in the room; enter one of yours")
-    return entry_of_training(services.store, tournament.rules, training_id, body.agent, body.robot)

@@ -37,7 +37,9 @@ def entry_of_training(
     if run.state != "finished" or not isinstance(config, TrainingConfig):
         raise InvalidInput(f"training {training_id} is {run.state}; one that is finished may enter")
     if config.agent != agent:
-        raise InvalidInput(f"training {training_id} is of {config.agent}; name that as the agent")
+        raise InvalidInput(
+            f"training {training_id} is of {config.agent}; name that as the agent", field="agent"
+        )
     practised = _practised(store, run)
     if practised > rules.steps:
         raise InvalidInput(

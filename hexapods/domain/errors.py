@@ -1,6 +1,7 @@
 """Exception hierarchy. Each message is a sentence for the user that names the valid choices."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -23,7 +24,25 @@ def _restored(
 
 
 class InvalidInput(HexapodError):
-    """The user's input is invalid; the message names the valid choices."""
+    """The user's input is invalid; the message names the valid choices.
+
+    Attributes:
+        field: of the input, which is invalid; "" if it is not said, as where several do not fit.
+    """
+
+    def __init__(self, message: str = "", *, field: str = "") -> None:
+        super().__init__(message)
+        self.field = field
+
+
+@contextmanager
+def about(field: str) -> Iterator[None]:
+    """Say which field invalid input is about that is found within, unless it says so itself."""
+    try:
+        yield
+    except InvalidInput as error:
+        error.field = error.field or field
+        raise
 
 
 class UnknownName(InvalidInput):

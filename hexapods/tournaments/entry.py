@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from hexapods.agents.registry import check_problem, learns, registered, searches
-from hexapods.domain.errors import InvalidInput, TableMismatch, UnknownName
+from hexapods.domain.errors import InvalidInput, TableMismatch, UnknownName, about
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import Record
 from hexapods.domain.robot import AnyRobot
@@ -59,13 +59,16 @@ def training_of(entry: EntryConfig, rules: TournamentRules) -> TrainingConfig:
     if learns(entry.agent) and searches(entry.agent):
         # It would practise with a simulator of the draw's world.
         raise InvalidInput(
-            f"{entry.agent} learns and plans with a simulator; only one of both is judged here"
+            f"{entry.agent} learns and plans with a simulator; only one of both is judged here",
+            field="agent",
         )
     _check_steps(entry, rules)
     if entry.table is not None:
         _check_table_allowed(entry, rules)
     robot = rules.robot if entry.robot is None else entry.robot
-    walk: dict[str, Any] = vars(rules.walk()) | {"robot": robot, "gait": rules.gait_of(robot)}
+    with about("robot"):
+        gait = rules.gait_of(robot)
+    walk: dict[str, Any] = vars(rules.walk()) | {"robot": robot, "gait": gait}
     config = TrainingConfig(
         **walk,
         agent=entry.agent,
@@ -74,7 +77,8 @@ def training_of(entry: EntryConfig, rules: TournamentRules) -> TrainingConfig:
         evaluate_every=0,
         settings=complete(agent_settings(entry.agent), entry.settings, entry.agent),
     )
-    check_problem(entry.agent, problem_of(config), config.settings)
+    with about("agent"):
+        check_problem(entry.agent, problem_of(config), config.settings)
     return config
 
 
@@ -119,11 +123,12 @@ def _check_steps(entry: EntryConfig, rules: TournamentRules) -> None:
     if entry.steps is None:
         return
     if entry.table is not None or not learns(entry.agent):
-        raise InvalidInput(f"{entry.agent} practises no steps here; leave out steps")
+        raise InvalidInput(f"{entry.agent} practises no steps here; leave out steps", field="steps")
     if isinstance(entry.steps, bool) or not 1 <= entry.steps <= rules.steps:
         raise InvalidInput(
             f"steps must be from 1 to {rules.steps:,}, the budget of this tournament, not "
-            f"{entry.steps:,}"
+            f"{entry.steps:,}",
+            field="steps",
         )
 
 
@@ -138,5 +143,6 @@ def _check_table_allowed(entry: EntryConfig, rules: TournamentRules) -> None:
     if entry.settings:
         raise InvalidInput(
             "an entry with a table has the settings of its training; leave out "
-            + ", ".join(entry.settings)
+            + ", ".join(entry.settings),
+            field="settings",
         )

@@ -10,7 +10,7 @@ import numpy as np
 from annotated_types import Ge, Le
 
 from hexapods.domain.creatures import own_gait
-from hexapods.domain.errors import InvalidInput, Unreachable
+from hexapods.domain.errors import InvalidInput, Unreachable, about
 from hexapods.domain.gait import AnyGait, resolve
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.records import Record
@@ -64,14 +64,17 @@ class TournamentRules(WalkingProblem):
         if self.steps > MAX_BUDGET:
             raise InvalidInput(
                 f"steps must be from 1 to {MAX_BUDGET:,}, the largest budget of a tournament, not "
-                f"{self.steps:,}"
+                f"{self.steps:,}",
+                field="steps",
             )
         if self.world != UNDISTURBED:
             raise InvalidInput(
                 "a tournament has worlds, of which each draw has one; leave out disturbances"
             )
-        self._check_robots()
-        self._check_worlds()
+        with about("robots"):
+            self._check_robots()
+        with about("worlds"):
+            self._check_worlds()
 
     def _check_robots(self) -> None:
         if len(self.robots) > MAX_ROBOTS:

@@ -155,18 +155,23 @@ def test_what_is_entered_again_is_the_same_entry(school: Contest) -> None:
         ({"agent": "q-learning", "settings": {"alpha": 7}}, 422, "settings.alpha", "must be"),
         ({"agent": "q-learning", "settings": {"x": 7}}, 422, "settings", "x"),
         ({"agent": "q-learning", "settings": {"seed": 7}}, 422, "settings", "seed"),
-        ({"agent": "q-learning", "steps": 61}, 422, "", "from 1 to 60, the budget"),
+        ({"agent": "q-learning", "steps": 61}, 422, "steps", "from 1 to 60, the budget"),
         ({"agent": "q-learning", "steps": "many"}, 422, "steps", "whole number"),
-        ({"agent": "greedy", "steps": 5}, 422, "", "practises no steps"),
-        ({"agent": "greedy", "robot": "ant"}, 422, "", "nt is no robot of this tournament"),
+        ({"agent": "greedy", "steps": 5}, 422, "steps", "practises no steps"),
+        ({"agent": "greedy", "robot": "ant"}, 422, "robot", "nt is no robot of this tournament"),
         ({"agent": "greedy", "robot": {"x": 1}}, 422, "", "robot field"),
         ({"agent": "greedy", "observation": "seen"}, 422, "observation", "observation must be"),
         ({"agent": "greedy", "name": "me"}, 403, "", "by their name in the room"),
-        ({"agent": "q-learning", "training_id": "none"}, 422, "", "no training 'none' in the room"),
+        (
+            {"agent": "q-learning", "training_id": "none"},
+            422,
+            "training_id",
+            "no training 'none' in the room",
+        ),
         (
             {"agent": "q-learning", "training_id": "x", "steps": 5},
             422,
-            "",
+            "steps",
             "teps of a table are those of its training",
         ),
     ],
@@ -182,28 +187,35 @@ def test_entries_that_the_rules_do_not_allow_are_refused(
 
 
 @pytest.mark.parametrize(
-    ("body", "words"),
+    ("body", "field", "words"),
     [
-        ({"rules": {}}, "gait"),
-        ({"rules": {"draws": 2}}, "draws must be"),
-        ({"rules": {"steps": 6000}}, "steps must be from 1 to 5,000"),
-        ({"rules": {"worlds": ["nowhere"]}}, "nowhere"),
-        ({"rules": {"worlds": []}}, "worlds"),
-        ({"rules": {"worlds": ["flat", "flat"]}}, "is there twice"),
-        ({"rules": {"disturbances": []}}, "disturbances"),
-        ({"rules": {"robots": ["ant", "ant"]}}, "is there twice"),
-        ({"rules": {"seed": 5}}, "seed"),
-        ({"title": "x" * 101}, "title must be text"),
-        ({"title": "a\u202eb"}, "title must be text"),
-        ({"entries_per_hour": 0}, "entries_per_hour must be a whole number from 1 to 60"),
-        ({"room": "ABCDEF"}, "there is no room"),
+        ({"rules": {}}, "rules.gait", "gait"),
+        ({"rules": {"draws": 2}}, "rules.draws", "draws must be"),
+        ({"rules": {"steps": 6000}}, "rules.steps", "steps must be from 1 to 5,000"),
+        ({"rules": {"worlds": ["nowhere"]}}, "rules.worlds", "nowhere"),
+        ({"rules": {"worlds": []}}, "rules.worlds", "worlds"),
+        ({"rules": {"worlds": ["flat", "flat"]}}, "rules.worlds", "is there twice"),
+        ({"rules": {"disturbances": []}}, "rules", "disturbances"),
+        ({"rules": {"robots": ["ant", "ant"]}}, "rules.robots", "is there twice"),
+        ({"rules": {"seed": 5}}, "rules", "seed"),
+        ({"title": "x" * 101}, "title", "title must be text"),
+        ({"title": "a\u202eb"}, "title", "title must be text"),
+        (
+            {"entries_per_hour": 0},
+            "entries_per_hour",
+            "entries_per_hour must be a whole number from 1 to 60",
+        ),
+        ({"room": "ABCDEF"}, "", "there is no room"),
     ],
 )
-def test_rules_that_are_none_are_refused(school: Contest, body: dict[str, Any], words: str) -> None:
+def test_rules_that_are_none_are_refused(
+    school: Contest, body: dict[str, Any], field: str, words: str
+) -> None:
     rules = {**RULES, **body.pop("rules")} if body.get("rules") else body.pop("rules", RULES)
     answer = school.teacher.call("POST", "/tournaments", json={"rules": rules, **body})
     problem = refused(answer, 404 if "room" in body else 422)
     assert words.lower() in problem["detail"].lower()
+    assert [one["field"] for one in problem.get("errors", [])] == ([field] if field else [])
 
 
 def test_a_room_decides_who_may_know_and_enter(school: Contest) -> None:
@@ -282,7 +294,9 @@ def test_a_table_enters_whose_practice_is_known(school: Contest) -> None:
     first = teacher.finished(teacher.train(steps=40))
     second = teacher.finished(teacher.train(steps=40, continue_from=first["id"]))
     body = {"agent": "q-learning", "training_id": second["id"]}
-    refused(enter(teacher, tournament, **body), 422, "80 steps, with all that it continues")
+    told = "80 steps, with all that it continues"
+    problem = refused(enter(teacher, tournament, **body), 422, told)
+    assert problem["errors"] == [{"field": "training_id", "detail": problem["detail"]}]
     teacher.call("DELETE", f"/trainings/{first['id']}")
     refused(enter(teacher, tournament, **body), 422, "practice is not known")
     archive = teacher.call("GET", f"/trainings/{run['id']}/export").content
@@ -300,7 +314,11 @@ def test_a_table_enters_whose_practice_is_known(school: Contest) -> None:
     assert verify(file, workers=1) == []
     without = school.open(code, rules={"tables": False})
     body = {"agent": "q-learning", "training_id": longer["id"]}
-    refused(enter(teacher, without, **body), 422)
+    refused(enter(teacher, without, **body), 422, "budget")
+    short = teacher.finished(teacher.train(steps=10))
+    body = {"agent": "q-learning", "training_id": short["id"]}
+    problem = refused(enter(teacher, without, **body), 422, "o trained tables enter")
+    assert [one["field"] for one in problem["errors"]] == ["training_id"]
 
 
 def test_robots_of_the_rules_are_in_the_file(school: Contest) -> None:

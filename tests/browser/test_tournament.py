@@ -225,6 +225,8 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
     with school.api(TOKEN) as api, new_page(flat_browser) as page:
         trained = finished(api, "trainings", {**WALK, "steps": 10, "name": "Early riser"})
         finished(api, "trainings", {**WALK, "steps": 11})
+        later = {**WALK, "steps": 8, "name": "Late riser", "continue_from": trained["id"]}
+        finished(api, "trainings", later)
         dashboard = Dashboard(page, has_3d=False)
         dashboard.open(f"{school.address}?token={TOKEN}&simulator=kinematic")
         page.get_by_label("More", exact=True).click()
@@ -249,6 +251,11 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
         dashboard.button("Enter").click()
         expect(page.locator(":focus")).to_contain_text("A" * 30)
         assert dashboard.violations_in_both_themes() == []
+        is_refused_beside_the_field(page, "Late riser, 8 steps")
+        # The browser complains about each 422.
+        dashboard.complaints.clear()
+        watched.complaints.clear()
+        assert dashboard.violations_in_both_themes() == []
         enters_a_table(page, trained["name"])
         dashboard.button("End…").click()
         page.get_by_role("checkbox", name=re.compile("^Drop the")).check()
@@ -261,10 +268,22 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
         assert dashboard.complaints == []
 
 
+def is_refused_beside_the_field(page: Page, table: str) -> None:
+    """Enter with a training that is beyond the budget with the one that it continues."""
+    field = page.get_by_label("What enters")
+    field.select_option(label=table)
+    page.get_by_role("button", name="Enter", exact=True).click()
+    told = page.locator("#refused-training_id")
+    expect(told).to_contain_text("has practised 18 steps, with all that it continues")
+    expect(field).to_have_attribute("aria-invalid", "true")
+    expect(field).to_have_attribute("aria-describedby", "refused-training_id")
+    expect(page.locator(".problem")).to_have_count(0)
+
+
 def enters_a_table(page: Page, name: str) -> None:
     """Enter with a training that is within the budget; the longer one is not offered."""
     field = page.get_by_label("What enters")
-    expect(field.get_by_role("option")).to_have_count(2)
+    expect(field.get_by_role("option")).to_have_count(3)
     field.select_option(label=f"{name}, 10 steps")
     expect(page.get_by_label("Agent", exact=True)).to_have_count(0)
     page.get_by_role("button", name="Enter", exact=True).click()
