@@ -25,11 +25,12 @@ from hexapods.runs.tables import from_bytes
 from hexapods.tournaments import judging
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement
-from hexapods.tournaments.rules import Draw, TournamentRules
+from hexapods.tournaments.rules import DEFAULT_TRANSITIONS, Draw, TournamentRules
 from hexapods.tournaments.tournament_file import JudgedEntry, standings_of, tournament_file
 
 LIMIT_S = 120.0
-"""Processor time for one draw of an entry [s]; one that takes longer has failed on it."""
+"""Processor time for one draw of an entry [s]; one that takes longer has failed on it. It is more
+where a search may simulate more than by default."""
 _WALL_LIMIT_S = 1_800.0
 """After this time a draw begins again: its process gets no processor time, or waits."""
 MAX_DEATHS = 3
@@ -213,7 +214,8 @@ class Judge:
         except _GivenUp:
             return None
         except _OutOfTime:
-            return Judgement(0.0, f"It took over {self._limit_s:g} s of processor time.")
+            limit = limit_s(tournament.rules, self._limit_s)
+            return Judgement(0.0, f"It took over {limit:g} s of processor time.")
         except InvalidInput as error:
             return Judgement(0.0, message(str(error)))
         except TookTooLong:
@@ -233,12 +235,13 @@ class Judge:
     def _check(self, pool: ProcessPool, draw: _Draw) -> Callable[[], None]:
         """Return what is called again and again while a draw is judged."""
         before_s = {pid: processor_s(pid) for pid in pool.pids}
+        most_s = limit_s(draw.tournament.rules, self._limit_s)
 
         def check() -> None:
             if not self._tournaments.is_waiting(draw.tournament.id, draw.entry.number):
                 raise _GivenUp
             taken_s = (processor_s(pid) - before_s.get(pid, 0.0) for pid in pool.pids)
-            if max(taken_s, default=0.0) > self._limit_s:
+            if max(taken_s, default=0.0) > most_s:
                 raise _OutOfTime
 
         return check
@@ -279,6 +282,17 @@ def in_turn(tournament: Tournament) -> Sequence[TournamentEntry]:
             one.number,
         ),
     )
+
+
+def limit_s(rules: TournamentRules, usual_s: float) -> float:
+    """Return the processor time that a draw may take [s].
+
+    Args:
+        rules: of the tournament.
+        usual_s: for up to `DEFAULT_TRANSITIONS`; of more in proportion, or those that the rules
+            allow would fail on the machine of the judge, and not where they are repeated.
+    """
+    return usual_s * max(1.0, rules.transitions / DEFAULT_TRANSITIONS)
 
 
 def judge(task: JudgingTask) -> Judgement | None:

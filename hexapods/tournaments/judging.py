@@ -13,10 +13,6 @@ from hexapods.runs.tables import Checkpoint
 from hexapods.tournaments.entry import EntryConfig, check_table, training_of
 from hexapods.tournaments.rules import Draw, TournamentRules
 
-MAX_TRANSITIONS = 40_000
-"""Transitions that a search may simulate on a draw; a time would depend on the machine. Two steps
-ahead need 7,800 with three pairs of legs, three steps 94,200."""
-
 
 @dataclass(frozen=True)
 class Judgement(Record):
@@ -51,8 +47,8 @@ def judge(
     learned on another robot or in another simulator may race here: it is judged by how far it
     walks.
 
-    Physics that diverges, an agent that raises, or a search that simulates over `MAX_TRANSITIONS`,
-    is a judgement with a failure and 0 m.
+    Physics that diverges, an agent that raises, or a search that simulates more than the
+    rules allow, is a judgement with a failure and 0 m.
 
     Args:
         rules: of the tournament.
@@ -73,7 +69,7 @@ def judge(
         blocks=int(table is None and learns(entry.agent)),
         plans_with="nominal" if searches(entry.agent) else None,
         keep_learning=keeps_learning(entry.agent),
-        most_transitions=MAX_TRANSITIONS,
+        most_transitions=rules.transitions,
     )
     try:
         result = run_trial(trial, table=table)

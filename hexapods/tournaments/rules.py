@@ -17,7 +17,7 @@ from hexapods.domain.records import Record
 from hexapods.domain.robot import AnyRobot, Robot
 from hexapods.domain.settings import Setting
 from hexapods.domain.world import UNDISTURBED, lasting_world
-from hexapods.runs.config import PracticeSteps, Seed, WalkingProblem
+from hexapods.runs.config import RACE_STEPS, PracticeSteps, Seed, WalkingProblem
 
 MIN_DRAWS, MAX_DRAWS = 5, 100
 """The least is `experiments.statistics.MIN_RESAMPLED`, whose module imports SciPy for a second."""
@@ -26,6 +26,10 @@ MAX_ENTRIES = 300
 """Entries of a tournament, with the references: each is compared with each other."""
 MAX_BUDGET = 5_000
 """Steps of practice on a draw: a judge takes seconds for it."""
+MIN_TRANSITIONS, MAX_TRANSITIONS = 500, 100_000
+DEFAULT_TRANSITIONS = 40_000
+"""Two steps ahead need 7,800 with three pairs of legs, three steps 94,200. Of rules that do not say
+it, as there was no choice before, it is the limit."""
 _SECRET = re.compile("[0-9a-f]{64}")
 
 
@@ -41,6 +45,8 @@ class TournamentRules(WalkingProblem):
         gaits: of each of `robots`, in their order; empty for those that suit them, which are then
             written out, since what suits a stored robot is not known everywhere.
         tables: whether a trained table may enter.
+        transitions: the most that a search simulates on each draw; a time would depend on the
+            machine.
 
     Raises:
         UnknownName, InvalidInput: if a value is invalid.
@@ -58,6 +64,15 @@ class TournamentRules(WalkingProblem):
     robots: tuple[AnyRobot, ...] = ()
     gaits: tuple[AnyGait, ...] = ()
     tables: bool = False
+    transitions: Annotated[
+        int,
+        Ge(MIN_TRANSITIONS),
+        Le(MAX_TRANSITIONS),
+        Setting(
+            title="Transitions",
+            help="The most that a search may simulate on each draw; over it, it has failed there.",
+        ),
+    ] = DEFAULT_TRANSITIONS
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -71,10 +86,22 @@ class TournamentRules(WalkingProblem):
             raise InvalidInput(
                 "a tournament has worlds, of which each draw has one; leave out disturbances"
             )
+        self._check_transitions()
         with about("robots"):
             self._check_robots()
         with about("worlds"):
             self._check_worlds()
+
+    def _check_transitions(self) -> None:
+        """Check that greedy, which is judged in every tournament, can walk to the end."""
+        actions = len(self.resolved_gait.groups) * (len(self.grid) - 1)
+        fewest = RACE_STEPS * actions
+        if self.transitions < fewest:
+            raise InvalidInput(
+                f"transitions must be at least {fewest:,} here, as greedy simulates {actions} on "
+                f"each of its {RACE_STEPS} steps, not {self.transitions:,}",
+                field="transitions",
+            )
 
     def _check_robots(self) -> None:
         if len(self.robots) > MAX_ROBOTS:

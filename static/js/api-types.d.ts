@@ -4236,6 +4236,10 @@ export interface TournamentRules {
    * whether a trained table may enter.
    */
   tables: boolean;
+  /**
+   * The most that a search may simulate on each draw; over it, it has failed there.
+   */
+  transitions: number;
 }
 /**
  * A tournament, as who asks may see it.

@@ -192,6 +192,9 @@ def test_entries_that_the_rules_do_not_allow_are_refused(
         ({"rules": {}}, "rules.gait", "gait"),
         ({"rules": {"draws": 2}}, "rules.draws", "draws must be"),
         ({"rules": {"steps": 6000}}, "rules.steps", "steps must be from 1 to 5,000"),
+        ({"rules": {"transitions": 100_001}}, "rules.transitions", "from 500 to 100,000"),
+        ({"rules": {"transitions": "many"}}, "rules.transitions", "whole number"),
+        ({"rules": {"transitions": 500}}, "rules.transitions", "at least 600 here"),
         ({"rules": {"worlds": ["nowhere"]}}, "rules.worlds", "nowhere"),
         ({"rules": {"worlds": []}}, "rules.worlds", "worlds"),
         ({"rules": {"worlds": ["flat", "flat"]}}, "rules.worlds", "is there twice"),
@@ -216,6 +219,19 @@ def test_rules_that_are_none_are_refused(
     problem = refused(answer, 404 if "room" in body else 422)
     assert words.lower() in problem["detail"].lower()
     assert [one["field"] for one in problem.get("errors", [])] == ([field] if field else [])
+
+
+def test_how_much_a_search_may_simulate_is_a_rule(school: Contest) -> None:
+    assert school.open()["rules"]["transitions"] == 40_000
+    tournament = school.open(rules={"transitions": 7_799})
+    assert tournament["rules"]["transitions"] == 7_799
+    entered(school.teacher, tournament, agent="look-ahead", settings={"depth": 2})
+    ended = school.ended(tournament)
+    (failure,) = {one["failure"] for one in ended["entries"][3]["judgements"]}
+    assert "over 7,799 transitions" in failure
+    file = school.teacher.call("GET", f"/tournaments/{tournament['id']}/file").content
+    assert read_file(file, "file").rules.transitions == 7_799
+    assert verify(read_file(file, "file"), workers=1) == []
 
 
 def test_a_room_decides_who_may_know_and_enter(school: Contest) -> None:

@@ -237,6 +237,15 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
         dialog.get_by_label("Title").fill("Cup of operators")
         dialog.get_by_label("Most steps of practice").fill("10")
         dialog.get_by_label("Secret seeds").fill("8")
+        simulated = dialog.get_by_label("Transitions a search may simulate")
+        expect(simulated).to_have_value("40000")
+        simulated.fill("100001")
+        dashboard.button("Open the tournament").click()
+        expect(simulated).to_have_attribute("aria-invalid", "true")
+        about = dialog.locator("#about-tournament-transitions")
+        expect(about).to_contain_text("Transitions a search may simulate must be a whole number")
+        dashboard.complaints.clear()  # the browser complains about a 422
+        simulated.fill("8000")
         dialog.get_by_text("Other creatures that may enter").click()
         dialog.get_by_role("checkbox", name="Ant", exact=True).check()
         dialog.get_by_role("checkbox", name="Trained tables may enter").check()
@@ -246,6 +255,7 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
 
         watched = RoomPage(page, has_3d=False)
         watched.sees("Creatures that may enter")
+        watched.sees("A search simulates at most 8000 transitions on each")
         page.get_by_label("Name of the entry").fill("A" * 30)
         page.get_by_label("Creature", exact=True).select_option(index=1)
         dashboard.button("Enter").click()

@@ -21,6 +21,7 @@ beforeEach(() => (options.value = OPTIONS));
 const RULES = /** @type {TournamentRules} */ (/** @type {unknown} */ ({
   gait: "tripod", robot: { preset: "stiff" }, simulator: "mujoco", divisions: 3, grid_side_m: 0.08,
   tolerance: 0, steps: 500, draws: 20, worlds: ["flat", "limp-pair"], robots: [], gaits: [], tables: false,
+  transitions: 40_000,
 }));
 
 /** @type {(changes?: object) => RankedEntry} */
@@ -84,9 +85,10 @@ test("of many standings the best are shown, and those that are kept in any case"
 
 // ---- the tournament and its entries in words
 
-test("the rules are one sentence", () => {
+test("the rules are two sentences", () => {
   assert.equal(rulesInWords(RULES),
-    "Each entry practises at most 500 steps, then walks 50, on 20 secret seeds in flat ground, two limp legs.");
+    "Each entry practises at most 500 steps, then walks 50, on 20 secret seeds in flat ground, two limp legs. " +
+    "A search simulates at most 40\u202f000 transitions on each.");
   assert.match(walkInWords(RULES), / · foot grid 3 × 3 on 80\u00a0mm$/);
   assert.match(walkInWords({ ...RULES, tolerance: 0.1 }), / · build tolerance 0.1$/);
 });
@@ -188,7 +190,7 @@ test("a tournament is asked for with numbers, worlds and the page's walk", () =>
   const of = { ...list.draft.value, title: " Cup ", worlds: ["flat"], room: "KM4T7Q" };
   assert.deepEqual(list.requestOf(of, { gait: "tripod" }), {
     title: "Cup", room: "KM4T7Q", entries_per_hour: 6,
-    rules: { gait: "tripod", steps: 500, draws: 20, worlds: ["flat"], robots: [], tables: false },
+    rules: { gait: "tripod", steps: 500, draws: 20, transitions: 40000, worlds: ["flat"], robots: [], tables: false },
   });
   assert.equal(list.requestOf({ ...of, draws: "some" }, {}), null);
   assert.equal(list.requestOf({ ...of, worlds: [] }, {}), null);

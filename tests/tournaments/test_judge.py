@@ -5,12 +5,13 @@ import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 
 import psutil
 import pytest
 
 from app.storage.database.store import RunStore
-from app.tournaments.judge import MAX_DEATHS, Judge
+from app.tournaments.judge import MAX_DEATHS, Judge, limit_s
 from app.tournaments.tournament import Entrant, Tournament
 from app.tournaments.tournaments import Tournaments
 from hexapods.processes import processor_s
@@ -113,6 +114,12 @@ def test_a_draw_that_takes_too_long_has_failed(store: RunStore) -> None:
     judged = tournament.entries[2].in_order()
     assert {one.failure for one in judged} == {"It took over 0.2 s of processor time."}
     assert {one.distance_m for one in judged} == {0.0}
+
+
+def test_a_draw_has_more_time_where_searches_may_simulate_more() -> None:
+    assert limit_s(SLOW, 120.0) == 120.0
+    assert limit_s(replace(SLOW, transitions=5_000), 120.0) == 120.0
+    assert limit_s(replace(SLOW, transitions=100_000), 120.0) == 300.0
 
 
 def test_what_nobody_waits_for_is_given_up(store: RunStore) -> None:

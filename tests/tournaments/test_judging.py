@@ -171,6 +171,17 @@ def test_a_search_that_simulates_too_many_transitions_has_failed() -> None:
     assert judged.failure is not None
     assert "over 40,000 transitions" in judged.failure
     assert judge(rules_of(), three_steps, DRAW) == judged
+    assert judge(rules_of(transitions=100_000), three_steps, DRAW).failure is None
+    fewer = judge(rules_of(transitions=7_799), two_steps, DRAW)
+    assert fewer.failure is not None
+    assert "over 7,799 transitions" in fewer.failure
+    assert judge(rules_of(transitions=7_800), two_steps, DRAW).failure is None
+
+
+def test_the_fewest_transitions_of_rules_are_enough_for_greedy() -> None:
+    for given, fewest in (({}, 600), ({"divisions": 3}, 1_200)):
+        rules = rules_of(transitions=fewest, **given)
+        assert judge(rules, EntryConfig(agent="greedy"), DRAW).failure is None
 
 
 def test_a_judgement_is_a_number_and_0_where_it_failed() -> None:

@@ -6,12 +6,21 @@ from typing import Any
 
 import pytest
 
+from hexapods.domain.body import MAX_LEGS
 from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.grid import MAX_DIVISIONS, FootGrid
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import PRESETS, robot
 from hexapods.domain.world import named_world
 from hexapods.experiments.statistics import MIN_RESAMPLED
-from hexapods.tournaments.rules import MIN_DRAWS, TournamentRules, commitment_of, draws_of
+from hexapods.runs.config import RACE_STEPS
+from hexapods.tournaments.rules import (
+    DEFAULT_TRANSITIONS,
+    MIN_DRAWS,
+    TournamentRules,
+    commitment_of,
+    draws_of,
+)
 from tests.tournaments.sample_tournaments import SECRET, rules_of
 
 SMALL = robot({"preset": "dog", "body_height_m": 0.2})
@@ -44,6 +53,18 @@ def test_a_secret_is_64_digits(secret: str) -> None:
         draws_of(rules_of(), secret)
 
 
+def test_rules_of_before_there_was_a_limit_of_transitions_have_that_of_then() -> None:
+    plain = to_json(rules_of())
+    del plain["transitions"]
+    assert from_json(TournamentRules, plain) == rules_of(transitions=40_000)
+
+
+def test_the_limit_of_then_allows_greedy_everywhere() -> None:
+    # Each leg may be a group.
+    cells = len(FootGrid(divisions=MAX_DIVISIONS))
+    assert RACE_STEPS * MAX_LEGS * (cells - 1) <= DEFAULT_TRANSITIONS
+
+
 def test_the_gaits_of_creatures_are_written_out() -> None:
     rules = rules_of(robots=(PRESETS["ant"], PRESETS["dog"]))
     assert rules.gaits == ("tripod", "trot")
@@ -59,6 +80,11 @@ def test_the_gaits_of_creatures_are_written_out() -> None:
         ({"draws": 101}, "draws must be a whole number from 5 to 100, not 101"),
         ({"steps": 5001}, "steps must be from 1 to 5,000"),
         ({"steps": 0}, "steps must be"),
+        ({"transitions": 499}, "transitions must be a whole number from 500 to 100,000, not 499"),
+        ({"transitions": 100_001}, "transitions must be a whole number from 500 to 100,000"),
+        ({"transitions": True}, "transitions must be a whole number"),
+        ({"transitions": 599}, "transitions must be at least 600 here, .* greedy simulates"),
+        ({"divisions": 3, "transitions": 1199}, "transitions must be at least 1,200 here"),
         ({"worlds": ()}, "worlds must be 1 to 20, not 0"),
         ({"worlds": ("flat", "moon")}, "unknown world 'moon'"),
         ({"worlds": ("flat", "ice")}, "the kinematic simulator knows no friction"),

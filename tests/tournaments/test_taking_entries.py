@@ -1,5 +1,6 @@
 """Tournaments of a server: what is kept over a restart, also by PostgreSQL, and who enters when."""
 
+import json
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
@@ -14,6 +15,7 @@ from app.tournaments.judge import in_turn
 from app.tournaments.tournament import EnteredTable, Entrant, Tournament
 from app.tournaments.tournaments import MAX_OPEN, MAX_TABLES_BYTES, Tournaments
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.records import to_json
 from hexapods.domain.settings import SettingValues
 from hexapods.tournaments.entry import REFERENCES, EntryConfig
 from hexapods.tournaments.judging import Judgement
@@ -83,6 +85,19 @@ def test_all_is_there_after_a_restart(store: RunStore) -> None:
     for table_name in ("entries", "judgements", "tables"):
         count = text(f"SELECT count(*) FROM tournament_{table_name}")
         assert store.database.read(lambda c, q=count: c.execute(q).scalar_one()) == 0  # type: ignore[misc]
+
+
+def test_rules_that_were_stored_without_a_limit_of_transitions_have_that_of_then(
+    store: RunStore,
+) -> None:
+    tournaments = Tournaments(store)
+    tournament = opened_one(tournaments)
+    rules = to_json(RULES)
+    assert rules.pop("transitions") == 40_000
+    statement = text("UPDATE tournaments SET rules = :rules")
+    values = {"rules": json.dumps(rules)}
+    store.database.write(lambda connection: connection.execute(statement, values))
+    assert Tournaments(store).get(tournament.id) == tournament
 
 
 def by_number(tournament: Tournament) -> dict[int, Entrant]:

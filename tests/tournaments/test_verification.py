@@ -1,14 +1,16 @@
 """A tournament repeats to the last digit, and what was changed in its file is told."""
 
+import json
 from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
 
 from hexapods.domain import robot_documents
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.model_robot import model_robot
 from hexapods.domain.robot import PRESETS, document_of, read_document
+from hexapods.domain.settings import SettingValues
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.tournament_file import (
     JudgedEntry,
@@ -84,6 +86,20 @@ def test_a_tournament_of_an_imported_robot_repeats_where_it_is_not_known(importe
 
 def test_the_whole_repeats(kinematic: TournamentFile) -> None:
     assert sentences(kinematic) == []
+
+
+def test_a_file_of_before_the_limit_of_transitions_was_a_rule_repeats_with_that_of_then() -> None:
+    deep = EntryConfig(agent="look-ahead", settings=SettingValues({"depth": 3}))
+    content = json.loads(write_file(judged(rules_of(), [deep])))
+    assert content["entries"][3]["judgements"][0]["failure"] is not None
+    del content["rules"]["transitions"]
+    assert verify(read_file(json.dumps(content).encode(), "it"), workers=1) == []
+    content["rules"]["transitions"] = 100_000
+    told = verify(read_file(json.dumps(content).encode(), "it"), workers=1)
+    assert any("over 40,000 transitions" in one and "m repeated" in one for one in told)
+    content["rules"]["transitions"] = 100_001
+    with pytest.raises(DamagedFile, match="transitions must be"):
+        read_file(json.dumps(content).encode(), "it")
 
 
 def test_one_digit_of_a_distance_is_told(kinematic: TournamentFile) -> None:

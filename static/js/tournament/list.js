@@ -69,8 +69,8 @@ export function showForm() {
 
 /** As it was typed and chosen; numbers as texts. */
 const NEW = {
-  title: "", room: "", steps: "500", draws: "20", entries_per_hour: "6", worlds: /** @type {string[]} */ ([]),
-  robots: /** @type {string[]} */ ([]), tables: false,
+  title: "", room: "", steps: "500", draws: "20", transitions: "40000", entries_per_hour: "6",
+  worlds: /** @type {string[]} */ ([]), robots: /** @type {string[]} */ ([]), tables: false,
 };
 
 /** @typedef {typeof NEW} NewTournament */
@@ -91,10 +91,13 @@ export const toggled = (list, name, all) =>
 /** The server knows the upper limits, and refuses more. @type {Limits} */
 const AT_LEAST_ONE = { minimum: 1, maximum: null, excludes_minimum: false, excludes_maximum: false };
 
-export const NUMBERS = /** @type {const} */ (["steps", "draws", "entries_per_hour"]);
+export const NUMBERS = /** @type {const} */ (["steps", "draws", "transitions", "entries_per_hour"]);
 
 /** @type {Record<string, string>} */
-export const TITLES = { steps: "Most steps of practice", draws: "Secret seeds", entries_per_hour: "Entries per hour" };
+export const TITLES = {
+  steps: "Most steps of practice", draws: "Secret seeds", transitions: "Transitions a search may simulate",
+  entries_per_hour: "Entries per hour",
+};
 
 /** A sentence of the server, with the names of this form. @param {string} message */
 export const inFormWords = (message) =>
@@ -114,12 +117,13 @@ export const walk = computed(() => Object.fromEntries(WALK.map((field) => [field
  * @param {Record<string, unknown>} walking the walking problem
  */
 export function requestOf(of, walking) {
-  const [steps, draws, perHour] = NUMBERS.map((name) => readNumber(of, name).value);
-  if (steps === undefined || draws === undefined || perHour === undefined || of.worlds.length === 0) return null;
+  const numbers = NUMBERS.map((name) => [name, readNumber(of, name).value]);
+  if (numbers.some(([, value]) => value === undefined) || of.worlds.length === 0) return null;
+  const { entries_per_hour: perHour, ...ofRules } = Object.fromEntries(numbers);
   const { worlds, robots, tables } = of;
   return {
     title: of.title.trim(), ...(of.room ? { room: of.room } : {}), entries_per_hour: perHour,
-    rules: { ...walking, steps, draws, worlds, robots, tables },
+    rules: { ...walking, ...ofRules, worlds, robots, tables },
   };
 }
 

@@ -14,14 +14,15 @@ const TO = "–";
 // ---- the tournament
 
 /** @param {Tournament["rules"]} rules */
-export function rulesInWords({ steps, draws, worlds }) {
+export function rulesInWords({ steps, draws, worlds, transitions }) {
   const where = worlds.map((world) => worldTitle(world).toLowerCase()).join(", ");
   return `Each entry practises at most ${count(steps, "step")}, then walks ${RACE_STEPS}, ` +
-    `on ${count(draws, "secret seed")} in ${where}.`;
+    `on ${count(draws, "secret seed")} in ${where}. ` +
+    `A search simulates at most ${count(transitions, "transition")} on each.`;
 }
 
 /** On which robot all walk, and how: "Stiff · Left-right, opposite · MuJoCo physics · foot grid 3 × 3". */
-/** @param {Omit<Tournament["rules"], "steps" | "draws" | "worlds" | "robots" | "tables">} walk */
+/** @param {Omit<Tournament["rules"], "steps" | "draws" | "worlds" | "robots" | "tables" | "transitions">} walk */
 export function walkInWords({ gait, robot, simulator, divisions, grid_side_m, tolerance }) {
   const grid = `foot grid ${divisions} × ${divisions} on ${Math.round(1000 * grid_side_m)}\u00a0mm`;
   return [
