@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Download, Page, expect
+from playwright.sync_api import Browser, Download, Locator, Page, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.rooms import (
@@ -237,15 +237,7 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
         dialog.get_by_label("Title").fill("Cup of operators")
         dialog.get_by_label("Most steps of practice").fill("10")
         dialog.get_by_label("Secret seeds").fill("8")
-        simulated = dialog.get_by_label("Transitions a search may simulate")
-        expect(simulated).to_have_value("40000")
-        simulated.fill("100001")
-        dashboard.button("Open the tournament").click()
-        expect(simulated).to_have_attribute("aria-invalid", "true")
-        about = dialog.locator("#about-tournament-transitions")
-        expect(about).to_contain_text("Transitions a search may simulate must be a whole number")
-        dashboard.complaints.clear()  # the browser complains about a 422
-        simulated.fill("8000")
+        limits_searches(dashboard, dialog)
         dialog.get_by_text("Other creatures that may enter").click()
         dialog.get_by_role("checkbox", name="Ant", exact=True).check()
         dialog.get_by_role("checkbox", name="Trained tables may enter").check()
@@ -256,15 +248,15 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
         watched = RoomPage(page, has_3d=False)
         watched.sees("Creatures that may enter")
         watched.sees("A search simulates at most 8000 transitions on each")
+        is_refused_beside_the_field(page, "Late riser, 8 steps")
+        assert dashboard.violations_in_both_themes() == []
+        dashboard.complaints.clear()  # the browser complains about each 422
+        watched.complaints.clear()
+        page.get_by_label("What enters").select_option(index=0)
         page.get_by_label("Name of the entry").fill("A" * 30)
         page.get_by_label("Creature", exact=True).select_option(index=1)
         dashboard.button("Enter").click()
         expect(page.locator(":focus")).to_contain_text("A" * 30)
-        assert dashboard.violations_in_both_themes() == []
-        is_refused_beside_the_field(page, "Late riser, 8 steps")
-        # The browser complains about each 422.
-        dashboard.complaints.clear()
-        watched.complaints.clear()
         assert dashboard.violations_in_both_themes() == []
         enters_a_table(page, trained["name"])
         dashboard.button("End…").click()
@@ -276,6 +268,19 @@ def test_an_operator_opens_one_from_the_menu_and_deletes_it(
         dashboard.button("Delete the tournament").click()
         expect(page).to_have_url(school.address)
         assert dashboard.complaints == []
+
+
+def limits_searches(dashboard: Dashboard, dialog: Locator) -> None:
+    """Ask for more transitions of a search than there may be, then for fewer."""
+    simulated = dialog.get_by_label("Transitions a search may simulate")
+    expect(simulated).to_have_value("40000")
+    simulated.fill("100001")
+    dashboard.button("Open the tournament").click()
+    expect(simulated).to_have_attribute("aria-invalid", "true")
+    about = dialog.locator("#about-tournament-transitions")
+    expect(about).to_contain_text("Transitions a search may simulate must be a whole number")
+    dashboard.complaints.clear()  # the browser complains about each 422
+    simulated.fill("8000")
 
 
 def is_refused_beside_the_field(page: Page, table: str) -> None:
