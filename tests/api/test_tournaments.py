@@ -292,6 +292,26 @@ def test_names_are_those_that_the_room_shows(school: Contest) -> None:
     assert name not in file.text
 
 
+def test_of_a_room_that_is_deleted_its_tournament_stays_without_names(school: Contest) -> None:
+    services: Services = school.app.state.services
+    code = school.room(TRAINING_CARD)
+    pupil, anyone = school.joined(code), school.pupil()
+    run = school.finished(pupil.call("POST", f"/rooms/{code}/runs").json())
+    name = pupil.get(f"/rooms/{code}")["me"]["name"]
+    tournament = school.open(code)
+    entered(pupil, tournament, agent="q-learning", training_id=run["id"])
+    # As the clean-up of a demo deletes it after a day without use.
+    school.teacher.call("DELETE", f"/trainings/{run['id']}")
+    services.rooms.forget(code)
+    view = school.ended(tournament)
+    assert [one["name"] for one in view["entries"]][3] is None
+    assert [one["is_own"] for one in school.look(tournament, anyone)["entries"]] == [False] * 4
+    file = anyone.call("GET", f"/tournaments/{tournament['id']}/file")
+    assert name not in file.text
+    assert read_file(file.content, "file").entries[3].name == "Entry 3"
+    assert verify(read_file(file.content, "file"), workers=1) == []
+
+
 def test_a_table_enters_whose_practice_is_known(school: Contest) -> None:
     code = school.room(TRAINING_CARD)
     one, other = school.joined(code), school.joined(code)

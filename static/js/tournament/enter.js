@@ -38,6 +38,10 @@ export function Enter() {
   `;
 }
 
+/** Told before one enters: `hexapods verify` needs it, and other entries are compared with it. */
+const KEPT = "At the end everybody sees what you entered. " +
+  "It stays in the result after the room is gone, without your name.";
+
 function Fields() {
   const { rules, own, is_operator } = known();
   const { body, mistakes } = requestOf(draft.value, rules, tables.value ?? []);
@@ -58,7 +62,7 @@ function Fields() {
         ${rules.robots.length > 0 && html`<${RobotField} />`}
         <${Settings} mistakes=${mistakes} />
       `}
-      ${is_operator && html`<${NameField} />`}
+      ${is_operator ? html`<${NameField} />` : html`<p class="fine dim">${KEPT}</p>`}
       ${own.reason && own.left !== 0 && html`<p role="status">${own.reason}</p>`}
       <button class="primary" type="submit" aria-disabled=${canEnter ? undefined : "true"}>
         ${busy.value.enter ? "Entering…" : "Enter"}
