@@ -195,7 +195,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         judge=Judge(contests, max(1, cores() // 2), _judges_niceness(settings)),
         joins=RateLimiter(JOINS, JOINS_PER_S),
         visitors=of_visitors,
-        expiry=Expiry(store, jobs, of_visitors, rooms if settings.demo else None),
+        expiry=Expiry(store, jobs, of_visitors, rooms if settings.demo else None, contests),
     )
     app.state.work_slots = WorkSlots()
     app.state.metrics = monitoring.registry_of(app.state.services)

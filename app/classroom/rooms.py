@@ -91,6 +91,10 @@ class Rooms:
         with self._lock:
             return list(self._rooms.values())
 
+    def codes(self) -> list[str]:
+        """Return the codes of all rooms, oldest first."""
+        return [room.code for room in self.all()]
+
     def get(self, code: str) -> Room:
         """Return a room, which may have ended, by its code as it was typed.
 

@@ -24,6 +24,9 @@ _logger = logging.getLogger(__name__)
 class RoomCleaner(Protocol):
     """Rooms of classes, of which ended and forgotten ones are deleted."""
 
+    def codes(self) -> Collection[str]:
+        """Return the codes of all rooms."""
+
     def last_used_before(self, time: datetime) -> list[str]:
         """Return the codes of the rooms in which nothing has happened since."""
 
@@ -32,6 +35,16 @@ class RoomCleaner(Protocol):
 
     def forget(self, code: str) -> None:
         """End a room, and delete all that is known of it."""
+
+
+class TournamentCleaner(Protocol):
+    """Tournaments, of which those that rooms have left behind are deleted."""
+
+    def left_behind(self, time: datetime, codes: Collection[str]) -> list[str]:
+        """Return the ids of those opened by then in rooms other than these."""
+
+    def delete(self, tournament_id: str) -> None:
+        """Delete a tournament with its entries."""
 
 
 class Expiry:
@@ -47,6 +60,7 @@ class Expiry:
         jobs: Jobs,
         visitors: Visitors,
         rooms: RoomCleaner | None,
+        tournaments: TournamentCleaner,
         *,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
         now_s: Callable[[], float] = time.monotonic,
@@ -57,11 +71,14 @@ class Expiry:
             store: store of the runs.
             jobs: stops and deletes runs.
             visitors: whose runs are whose, and for how long.
-            rooms: rooms of classes that do not outlive a day either; None to keep them.
+            rooms: rooms of classes that do not outlive a day either; None to keep them, and their
+                tournaments.
+            tournaments: tournaments, whose entries are of those who were in a room.
             now: the clock, with time zone.
             now_s: monotonic clock [s].
         """
         self._store, self._jobs, self._visitors, self._rooms = store, jobs, visitors, rooms
+        self._tournaments = tournaments
         self._now, self._now_s = now, now_s
         self._running_since_s: dict[str, float] = {}
 
@@ -116,6 +133,11 @@ class Expiry:
                 _logger.warning("the room %s is deleted later: %s", code, error)
             else:
                 gone.append(code)
+        for one in self._tournaments.left_behind(before, rooms.codes()):
+            try:
+                self._tournaments.delete(one)
+            except HexapodError as error:
+                _logger.warning("the tournament %s is deleted later: %s", one, error)
         return gone
 
     def _deleted(self, run_ids: Iterable[str]) -> Collection[str]:

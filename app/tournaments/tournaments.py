@@ -7,7 +7,7 @@ import logging
 import math
 import secrets
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
@@ -119,6 +119,14 @@ class Tournaments:
     def of_room(self, code: str) -> list[Tournament]:
         """Return the tournaments of a room, oldest first."""
         return [one for one in self.all() if one.room == code]
+
+    def left_behind(self, time: datetime, codes: Collection[str]) -> list[str]:
+        """Return the ids of those opened by then in rooms other than these."""
+        return [
+            one.id
+            for one in self.all()
+            if one.room is not None and one.room not in codes and one.created_at <= time
+        ]
 
     def get(self, tournament_id: str) -> Tournament:
         """Return a tournament.

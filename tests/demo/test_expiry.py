@@ -19,10 +19,14 @@ from app.storage.database.store import RunStore
 from app.storage.database.visitor_rows import UNREADABLE
 from app.storage.errors import NotFound
 from app.storage.run import IdempotencyKey
+from app.tournaments.tournament import Entrant
+from app.tournaments.tournaments import Tournaments
+from hexapods.tournaments.entry import EntryConfig
 from tests.demo.clock import Clock
 from tests.demo.test_visitors import start
 from tests.jobs.test_jobs import WALK, endless, training
 from tests.jobs.waiting import wait_for_progress, wait_until, wait_until_ended
+from tests.tournaments.sample_tournaments import rules_of
 
 
 @pytest.fixture
@@ -33,7 +37,8 @@ def expiry(store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock) -> Exp
 def make_expiry(
     store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock, rooms: Rooms | None = None
 ) -> Expiry:
-    return Expiry(store, jobs, visitors, rooms, now=clock.time, now_s=clock.seconds)
+    contests = Tournaments(store, now=clock.time)
+    return Expiry(store, jobs, visitors, rooms, contests, now=clock.time, now_s=clock.seconds)
 
 
 def race_of(training: TrainingStart) -> RaceStart:
@@ -301,6 +306,27 @@ def test_a_visitor_is_ended_by_the_operator(
     assert store.counts() == {"finished": 1}
     with pytest.raises(NotFound, match="GET /api/v1/visitors"):
         expiry.end_visitor(visitor_id)
+
+
+def test_a_tournament_goes_a_day_after_it_was_opened_in_a_room_that_is_gone(
+    store: RunStore, jobs: Jobs, visitors: Visitors, clock: Clock
+) -> None:
+    rooms, contests = Rooms(store, now=clock.time), Tournaments(store, now=clock.time)
+    code = rooms.create(None).code
+    rules = rules_of(steps=20)
+    left, own = contests.create(rules, "", code, 6), contests.create(rules, "", None, 6)
+    contests.enter(left.id, Entrant(0), EntryConfig(agent="q-learning"))
+    expiry = make_expiry(store, jobs, visitors, clock, rooms)
+    rooms.end(code)
+    rooms.delete(code)
+    clock.pass_time(hours=20)
+    expiry.sweep()
+    assert len(Tournaments(store).all()) == 2
+    clock.pass_time(hours=5)
+    make_expiry(store, jobs, visitors, clock).sweep()
+    assert len(Tournaments(store).all()) == 2, "a server that is no demo keeps it"
+    expiry.sweep()
+    assert [one.id for one in Tournaments(store).all()] == [own.id]
 
 
 def test_a_room_that_nobody_has_used_for_a_day_goes_with_its_runs(

@@ -39,8 +39,7 @@ export function Enter() {
 }
 
 /** Told before one enters: `hexapods verify` needs it, and other entries are compared with it. */
-const KEPT = "At the end everybody sees what you entered. " +
-  "It stays in the result after the room is gone, without your name.";
+const KEPT = "At the end everybody sees what you entered, and without your name once the room is gone.";
 
 function Fields() {
   const { rules, own, is_operator } = known();
