@@ -12,7 +12,7 @@ import { canPlay, isPlaying, isRaceRun, laneTables, matchingTable, myWork, shown
 import { isActive, isOperator, isVisitor, markAsMine, mayStart } from "./selectors.js";
 import { closeReplay, playReplay, seekReplay, setReplayClock, setReplaySpeed } from "./replay.js";
 import { formRobot } from "./robots.js";
-import { agentOf, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
+import { agentOf, isClosed, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
   commonStage, markDeleted, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
 } from "./store.js";
@@ -92,9 +92,9 @@ export const missingLane = computed(() => {
   if (!hasLearner.value || lanes.includes(agent)) return null;
   const { title } = agentOf(agent);
   const others = listed(racingLearners.value.map((name) => agentOf(name).title));
-  const isFull = lanes.length >= (limitsOf("lanes").maximum ?? Infinity);
+  const isFixed = lanes.length >= (limitsOf("lanes").maximum ?? Infinity) || isClosed("lanes");
   const action = { label: `Add ${title}`, run: () => setField("lanes", [agent, ...lanes]) };
-  return { words: `${title} is not in the race; ${others} will learn and race.`, action: isFull ? null : action };
+  return { words: `${title} is not in the race; ${others} will learn and race.`, action: isFixed ? null : action };
 });
 
 /** "Practise 500 more" */

@@ -13,6 +13,8 @@ from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(400)
 
+PICK = {"lane": 0, "what": "leg", "leg": 1, "x": 200, "y": 200}
+"""What the 3D view says of a leg that was clicked."""
 SETTINGS = {"depth": "try", "tab": "train", "simulator": "kinematic", "steps": 100, "alpha": 0.5}
 
 
@@ -138,6 +140,37 @@ def closes_what_the_card_does_not_open(dashboard: Dashboard) -> None:
     expect(page.locator("#field-steps")).to_have_value("100")
     expect(page.get_by_text("alhpa=0.5")).to_be_visible()
     expect(page.locator("#field-observation")).to_be_disabled()
+    expect(page.locator("#field-lanes")).to_be_disabled()
+    closes_what_happens_to_the_robots(dashboard, link)
+
+
+def closes_what_happens_to_the_robots(dashboard: Dashboard, link: str) -> None:
+    """The world, what happens in the next run, and what can be let happen to the one that runs."""
+    page = dashboard.page
+    dashboard.open(f"{link}?depth=study&tab=world&steps=2000&pace=1&simulator=mujoco")
+    page.get_by_role("dialog", name="How far?").get_by_role("button", name="To the page").click()
+    dashboard.actions.locator("button.primary").click()
+    now = page.get_by_role("region", name="Disturbances now")
+    closed = (
+        page.locator("#field-world"),
+        page.get_by_label("Add a disturbance"),
+        now.get_by_label("A press on a leg"),
+        now.get_by_role("button", name="Leg 1", exact=True),
+        now.get_by_label("Slope", exact=True),
+    )
+    for one in closed:
+        expect(one).to_be_disabled()
+    dashboard.stand_in_for_stage({"type": "hexapods:pick", "pick": PICK})
+    menu = page.get_by_role("region", name=re.compile(", leg 1$"))
+    expect(menu).to_contain_text("The lesson's card")
+    expect(menu.get_by_role("button", name="Let it happen")).to_have_count(0)
+    assert dashboard.violations_in_both_themes() == []
+    menu.get_by_role("button", name="Open all settings").click()
+    expect(menu.get_by_role("button", name="Let it happen")).to_be_visible()
+    for one in closed:
+        expect(one).to_be_enabled()
+    page.keyboard.press("Escape")
+    dashboard.button("Stop").click()
 
 
 def imports_it(other: Dashboard, elsewhere: Serving, file: Path) -> str:

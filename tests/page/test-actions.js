@@ -3,10 +3,11 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { setImmediate } from "node:timers/promises";
 import {
-  pause, pending, problems, seekIn, setStage, stop, togglePause, togglePlaying,
+  missingLane, pause, pending, problems, seekIn, setStage, stop, togglePause, togglePlaying,
 } from "../../static/js/actions.js";
-import { form } from "../../static/js/form.js";
+import { form, setField } from "../../static/js/form.js";
 import { practiseAtPaceOfPicture, tune } from "../../static/js/live-changes.js";
+import { cardMay, isFreed } from "../../static/js/settings.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -141,4 +142,16 @@ test("a change of a training waits for the answer to the one before, which it co
   assert.match(JSON.stringify(sent), /0\.5.*0\.7/);
   answers.shift()?.(run);
   await passes();
+});
+
+test("no lane is offered where the card of a lesson keeps the lanes as they are", () => {
+  setField("lanes", ["tracer", "greedy"]);
+  assert.equal(missingLane.value?.action?.label, "Add Learner");
+  cardMay.value = { alpha: {} };
+  assert.deepEqual([missingLane.value?.words, missingLane.value?.action],
+    ["Learner is not in the race; Tracer will learn and race.", null]);
+  isFreed.value = true;
+  assert.ok(missingLane.value?.action, "the reader has opened all settings");
+  [cardMay.value, isFreed.value] = [null, false];
+  setField("lanes", ["learner", "greedy"]);
 });

@@ -5,7 +5,9 @@ import { refusedFields } from "../actions.js";
 import { enter, form, setField, wrong } from "../form.js";
 import { parseSetting } from "../parse.js";
 import { shareOf } from "../scale.js";
-import { bounded, choiceTitle, fullTitle, isAllowed, isClosed, kindOf, settingOf, sliderOf } from "../settings.js";
+import {
+  bounded, choiceTitle, closesSome, fullTitle, isAllowed, isClosed, isFreed, kindOf, settingOf, sliderOf,
+} from "../settings.js";
 import { options } from "../store.js";
 import { html, Mistake } from "./elements.js";
 
@@ -20,6 +22,14 @@ import { html, Mistake } from "./elements.js";
 export const closable = (field, drawn, isOfForm = true) => (isOfForm && isClosed(field)
   ? html`<fieldset class="closed" disabled>${drawn}</fieldset>`
   : drawn);
+
+/** What the card of a lesson closes, and the way out. @param {{ what?: string }} props */
+export const OfCard = ({ what = "what is grey" }) => closesSome.value && html`
+  <div class="steering" role="note">
+    <p>The lesson's card sets ${what}. Nothing is locked here.</p>
+    <button type="button" class="link" onClick=${() => (isFreed.value = true)}>Open all settings</button>
+  </div>
+`;
 
 // ---- help: a sentence below each field
 

@@ -6,10 +6,12 @@ import { closeLegs, legPoints, legsOf, picked, pickLeg } from "../legs.js";
 import { disturb } from "../live-changes.js";
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
+import { isClosed } from "../settings.js";
 import { scene } from "../store.js";
 import { positionInWords, scale } from "../time.js";
 import { openTab } from "../workspace.js";
 import { html } from "./elements.js";
+import { OfCard } from "./fields.js";
 import { Problem } from "./foot.js";
 import { firstWish, legKinds } from "./world-controls.js";
 
@@ -98,6 +100,7 @@ function Offer({ at }) {
   const training = liveTraining.value;
   const race = heldRace.value;
   if (!isOperator.value) return html`<p class="dim">The operator disturbs the robots.</p>`;
+  if (isClosed("disturb")) return html`<${OfCard} what="what happens to the robots" />`;
   if (training) return html`<${OfTraining} run=${training} at=${at} />`;
   if (race) return html`<${OfRace} race=${race} at=${at} />`;
   return html`<p class="dim">Hold a race that has been computed, or start a training: then this can be disturbed.</p>`;

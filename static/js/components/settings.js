@@ -142,9 +142,10 @@ function LearnerSettings() {
   const others = Object.keys(live).filter((name) => !acting.includes(name));
   return [
     ...main.map((one) => (one.live && one.live !== one.name && one.live in live
-      ? html`<${Present} key=${one.live} name=${one.live} setting=${live[one.live]} run=${run} />`
+      ? closable(one.name, html`<${Present} key=${one.live} name=${one.live} setting=${live[one.live]} run=${run} />`)
       : html`<${Chosen} key=${one.name} one=${one} run=${one.name in live ? run : null} />`)),
-    ...others.map((name) => html`<${Present} key=${name} name=${name} setting=${live[name]} run=${run} />`),
+    ...others.map((name) =>
+      closable(name, html`<${Present} key=${name} name=${name} setting=${live[name]} run=${run} />`)),
     run && isOperator.value && html`<${NextRates} key="next-rates" run=${run} />`,
   ];
 }
@@ -290,7 +291,7 @@ function robotChosen() {
 
 const RobotGroup = () => html`
   <div class="more-fields">
-    <div class="field"><${RobotField} /><${EditBody} isNamed=${false} /></div>
+    <div class="field"><${RobotField} />${closable("robot", html`<${EditBody} isNamed=${false} />`)}</div>
     <${SelectField} field="simulator" label="Simulator"
       choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
     <${Figure} field="divisions" />
@@ -363,7 +364,7 @@ function Lanes() {
     enter("lanes", chosen.filter((one) => names.includes(one)).join(","));
   };
   return html`
-    <fieldset class="field wide">
+    <fieldset class="field wide" disabled=${isClosed("lanes")}>
       <legend>Lanes</legend>
       <div class="checks">
       ${names.map((name, number) => html`

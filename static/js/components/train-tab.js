@@ -2,8 +2,8 @@
 import { practiseAtPaceOfPicture } from "../live-changes.js";
 import { whole } from "../format.js";
 import { steering } from "../on-stage.js";
-import { closesSome, isFreed } from "../settings.js";
 import { html } from "./elements.js";
+import { OfCard } from "./fields.js";
 import { LearningChart } from "./learning.js";
 import { TrainSettings } from "./settings.js";
 
@@ -17,14 +17,6 @@ export function TrainTab() {
     </div>
   `;
 }
-
-/** What the card of a lesson closes, and the way out. */
-const OfCard = () => closesSome.value && html`
-  <div class="steering" role="note">
-    <p>The lesson's card sets what is grey. Nothing is locked here.</p>
-    <button type="button" class="link" onClick=${() => (isFreed.value = true)}>Open all settings</button>
-  </div>
-`;
 
 /** What a live setting acts on while the computation is ahead of the picture: its next step, or the next training. */
 function Steering() {

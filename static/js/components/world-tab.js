@@ -1,7 +1,9 @@
 // The tab of the world: what can be disturbed now, what has happened, and the world of the next run.
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
+import { isClosed } from "../settings.js";
 import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
 import { html } from "./elements.js";
+import { closable, OfCard } from "./fields.js";
 import { WorldSettings } from "./settings.js";
 import { Branch, LiveWorld } from "./world-controls.js";
 
@@ -10,10 +12,11 @@ export function WorldTab() {
   const canDisturb = liveTraining.value !== null || heldRace.value !== null;
   return html`
     <div class="world-tab">
+      <${OfCard} />
       ${canDisturb && html`<${FromNow} />`}
       <${Happened} />
       <${WorldSettings} />
-      ${!canDisturb && html`
+      ${!canDisturb && !isClosed("disturb") && html`
         <p class="dim fine">
           Hold a race that has been computed, or start a training: then its robots can be disturbed here, or by a click
           on a leg.
@@ -30,7 +33,7 @@ function FromNow() {
   return html`
     <section aria-label=${title}>
       <h3>${title}${isFromPicture && shownMoment()}</h3>
-      ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
+      ${closable("disturb", liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`)}
     </section>
   `;
 }

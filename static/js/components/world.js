@@ -2,7 +2,7 @@
 import { adjectiveOf, kindFor, legIn, legStates, shortName, splitText, textOf, withField } from "../disturbances.js";
 import { form, mistakeInText, setField, wrong } from "../form.js";
 import { azimuthsOf } from "../robots.js";
-import { fullTitle } from "../settings.js";
+import { fullTitle, isAllowed, isClosed } from "../settings.js";
 import { served } from "../store.js";
 import { classOf, html, LegPicker } from "./elements.js";
 import { Description, MistakeOf } from "./fields.js";
@@ -54,12 +54,14 @@ export function WorldPicture({ disturbances }) {
   `;
 }
 
+const worldChoices = () => served().worlds.filter(({ name }) => isAllowed("world", name));
+
 export const WorldPicker = () => html`
-  <fieldset role="radiogroup" aria-invalid=${wrong.value.world ? "true" : undefined}
+  <fieldset role="radiogroup" disabled=${isClosed("world")} aria-invalid=${wrong.value.world ? "true" : undefined}
     aria-describedby=${wrong.value.world ? "mistake-world help-world" : "help-world"}>
     <legend><h2>World</h2></legend>
     <div class="gait-row">
-      ${served().worlds.map(({ name, title, disturbances }, number) => html`
+      ${worldChoices().map(({ name, title, disturbances }, number) => html`
         <label class="gait" key=${name}>
           <input class="sr-only" type="radio" name="world" value=${name} id=${number ? undefined : "field-world"}
             checked=${name === (wrong.value.world?.text ?? form.value.world)}
@@ -95,7 +97,8 @@ export function Disturbances() {
     setDisturbances([...texts, ...added]);
   };
   return html`
-    <fieldset class="disturbances" id="field-disturb" tabindex="-1" aria-describedby="help-disturb">
+    <fieldset class="disturbances" disabled=${isClosed("disturb")} id="field-disturb" tabindex="-1"
+      aria-describedby="help-disturb">
       <legend><h2>Disturbances</h2></legend>
       <p class="sentence" id="help-disturb">
         In the race, after practice in the world above; in the practice, if there is no race.
