@@ -8,13 +8,15 @@ import {
 } from "./form.js";
 import { count, listed, whole } from "./format.js";
 import { changeIfStillHere, page } from "./page-state.js";
-import { canPlay, isPlaying, isRaceRun, laneTables, matchingTable, myWork, shownRun, work } from "./on-stage.js";
+import {
+  canPlay, isPlaying, isRaceRun, isStale, laneTables, matchingTable, myWork, shownRun, work,
+} from "./on-stage.js";
 import { isActive, isOperator, isVisitor, markAsMine, mayStart } from "./selectors.js";
 import { closeReplay, playReplay, seekReplay, setReplayClock, setReplaySpeed } from "./replay.js";
 import { formRobot } from "./robots.js";
 import { agentOf, isClosed, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
-  commonStage, markDeleted, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
+  commonStage, isAway, markDeleted, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
 } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -135,7 +137,7 @@ export const secondaryActions = computed(() => {
 });
 
 export const canStart = computed(
-  () => mayStart.value && options.value !== null && !myWork.value && !pending.value.robot &&
+  () => mayStart.value && !isAway.value && options.value !== null && !myWork.value && !pending.value.robot &&
     Object.keys(mistakes.value).length === 0,
 );
 
@@ -182,7 +184,7 @@ export const stop = () => commandWork("stop");
 /** Command the present work, and not what may come after it. @param {Verb} verb */
 function commandWork(verb) {
   const id = work.value?.current.id;
-  if (id && commands.unanswered().verb !== verb) commands.request({ verb, id });
+  if (id && !isAway.peek() && commands.unanswered().verb !== verb) commands.request({ verb, id });
 }
 
 const commands = oneAtATime("work", async (/** @type {{ verb: Verb, id: string }} */ { verb, id }) => {
@@ -263,7 +265,7 @@ export const seekIn = (id) =>
 
 export const togglePlaying = () => {
   const willPlay = stageChanges.unanswered().playing ?? isPlaying.value;
-  if (canPlay.value && stage.value?.run_id) setStage({ playing: !willPlay });
+  if (canPlay.value && !isStale.value && stage.value?.run_id) setStage({ playing: !willPlay });
 };
 export const skipToEnd = () => setStage({ time_s: scene.value?.duration_s ?? undefined, playing: true });
 

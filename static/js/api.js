@@ -124,7 +124,7 @@ export function askForNewest({ key, ask, forget = () => {}, pause_ms }) {
 /** No answer came: the server or the network is down. */
 class Unreachable extends RequestError {
   constructor() {
-    super("The server does not answer. Nothing was changed; try again once the page says live.");
+    super("The server does not answer. Try again once it is back.");
   }
 }
 

@@ -3,7 +3,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, distanceApart, listed, metres, percentage, sentence, whole } from "./format.js";
-import { raceInView, shownRun } from "./on-stage.js";
+import { isStale, raceInView, shownRun } from "./on-stage.js";
 import {
   firstTimedOut, isTimedOut, LEVEL_M, shownEarlyEnd, shownTime, standings, timeline, timeSpent,
 } from "./race.js";
@@ -368,5 +368,11 @@ const practice = computed(() => {
 /** How far the learner on stage walks by now; null where no training is shown. */
 export const practiceTitle = computed(() => practice.value?.title ?? null);
 
+/** Said of what may go on unseen. */
+const STOOD = "So it stood in the last picture.";
+
 /** Why what the headline says is so; null where no recorded figure tells it. */
-export const reason = computed(() => (standings.value ? raceReason.value : practice.value?.reason ?? null));
+export const reason = computed(() => {
+  if (standings.value) return isStale.value && !isTimedOut.value ? STOOD : raceReason.value;
+  return isStale.value && practice.value && !scene.value?.ended ? STOOD : practice.value?.reason ?? null;
+});

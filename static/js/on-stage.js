@@ -10,7 +10,7 @@ import {
   hasTable, isActive, isKnown, isOperator, isVisitor, myRuns, runOf, stageableRuns, trainingIds,
 } from "./selectors.js";
 import { learns } from "./settings.js";
-import { commonStage, connection, isLockedOut, ownStage, scene, stage } from "./store.js";
+import { commonStage, isAway, isLockedOut, ownStage, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { FormValues, Run, Scene, State } from "./types.js" */
@@ -26,6 +26,9 @@ const sceneOnStage = computed(() => {
   return now && stage.value && now.run_id === stage.value.run_id ? now : null;
 });
 
+/** Whether the picture is the last one that was heard of: a replay of this page's own goes on without the server. */
+export const isStale = computed(() => isAway.value && ownStage.value === null);
+
 /** The phase of the stage; "empty" before the first snapshot too. */
 export const phase = computed(() => stage.value?.phase ?? "empty");
 
@@ -37,8 +40,9 @@ const EARLY_ENDS = /** @type {Partial<Record<State, string>>} */ ({
 /** "Stopped", "Failed" or "Interrupted"; null of a run that goes on or has finished. @param {Run | null} run */
 export const earlyEnd = (run) => (run ? EARLY_ENDS[run.state] ?? null : null);
 
-/** Whether the stage plays: one that shows the end of its run does not. */
-export const isPlaying = computed(() => stage.value !== null && stage.value.playing && !stage.value.ended);
+/** Whether the stage plays: one that shows the end of its run does not, nor one that is not heard. */
+export const isPlaying = computed(() =>
+  stage.value !== null && stage.value.playing && !stage.value.ended && !isStale.value);
 
 /** Kind of the picture: live of a run that goes on, else a replay. */
 export const playbackName = computed(() => (isActive(shownRun.value) ? "picture" : "replay"));
@@ -116,7 +120,7 @@ export const liveTraining = computed(() => {
 export const offStage = computed(() => {
   const { requested, current } = myWork.value ?? {};
   const onStage = commonStage.value?.run_id;
-  if (!requested || !current || !onStage || isVisitor.value) return null;
+  if (!requested || !current || !onStage || isVisitor.value || isAway.value) return null;
   const isOwn = [requested.id, current.id, ...trainingIds(requested)].includes(onStage);
   return isOwn || commonStage.value?.next_run_id === requested.id ? null : current;
 });
@@ -234,6 +238,7 @@ const MAX_LAG_STEPS = 2;
  * @type {Signal<{ step: number, shown: number | null } | "computed" | null>}
  */
 export const steering = computed(() => {
+  if (isAway.value) return null;
   const run = liveTraining.value;
   const isShown = sceneOnStage.value !== null && shownRun.value?.id === run?.id;
   if (run) {
@@ -270,7 +275,14 @@ const VERBS = { training: "Practising", race: "Simulating the race" };
  */
 
 /** Progress of the work, else of what plays; null while there is neither. @type {Signal<Progress | null>} */
-export const progress = computed(() => (work.value ? ofWork(work.value) : ofPlayback(sceneOnStage.value)));
+export const progress = computed(() => {
+  if (work.value) return isAway.value ? lastKnown(ofWork(work.value)) : ofWork(work.value);
+  return isStale.value ? null : ofPlayback(sceneOnStage.value);
+});
+
+/** As it was heard last: whether it goes on is not known. @type {(known: Progress) => Progress} */
+const lastKnown = ({ label, ...known }) =>
+  ({ ...known, label: `Last known: ${label[0].toLowerCase()}${label.slice(1)}`, left: "" });
 
 /** Told to those who wait for strangers. @param {Run} run */
 const placeInQueue = ({ queue_position: place }) => (isVisitor.value && place ? `, place ${place}` : "");
@@ -339,6 +351,6 @@ const VIEW_TITLES = { experiments: "Experiments", runs: "Runs", compare: "Compar
 export function windowTitle(view, headline) {
   const parts = [VIEW_TITLES[view] ?? (phase.value === "empty" ? null : headline ?? sceneOnStage.value?.label ?? null)];
   if (isLockedOut.value) parts.splice(0, 1, "No access");
-  else if (connection.value === "reconnecting") parts.unshift("Reconnecting");
+  else if (isAway.value) parts.unshift("Reconnecting");
   return [...parts, PRODUCT].filter(Boolean).map((part) => sentence(/** @type {string} */ (part))).join(" · ");
 }

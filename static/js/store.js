@@ -8,6 +8,8 @@ import { addressOf } from "./api.js";
 
 /** @type {Signal<"connecting" | "live" | "reconnecting">} */
 export const connection = signal("connecting");
+/** Whether the server is not heard: all that is known is what was heard last. */
+export const isAway = computed(() => connection.value === "reconnecting");
 /** The server's version. @type {Signal<string | null>} */
 export const version = signal(null);
 /** Whether the server refuses this page because it lacks the link's token. */

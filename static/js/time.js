@@ -4,13 +4,13 @@ import { setStage, togglePlaying } from "./actions.js";
 import { rateChanges, rateInWords } from "./changes.js";
 import { disturbancesOf, inWords } from "./disturbances.js";
 import { metres, sentence, whole } from "./format.js";
-import { canPlay, clock, raceScene, shownRun } from "./on-stage.js";
+import { canPlay, clock, isStale, raceScene, shownRun } from "./on-stage.js";
 import { page } from "./page-state.js";
 import { timeline } from "./race.js";
 import { endTime, openReplay, plan, playReplay, replayTime } from "./replay.js";
 import { isActive } from "./selectors.js";
 import { agentOf, laneTitle } from "./settings.js";
-import { ownStage, scene, stage } from "./store.js";
+import { isAway, ownStage, scene, stage } from "./store.js";
 import { curve } from "./training.js";
 
 /** @import { ReadonlySignal } from "@preact/signals" */
@@ -160,7 +160,7 @@ function marksOfLane(race, track, lane, finish_m) {
 export function seekTo(at, { isHeld = false } = {}) {
   const known = scale.peek();
   const run = shownRun.peek();
-  if (!known || !run) return;
+  if (!known || !run || isStale.peek()) return;
   const to_s = known.unit_s * Math.min(Math.max(at, 0), known.computed);
   if (canPlay.peek()) setStage(isHeld ? { time_s: to_s, playing: false } : { time_s: to_s });
   else openReplay(run.id, { time_s: to_s, clock: clock.peek(), isPlaying: !isHeld });
@@ -181,6 +181,7 @@ export function seekToMark(direction) {
 /** Play or pause: the stage by its operators, by others a replay of their own. */
 export function toggleTime() {
   const run = shownRun.peek();
+  if (isStale.peek()) return;
   if (canPlay.peek()) togglePlaying();
   else if (run && page.run.peek() === null) {
     openReplay(run.id, { time_s: scene.peek()?.time_s ?? 0, clock: clock.peek(), isPlaying: false });
@@ -195,6 +196,9 @@ export const laneRows = computed(() => {
     thinking: track.thinking, until: track.points.at(-1)?.[0] ?? 0,
   }));
 });
+
+/** Said of a replay of this page's own whose next picture is not there. */
+export const loadingInWords = () => (isAway.value ? "Your replay waits for the server." : "Loading your replay…");
 
 /** A mark's text as it begins a sentence. @param {Mark} one */
 export const markInWords = ({ text }) => sentence(text);

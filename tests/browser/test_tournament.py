@@ -335,7 +335,7 @@ def test_a_tournament_goes_on_when_its_server_comes_back(
             visit(pupil, first, made["id"])
             pupil.sees("The references are the first")
             first.kill()
-            pupil.sees("Reconnecting")
+            pupil.sees("Reconnecting. This is the last that is known; entries are kept.")
             is_accessible(pupil)
         with serving(tmp_path, port=first.port, token=TOKEN) as second, second.api(TOKEN) as api:
             expect(page.get_by_text("Reconnecting")).to_have_count(0)

@@ -3,12 +3,12 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { setImmediate } from "node:timers/promises";
 import {
-  missingLane, pause, pending, problems, seekIn, setStage, stop, togglePause, togglePlaying,
+  canStart, missingLane, pause, pending, problems, seekIn, setStage, stop, togglePause, togglePlaying,
 } from "../../static/js/actions.js";
 import { form, setField } from "../../static/js/form.js";
 import { practiseAtPaceOfPicture, tune } from "../../static/js/live-changes.js";
 import { cardMay, isFreed } from "../../static/js/settings.js";
-import { applyEvent, options } from "../../static/js/store.js";
+import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: "a", next_run_id: null, playing: true, ended: false, speed: 1, clock: "paper" };
@@ -154,4 +154,23 @@ test("no lane is offered where the card of a lesson keeps the lanes as they are"
   assert.ok(missingLane.value?.action, "the reader has opened all settings");
   [cardMay.value, isFreed.value] = [null, false];
   setField("lanes", ["learner", "greedy"]);
+});
+
+test("while the server is away nothing is started, held or stopped, by no key either", async () => {
+  const run = makeRun({ id: "a", state: "running", result: null, progress: { done: 5, total: 500 } });
+  applyEvent("snapshot", { role: "operator", runs: [], stage: STAGE, scene: SCENE });
+  assert.ok(canStart.value);
+  connection.value = "reconnecting";
+  assert.ok(!canStart.value);
+  togglePlaying();
+  applyEvent("snapshot", { role: "operator", runs: [run], stage: STAGE, scene: SCENE });
+  pause();
+  stop();
+  togglePause();
+  await answerAll(() => STAGE);
+  assert.deepEqual(sent, []);
+  connection.value = "live";
+  stop();
+  await answerAll(() => ({ ...run, state: "stopped" }));
+  assert.equal(sent[0], "stop");
 });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { practiceReason, practiceTitle, reason, reasonOf, stepEnds, workOf } from "../../static/js/headline.js";
-import { applyEvent, options } from "../../static/js/store.js";
+import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
 /**
@@ -131,6 +131,9 @@ test("practice is told by its newest test that is shown, and before the first by
   showStep(60);
   assert.equal(practiceTitle.value, "Learner walks 0.12\u00a0m so far");
   assert.match(reason.value ?? "", /^90 of 100 steps are still random/);
+  connection.value = "reconnecting";
+  assert.equal(reason.value, "So it stood in the last picture.");
+  connection.value = "live";
 });
 
 test("the last picture of a practice that has ended says how it ended, and nothing of what it still does", () => {
@@ -146,8 +149,10 @@ test("the last picture of a practice that has ended says how it ended, and nothi
   end({ progress: { done: 51, total: 500 } }, false);
   assert.equal(reason.value, "Its first test is at step 50.");
   end({});
+  connection.value = "reconnecting";
   assert.deepEqual([practiceTitle.value, reason.value],
-    ["Learner has practised", "The training was stopped at step 120 of 500."]);
+    ["Learner has practised", "The training was stopped at step 120 of 500."], "which stays so without the server");
+  connection.value = "live";
   applyEvent("evaluation", { run_id: run.id, step: 100, distance_m: 0.31, epsilon: 0.8 });
   assert.deepEqual([practiceTitle.value, reason.value],
     ["Learner walked 0.31\u00a0m in its last test", "The training was stopped at step 120 of 500."]);

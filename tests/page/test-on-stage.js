@@ -2,11 +2,11 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  interruptedRun, offStage, progress, resumableOnStage, steering, windowTitle,
+  interruptedRun, isPlaying, offStage, progress, resumableOnStage, steering, windowTitle,
 } from "../../static/js/on-stage.js";
 import { markAsMine } from "../../static/js/selectors.js";
-import { applyEvent, connection, isLockedOut, options } from "../../static/js/store.js";
-import { makeRun, OPTIONS } from "./options.js";
+import { applyEvent, connection, isLockedOut, options, ownStage } from "../../static/js/store.js";
+import { makeRun, makeStage, OPTIONS } from "./options.js";
 
 /** @import { Run } from "../../static/js/types.js" */
 
@@ -103,4 +103,23 @@ test("the window's title tells what is shown", () => {
   connection.value = "live";
   snapshot([], { stage: STAGE, scene: null });
   assert.equal(windowTitle("race", null), "Racing Hexapods");
+});
+
+test("while the server is away nothing is said to go on: of work the last that is known is told", () => {
+  const run = practice({ eta_s: 35 });
+  snapshot([run], showing(run, 311));
+  assert.deepEqual([progress.value?.left, isPlaying.value], ["35 s left", true]);
+  connection.value = "reconnecting";
+  assert.deepEqual([progress.value?.label, progress.value?.left, progress.value?.share],
+    ["Last known: practising, 312 of 500 steps", "", 312 / 500]);
+  assert.equal(isPlaying.value, false);
+  snapshot([run], showing(run, 25));
+  assert.deepEqual([steering.value, offStage.value], [null, null]);
+  const ended = practice({ state: "finished", progress: { done: 500, total: 500 } });
+  snapshot([ended], showing(ended, 25, { phase: "showing" }));
+  assert.equal(progress.value, null);
+  // A replay of the page's own goes on with what is loaded.
+  ownStage.value = makeStage({ run_id: ended.id, phase: "showing" });
+  assert.equal(isPlaying.value, true);
+  ownStage.value = null;
 });

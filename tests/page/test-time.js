@@ -1,6 +1,6 @@
 // The scale of the time bar, what happened on it, and what a press on it does.
 import assert from "node:assert/strict";
-import { beforeEach, test } from "node:test";
+import { afterEach, beforeEach, test } from "node:test";
 import { page } from "../../static/js/page-state.js";
 import { followTimeline } from "../../static/js/race.js";
 import { closeReplay } from "../../static/js/replay.js";
@@ -56,6 +56,11 @@ const show = (run, scene, { role = "operator", stage = {} } = {}) => applyEvent(
 /** @param {object} [changes] */
 const makeRace = (changes = {}) => makeRun({
   kind: "race", progress: { done: 4, total: 4 }, config: { steps: 2, lanes: [{ agent: "greedy" }] }, ...changes,
+});
+
+// One that is open asks again for ever.
+afterEach(() => {
+  closeReplay();
 });
 
 beforeEach(() => {
@@ -171,6 +176,10 @@ test("operators seek on the stage, never beyond what is computed", async () => {
   await settle();
   seekTo(400, { isHeld: true });
   await settle();
+  connection.value = "reconnecting";
+  seekTo(10);
+  await settle();
+  connection.value = "live";
   assert.deepEqual(asked, [["PUT", "stage", { time_s: 50 }], ["PUT", "stage", { time_s: 100, playing: false }]]);
 });
 
@@ -201,5 +210,10 @@ test("who may not play the stage plays a replay of their own, from the same mome
   seekTo(3);
   assert.deepEqual([page.moment.value, page.run.value !== null], [null, true], "it plays");
   closeReplay();
+  connection.value = "reconnecting";
+  toggleTime();
+  seekTo(3);
+  assert.equal(page.run.value, null, "the server, which has its pictures, is away");
+  connection.value = "live";
   assert.deepEqual(asked, []);
 });

@@ -7,7 +7,7 @@ import { canPlay } from "../on-stage.js";
 import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
 import { presentation, toggleBlank, turnCode, turnPage } from "../presentation.js";
 import { isOperator } from "../selectors.js";
-import { connection, viewers } from "../store.js";
+import { connection, isAway, viewers } from "../store.js";
 import { html } from "./elements.js";
 import { Prediction } from "./lesson.js";
 
@@ -65,7 +65,7 @@ const Address = ({ known }) => html`
       ${known?.address
         ? html`<p class="address">${known.address.replace(/^http:\/\/|\/$/g, "")}</p>`
         : html`<p class="dim" role="status">${known?.reason ?? known?.problem}</p>`}
-      <p class="watching-count"><b>${viewers.value ?? known?.watching ?? "…"}</b> watching</p>
+      <p class="watching-count"><b>${isAway.value ? "…" : viewers.value ?? known?.watching ?? "…"}</b> watching</p>
     </div>
   </div>
 `;

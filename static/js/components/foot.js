@@ -11,7 +11,7 @@ import { isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
 import { allowance, isOperator, isVisitor, mayChange, mayStart } from "../selectors.js";
 import { agentOf, learners, placeOf } from "../settings.js";
-import { scene } from "../store.js";
+import { isAway, scene } from "../store.js";
 import { inFormWords, labelOf, messageOf } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
 import { EstimateNote, goToField, html, Icon, Loaded, ProgressBar, UnknownParts } from "./elements.js";
@@ -39,9 +39,12 @@ function Actions() {
       ${!isBusy && html`<${MissingLane} />`}
       ${isVisitor.value && html`<${AllowanceLine} />`}
       <${WorkActions} />
+      ${isAway.value && html`
+        <p class="dim" id="held-away">Nothing can be started or stopped until the server is back.</p>
+      `}
       ${!myWork.value && html`
         <button class="primary" aria-disabled=${isDisabled ? "true" : undefined} onClick=${runPrimaryAction}
-          aria-describedby=${isHeld ? "held-start" : undefined}>
+          aria-describedby=${isAway.value ? "held-away" : isHeld ? "held-start" : undefined}>
           ${!isBusy && html`<${Icon} name="play" />`}${label}
         </button>
         ${hasRoomForOthers() && html`<${SecondaryActions} />`}
@@ -119,9 +122,10 @@ function WorkActions() {
 function AllowanceLine() {
   if (!isVisitor.value || allowance.value === null) return null;
   const { steps_left, steps_per_hour, hours } = allowance.value;
-  const left = `${whole(steps_left)} of ${count(steps_per_hour, "step")} an hour left`;
+  // Steps come back with time.
+  const left = isAway.value ? "" : `: ${whole(steps_left)} of ${count(steps_per_hour, "step")} an hour left`;
   const after = hours === 24 ? "a day" : count(hours, "hour");
-  return html`<p class="dim allowance">A demo: ${left}. What you make is public, and deleted after ${after}.</p>`;
+  return html`<p class="dim allowance">A demo${left}. What you make is public, and deleted after ${after}.</p>`;
 }
 
 function WorkButtons() {
@@ -129,7 +133,7 @@ function WorkButtons() {
   const isPaused = state === "paused";
   // Events tell of a new state before the command is answered; a click in between would be lost.
   // Not `disabled`, by which the button would lose the keyboard's focus.
-  const isHeld = pending.value.work ? "true" : undefined;
+  const isHeld = pending.value.work || isAway.value ? "true" : undefined;
   return html`
     <div class="row">
       ${isOperator.value && html`
@@ -170,7 +174,9 @@ function OffStage() {
 
 /** @param {{ run: Run }} props */
 const ResumeButton = ({ run }) => html`
-  <button class="secondary" disabled=${pending.value[run.id]} onClick=${() => resumeRun(run)}>Resume</button>
+  <button class="secondary" disabled=${pending.value[run.id] || isAway.value} onClick=${() => resumeRun(run)}>
+    Resume
+  </button>
   <${Problem} at=${run.id} />
 `;
 

@@ -7,7 +7,7 @@ import { disturb } from "../live-changes.js";
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { isOperator } from "../selectors.js";
 import { isClosed } from "../settings.js";
-import { scene } from "../store.js";
+import { isAway, scene } from "../store.js";
 import { positionInWords, scale } from "../time.js";
 import { openTab } from "../workspace.js";
 import { html } from "./elements.js";
@@ -100,6 +100,7 @@ function Offer({ at }) {
   const training = liveTraining.value;
   const race = heldRace.value;
   if (!isOperator.value) return html`<p class="dim">The operator disturbs the robots.</p>`;
+  if (isAway.value) return html`<p class="dim">Nothing can be disturbed until the server is back.</p>`;
   if (isClosed("disturb")) return html`<${OfCard} what="what happens to the robots" />`;
   if (training) return html`<${OfTraining} run=${training} at=${at} />`;
   if (race) return html`<${OfRace} race=${race} at=${at} />`;

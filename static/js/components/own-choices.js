@@ -5,7 +5,7 @@ import { page } from "../page-state.js";
 import { closeReplay, openReplay } from "../replay.js";
 import { clock, shownRun } from "../on-stage.js";
 import { isActive } from "../selectors.js";
-import { scene } from "../store.js";
+import { isAway, scene } from "../store.js";
 import { html, Icon } from "./elements.js";
 
 /** @import { Run } from "../types.js" */
@@ -19,7 +19,7 @@ export function OwnChoices() {
         <button class="secondary compact" onClick=${closeReplay}>Back to the stage</button>
       `}
       ${page.run.value === null && run && canReplay && html`
-        <button class="secondary compact" onClick=${() => replay(run)}
+        <button class="secondary compact" disabled=${isAway.value} onClick=${() => replay(run)}
           title="Play, seek and go step by step on this page only"><${Icon} name="replay" />Replay it here</button>
       `}
       <button class="secondary compact" onClick=${tryOwnSettings}>Try other settings</button>

@@ -2,13 +2,13 @@
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { sentence } from "../format.js";
 import { headline, leaderColor, moveTold, practiceTitle, reason, ruleOf } from "../headline.js";
-import { clock, phase, shownRun } from "../on-stage.js";
+import { clock, isStale, phase, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { isTimedOut, standings } from "../race.js";
 import { replayProblem } from "../replay.js";
 import { isOperator } from "../selectors.js";
-import { scene } from "../store.js";
+import { isAway, scene } from "../store.js";
 import { scale } from "../time.js";
 import { clockTitle } from "../titles.js";
 import {
@@ -79,7 +79,8 @@ const isFirstVisit = () => page.run.value === null && !shownRun.value;
 const invitation = () => {
   if (isFirstVisit()) return "A hexapod learns to walk";
   if (shownRun.value) return "On the start line";
-  return replayProblem.value ? "No run is shown" : "Loading…";
+  if (replayProblem.value) return "No run is shown";
+  return isAway.value ? "Waiting for the server" : "Loading…";
 };
 const about = () =>
   (isFirstVisit() ? "It tries moves, keeps what each was worth, and races against two that think ahead." : "");
@@ -207,7 +208,7 @@ function Facts() {
   const rows = standings.value;
   if (!rows) return null;
   const { time_s = 0, time_out_s = null } = scene.value ?? {};
-  const left = time_out_s === null ? null : Math.max(0, time_out_s - time_s);
+  const left = time_out_s === null || isStale.value ? null : Math.max(0, time_out_s - time_s);
   return html`
     <dl class="facts-of-race">
       <div><dt>Rule</dt><dd>${ruleOf(rows, clockTitle(clock.value))}</dd></div>

@@ -8,14 +8,12 @@ import { page } from "../page-state.js";
 import { closeLegs, legPoints, legsAreOpen, legsOf, picked } from "../legs.js";
 import { clickedCell, drawHere, shownTheme } from "../page.js";
 import { isTimedOut } from "../race.js";
-import { closeReplay, drawIn, isBuffering, replayProblem } from "../replay.js";
-import {
-  conditionsShown, isDecided, playbackName, resumableOnStage, shownRun,
-} from "../on-stage.js";
+import { closeReplay, drawIn, isBuffering, plan, replayProblem } from "../replay.js";
+import { conditionsShown, isDecided, isStale, playbackName, resumableOnStage, shownRun } from "../on-stage.js";
 import { isOperator, visitorRuns } from "../selectors.js";
 import { agentOf } from "../settings.js";
-import { connection, runs, scene, stage } from "../store.js";
-import { scale } from "../time.js";
+import { isAway, runs, scene, stage } from "../store.js";
+import { loadingInWords, scale } from "../time.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, Loaded } from "./elements.js";
 import { Problem } from "./foot.js";
@@ -50,9 +48,9 @@ export function Stage() {
     frame.current?.contentWindow?.postMessage(message, location.origin);
   }, [followed, shownTheme.value, status, colours, covered.value, page.isPresenting.value, legsOf.value]);
 
-  const isAway = connection.value === "reconnecting" || status === "reconnecting";
+  const awayWords = awayInWords(status);
   return html`
-    <section class=${`stage ${isAway ? "away" : ""}`} aria-label="Stage" data-status=${status}>
+    <section class=${`stage ${awayWords && !isReplayed() ? "away" : ""}`} aria-label="Stage" data-status=${status}>
       <div class="picture">
         <iframe ref=${frame} src=${address} title="The robots on the track, in 3D"></iframe>
         ${(status === "loading" || isRefused(status)) && html`<${StagePlaceholder} status=${status} />`}
@@ -60,15 +58,23 @@ export function Stage() {
         ${legsAreOpen.value && html`<${Loaded} name="legs" load=${loadLegs} />`}
         <${StageNotes} />
         <${ReplayProblem} />
-        ${isAway && html`
-          <p class="away-note" role="status">
-            <span class="spinner" aria-hidden="true"></span>
-            Reconnecting. This is the last picture.
-          </p>
+        ${awayWords && html`
+          <p class="away-note" role="status"><span class="spinner" aria-hidden="true"></span>${awayWords}</p>
         `}
       </div>
     </section>
   `;
+}
+
+/** Whether a replay of this page's own is drawn, which goes on without the server as far as it is loaded. */
+const isReplayed = () => page.run.value !== null && plan.value !== null && !isBuffering.value;
+
+/** What the picture is while the server is away, or the frame has lost its own connection. @param {string} status */
+function awayInWords(status) {
+  if (!isAway.value && (status !== "reconnecting" || isReplayed())) return "";
+  if (isReplayed()) return "Reconnecting. Your replay plays as far as it is loaded.";
+  return page.run.value === null ? "Reconnecting. This is the last picture."
+    : "Reconnecting. Your replay waits for the server.";
 }
 
 const loadLegs = () => import("./leg-menu.js").then(({ Legs }) => Legs);
@@ -151,7 +157,7 @@ function lastPicture({ kind, progress: { done } }) {
 function EarlyEndNote() {
   const run = shownRun.value;
   const resumable = resumableOnStage.value;
-  if (!run || !resumable || page.run.value !== null || (stage.value && !stage.value.ended)) return null;
+  if (!run || !resumable || isAway.value || page.run.value !== null || (stage.value && !stage.value.ended)) return null;
   const { done, total } = run.progress;
   const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
   const verb = run.state === "failed" ? "failed" : "was interrupted";
@@ -169,14 +175,14 @@ function EarlyEndNote() {
 }
 
 /** At the photo finish, while other lanes still walk. */
-const DecidedNote = () => isDecided.value && isAtLeast("try") && isOperator.value && page.run.value === null &&
-  stage.value?.end_at_time_out && html`
+const DecidedNote = () => isDecided.value && !isStale.value && isAtLeast("try") && isOperator.value &&
+  page.run.value === null && stage.value?.end_at_time_out && html`
     <button class="secondary compact" onClick=${keepWatching} title="Some robots still walk">Keep watching</button>
   `;
 
 /** The replay that begins by itself. */
 function AnnouncementNote() {
-  const announced = page.run.value === null ? stage.value?.announced : null;
+  const announced = page.run.value === null && !isAway.value ? stage.value?.announced : null;
   const [left, setLeft] = useState(0);
   useEffect(() => {
     if (!announced) return undefined;
@@ -283,7 +289,7 @@ function measureChips(labels) {
 
 /** What the page plays by itself: to a visitor of a demo perhaps the own robot, as it learns. */
 function replayInWords() {
-  if (isBuffering.value) return "Loading your replay…";
+  if (isBuffering.value) return loadingInWords();
   return visitorRuns.value.includes(page.run.value ?? "") ? "Your robot" : "Your own replay";
 }
 
@@ -325,6 +331,6 @@ function SpeedChip({ now }) {
   if (stage.value?.playing === false && !stage.value.ended && now?.kind !== "idle") {
     return html`<p class="chip">${sentence(playbackName.value)} paused</p>`;
   }
-  if (!now || now.kind === "idle" || stage.value?.ended || !(now.shown_speed > 0)) return null;
+  if (!now || now.kind === "idle" || isStale.value || stage.value?.ended || !(now.shown_speed > 0)) return null;
   return html`<p class="chip num" title="Times real time">${times(now.shown_speed)}</p>`;
 }

@@ -1,14 +1,14 @@
 // The time bar below the stage: play, the moment in the picture, how far the run is computed, what happened, and how it
 // is shown. It is shared by every page, unless this one plays a replay of its own.
 import { endAtTimeOut, setStage, skipToEnd } from "../actions.js";
-import { canPlay, clock, isPlaying, playbackName, shownRun } from "../on-stage.js";
+import { canPlay, clock, isPlaying, isStale, playbackName, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { closeReplay, openReplay, replayProblem, stepReplay } from "../replay.js";
 import { percent, shareOf, ticks } from "../scale.js";
 import { isOperator, isVisitor } from "../selectors.js";
-import { scene, stage } from "../store.js";
-import { laneRows, markInWords, marks, positionInWords, scale, seekTo, toggleTime } from "../time.js";
+import { isAway, scene, stage } from "../store.js";
+import { laneRows, loadingInWords, markInWords, marks, positionInWords, scale, seekTo, toggleTime } from "../time.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, useWidth } from "./elements.js";
 import { Problem } from "./foot.js";
@@ -27,7 +27,7 @@ export function TimeBar() {
       ${known && html`<${PlayButton} />`}
       ${isOwn && known && html`<${StepButtons} />`}
       ${known ? html`<${Track} known=${known} />` : html`<p class="dim no-time">${nothingToSee()}</p>`}
-      ${isOneLaneLeft(scene.value) && canPlay.value && html`
+      ${isOneLaneLeft(scene.value) && canPlay.value && !isStale.value && html`
         <button class="quiet square" onClick=${skipToEnd} aria-label="Skip to the end" title="Skip to the end">
           <${Icon} name="skip" />
         </button>
@@ -40,7 +40,7 @@ export function TimeBar() {
 }
 
 const nothingToSee = () => {
-  if (page.run.value !== null) return replayProblem.value ? "No run is shown." : "Loading your replay…";
+  if (page.run.value !== null) return replayProblem.value ? "No run is shown." : loadingInWords();
   return stage.value?.run_id ? "Its first steps are being computed." : "The robots stand on the start line.";
 };
 
@@ -50,7 +50,8 @@ function PlayButton() {
   const whose = isShared ? " for everyone" : "";
   const label = stage.value?.ended ? `Play again${whose}` : `${verb} ${playbackName.value}${whose}`;
   return html`
-    <button class="play" disabled=${!stage.value?.run_id} onClick=${toggleTime} aria-label=${label} title=${label}>
+    <button class="play" disabled=${!stage.value?.run_id} aria-disabled=${isStale.value ? "true" : undefined}
+      onClick=${toggleTime} aria-label=${label} title=${label}>
       <${Icon} name=${isPlaying.value ? "pause" : "play"} />
     </button>
   `;
@@ -64,7 +65,7 @@ function ReplayButton() {
   if (!run?.progress?.done || !(isAtLeast("try") || isPhone.value)) return null;
   const open = () => openReplay(run.id, { time_s: scene.value?.time_s ?? 0, clock: clock.value });
   return html`
-    <button class="quiet square" onClick=${open} aria-label="Replay on this page"
+    <button class="quiet square" aria-label="Replay on this page" disabled=${isStale.value} onClick=${open}
       title="Replay: play and seek on this page only; the stage goes on for all">
       <${Icon} name="replay" />
     </button>
@@ -106,7 +107,11 @@ function Track({ known }) {
   const place = (/** @type {number} */ at) => percent(shareOf(at, 0, end));
   const words = isComputing ? `, computed up to ${positionInWords(known, computed)}` : "";
   /** @param {{ target: HTMLInputElement }} event */
-  const seek = ({ target }) => seekTo(Number(target.value));
+  const seek = ({ target }) => {
+    // Not \`disabled\`, by which it would lose the keyboard's focus whenever the connection breaks.
+    if (isStale.peek()) target.value = String(picture);
+    else seekTo(Number(target.value));
+  };
   // The replay of this page's own follows the thumb; a stage that many watch is asked once.
   const handlers = page.run.value !== null ? { onInput: seek } : { onChange: seek };
   const step = unit === "s" ? (page.run.value === null ? 0.1 : 0.01) : 1;
@@ -119,6 +124,7 @@ function Track({ known }) {
       </div>
       <div class="rail">
         <input type="range" min="0" max=${end} step=${step} value=${picture} ...${handlers}
+          aria-disabled=${isStale.value ? "true" : undefined}
           aria-label=${page.run.value === null ? "Moment that is shown" : "Moment of your replay"}
           aria-valuetext=${`${positionInWords(known, picture)} of ${positionInWords(known, end)}${words}`} />
         ${isComputing && html`<i class="computed-end" style=${{ left: place(computed) }} aria-hidden="true"></i>`}
@@ -227,7 +233,8 @@ function EndAtTimeOut() {
   const toggle = () => (isOwn ? (page.end.value = isOn ? "all" : "time-out") : endAtTimeOut(!isOn));
   return html`
     <label class="switch" title="End with the photo finish, which settles the ranking">
-      <input type="checkbox" role="switch" name="end_at_time_out" checked=${isOn} onChange=${toggle} />
+      <input type="checkbox" role="switch" name="end_at_time_out" checked=${isOn}
+        disabled=${isStale.value} onChange=${toggle} />
       End at time-out
     </label>
   `;
@@ -243,7 +250,7 @@ function Speed() {
   const onChange = ({ target: { value } }) => setStage({ speed: value === "time-lapse" ? value : Number(value) });
   return html`
     <select name="speed" aria-label="Speed" title=${isOwn ? "Speed on this page" : "Speed for every page"}
-      disabled=${!isOwn && !isOperator.value} onChange=${onChange}>
+      disabled=${!isOwn && (!isOperator.value || isAway.value)} onChange=${onChange}>
       ${choices.map(([one, words]) => html`
         <option value=${String(one)} selected=${String(one) === String(speed)}>${words}</option>
       `)}

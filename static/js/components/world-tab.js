@@ -1,9 +1,10 @@
 // The tab of the world: what can be disturbed now, what has happened, and the world of the next run.
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
 import { isClosed } from "../settings.js";
+import { isAway } from "../store.js";
 import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
 import { html } from "./elements.js";
-import { closable, OfCard } from "./fields.js";
+import { OfCard } from "./fields.js";
 import { WorldSettings } from "./settings.js";
 import { Branch, LiveWorld } from "./world-controls.js";
 
@@ -33,7 +34,9 @@ function FromNow() {
   return html`
     <section aria-label=${title}>
       <h3>${title}${isFromPicture && shownMoment()}</h3>
-      ${closable("disturb", liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`)}
+      <fieldset class="closed" disabled=${isAway.value || isClosed("disturb")}>
+        ${liveTraining.value ? html`<${LiveWorld} />` : html`<${Branch} />`}
+      </fieldset>
     </section>
   `;
 }

@@ -6,9 +6,9 @@ import { Prose } from "../components/prose.js";
 import { resultsFile } from "../classroom-api.js";
 import { count, metres, shortAddress } from "../format.js";
 import { copy, isPhone, nextTheme, theme, toastMessage } from "../page.js";
-import { connection, options } from "../store.js";
+import { options } from "../store.js";
 import { stateInWords, tournamentPage } from "../tournament/states.js";
-import { Failure } from "./doors.js";
+import { Away, Failure } from "./doors.js";
 import { People } from "./people.js";
 import { busy, end, freeze, isRevealed, remove, reveal, room, showCard, shownResults, spotlight } from "./room.js";
 import { axisOf } from "./scores.js";
@@ -25,9 +25,7 @@ export function Cockpit() {
   const known = /** @type {Classroom} */ (room.value);
   return html`
     <${Header} known=${known} />
-    ${connection.value === "reconnecting" && html`
-      <p class="strip-note warn" role="status"><span class="spinner" aria-hidden="true"></span> Reconnecting…</p>
-    `}
+    <${Away} />
     <main class="cockpit">
       <div class="cockpit-main">
         <${Act} known=${known} />

@@ -1,8 +1,8 @@
 // Before the room: its door for a stranger, a wrong code, and what all pages of a room share.
 import { useState } from "preact/hooks";
 import { html } from "../components/elements.js";
-import { connection } from "../store.js";
-import { busy, code, failures, isProjector, join, refusal, room } from "./room.js";
+import { isAway } from "../store.js";
+import { busy, code, failures, join, refusal, room } from "./room.js";
 
 /** Why something failed, beside its button. @param {{ at: string }} props */
 export const Failure = ({ at }) => html`
@@ -56,10 +56,9 @@ export function Door() {
   `;
 }
 
-/** Whether the page hears of the room; nothing while it does. */
-export const Away = () => connection.value === "reconnecting" && html`
+/** Told while the page hears nothing of the room. @param {{ words?: string }} props */
+export const Away = ({ words = "This is the last that is known." }) => isAway.value && html`
   <p class="strip-note warn" role="status">
-    <span class="spinner" aria-hidden="true"></span>
-    ${isProjector ? "Reconnecting…" : "Reconnecting. Your name and your seed are kept."}
+    <span class="spinner" aria-hidden="true"></span> Reconnecting. ${words}
   </p>
 `;

@@ -1,6 +1,7 @@
 // The own robot of a participant: its picture, how far it is, and what came of it.
 import { html, ProgressBar } from "../components/elements.js";
 import { metres, whole } from "../format.js";
+import { isAway } from "../store.js";
 import { givenInWords } from "./may.js";
 import { Picture, ReplayBar } from "./picture.js";
 import { goesOn, ownEntry, ownRun, room } from "./room.js";
@@ -28,15 +29,18 @@ export function OwnRun() {
 /** @param {{ run: Run }} props */
 const Queued = ({ run }) => html`
   <p class="run-words" role="status">
-    <span><span class="spinner" aria-hidden="true"></span> Your robot waits for its turn.${run.queue_position
-      ? ` Place ${run.queue_position} in the queue.` : ""}</span>
+    ${isAway.value ? html`<span>Last known: your robot waits for its turn.</span>` : html`
+      <span><span class="spinner" aria-hidden="true"></span> Your robot waits for its turn.${run.queue_position
+        ? ` Place ${run.queue_position} in the queue.` : ""}</span>
+    `}
   </p>
 `;
 
 /** @param {{ run: Run }} props */
 function Running({ run }) {
   const { done, total } = run.progress;
-  const what = run.kind === "race" ? "It races" : "It practises";
+  const now = run.kind === "race" ? "It races" : "It practises";
+  const what = isAway.value ? "Last known" : now;
   return html`
     <div class="run-words" role="status">
       <p>${what}: step ${whole(done)} of ${whole(total)}</p>

@@ -28,7 +28,7 @@ export function Phone() {
       <p><b>${me.name}</b><span class="dim">seed ${me.seed}</span></p>
       <p class="dim code">${known.code}</p>
     </header>
-    <${Away} />
+    <${Away} words="Your name and your seed are kept." />
     ${known.state === "frozen" && html`
       <p class="strip-note" role="status">The teacher has stopped the class for a moment. Look to the front.</p>
     `}

@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { html, Icon } from "../components/elements.js";
 import { page } from "../page-state.js";
 import { shownTheme } from "../page.js";
-import { connection } from "../store.js";
+import { isAway } from "../store.js";
 import {
   closeReplay, drawIn, endTime, followReplay, isBuffering, openReplay, playReplay, plan, replayProblem, replayTime,
   setReplaySpeed,
@@ -76,7 +76,7 @@ export function Picture({ source }) {
       <iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>
       ${status === "loading" && html`<p class="over" role="status">The robot walks to the start line…</p>`}
       ${status !== "loading" && status !== "connected" && html`
-        <p class="over" role="status">${connection.value === "reconnecting"
+        <p class="over" role="status">${isAway.value
           ? "The picture comes back with the connection."
           : "The picture comes when there is room; all figures are live."}</p>
       `}
@@ -87,7 +87,10 @@ export function Picture({ source }) {
 /** Play, hold and repeat the own replay. */
 export function ReplayBar() {
   if (replayProblem.value) return html`<p class="dim" role="status">${replayProblem}</p>`;
-  if (plan.value === null) return html`<p class="dim" role="status">Loading the picture…</p>`;
+  if (plan.value === null) {
+    return html`<p class="dim" role="status">${isAway.value
+      ? "The picture comes with the connection." : "Loading the picture…"}</p>`;
+  }
   const isAtEnd = plan.value.complete && replayTime.value >= endTime.value - 1e-6;
   const isPlaying = page.moment.value === null && !isAtEnd;
   const share = endTime.value > 0 ? replayTime.value / endTime.value : 0;

@@ -4,6 +4,7 @@ import { html } from "../components/elements.js";
 import { NumberRow } from "../components/number-row.js";
 import { count, sentence, whole } from "../format.js";
 import { parseSetting } from "../parse.js";
+import { isAway } from "../store.js";
 import { agentOf, choiceTitle, fullTitle, kindOf, rangeOf } from "../settings.js";
 import { messageOf, robotTitle } from "../titles.js";
 import {
@@ -28,7 +29,7 @@ export function Enter() {
     <section class="panel enter" aria-labelledby="enter-title">
       <h2 id="enter-title">Enter the tournament</h2>
       ${isEntrant ? html`
-        <p class="dim entries-left" role="status">${entriesLeft(own, entries_per_hour)}</p>
+        <p class="dim entries-left" role="status">${isAway.value ? "" : entriesLeft(own, entries_per_hour)}</p>
         <${Fields} />
       ` : html`
         <p>${own.reason}</p>

@@ -3,7 +3,7 @@ import { effect } from "@preact/signals";
 import { render } from "preact";
 import { html, Icon, Loaded } from "../components/elements.js";
 import { followTheme, nextTheme, theme, toastMessage } from "../page.js";
-import { connection, options } from "../store.js";
+import { isAway, options } from "../store.js";
 import { Enter } from "./enter.js";
 import { Operator } from "./operator.js";
 import { Ranking } from "./ranking.js";
@@ -40,9 +40,9 @@ function Whole() {
   const { state } = known();
   return html`
     <${Header} />
-    ${connection.value === "reconnecting" && html`
+    ${isAway.value && html`
       <p class="strip-note warn" role="status">
-        <span class="spinner" aria-hidden="true"></span> Reconnecting. Entries are kept, and judged meanwhile.
+        <span class="spinner" aria-hidden="true"></span> Reconnecting. This is the last that is known; entries are kept.
       </p>
     `}
     <main class="tournament">

@@ -1,7 +1,7 @@
 // The projector: title and state, the way there, and the ranking in large.
 import { html } from "../components/elements.js";
 import { shortAddress } from "../format.js";
-import { connection } from "../store.js";
+import { isAway } from "../store.js";
 import { Table } from "./ranking.js";
 import { stateInWords } from "./states.js";
 import { entries, known, unranked } from "./tournament.js";
@@ -16,8 +16,10 @@ export function Projector() {
   const shown = shortened(standings, isReference, MOST);
   return html`
     <main class="tournament-projector">
-      ${connection.value === "reconnecting" && html`
-        <p class="strip-note warn" role="status"><span class="spinner" aria-hidden="true"></span> Reconnecting…</p>
+      ${isAway.value && html`
+        <p class="strip-note warn" role="status">
+          <span class="spinner" aria-hidden="true"></span> Reconnecting. This is the last that is known.
+        </p>
       `}
       <header>
         <div>

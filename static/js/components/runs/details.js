@@ -7,6 +7,7 @@ import { closeDetails, isOfSelection, repeatAddress, subjects } from "../../run-
 import { runGroups } from "../../run-list.js";
 import { outcomeInWords, titleOf, withResult } from "../../run-words.js";
 import { isOperator } from "../../selectors.js";
+import { isAway } from "../../store.js";
 import { describeRun } from "../../titles.js";
 import { html, Icon, ProgressBar } from "../elements.js";
 import { Problem } from "../foot.js";
@@ -85,7 +86,7 @@ function Experiment({ run }) {
 
 /** @param {{ run: Run }} props */
 function Foot({ run }) {
-  const isPending = pending.value[run.id];
+  const isPending = pending.value[run.id] || isAway.value;
   const isWalk = run.kind !== "experiment";
   const canResume = isOperator.value && run.can_resume && run.state !== "paused";
   const repeat = isOperator.value ? repeatAddress([run]) : null;
