@@ -21,6 +21,8 @@ _OVERFLOW = """() => {
     const {scrollWidth, scrollHeight} = document.scrollingElement;
     return [Math.max(0, scrollWidth - innerWidth), Math.max(0, scrollHeight - innerHeight)];
 }"""
+_CUT_OFF = """cards => cards.map(one => one.scrollHeight - one.clientHeight)
+    .filter(px => px > 0)"""
 _KEPT = re.compile(r"^(\w+ \w+)\s*seed (\d+)$")
 
 
@@ -77,9 +79,11 @@ def is_accessible(page: RoomPage, *, is_touched: bool = True) -> None:
 
 
 def is_read_from_afar(projector: RoomPage) -> None:
-    """Check that no type is small, and that nothing is beyond the screen's edges."""
+    """Check that no type is small, and that nothing is cut off or beyond the screen's edges."""
     small = small_texts(projector.page, LEAST_PX)
     assert small == [], small
     beyond = projector.page.evaluate(_OVERFLOW)
     assert beyond == [0, 0], beyond
+    cut_off = projector.page.locator(".shown-card").evaluate_all(_CUT_OFF)
+    assert cut_off == [], cut_off
     is_accessible(projector, is_touched=False)

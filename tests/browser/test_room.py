@@ -18,10 +18,13 @@ from tests.browser.rooms import (
     phone,
 )
 from tests.browser.serving import Serving, serving
+from tests.browser.type_sizes import small_texts
 from tests.conftest import new_page
 
 pytestmark = pytest.mark.timeout(400)
 
+STOP_PX = 90
+"""Of the type that stops a class."""
 FORM = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 100}
 LESSON: dict[str, Any] = {
     "title": "Why one run proves nothing",
@@ -58,7 +61,11 @@ LESSON: dict[str, Any] = {
             "ask": {"kind": "curve", "text": "Draw the curve."},
             "go": "training",
         },
-        {"title": "A point", "text": "Where?", "ask": {"kind": "point", "text": "Tap."}},
+        {
+            "title": "A point that takes some words",
+            "text": "Where does it get to? " * 20,
+            "ask": {"kind": "point", "text": "Tap where the curve is after its practice."},
+        },
     ],
 }
 
@@ -216,7 +223,7 @@ def draws_a_curve_by_keys(teacher: RoomPage, projector: RoomPage, pupil: RoomPag
 
 
 def taps_a_point(teacher: RoomPage, pupil: RoomPage) -> None:
-    teacher.press("Next: A point")
+    teacher.press(re.compile("^Next: A point"))
     chart = pupil.page.get_by_role("img", name="No point yet")
     chart.click(position={"x": 200, "y": 60})
     expect(pupil.page.get_by_role("img", name=re.compile("^Your point"))).to_be_visible()
@@ -230,6 +237,10 @@ def taps_a_point(teacher: RoomPage, pupil: RoomPage) -> None:
 def stands_still_and_ends(teacher: RoomPage, projector: RoomPage, pupil: RoomPage) -> None:
     teacher.press("Freeze all")
     pupil.sees("The teacher has stopped the class for a moment")
+    stop = projector.page.get_by_text("Stop. Look to the front.")
+    expect(stop).to_be_visible()
+    assert not [one for one in small_texts(projector.page, STOP_PX) if "Stop" in one]
+    is_read_from_afar(projector)
     teacher.press("Let them go on")
     expect(pupil.page.get_by_text("stopped the class")).to_have_count(0)
     teacher.press("End the room")

@@ -1,8 +1,8 @@
 // The projector: code and QR, the card and its question, dots as they land, predictions beside results.
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { getCurves } from "../api.js";
 import { DotStrip } from "../components/dot-strip.js";
-import { html } from "../components/elements.js";
+import { html, Icon } from "../components/elements.js";
 import { Prose } from "../components/prose.js";
 import { count, metres, shortAddress } from "../format.js";
 import { Away } from "./doors.js";
@@ -27,8 +27,9 @@ export function Projector() {
   const known = /** @type {Classroom} */ (room.value);
   const isBefore = isLobby(known);
   return html`
-    <main class=${`projector ${isBefore ? "lobby" : ""}`}>
+    <main class=${`projector ${isBefore ? "lobby" : known.state}`}>
       <${Away} />
+      ${known.state === "frozen" && html`<${Frozen} />`}
       <${Door} known=${known} />
       ${known.state === "ended"
         ? html`<article class="shown-card"><h1>${known.title}</h1><p>The lesson has ended.</p></article>`
@@ -37,6 +38,11 @@ export function Projector() {
     </main>
   `;
 }
+
+/** The class is stopped: told so large that nobody looks at a phone to know. */
+const Frozen = () => html`
+  <p class="frozen-note" role="status"><${Icon} name="pause" />Stop. Look to the front.</p>
+`;
 
 /** Where to join: large while the class gathers, small from then on. @param {{ known: Classroom }} props */
 const Door = ({ known }) => html`
@@ -57,11 +63,32 @@ const Door = ({ known }) => html`
   </section>
 `;
 
+/** Sizes of a card's type, largest first, as style/room.css has them. */
+const FITS = ["0", "1", "2", "3"];
+
+/** An element with the largest type in which nothing of it is cut off. */
+function useFit() {
+  const element = useRef(/** @type {HTMLElement | null} */ (null));
+  const fit = () => {
+    const { current } = element;
+    if (current === null) return;
+    FITS.find((size) => {
+      current.dataset.fit = size;
+      return current.scrollHeight <= current.clientHeight;
+    });
+  };
+  useLayoutEffect(fit);
+  useEffect(() => {
+    addEventListener("resize", fit);
+    return () => removeEventListener("resize", fit);
+  }, []);
+  return element;
+}
+
 /** @param {{ known: Classroom }} props */
 const Shown = ({ known }) => html`
-  <article class="shown-card" aria-labelledby="shown-title">
-    <p class="where">${known.title} · ${known.card + 1} of ${known.cards}
-      ${known.state === "frozen" && html` · <b>Stop for a moment</b>`}</p>
+  <article class="shown-card" aria-labelledby="shown-title" ref=${useFit()}>
+    <p class="where">${known.title} · ${known.card + 1} of ${known.cards}</p>
     ${known.shown.title && html`<h1 id="shown-title">${known.shown.title}</h1>`}
     ${known.spotlight !== null && html`<${Lit} known=${known} />`}
     <${Prose} text=${isRevealed.value && known.html.reveal ? known.html.reveal : known.html.text} />
