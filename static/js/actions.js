@@ -16,7 +16,7 @@ import { closeReplay, playReplay, seekReplay, setReplayClock, setReplaySpeed } f
 import { formRobot } from "./robots.js";
 import { agentOf, isClosed, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
-  commonStage, isAway, markDeleted, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
+  commonStage, isAway, markGone, options, requestRun, requestStage, runs, scene, served, setEntry, stage,
 } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -299,7 +299,7 @@ export const resumeRun = (run) =>
 export const deleteRun = (run) =>
   attempt(run.id, async () => {
     await api.deleteRun(run);
-    markDeleted(run.id);
+    markGone(run.id);
   });
 
 /**

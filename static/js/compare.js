@@ -6,10 +6,10 @@ import { count, duration, listed, metres, percentage, sentence, whole } from "./
 import { page } from "./page-state.js";
 import { formRobot } from "./robots.js";
 import { greedyOf, namesAmong } from "./run-words.js";
-import { absentIds, distanceOf, followRuns } from "./runs.js";
+import { distanceOf, followRuns } from "./runs.js";
 import { isActive } from "./selectors.js";
 import { agentOf, choiceTitle, fullTitle, laneTitle, settingsOf } from "./settings.js";
-import { damagedRuns, isDeleted, runs, served } from "./store.js";
+import { damagedRuns, isGone, runs, served } from "./store.js";
 import { agentTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "./titles.js";
 import { curveOf, followCurves } from "./training.js";
 
@@ -77,7 +77,7 @@ function problemOf(id, run) {
   if (run) return null;
   const damaged = damagedRuns.value.get(id);
   if (damaged) return `It cannot be read: ${damaged.damaged}`;
-  if (absentIds.value.has(id) || isDeleted(id)) return "There is no such run: it was deleted, or the link is wrong.";
+  if (isGone(id)) return "There is no such run: it was deleted, or the link is wrong.";
   return null;
 }
 

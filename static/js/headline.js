@@ -227,6 +227,14 @@ function marchOf(b) {
   return `${b.title} marches on the spot: ${gained}\u00a0cm in its last ten steps.`;
 }
 
+/** Why an agent's steps gain nothing. @param {string} agent */
+export function whyMarching(agent) {
+  const { learns, searches } = agentOf(agent);
+  const gain = "under 1 cm in ten steps";
+  if (learns) return `${gain}: moves that undo each other still have the highest values. More practice changes that.`;
+  return searches ? `${gain}: no move that it simulates gains distance on this robot.` : `${gain}.`;
+}
+
 /**
  * The disturbance after which the second lane's steps are shorter, and more so than the leader's.
  * @param {Walked} a

@@ -4,7 +4,7 @@ import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getReplay, getReplayFrames, isLasting } from "./api.js";
 import { change, linkTo, page } from "./page-state.js";
 import { decode, endOf, Follower, inRecording, placeOf, SceneState, Segments } from "./replay-frames.js";
-import { connection, ownScene, ownStage } from "./store.js";
+import { connection, isGone, ownScene, ownStage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
@@ -123,6 +123,14 @@ function retryAfter(error, own, again) {
   if (isLasting(refused)) replayProblem.value = refused.message;
   else setTimeout(() => own === opening && again(), RETRY_MS);
 }
+
+/** End the replay of a run that was deleted; what was drawn of it goes too. */
+const lose = () => batch(() => {
+  opening += 1;
+  if (scene) draw([removal(scene)]);
+  forget();
+  replayProblem.value = "This run was deleted. It can be replayed no more.";
+});
 
 /** Forget what is known of the run that was open. */
 function forget() {
@@ -362,6 +370,10 @@ export function followReplay() {
     if (connection.value !== "live" || !wasAway) return;
     wasAway = false;
     if (replayProblem.peek() && page.run.peek()) load(page.moment.peek() ?? 0);
+  });
+  effect(() => {
+    const id = page.run.value;
+    if (id !== null && isGone(id)) untracked(lose);
   });
   let isLooping = false;
   const loop = (/** @type {number} */ now) => {

@@ -10,7 +10,7 @@ import { fieldsOf } from "./run-settings.js";
 import { greedyOf } from "./run-words.js";
 import { followRuns } from "./runs.js";
 import { agentOf } from "./settings.js";
-import { damagedRuns, runs } from "./store.js";
+import { damagedRuns, isGone, runs } from "./store.js";
 import { curveOf, followCurves } from "./training.js";
 
 /** @import { AnyRun } from "./runs.js" */
@@ -33,9 +33,14 @@ export const isOfSelection = computed(() => {
   return all.length > 1 && (opened.value === null || all.includes(opened.value));
 });
 
+/** Whether the run that was opened is there no more; the details of another would look like its own. */
+export const isOpenedGone = computed(() =>
+  page.opened.value !== null && opened.value === null && selected.value.length === 0 && isGone(page.opened.value));
+
 /** The runs whose details are shown: the opened one, else the first; several where they are selected. */
 export const subjects = computed(() => {
   if (isOfSelection.value) return selected.value;
+  if (isOpenedGone.value) return [];
   const one = opened.value ?? selected.value[0] ?? listedRuns.value[0];
   return one ? [one] : [];
 });

@@ -7,7 +7,7 @@ import { listed } from "./format.js";
 import { page } from "./page-state.js";
 import { listedRuns } from "./run-list.js";
 import { isActive } from "./selectors.js";
-import { markDeleted, requestRun, served } from "./store.js";
+import { markGone, requestRun, served } from "./store.js";
 
 /** @import { DamagedRun, Run } from "./types.js" */
 
@@ -64,7 +64,7 @@ export const deleteSelected = () =>
     const [, most] = served().limits.archive_runs;
     for (let at = 0; at < all.length; at += most ?? all.length) {
       const { deleted, kept } = await api.deleteRuns(all.slice(at, at + (most ?? all.length)));
-      deleted.forEach(markDeleted);
+      deleted.forEach(markGone);
       select([...ids.value].filter((id) => !deleted.includes(id)));
       reasons.push(...kept.map(({ reason }) => reason));
     }

@@ -3,10 +3,10 @@ import { computed, effect, signal } from "@preact/signals";
 import { getAnyRun, listRuns } from "./api.js";
 import { page } from "./page-state.js";
 import { trainingIds } from "./selectors.js";
-import { connection, damagedRuns, isDeleted, requestRun, requestRuns, runs, stage } from "./store.js";
+import { connection, damagedRuns, isGone, markGone, requestRun, requestRuns, runs, stage } from "./store.js";
 import { messageOf } from "./titles.js";
 
-/** @import { ReadonlySignal, Signal } from "@preact/signals" */
+/** @import { ReadonlySignal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
 /** @import { DamagedRun, Run } from "./types.js" */
 
@@ -14,9 +14,6 @@ import { messageOf } from "./titles.js";
 
 const RETRY_MS = 3000;
 const NOT_FOUND = 404;
-
-/** Ids that the server has said to be of no run. @type {Signal<Set<string>>} */
-export const absentIds = signal(new Set());
 
 /**
  * Request each run that is not known, until it is, or the server says that there is none.
@@ -31,7 +28,7 @@ export function followRuns(ids) {
       await requestRun(() => getAnyRun(id));
     } catch (error) {
       if (/** @type {RequestError} */ (error).status === NOT_FOUND) {
-        absentIds.value = new Set([...absentIds.value, id]);
+        markGone(id);
         return;
       }
       setTimeout(requestMissing, RETRY_MS);
@@ -39,7 +36,7 @@ export function followRuns(ids) {
     requested.delete(id);
   };
   const isMissing = (/** @type {string} */ id) =>
-    !runs.value.has(id) && !damagedRuns.value.has(id) && !absentIds.value.has(id) && !isDeleted(id);
+    !runs.value.has(id) && !damagedRuns.value.has(id) && !isGone(id);
   function requestMissing() {
     if (connection.value !== "live") return;
     for (const id of ids.value.filter(isMissing)) {

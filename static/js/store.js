@@ -72,11 +72,11 @@ export const setEntry = (record, key, value) => {
 let eventCount = 0;
 /** Run id, or "stage" → the number of its newest event. @type {Map<string, number>} */
 const newestEvents = new Map();
-/** Ids of runs that were deleted while the page was open. @type {Set<string>} */
-const deletedIds = new Set();
+/** Ids of runs that were deleted while the page was open, or of which the server has said that there is none. */
+const goneIds = signal(/** @type {Set<string>} */ (new Set()));
 
-/** @param {string} id */
-export const isDeleted = (id) => deletedIds.has(id);
+/** Whether there is no such run, or none any more. @param {string} id */
+export const isGone = (id) => goneIds.value.has(id);
 
 /** @type {{ [Name in Exclude<keyof EventBodies, "room" | "tournament">]: (data: EventBodies[Name]) => void }} */
 const handlers = {
@@ -99,12 +99,12 @@ const handlers = {
   run(data) {
     newestEvents.set(data.id, eventCount);
     // A deleted run may have been imported again.
-    deletedIds.delete(data.id);
+    if (goneIds.peek().has(data.id)) goneIds.value = new Set([...goneIds.peek()].filter((id) => id !== data.id));
     upsertRun(data);
   },
   "run-deleted"({ id }) {
     newestEvents.set(id, eventCount);
-    markDeleted(id);
+    markGone(id);
   },
   evaluation({ run_id, ...evaluation }) {
     setEntry(evaluations, run_id, [...(evaluations.value[run_id] ?? []), evaluation]);
@@ -195,13 +195,13 @@ const upsertRun = (run) =>
   });
 
 /**
- * Remove a run that was deleted, and request it no more.
+ * Remove a run that was deleted, or that there is not, and request it no more.
  * @param {string} id
  */
-export const markDeleted = (id) => {
-  deletedIds.add(id);
+export const markGone = (id) => batch(() => {
+  goneIds.value = new Set(goneIds.peek()).add(id);
   forgetRun(id);
-};
+});
 
 /** @param {string} id */
 const forgetRun = (id) =>

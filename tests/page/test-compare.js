@@ -7,7 +7,6 @@ import {
 } from "../../static/js/compare.js";
 import { askAgain, differencesOf, followTables, haveSameStates, tableOf } from "../../static/js/compare-policies.js";
 import { addressOf, page, read, write } from "../../static/js/page-state.js";
-import { absentIds } from "../../static/js/runs.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { conditionsOfRace, obstacle, raceThem } from "../../static/js/table-race.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -26,7 +25,6 @@ function compare(...runs) {
 
 beforeEach(() => {
   options.value = OPTIONS;
-  absentIds.value = new Set();
   page.compared.value = [];
 });
 
@@ -46,7 +44,6 @@ test("a run that is gone, cannot be read or is an experiment says so, and the ot
   const damaged = { id: "bad", kind: "training", name: null, created_at: null, damaged: "its config is lost" };
   compare(run, experiment, damaged, { id: "gone" }, { id: "late" });
   applyEvent("run-deleted", { id: "gone" });
-  absentIds.value = new Set(["gone"]);
   const told = compared.value.map(({ problem }) => problem?.split(":")[0] ?? null);
   assert.deepEqual(told, [
     null, "It is an experiment, which has its own report", "It cannot be read", "There is no such run", null,

@@ -1,7 +1,9 @@
 // Why the leader is ahead, from recorded figures only.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { practiceReason, practiceTitle, reason, reasonOf, stepEnds, workOf } from "../../static/js/headline.js";
+import {
+  practiceReason, practiceTitle, reason, reasonOf, stepEnds, whyMarching, workOf,
+} from "../../static/js/headline.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
@@ -161,4 +163,10 @@ test("the last picture of a practice that has ended says how it ended, and nothi
   // Played again it is at an earlier moment.
   end({}, false);
   assert.equal(practiceTitle.value, "Learner walks 0.31\u00a0m so far");
+});
+
+test("why a robot marches on the spot is told of who learns or simulates, and of nobody else", () => {
+  assert.match(whyMarching("learner"), /still have the highest values\. More practice changes that\.$/);
+  assert.match(whyMarching("greedy"), /no move that it simulates gains distance/);
+  assert.equal(whyMarching("random-walk"), "under 1 cm in ten steps.");
 });

@@ -7,7 +7,7 @@ import {
   closeReplay, drawIn, endTime, followReplay, openReplay, playReplay, replayProblem, replayTime, seekReplay,
   setReplaySpeed, tick,
 } from "../../static/js/replay.js";
-import { stage } from "../../static/js/store.js";
+import { applyEvent, stage } from "../../static/js/store.js";
 import { makeRun } from "./options.js";
 
 const PLAN = {
@@ -110,6 +110,23 @@ test("a run that was deleted meanwhile is told, and asked for no more", async ()
   await wait(60);
   assert.equal(replayProblem.value, "There is no run.");
   assert.equal(asked.filter((one) => one === "moment").length, 2);
+});
+
+test("a replay ends when its run is deleted elsewhere, and says so", async () => {
+  await openReplay("a", { time_s: 1, isPlaying: false });
+  await wait(5);
+  applyEvent("run-deleted", { id: "b" });
+  assert.equal(replayProblem.value, null);
+  applyEvent("run-deleted", { id: "a" });
+  assert.equal(replayProblem.value, "This run was deleted. It can be replayed no more.");
+  assert.equal(drawn.at(-1)?.type, "RemoveSceneNodeMessage", "its robots are gone too");
+  asked = [];
+  await wait(20);
+  assert.deepEqual(asked, []);
+  // Imported again it can be opened again.
+  applyEvent("run", makeRun({ id: "a" }));
+  await openReplay("a");
+  assert.equal(replayProblem.value, null);
 });
 
 test("a held replay follows another robot at once", async () => {

@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import { change, page } from "../../static/js/page-state.js";
 import {
-  bestPointOf, closeDetails, commonGreedy, followDetails, isOfSelection, openDetails, repeatAddress, subjects,
+  bestPointOf, closeDetails, commonGreedy, followDetails, isOfSelection, isOpenedGone, openDetails, repeatAddress,
+  subjects,
 } from "../../static/js/run-details.js";
 import { setSelected } from "../../static/js/run-selection.js";
 import { followThumbnails, pointsOf } from "../../static/js/run-thumbnails.js";
@@ -71,6 +72,12 @@ test("details are of the first run, of the one that was opened, or of all that a
   assert.deepEqual(shown(), [two.id, one.id]);
   applyEvent("run-deleted", { id: two.id });
   assert.deepEqual(shown(), [one.id]);
+  setSelected(one.id, false);
+  openDetails(one.id);
+  applyEvent("run-deleted", { id: one.id });
+  assert.deepEqual([shown(), isOpenedGone.value], [[], true], "another's details would be taken for its own");
+  openDetails(three.id);
+  assert.deepEqual([shown(), isOpenedGone.value], [[three.id], false]);
   closeDetails();
   assert.equal(page.isOverList.value, false);
 });

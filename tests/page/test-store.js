@@ -12,7 +12,7 @@ import {
 import { everyRun, hasTable, markAsMine, simulatedPerDecision } from "../../static/js/selectors.js";
 import { learns } from "../../static/js/settings.js";
 import {
-  applyEvent, damagedRuns, evaluations, isDeleted, markDeleted, options, rates, requestRun, requestRuns, requestStage,
+  applyEvent, damagedRuns, evaluations, isGone, markGone, options, rates, requestRun, requestRuns, requestStage,
   role, runs, stage,
 } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
@@ -73,7 +73,7 @@ test("an answer does not undo the events that overtook it", async () => {
     applyEvent("stage", { ...STAGE, run_id: run.id });
   };
   assert.equal((await requestRun(answerAfter(meanwhile, run))).state, "queued");
-  assert.deepEqual([isDeleted(deleted.id), isDeleted(run.id)], [true, false]);
+  assert.deepEqual([isGone(deleted.id), isGone(run.id)], [true, false]);
   assert.equal(runs.value.get(run.id)?.state, "finished");
   await requestRuns(answerAfter(meanwhile, { items: [run, deleted] }));
   assert.deepEqual([...runs.value.values()].map(({ state }) => state), ["finished"]);
@@ -94,10 +94,10 @@ test("a stage that shows its run's end does not play, and plays a replay unless 
 test("a deleted run is marked before its event comes, until it is imported again", () => {
   const run = makeRun({});
   applyEvent("run", run);
-  markDeleted(run.id);
-  assert.deepEqual([isDeleted(run.id), runs.value.has(run.id)], [true, false]);
+  markGone(run.id);
+  assert.deepEqual([isGone(run.id), runs.value.has(run.id)], [true, false]);
   applyEvent("run", run);
-  assert.deepEqual([isDeleted(run.id), runs.value.has(run.id)], [false, true]);
+  assert.deepEqual([isGone(run.id), runs.value.has(run.id)], [false, true]);
 });
 
 test("an answer does not undo a snapshot, but tells of runs that the snapshot had no room for", async () => {

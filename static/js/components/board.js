@@ -4,7 +4,7 @@ import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { downloads } from "../files.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
-import { ruleOf } from "../headline.js";
+import { ruleOf, whyMarching } from "../headline.js";
 import { isOver, isTimedOut, shownEarlyEnd, standings } from "../race.js";
 import { canPlay, clock, earlyEnd, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
@@ -185,7 +185,7 @@ function linesBelow(row) {
   if (isDeep && row.plans_with) lines.push(["dim", `plans with the ${planningModelTitle(row.plans_with)}`]);
   if (row.isMarching) {
     lines.push(["marching", html`<b>Marching on the spot${isAtLeast("try") ? ": " : "."}</b>${
-      isAtLeast("try") ? reasonForMarching(row) : ""}`]);
+      isAtLeast("try") ? whyMarching(row.agent) : ""}`]);
   }
   return lines;
 }
@@ -233,11 +233,6 @@ function activityOf(row) {
   return row.step ? step : agentSummary(row.agent, row.training_id);
 }
 
-/** @param {{ agent: string }} one */
-const reasonForMarching = ({ agent }) =>
-  learns(agent)
-    ? "under 1 cm in ten steps: moves that undo each other still have the highest values. More practice changes that."
-    : "under 1 cm in ten steps: no move that it simulates gains distance on this robot.";
 
 /**
  * Decision rule of an agent, in a few words.

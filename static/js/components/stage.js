@@ -289,20 +289,26 @@ function measureChips(labels) {
 
 /** What the page plays by itself: to a visitor of a demo perhaps the own robot, as it learns. */
 function replayInWords() {
-  if (isBuffering.value) return loadingInWords();
+  // While the server is away the note below says so.
+  if (isBuffering.value && !isAway.value) return loadingInWords();
   return visitorRuns.value.includes(page.run.value ?? "") ? "Your robot" : "Your own replay";
 }
+
+const nothingInWords = () => {
+  if (page.run.value === null) return "On the start line";
+  return replayProblem.value ? "No run is shown" : loadingInWords();
+};
 
 function SceneChips() {
   const now = scene.value;
   return html`
     <div class="chips">
-      <p class="chip strong" role="group" aria-label="Shown run">${now?.label || "On the start line"}</p>
+      <p class="chip strong" role="group" aria-label="Shown run">${now?.label || nothingInWords()}</p>
       ${now?.phase === "photo-finish" && html`<p class="chip accent">Time-out: photo finish</p>`}
       ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that is still deciding</p>`}
       <${WorldChip} />
       ${page.run.value !== null
-        ? html`<p class="chip accent">${replayInWords()}</p>`
+        ? !replayProblem.value && html`<p class="chip accent">${replayInWords()}</p>`
         : now?.replay && html`<p class="chip">Replay</p>`}
       ${page.ghost.value !== null && html`<${GhostChip} ghosts=${now?.ghost_lanes ?? []} />`}
       <${SpeedChip} now=${now} />
@@ -331,6 +337,7 @@ function SpeedChip({ now }) {
   if (stage.value?.playing === false && !stage.value.ended && now?.kind !== "idle") {
     return html`<p class="chip">${sentence(playbackName.value)} paused</p>`;
   }
-  if (!now || now.kind === "idle" || isStale.value || stage.value?.ended || !(now.shown_speed > 0)) return null;
+  const isStill = isStale.value || isBuffering.value || stage.value?.ended;
+  if (!now || now.kind === "idle" || isStill || !(now.shown_speed > 0)) return null;
   return html`<p class="chip num" title="Times real time">${times(now.shown_speed)}</p>`;
 }

@@ -7,9 +7,9 @@ import { makeAnswer } from "../estimate.js";
 import { count, duration, whole } from "../format.js";
 import { announcement } from "../headline.js";
 import { page } from "../page-state.js";
-import { absentIds, followRuns, makeList, NO_FILTERS } from "../runs.js";
+import { followRuns, makeList, NO_FILTERS } from "../runs.js";
 import { everyRun, isActive, isOperator } from "../selectors.js";
-import { connection, isDeleted, options, requestRun, runs, setEntry, summarised } from "../store.js";
+import { connection, isGone, options, requestRun, runs, setEntry, summarised } from "../store.js";
 import { runTitle } from "../titles.js";
 import { chosenExperiment, mistakes, requestBody, trials } from "./form.js";
 
@@ -36,7 +36,7 @@ export const isMissing = computed(() => {
   const id = page.report.value;
   if (id === null) return false;
   const run = runs.value.get(id);
-  return run ? run.kind !== "experiment" : absentIds.value.has(id) || isDeleted(id);
+  return run ? run.kind !== "experiment" : isGone(id);
 });
 
 export function followExperiments() {

@@ -3,7 +3,7 @@ import { pending, resumeRun, isShown, showOnStage } from "../../actions.js";
 import { paceOf } from "../../experiments/runs.js";
 import { isPhone } from "../../page.js";
 import { addressOf } from "../../page-state.js";
-import { closeDetails, isOfSelection, repeatAddress, subjects } from "../../run-details.js";
+import { closeDetails, isOfSelection, isOpenedGone, repeatAddress, subjects } from "../../run-details.js";
 import { runGroups } from "../../run-list.js";
 import { outcomeInWords, titleOf, withResult } from "../../run-words.js";
 import { isOperator } from "../../selectors.js";
@@ -35,6 +35,7 @@ export function Details() {
 
 /** @param {AnyRun | undefined} first */
 function detailsOf(first) {
+  if (isOpenedGone.value) return html`<p class="dim nothing" role="status">This run was deleted.</p>`;
   if (!first) return html`<p class="dim nothing">Details of a run stand here.</p>`;
   if (isOfSelection.value) return html`<${Several} />`;
   return "damaged" in first ? html`<${Damaged} run=${first} />` : html`<${One} key=${first.id} run=${first} />`;
