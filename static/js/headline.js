@@ -377,7 +377,7 @@ const practice = computed(() => {
 export const practiceTitle = computed(() => practice.value?.title ?? null);
 
 /** Said of what may go on unseen. */
-const STOOD = "So it stood in the last picture.";
+const STOOD = "This is the last that is known.";
 
 /** Why what the headline says is so; null where no recorded figure tells it. */
 export const reason = computed(() => {

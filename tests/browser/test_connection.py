@@ -30,7 +30,7 @@ def test_the_last_picture_stays_until_it_is_back(dashboard: Dashboard, tmp_path:
     expect(dashboard.actions).to_contain_text("Last known: practising")
     expect(dashboard.actions).to_contain_text("until the server is back")
     expect(left).to_have_count(0)
-    expect(dashboard.panel).to_contain_text("So it stood in the last picture.")
+    expect(dashboard.panel).to_contain_text("This is the last that is known.")
     for button in (dashboard.button("Stop"), page.locator(".time-bar .play")):
         expect(button).to_have_attribute("aria-disabled", "true")
     assert dashboard.violations() == []
@@ -60,6 +60,10 @@ def test_what_could_not_be_loaded_is_loaded_when_it_is_back(
     assert dashboard.complaints == []
     first.kill()
     expect(dashboard.connection).to_have_text("reconnecting")
+    # What is told of it pushes nothing over the edge of a phone.
+    page.set_viewport_size({"width": 390, "height": 844})
+    expect(page.get_by_label("More", exact=True)).to_be_in_viewport(ratio=1)
+    page.set_viewport_size({"width": 1280, "height": 720})
     dashboard.choose_depth("Try")
     world = dashboard.open_tab("World")
     expect(world.get_by_role("status")).to_have_text("Waiting for the server to load the world.")

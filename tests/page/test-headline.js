@@ -134,7 +134,7 @@ test("practice is told by its newest test that is shown, and before the first by
   assert.equal(practiceTitle.value, "Learner walks 0.12\u00a0m so far");
   assert.match(reason.value ?? "", /^90 of 100 steps are still random/);
   connection.value = "reconnecting";
-  assert.equal(reason.value, "So it stood in the last picture.");
+  assert.equal(reason.value, "This is the last that is known.");
   connection.value = "live";
 });
 

@@ -232,7 +232,10 @@ function Connection() {
   return html`
     <p class=${`live ${state.replace(" ", "-")}`} role="group" aria-label="Connection">
       <span class="dot" aria-hidden="true"></span>
-      <span>${state === "live" ? html`<span class="sr-only">live, </span>${watching}` : state}</span>
+      ${state === "live"
+        ? html`<span><span class="sr-only">live, </span>${watching}</span>`
+        // On a phone it would push the menu over the edge; what is lost is told where it is shown.
+        : html`<span class=${isPhone.value && !isLockedOut.value ? "sr-only" : ""}>${state}</span>`}
     </p>
   `;
 }

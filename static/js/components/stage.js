@@ -72,9 +72,9 @@ const isReplayed = () => page.run.value !== null && plan.value !== null && !isBu
 /** What the picture is while the server is away, or the frame has lost its own connection. @param {string} status */
 function awayInWords(status) {
   if (!isAway.value && (status !== "reconnecting" || isReplayed())) return "";
-  if (isReplayed()) return "Reconnecting. Your replay plays as far as it is loaded.";
+  if (isReplayed()) return "Reconnecting. Your replay plays what is loaded.";
   return page.run.value === null ? "Reconnecting. This is the last picture."
-    : "Reconnecting. Your replay waits for the server.";
+    : "Reconnecting. Your replay waits.";
 }
 
 const loadLegs = () => import("./leg-menu.js").then(({ Legs }) => Legs);
@@ -334,7 +334,7 @@ function WorldChip() {
 
 /** @param {{ now: Scene }} props */
 function SpeedChip({ now }) {
-  if (stage.value?.playing === false && !stage.value.ended && now?.kind !== "idle") {
+  if (now && stage.value?.playing === false && !stage.value.ended && now.kind !== "idle") {
     return html`<p class="chip">${sentence(playbackName.value)} paused</p>`;
   }
   const isStill = isStale.value || isBuffering.value || stage.value?.ended;
