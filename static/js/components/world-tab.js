@@ -1,5 +1,6 @@
 // The tab of the world: what can be disturbed now, what has happened, and the world of the next run.
 import { heldRace, liveTraining, stepShown } from "../on-stage.js";
+import { isOperator } from "../selectors.js";
 import { isClosed } from "../settings.js";
 import { isAway } from "../store.js";
 import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
@@ -10,14 +11,14 @@ import { Branch, LiveWorld } from "./world-controls.js";
 
 /** What can be disturbed now comes before the world of the next run. */
 export function WorldTab() {
-  const canDisturb = liveTraining.value !== null || heldRace.value !== null;
+  const canDisturb = isOperator.value && (liveTraining.value !== null || heldRace.value !== null);
   return html`
     <div class="world-tab">
       <${OfCard} />
       ${canDisturb && html`<${FromNow} />`}
       <${Happened} />
       <${WorldSettings} />
-      ${!canDisturb && !isClosed("disturb") && html`
+      ${isOperator.value && !canDisturb && !isClosed("disturb") && html`
         <p class="dim fine">
           Hold a race that has been computed, or start a training: then its robots can be disturbed here, or by a click
           on a leg.

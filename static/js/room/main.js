@@ -1,7 +1,7 @@
 // Entry point of a room's page: by role the phone of a participant, the teacher's cockpit, or the projector.
 import { effect } from "@preact/signals";
 import { render } from "preact";
-import { html, Loaded } from "../components/elements.js";
+import { html, Loaded, withStyle } from "../components/elements.js";
 import { followTheme } from "../page.js";
 import { Phone } from "./phone.js";
 import { followOwnRun } from "./picture.js";
@@ -15,7 +15,8 @@ function Page() {
 }
 
 // A class of phones needs neither.
-const loadProjector = () => import("./projector.js").then(({ Projector }) => Projector);
+const loadProjector = () =>
+  withStyle("room-projector", import("./projector.js")).then(({ Projector }) => Projector);
 const loadCockpit = () => import("./cockpit.js").then(({ Cockpit }) => Cockpit);
 
 followTheme();

@@ -63,7 +63,7 @@ const Door = ({ known }) => html`
   </section>
 `;
 
-/** Sizes of a card's type, largest first, as style/room.css has them. */
+/** Sizes of a card's type, largest first, as style/room-projector.css has them. */
 const FITS = ["0", "1", "2", "3"];
 
 /** An element with the largest type in which nothing of it is cut off. */
