@@ -108,7 +108,7 @@ function Track({ known }) {
   const words = isComputing ? `, computed up to ${positionInWords(known, computed)}` : "";
   /** @param {{ target: HTMLInputElement }} event */
   const seek = ({ target }) => {
-    // Not \`disabled\`, by which it would lose the keyboard's focus whenever the connection breaks.
+    // Not `disabled`, by which it would lose the keyboard's focus whenever the connection breaks.
     if (isStale.peek()) target.value = String(picture);
     else seekTo(Number(target.value));
   };
