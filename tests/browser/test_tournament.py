@@ -90,7 +90,9 @@ def test_a_tournament_of_a_room(
         for pupil in (one, two):
             pupil.page.get_by_role("link", name="Enter the tournament: Cup of the class").tap()
             pupil.sees("practises at most 40 steps, then walks 50, on 8 secret seeds")
-            pupil.sees("everybody sees what you entered, and without your name once the room is gone")
+            pupil.sees(
+                "everybody sees what you entered, and without your name once the room is gone"
+            )
         enters_a_learner(one)
         enters_by_keys_alone(two)
         sees_the_ranking(two, names)
