@@ -5,7 +5,7 @@ import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, duration, listed, metres, percentage, sentence, whole } from "./format.js";
 import { page } from "./page-state.js";
 import { formRobot } from "./robots.js";
-import { greedyOf, namesAmong } from "./run-words.js";
+import { greedyOf, namesAmong, NO_SUCH_RUN } from "./run-words.js";
 import { distanceOf, followRuns } from "./runs.js";
 import { isActive } from "./selectors.js";
 import { agentOf, choiceTitle, fullTitle, laneTitle, settingsOf } from "./settings.js";
@@ -77,7 +77,7 @@ function problemOf(id, run) {
   if (run) return null;
   const damaged = damagedRuns.value.get(id);
   if (damaged) return `It cannot be read: ${damaged.damaged}`;
-  if (isGone(id)) return "There is no such run: it was deleted, or the link is wrong.";
+  if (isGone(id)) return NO_SUCH_RUN;
   return null;
 }
 

@@ -124,7 +124,7 @@ function retryAfter(error, own, again) {
   else setTimeout(() => own === opening && again(), RETRY_MS);
 }
 
-/** End the replay of a run that was deleted; what was drawn of it goes too. */
+/** End the replay of a run that was deleted. Of one that was never loaded, what the server says stands. */
 const lose = () => batch(() => {
   opening += 1;
   if (scene) draw([removal(scene)]);
@@ -373,7 +373,7 @@ export function followReplay() {
   });
   effect(() => {
     const id = page.run.value;
-    if (id !== null && isGone(id)) untracked(lose);
+    if (id !== null && isGone(id) && plan.peek()) untracked(lose);
   });
   let isLooping = false;
   const loop = (/** @type {number} */ now) => {

@@ -11,6 +11,9 @@ import { describeRun, runTitle } from "./titles.js";
 /** @import { AnyRun } from "./runs.js" */
 /** @import { LaneResult, Run } from "./types.js" */
 
+/** Of a run that a link names, or that was open. */
+export const NO_SUCH_RUN = "There is no such run: it was deleted, or the link is wrong.";
+
 // ---- names
 
 /** Whether a person has named a run; a damaged one has the name that could be read. @param {AnyRun} run */

@@ -5,7 +5,7 @@ import { isPhone } from "../../page.js";
 import { addressOf } from "../../page-state.js";
 import { closeDetails, isOfSelection, isOpenedGone, repeatAddress, subjects } from "../../run-details.js";
 import { runGroups } from "../../run-list.js";
-import { outcomeInWords, titleOf, withResult } from "../../run-words.js";
+import { NO_SUCH_RUN, outcomeInWords, titleOf, withResult } from "../../run-words.js";
 import { isOperator } from "../../selectors.js";
 import { isAway } from "../../store.js";
 import { describeRun } from "../../titles.js";
@@ -35,7 +35,7 @@ export function Details() {
 
 /** @param {AnyRun | undefined} first */
 function detailsOf(first) {
-  if (isOpenedGone.value) return html`<p class="dim nothing" role="status">This run was deleted.</p>`;
+  if (isOpenedGone.value) return html`<p class="dim nothing" role="status">${NO_SUCH_RUN}</p>`;
   if (!first) return html`<p class="dim nothing">Details of a run stand here.</p>`;
   if (isOfSelection.value) return html`<${Several} />`;
   return "damaged" in first ? html`<${Damaged} run=${first} />` : html`<${One} key=${first.id} run=${first} />`;
