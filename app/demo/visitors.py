@@ -28,9 +28,8 @@ ID_LENGTH = 12
 """Letters of the hash by which operators call a visitor."""
 MIN_SECRET = 16
 """Characters of an idempotency key from which on it is a secret, which can prove whose a run is."""
-
-
 _MAX_CLOCK_LEAD = timedelta(days=1)
+"""A run made later than so long from now has a damaged time, or the clock was set back."""
 
 
 class Use(NamedTuple):
