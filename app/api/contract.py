@@ -53,7 +53,10 @@ class ProblemDetails(BaseModel):
     status: int = Field(ge=400, le=599)
     detail: str = Field(description="one sentence or two, naming what is valid")
     errors: list[FieldProblem] = Field(
-        default_factory=list, description="the fields that are wrong, if single fields are"
+        default_factory=list, description="the fields whose values are wrong by themselves"
+    )
+    field: str = Field(
+        default="", description="the field that is in the way, where that depends on others"
     )
     state: str = Field(default="", description="the run's state, where that is in the way")
     legs: list[int] = Field(

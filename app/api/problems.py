@@ -109,7 +109,7 @@ async def hexapod_error(request: Request, error: Exception) -> Response:
         case ImpossibleLegs(legs=legs):
             more = {"legs": list(legs)}
         case InvalidInput(field=field) if field:
-            more = {"errors": [{"field": field, "detail": sentence}]}
+            more = {"field": field}
         case _:
             more = {}
     return problem(status, sentence, **more)

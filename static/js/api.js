@@ -18,7 +18,10 @@ export const addressOf = (path) => new URL(path, base()).href;
 
 /** A run, or enough of one to address it. @typedef {{ kind: Kind | null, id: string }} RunKey */
 /** An entry of a problem document. @typedef {{ field?: string, loc?: string[], pointer?: string }} FieldError */
-/** @typedef {{ title?: string, detail?: string, errors?: FieldError[], legs?: number[] }} ProblemDocument */
+/**
+ * @typedef {{ title?: string, detail?: string, errors?: FieldError[], field?: string, legs?: number[] }}
+ *   ProblemDocument
+ */
 
 /**
  * A failed request. `message` is a sentence in which fields have the names of the API (`messageOf` gives those of the
@@ -142,7 +145,7 @@ const fieldOf = (error) => {
 export const refusal = (status, problem) =>
   new RequestError(
     problem.detail || problem.title || `The server answered ${status}.`, status,
-    (problem.errors ?? []).map(fieldOf).filter(Boolean), problem.legs,
+    [...problem.errors ?? [], { field: problem.field }].map(fieldOf).filter(Boolean), problem.legs,
   );
 
 /** @param {string} text */
