@@ -1,5 +1,6 @@
 """Pool of worker processes for interactive requests, which shut down when idle."""
 
+import math
 import os
 import threading
 import time
@@ -15,7 +16,7 @@ from typing import TypeVar
 
 from app.storage.errors import Busy
 from hexapods.domain.errors import HexapodError, InvalidInput
-from hexapods.processes import SetUp
+from hexapods.processes import SetUp, processor_s
 from hexapods.worker_pool import WorkerPool
 
 IDLE_S = 60.0
@@ -29,7 +30,11 @@ R = TypeVar("R")
 
 
 class TookTooLong(Busy):
-    """A request was given up, since it took longer than it may."""
+    """A request was given up after the pool's timeout: it is slow, or the machine is busy."""
+
+
+class OutOfProcessorTime(HexapodError):
+    """A request was given up, since it has taken more processor time than it may."""
 
 
 class ProcessPool:
@@ -76,7 +81,7 @@ class ProcessPool:
         function: Callable[[T], R],
         arguments: Sequence[T],
         check: Callable[[], None] = lambda: None,
-        timeout_s: float | None = None,
+        limit_s: float = math.inf,
     ) -> list[R]:
         """Call a function of a module with each of some arguments, and wait.
 
@@ -87,13 +92,15 @@ class ProcessPool:
             arguments: what it is called with.
             check: called ten times a second meanwhile; if it raises, the request is given up, and
                 the processes that work for it are killed.
-            timeout_s: time after which this request is given up [s]; that of the pool if None.
+            limit_s: processor time that all calls together may take [s]. Unlike the timeout it does
+                not depend on what else the machine does. Linux only.
 
         Returns:
             what it returned, in the same order.
 
         Raises:
             InvalidInput: if a call fails.
+            OutOfProcessorTime: if the limit is exceeded.
             TookTooLong: if the timeout passes.
             Busy: if a worker exits, or the pool is closed.
         """
@@ -102,7 +109,7 @@ class ProcessPool:
             check()
         try:
             self._check_open()
-            return self._results(function, arguments, check, timeout_s or self._timeout_s)
+            return self._results(function, arguments, check, limit_s)
         except (BrokenExecutor, CancelledError, OSError, RuntimeError) as error:
             message = "the processes that tried it are gone (one of them ended); try again"
             raise Busy(message, 1) from error
@@ -123,9 +130,10 @@ class ProcessPool:
         function: Callable[[T], R],
         arguments: Sequence[T],
         check: Callable[[], None],
-        timeout_s: float,
+        limit_s: float,
     ) -> list[R]:
-        deadline_s = time.monotonic() + timeout_s
+        deadline_s = time.monotonic() + self._timeout_s
+        before_s = {pid: processor_s(pid) for pid in self.pids}
         starts = range(0, len(arguments), _CHUNK_SIZE)
         calls = [self._pool.submit(_call, function, arguments[i : i + _CHUNK_SIZE]) for i in starts]
         waiting: set[Future[list[R]]] = set(calls)
@@ -136,8 +144,12 @@ class ProcessPool:
                     call.result()
                 if waiting:
                     check()
+                # Of one that has ended nothing is known any more.
+                taken_s = sum(max(processor_s(p) - before_s.get(p, 0.0), 0.0) for p in self.pids)
+                if waiting and taken_s > limit_s:
+                    raise OutOfProcessorTime(f"it took over {limit_s:g} s of processor time")
                 if waiting and time.monotonic() > deadline_s:
-                    message = f"it took over {timeout_s:g} s, and was given up; try again"
+                    message = f"it took over {self._timeout_s:g} s, and was given up; try again"
                     raise TookTooLong(message, 1)
         except BaseException as error:
             for call in calls:

@@ -11,16 +11,16 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import BrokenExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, NamedTuple
 
-from app.jobs.process_pool import ProcessPool, TookTooLong
+from app.jobs.process_pool import OutOfProcessorTime, ProcessPool, TookTooLong
 from app.storage.errors import Busy
 from app.tournaments.tournament import OUTCOME, Tournament, TournamentEntry
 from app.tournaments.tournaments import Tournaments
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.records import to_json
 from hexapods.domain.text import message
-from hexapods.processes import processor_s
 from hexapods.runs.tables import from_bytes
 from hexapods.tournaments import judging
 from hexapods.tournaments.entry import EntryConfig
@@ -70,10 +70,6 @@ class _Draw(NamedTuple):
 
 class _GivenUp(Exception):
     """What is judged is not waited for any more."""
-
-
-class _OutOfTime(Exception):
-    """The draw has taken more processor time than one may."""
 
 
 @dataclass
@@ -209,12 +205,12 @@ class Judge:
         if entry.entry.table is not None:
             table = base64.b64decode(self._tournaments.table(tournament, entry.entry.table))
         task = JudgingTask(tournament.rules, entry.entry, tournament.draws[number], table)
+        limit = limit_s(tournament.rules, self._limit_s)
         try:
-            (judgement,) = pool.map(judge, [task], self._check(pool, draw))
+            (judgement,) = pool.map(judge, [task], partial(self._check, draw), limit)
         except _GivenUp:
             return None
-        except _OutOfTime:
-            limit = limit_s(tournament.rules, self._limit_s)
+        except OutOfProcessorTime:
             return Judgement(0.0, f"It took over {limit:g} s of processor time.")
         except InvalidInput as error:
             return Judgement(0.0, message(str(error)))
@@ -232,19 +228,10 @@ class Judge:
                 return Judgement(0.0, f"{MAX_DEATHS} processes ended while they judged it.")
         return judgement
 
-    def _check(self, pool: ProcessPool, draw: _Draw) -> Callable[[], None]:
-        """Return what is called again and again while a draw is judged."""
-        before_s = {pid: processor_s(pid) for pid in pool.pids}
-        most_s = limit_s(draw.tournament.rules, self._limit_s)
-
-        def check() -> None:
-            if not self._tournaments.is_waiting(draw.tournament.id, draw.entry.number):
-                raise _GivenUp
-            taken_s = (processor_s(pid) - before_s.get(pid, 0.0) for pid in pool.pids)
-            if max(taken_s, default=0.0) > most_s:
-                raise _OutOfTime
-
-        return check
+    def _check(self, draw: _Draw) -> None:
+        """Raise _GivenUp if an entry is not waited for any more."""
+        if not self._tournaments.is_waiting(draw.tournament.id, draw.entry.number):
+            raise _GivenUp
 
     def _rank(self, pool: ProcessPool, tournament: Tournament) -> None:
         """Rank what is judged; if that is all, and no more is to come, the tournament has ended."""

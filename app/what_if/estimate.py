@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from cachetools import TTLCache
 
-from app.jobs.process_pool import TIMEOUT_S, ProcessPool, TookTooLong
+from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.stopping import Stopping
 from app.jobs.submissions import (
     BranchStart,
@@ -33,6 +33,8 @@ from hexapods.runs.config import RACE_STEPS, TrainingConfig, training_config
 MAX_MEASURED = 24
 """Kinds of steps of an experiment that are timed; others count as the mean of their cost class."""
 MAX_CACHED = 256
+LIMIT_S = 30.0
+"""Processor time for a few steps of each [s]; agents that need more are too slow to be timed."""
 CACHED_S = 600.0
 """After this time the machine may be busier, or less."""
 MAX_WAITING = 3
@@ -145,12 +147,12 @@ class Estimates:
 
     def _timed(self, kinds: Sequence[TimedSteps]) -> Sequence[float]:
         try:
-            return self._pool.map(step_s_of, kinds, self._stopping.check)
-        except TookTooLong as error:
+            return self._pool.map(step_s_of, kinds, self._stopping.check, LIMIT_S)
+        except OutOfProcessorTime as error:
             agents = ", ".join(dict.fromkeys(one.training.agent for one in kinds))
             raise InvalidInput(
-                f"a few steps ({agents}) were not done in {TIMEOUT_S:g} s, so the run would take "
-                "very long; choose settings with less work in each step"
+                f"a few steps ({agents}) took over {LIMIT_S:g} s of processor time, so the run "
+                "would take very long; choose settings with less work in each step"
             ) from error
 
     def _known(self, kinds: Iterable[TimedSteps]) -> dict[TimedSteps, float]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from cachetools import LRUCache
 
-from app.jobs.process_pool import ProcessPool, TookTooLong
+from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.submissions import check_training
 from app.jobs.turns import Turns
 from app.what_if.step_time import TimedSteps, step_s_of, timed_trial
@@ -30,7 +30,8 @@ MAX_CACHED = 512
 MAX_WAITING = 4
 """Questions of operators, and of spectators, that may wait."""
 OPERATORS_LIMIT_S, SPECTATORS_LIMIT_S = 60.0, 10.0
-"""Time for which one what-if may compute on all cores [s]."""
+"""Time for which one what-if may compute on all cores [s], in processor time: on the clock on the
+wall, settings that take a second would count as too heavy on a busy machine."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Asker:
         is_operator: whether it is an operator, whose what-ifs come first and may take longer.
         check: raises once nobody needs the answer any more; called ten times a second.
         charge: called with what it cost [s]: the cores' time, shared among them; if there is no
-            answer, the time that passed.
+            answer, the time that passed, at most its limit.
     """
 
     is_operator: bool = True
@@ -134,15 +135,14 @@ class WhatIf:
             began_s, cost_s = time.monotonic(), None
             try:
                 self._check_time(missing, asker.limit_s, check)
-                left_s = began_s + asker.limit_s - time.monotonic()
-                computed, cost_s = self._run_trials(missing, check, left_s)
-            except TookTooLong as error:
+                computed, cost_s = self._run_trials(missing, check, asker.limit_s)
+            except OutOfProcessorTime as error:
                 raise _takes_too_long(f"over {asker.limit_s:g} s", asker.limit_s) from error
             finally:
                 compute_s = time.monotonic() - began_s
                 # Not the clock on the wall: no asker owes for processes that start, or for a busy
                 # machine.
-                asker.charge(compute_s if cost_s is None else cost_s)
+                asker.charge(min(compute_s, asker.limit_s) if cost_s is None else cost_s)
             distances |= computed
         with self._cache_lock:
             self._cache.update(distances)
@@ -155,11 +155,11 @@ class WhatIf:
 
         Raises:
             InvalidInput: if all steps would take too long. Later ones may take longer than these.
-            TookTooLong: if even a few do.
+            OutOfProcessorTime: if even a few do.
         """
         trainings = [one.training for one in trials if one.blocks]
         kinds = [TimedSteps(one, practises=True) for one in trainings]
-        times_s = self._pool.map(step_s_of, kinds, check, limit_s)
+        times_s = self._pool.map(step_s_of, kinds, check, limit_s * self._pool.count)
         work_s = sum(
             SEEDS * one.steps * step_s for one, step_s in zip(trainings, times_s, strict=True)
         )
@@ -167,11 +167,13 @@ class WhatIf:
             raise _takes_too_long(f"about {total_s:,.0f} s", limit_s)
 
     def _run_trials(
-        self, missing: Sequence[TrialConfig], check: Callable[[], None], timeout_s: float
+        self, missing: Sequence[TrialConfig], check: Callable[[], None], limit_s: float
     ) -> tuple[dict[TrialConfig, tuple[float, ...]], float]:
         """Return the distances of all seeds of each trial [m], and what they cost (`Asker`) [s]."""
         trials = [(one, seeded) for one in missing for seeded in _with_seeds(one)]
-        results = self._pool.map(timed_trial, [seeded for _, seeded in trials], check, timeout_s)
+        seeded_trials = [seeded for _, seeded in trials]
+        limit_s *= self._pool.count
+        results = self._pool.map(timed_trial, seeded_trials, check, limit_s)
         distances: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
         for (one, _), (result, _) in zip(trials, results, strict=True):
             distances[one] += (_distance_m(result),)

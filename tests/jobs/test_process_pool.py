@@ -7,7 +7,7 @@ import time
 import psutil
 import pytest
 
-from app.jobs.process_pool import ProcessPool, TookTooLong
+from app.jobs.process_pool import OutOfProcessorTime, ProcessPool, TookTooLong
 from app.storage.errors import Busy
 from hexapods.domain.errors import InvalidInput
 from tests.jobs.waiting import wait_until
@@ -49,7 +49,7 @@ def test_closing_rejects_requests_that_wait_and_starts_no_more_workers() -> None
 
 
 def test_what_fails_or_takes_too_long_fails_one_request_only() -> None:
-    pool = ProcessPool(count=1, timeout_s=LONG_S)
+    pool = ProcessPool(count=1, timeout_s=1)
     with pytest.raises(InvalidInput, match=r"it broke \(ValueError"):
         pool.map(int, ["x"])
     # Which of them, and its words, depend on the version of Python.
@@ -57,8 +57,18 @@ def test_what_fails_or_takes_too_long_fails_one_request_only() -> None:
         pool.map(lambda one: one, [1])
     assert pool.map(abs, [-1]) == [1]
     # More than the processes take at once, so that some calls are cancelled before they begin.
-    with pytest.raises(TookTooLong, match=r"it took over 0\.1 s"):
-        pool.map(time.sleep, [LONG_S] * 10, timeout_s=0.1)
+    with pytest.raises(TookTooLong, match="it took over 1 s"):
+        pool.map(time.sleep, [LONG_S] * 10)
+    assert pool.pids == []
+    assert pool.map(abs, [-1]) == [1]
+    pool.close()
+
+
+def test_a_limit_of_processor_time_counts_work_and_no_waiting() -> None:
+    pool = ProcessPool(count=1)
+    pool.map(time.sleep, [1.0], limit_s=0.5)
+    with pytest.raises(OutOfProcessorTime, match=r"over 0\.5 s of processor time"):
+        pool.map(sum, [range(10**12)], limit_s=0.5)
     assert pool.pids == []
     assert pool.map(abs, [-1]) == [1]
     pool.close()

@@ -41,7 +41,7 @@ class TimedPool(ProcessPool):
         function: Callable[[Any], Any],
         arguments: Sequence[Any],
         check: Callable[[], None] = lambda: None,
-        timeout_s: float | None = None,
+        limit_s: float = 0.0,
     ) -> list[Any]:
         kinds: Sequence[TimedSteps] = arguments
         with self._free:
