@@ -98,6 +98,7 @@ docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs
 soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
 	HEXAPODS_SOAK=1 $(BIN)/python -m pytest tests/promises tests/runs/test_figures.py \
 		tests/physics/test_figures.py tests/browser/test_typed.py \
+		tests/tournaments/test_verification.py \
 		tests/agents/test_linear_model_figures.py tests/agents/test_informed.py $(ARGS)
 
 .PHONY: format

@@ -22,6 +22,7 @@ from hexapods.tournaments.verification import verify
 from tests.api.calls import ADDRESS, Api, refused
 from tests.api.test_rooms import FORM, TOKEN, Class
 from tests.timeouts import ProgressTimeout
+from tests.tournaments.sample_tournaments import QUICK_STEPS
 
 RULES: dict[str, Any] = {
     "gait": "left-right-origin",
@@ -30,6 +31,7 @@ RULES: dict[str, Any] = {
     "draws": 5,
     "tables": True,
 }
+IN_MUJOCO: dict[str, Any] = {"simulator": "mujoco", "robot": {"preset": "stiff", **QUICK_STEPS}}
 TRAINING_CARD = {"title": "T", "cards": [{"text": "Go", "state": {"form": FORM}, "go": "training"}]}
 
 
@@ -385,7 +387,7 @@ def test_robots_of_the_rules_are_in_the_file(school: Contest) -> None:
 
 
 def test_what_waits_is_withdrawn_or_deleted(school: Contest) -> None:
-    tournament = school.open(rules={"simulator": "mujoco", "steps": 50})
+    tournament = school.open(rules=IN_MUJOCO | {"steps": 50})
     for number in range(4):
         entered(
             school.teacher, tournament, agent="q-learning", settings={"alpha": number / 10 + 0.1}
@@ -395,7 +397,7 @@ def test_what_waits_is_withdrawn_or_deleted(school: Contest) -> None:
     assert states[:3] == ["judged"] * 3
     assert "withdrawn" in states[3:]
     assert len(ended["standings"]) == states.count("judged")
-    endless = school.open(rules={"simulator": "mujoco", "steps": 200, "draws": 100})
+    endless = school.open(rules=IN_MUJOCO | {"steps": 200, "draws": 100})
     school.until(endless, lambda view: view["entries"][0]["judged"] > 0)
     path = f"/tournaments/{endless['id']}"
     assert school.teacher.call("DELETE", path).status_code == 204

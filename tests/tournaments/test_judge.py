@@ -21,10 +21,13 @@ from hexapods.tournaments.rules import TournamentRules
 from hexapods.tournaments.tournament_file import standings_of
 from tests.storage.stores import temporary_store
 from tests.timeouts import ProgressTimeout
+from tests.tournaments.sample_tournaments import HASTY
 
 QUICK = TournamentRules(gait="left-right-origin", simulator="kinematic", steps=60, draws=5)
-SLOW = TournamentRules(gait="left-right-origin", simulator="mujoco", steps=5_000, draws=5)
-"""Seconds for a draw."""
+SLOW = TournamentRules(
+    gait="left-right-origin", simulator="mujoco", robot=HASTY, steps=5_000, draws=5
+)
+"""Seconds for a draw of what learns, and less for those before it."""
 
 
 @pytest.fixture
