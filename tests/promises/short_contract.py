@@ -1,5 +1,6 @@
 """A shorter OpenAPI document, for the gate: few of the bodies that the same functions build."""
 
+import copy
 from typing import Any
 
 AGENTS = ("QLearning", "Beam")
@@ -8,21 +9,29 @@ KINDS = ("Training", "Lane", "Entry")
 """Ends of the names of bodies that are others for each agent."""
 OWN = ("agent", "settings")
 """Fields that are others for each agent."""
-DISTURBANCES = ("Limp", "Patch")
+DISTURBANCES = ("limp", "patch")
 """One of the robot, with a list, and one of the ground."""
+DISTURBS = "/api/v1/trainings/{run_id}/disturbances"
 STORES_ROBOTS = "/api/v1/robots"
+STORES_LESSONS = "/api/v1/lessons"
 
 
 def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     """Return an OpenAPI document whose bodies have few agents, disturbances and parts of robots.
 
-    The fields that all agents have stand in the body of the first one, and those of a walk in that
-    of a training, not in the rules of a tournament.
+    The fields that all agents have stand in the body of the first one, and those of a walk, with
+    the parts of a gait, in that of a training.
     The operation that disturbs a running training keeps all kinds of disturbances, and that which
-    stores a robot its parts, where others have the name of a robot.
+    stores a robot its parts, where others have the name of a robot. What several of these have in
+    common the first one keeps. Of a lesson as YAML only what it needs is left: it is read as the
+    JSON is.
     """
     short: dict[str, Any] = _with_few_choices(contract)
-    short["paths"][STORES_ROBOTS]["post"] = contract["paths"][STORES_ROBOTS]["post"]
+    for path in (DISTURBS, STORES_ROBOTS):
+        short["paths"][path]["post"] = copy.deepcopy(contract["paths"][path]["post"])
+    _keep_once(_schema_of(short, DISTURBS)["anyOf"])
+    robot = _schema_of(short, STORES_ROBOTS)["properties"]["robot"]
+    _keep_once([one for one in robot["anyOf"] if "properties" in one])
     schemas = short["components"]["schemas"]
     settings = {
         name: set(one["properties"]) for name, one in schemas.items() if name.endswith("Training")
@@ -31,11 +40,38 @@ def shortened(contract: dict[str, Any]) -> dict[str, Any]:
     for name in set().union(*settings.values()) - kept:
         schemas["ExperimentBody"]["properties"].pop(name, None)
     for kind in KINDS:
-        first, *others = (schemas[agent + kind] for agent in AGENTS)
-        for one in others:
-            _leave_out_what_has(first, one)
-    _leave_out_what_has(schemas[f"{AGENTS[0]}Training"], schemas["TournamentRulesBody"])
+        _keep_once([schemas[agent + kind] for agent in AGENTS])
+    walk = schemas[f"{AGENTS[0]}Training"]
+    _leave_out_what_has(walk, schemas["TournamentRulesBody"])
+    gait = walk["properties"]["gait"]
+    parts_of_gait = gait["anyOf"][1]
+    for one in _parts(short):
+        if one is not gait and parts_of_gait in one.get("anyOf", ()):
+            one["anyOf"].remove(parts_of_gait)
+    _shorten_yaml(short)
     return short
+
+
+def _schema_of(contract: dict[str, Any], path: str, media: str = "application/json") -> Any:
+    """Return the schema of what is sent to a path."""
+    return contract["paths"][path]["post"]["requestBody"]["content"][media]["schema"]
+
+
+def _shorten_yaml(short: dict[str, Any]) -> None:
+    schemas = short["components"]["schemas"]
+    lesson = copy.deepcopy(schemas["GivenLesson"])
+    card = schemas["GivenCard"]
+    needed = {name: card["properties"][name] for name in ("title", "text")}
+    lesson["properties"]["cards"]["items"] = {**card, "properties": needed}
+    media = short["paths"][STORES_LESSONS]["post"]["requestBody"]["content"]
+    media["application/yaml"] = {**media["application/yaml"], "schema": lesson}
+
+
+def _keep_once(bodies: list[dict[str, Any]]) -> None:
+    """Leave out what the first of some bodies shows of the others."""
+    first, *others = bodies
+    for one in others:
+        _leave_out_what_has(first, one)
 
 
 def _leave_out_what_has(first: dict[str, Any], other: dict[str, Any]) -> None:
@@ -46,6 +82,15 @@ def _leave_out_what_has(first: dict[str, Any], other: dict[str, Any]) -> None:
             del other["properties"][name]
 
 
+def _parts(part: Any) -> list[dict[str, Any]]:
+    """Return all objects of a document."""
+    if isinstance(part, list):
+        return [found for one in part for found in _parts(one)]
+    if not isinstance(part, dict):
+        return []
+    return [part, *_parts(list(part.values()))]
+
+
 def _with_few_choices(part: Any) -> Any:
     if isinstance(part, list):
         return [_with_few_choices(one) for one in part]
@@ -54,14 +99,10 @@ def _with_few_choices(part: Any) -> Any:
     short = {name: _with_few_choices(one) for name, one in part.items()}
     if any(_is_choice_of(AGENTS[0] + kind, short) for kind in KINDS):
         short["oneOf"] = [one for one in short["oneOf"] if _name_of(one).startswith(AGENTS)]
-    if any("preset" in one.get("properties", ()) for one in short.get("anyOf", ())):
-        short["anyOf"] = [
-            one for one in short["anyOf"] if "preset" not in one.get("properties", ())
-        ]
-    disturbances = short.get("disturbances", {}).get("items", {})
-    if _is_choice_of("LimpDisturbance", disturbances):
-        few = [one for one in disturbances["oneOf"] if _name_of(one).startswith(DISTURBANCES)]
-        short["disturbances"]["items"] = {"oneOf": few}
+    if any(_is_robot(one) for one in short.get("anyOf", ())):
+        short["anyOf"] = [one for one in short["anyOf"] if not _is_robot(one)]
+    if any(_disturbance(one) for one in short.get("anyOf", ())):
+        short["anyOf"] = [one for one in short["anyOf"] if _disturbance(one) in DISTURBANCES]
     return short
 
 
@@ -72,3 +113,14 @@ def _is_choice_of(name: str, schema: dict[str, Any]) -> bool:
 
 def _name_of(reference: dict[str, str]) -> str:
     return reference.get("$ref", "").rpartition("/")[2]
+
+
+def _is_robot(schema: dict[str, Any]) -> bool:
+    """Tell whether a schema is that of a robot's parts."""
+    return "mount_radius_m" in schema.get("properties", ())
+
+
+def _disturbance(schema: dict[str, Any]) -> str:
+    """Return the kind of disturbance that a schema describes, or nothing."""
+    properties = schema.get("properties", {})
+    return str(properties["kind"].get("const", "")) if "at_step" in properties else ""

@@ -4,7 +4,9 @@ In full by `make soak`: 5,000 cases of all of schemathesis's phases against a re
 jobs run and are stopped meanwhile. The gate has the same phases with fewer cases per operation,
 leaves out the systematic cases (the phase "coverage") of bodies that others have: a what-if has a
 training's fields, the preview of a robot some of them, and a race has those and its lanes; and
-tests the bodies of a few agents, since the same functions build those of all.
+tests once what the same functions build: the bodies of a few agents and disturbances, the parts of
+a gait in a training, those of a lesson as JSON. Of several wrong types of a field, or of its names,
+it tries some.
 
 Every check is enabled, with these exceptions:
 
@@ -30,6 +32,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import httpx2
 import pytest
@@ -53,6 +56,9 @@ expected-statuses = ["2xx", "401", "403", "404", "409", "410", "422", "429", "50
 expected-statuses = ["2xx", "3xx", "4xx", "503"]
 """
 FEWER = """
+[phases.coverage]
+unexpected-methods = ["PATCH", "TRACE"]
+
 [[operations]]
 include-name = [
   "POST /api/v1/what-if", "POST /api/v1/races", "POST /api/v1/experiments",
@@ -76,11 +82,27 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield shared
 
 
+def without_tuples(part: Any) -> Any:
+    """Return a part of an OpenAPI document with `items` for `prefixItems`.
+
+    Of an answer schemathesis turns these into a list of items, which its own validator refuses.
+    """
+    if isinstance(part, list):
+        return [without_tuples(one) for one in part]
+    if not isinstance(part, dict):
+        return part
+    other = {name: without_tuples(one) for name, one in part.items()}
+    if isinstance(items := other.pop("prefixItems", None), list):
+        first = items[0]
+        other["items"] = first if all(one == first for one in items) else {"anyOf": items}
+    return other
+
+
 def schemathesis(server: Served, folder: Path, *options: str) -> int:
     """Run schemathesis, check that all cases pass, and return their number."""
     contract = server.client.get("/openapi.json").json()
     document = folder / "openapi.json"
-    document.write_text(json.dumps(at_length(shortened(contract), contract)))
+    document.write_text(json.dumps(without_tuples(at_length(shortened(contract), contract))))
     config = folder / "schemathesis.toml"
     config.write_text(CONFIG + at_length(FEWER, ""))
     command = [sys.executable, "-m", "schemathesis.cli", "--config-file", str(config), "run"]
