@@ -86,4 +86,3 @@ def is_read_from_afar(projector: RoomPage) -> None:
     assert beyond == [0, 0], beyond
     cut_off = projector.page.locator(".shown-card").evaluate_all(_CUT_OFF)
     assert cut_off == [], cut_off
-    is_accessible(projector, is_touched=False)

@@ -106,11 +106,14 @@ def run_a_seed(dashboard: Dashboard) -> None:
     expect(row).to_be_in_viewport()
     told = row.locator("td").first.inner_text()
     row.get_by_role("button", name="Run this seed here").click()
-    expect(dashboard.standings).to_be_visible()
-    dashboard.eventually(
-        lambda: dashboard.get("/api/v1/races")["items"][0]["state"] == "finished", "the seed's race"
-    )
-    race = dashboard.get("/api/v1/races")["items"][0]
+    expect(page.get_by_role("region", name="Stage", exact=True)).to_be_visible()
+
+    def races() -> list[dict[str, Any]]:
+        found: list[dict[str, Any]] = dashboard.get("/api/v1/races")["items"]
+        return found
+
+    dashboard.eventually(lambda: [one["state"] for one in races()] == ["finished"], "its race")
+    [race] = races()
     assert f"{race['result']['lanes'][0]['total_distance_m']:.2f}\u00a0m" == told
     page.get_by_role("link", name="Experiments").click()
     replay = row.get_by_role("link", name="Replay")

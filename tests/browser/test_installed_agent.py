@@ -16,6 +16,7 @@ from playwright.sync_api import expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
+from tests.promises.length import only_whole
 
 AGENT = """
 from typing import Annotated
@@ -110,7 +111,7 @@ def test_options_list_its_settings(client: httpx2.Client) -> None:
 
 
 @pytest.mark.usefixtures("installed")
-@pytest.mark.parametrize("command", ["train", "sweep"])
+@pytest.mark.parametrize("command", ["train", pytest.param("sweep", marks=only_whole)])
 def test_the_command_line_has_options_for_its_settings(command: str) -> None:
     said = subprocess.run(
         [sys.executable, "-m", "app.cli", command, "--help"],

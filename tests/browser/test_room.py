@@ -91,6 +91,7 @@ def test_a_lesson_from_the_code_to_the_reveal(flat_browser: Browser, school: Ser
         projector.enter(school, code, "?projector")
         projector.sees(f"/r/{code}")
         is_read_from_afar(projector)
+        is_accessible(projector, is_touched=False)
         with phone(flat_browser) as one, phone(flat_browser) as two:
             gets_to_its_robot_in_three_taps(one, school, code)
             keeps_name_and_seed(one, school, code)
@@ -169,6 +170,7 @@ def shows_the_class(teacher: RoomPage, projector: RoomPage, one: RoomPage, two: 
     is_accessible(one)
     expect(projector.page.get_by_role("img", name="2 predictions")).to_be_visible()
     is_read_from_afar(projector)
+    is_accessible(projector, is_touched=False)
 
     name = one.who[0]
     teacher.press(f"Spotlight {name}")
@@ -241,6 +243,7 @@ def stands_still_and_ends(teacher: RoomPage, projector: RoomPage, pupil: RoomPag
     expect(stop).to_be_visible()
     assert not [one for one in small_texts(projector.page, STOP_PX) if "Stop" in one]
     is_read_from_afar(projector)
+    is_accessible(projector, is_touched=False)
     teacher.press("Let them go on")
     expect(pupil.page.get_by_text("stopped the class")).to_have_count(0)
     teacher.press("End the room")

@@ -12,10 +12,11 @@ from playwright.sync_api import TimeoutError as NotInTime
 from tests.browser.rooms import PHONE, TOKEN, RoomPage
 from tests.browser.serving import serving
 from tests.conftest import new_page
+from tests.promises.length import at_length
 
 pytestmark = pytest.mark.timeout(400)
 
-PUPILS = 4
+PUPILS = at_length(2, 4)
 SLOW = {"offline": False, "latency": 300, "downloadThroughput": 60_000, "uploadThroughput": 20_000}
 GONE = {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0}
 FORM = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 60}
