@@ -97,8 +97,9 @@ docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs
 .PHONY: soak
 soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
 	HEXAPODS_SOAK=1 $(BIN)/python -m pytest tests/promises tests/runs/test_figures.py \
-		tests/physics/test_figures.py tests/browser/test_typed.py \
-		tests/tournaments/test_verification.py \
+		tests/physics/test_figures.py tests/browser \
+		tests/tournaments/test_verification.py tests/experiments/test_cluster.py \
+		tests/experiments/test_trial.py tests/experiments/report/test_files.py \
 		tests/agents/test_linear_model_figures.py tests/agents/test_informed.py $(ARGS)
 
 .PHONY: format

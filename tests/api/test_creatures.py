@@ -7,6 +7,7 @@ import pytest
 from hexapods.domain.creatures import CREATURES
 from hexapods.domain.gait import gait_as_json, resolve
 from tests.api.calls import Api
+from tests.quick_robot import QUICK_STEPS
 
 
 @pytest.mark.parametrize("name", ["starfish", "centipede"])
@@ -15,7 +16,7 @@ def test_a_creature_is_trained_raced_explained_and_exported(name: str, api: Api)
     gait = resolve(CREATURES[name].gait, made.azimuths_deg)
     walk: dict[str, Any] = {
         "gait": gait_as_json(CREATURES[name].gait),
-        "robot": name,
+        "robot": {"preset": name, **QUICK_STEPS},
         "simulator": "mujoco",
     }
     trained = api.finished(api.start("/trainings", {**walk, "steps": 30, "evaluate_every": 15}))

@@ -12,6 +12,7 @@ from hexapods.runs.lane import lane_config
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.racing import record_race
 from tests.api.calls import WALK, Api, refused
+from tests.quick_robot import HASTY
 
 MUJOCO = {"gait": WALK["gait"]}
 LIMP = {"kind": "limp", "legs": [1, 4]}
@@ -211,7 +212,12 @@ def test_a_searcher_knows_the_start_unless_its_lane_says_otherwise() -> None:
     modes = (None, "start", "world", "nominal")
     lanes = tuple(lane_config("greedy", plans_with=how) for how in modes)
     config = RaceConfig(
-        gait=WALK["gait"], lanes=lanes, steps=12, world=world([LIMP]), branch_from=Branch("x", 3)
+        gait=WALK["gait"],
+        robot=HASTY,
+        lanes=lanes,
+        steps=12,
+        world=world([LIMP]),
+        branch_from=Branch("x", 3),
     )
     *_, recorded = record_race(build_walkers(config, [None] * 4), config, lambda: 0.0)
     known, same, told, unaware = (lane.distance_m for lane in recorded)

@@ -16,9 +16,10 @@ from app.api.run_code import MAX_CONTINUED, run_code
 from app.storage.run import Run
 from tests.api.calls import Api, refused
 from tests.cli.running import in_process
+from tests.quick_robot import HASTY_JSON
 from tests.storage.stores import temporary_store, training
 
-ROBOT = {"preset": "stiff", "femur_m": 0.09}
+ROBOT = {**HASTY_JSON, "femur_m": 0.09}
 GAIT = {"right_leg": 1, "left_leg": 4, "pairs": [[1, 4], [2, 6], [3, 5]]}
 
 
@@ -122,7 +123,7 @@ def test_a_continued_training_begins_with_the_one_before(
 def test_what_changed_while_it_ran_changes_in_the_program_too(
     api: Api, code: Any, tmp_path: Path
 ) -> None:
-    run = api.train(steps=400, pace=100, evaluate_every=0, simulator="mujoco")
+    run = api.train(steps=400, pace=20, evaluate_every=0, simulator="mujoco", robot=ROBOT)
     api.until(run, lambda now: now["progress"]["done"] > 3)
     change = {"settings": {"alpha": 0.05}}
     assert api.call("PATCH", f"/trainings/{run['id']}", json=change).status_code == 200

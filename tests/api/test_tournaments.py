@@ -21,8 +21,8 @@ from hexapods.tournaments.tournament_file import read_file
 from hexapods.tournaments.verification import verify
 from tests.api.calls import ADDRESS, Api, refused
 from tests.api.test_rooms import FORM, TOKEN, Class
+from tests.quick_robot import HASTY_JSON
 from tests.timeouts import ProgressTimeout
-from tests.tournaments.sample_tournaments import QUICK_STEPS
 
 RULES: dict[str, Any] = {
     "gait": "left-right-origin",
@@ -31,7 +31,7 @@ RULES: dict[str, Any] = {
     "draws": 5,
     "tables": True,
 }
-IN_MUJOCO: dict[str, Any] = {"simulator": "mujoco", "robot": {"preset": "stiff", **QUICK_STEPS}}
+IN_MUJOCO: dict[str, Any] = {"simulator": "mujoco", "robot": HASTY_JSON}
 TRAINING_CARD = {"title": "T", "cards": [{"text": "Go", "state": {"form": FORM}, "go": "training"}]}
 
 

@@ -14,6 +14,7 @@ from hexapods.runs.results import training_result
 from hexapods.runs.tables import from_bytes, table_of
 from hexapods.runs.training import train
 from tests.api.calls import WALK, Api, refused
+from tests.quick_robot import HASTY, HASTY_JSON
 
 
 def train_directly(**fields: Any) -> dict[str, Any]:
@@ -59,8 +60,9 @@ def test_result_equals_that_of_a_direct_call_on_kinematic(
 
 
 def test_result_equals_that_of_a_direct_call_on_mujoco(api: Api) -> None:
-    run = api.finished(api.start("/trainings", {"gait": WALK["gait"], "steps": 30, "seed": 7}))
-    assert run["result"] == train_directly(steps=30, seed=7)
+    body = {"gait": WALK["gait"], "robot": HASTY_JSON, "steps": 30, "seed": 7}
+    run = api.finished(api.start("/trainings", body))
+    assert run["result"] == train_directly(robot=HASTY, steps=30, seed=7)
 
 
 def test_curve_has_the_evaluations_as_json_and_csv(api: Api, trained: dict[str, Any]) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from app.cli import machine_checks
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.visitor_rows import VisitorRun
 from app.storage.server_lock import lock_folder, write_address_file
@@ -19,6 +20,16 @@ from tests.postgresql import PostgresServer
 from tests.storage.stores import database_url, opened
 
 ANY_PORT = {"HEXAPODS_PORT": "0"}
+
+
+@pytest.fixture(autouse=True)
+def known_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out, in this process, what takes a second each time: physics and the viewer's page.
+
+    `hexapods doctor` in a process of its own checks them.
+    """
+    for name in ("physics", "browser"):
+        monkeypatch.setitem(machine_checks.CHECKS, name, lambda: "it is whole")
 
 
 def examined(folder: Path, **variables: str) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from hexapods.runs.config import WalkingProblem, training_config
 from hexapods.runs.results import training_result
 from hexapods.runs.training import train
 from tests.cli.running import EXAMPLES, hexapods, in_process, output, refusal
+from tests.quick_robot import HASTY, QUICK_STEPS
 
 GAIT = ("--gait", "left-right-origin")
 QUICK = (*GAIT, "--simulator", "kinematic")
@@ -35,8 +36,11 @@ def test_train_prints_the_distance(folder: Path) -> None:
 
 
 def test_train_equals_a_direct_call(tmp_path: Path) -> None:
-    printed = output("train", *GAIT, "--steps", "60", "--seed", "7", folder=tmp_path)
-    config = training_config(gait="left-right-origin", steps=60, seed=7)
+    lines = [f"{name} = {value}" for name, value in QUICK_STEPS.items()]
+    (tmp_path / "quick.toml").write_text("\n".join(lines))
+    own = ("--robot", "quick.toml", "--steps", "60", "--seed", "7")
+    printed = output("train", *GAIT, *own, folder=tmp_path)
+    config = training_config(gait="left-right-origin", robot=HASTY, steps=60, seed=7)
     learner = build_learner(config)
     for _ in train(learner, config):
         pass

@@ -1,14 +1,12 @@
 """The tutorial's commands run as they stand, one after another in one folder."""
 
-import os
 import re
-import subprocess
-import sys
+import shlex
 from pathlib import Path
 
 import pytest
 
-from tests.cli.running import ROOT
+from tests.cli.running import ROOT, hexapods
 
 _BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -23,10 +21,9 @@ def test_every_command_of_the_tutorial_runs(tmp_path: Path) -> None:
             name = content.split("\n", 1)[0].removeprefix("# ")
             (tmp_path / name).write_text(content, "utf-8")
             continue
-        subprocess.run(
-            ["sh", "-ec", content],
-            check=True,
-            cwd=tmp_path,
-            env={**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"},
-        )
+        for line in content.replace("\\\n", " ").splitlines():
+            program, *arguments = shlex.split(line)
+            assert program == "hexapods"
+            done = hexapods(*arguments, folder=tmp_path)
+            assert done.returncode == 0, (line, done.stderr)
     assert (tmp_path / "sweep" / "report.html").exists()

@@ -21,6 +21,7 @@ from hexapods.experiments.worker import ClusterLost, WorkerDied
 from hexapods.machine import cores
 from tests.experiments.clusters import one_by_one, results, small, trials_of, workers_of
 from tests.experiments.existing_cluster import scheduler
+from tests.promises.length import only_whole
 from tests.timeouts import LONG_S
 
 
@@ -147,7 +148,7 @@ def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(
             list(running)
 
 
-@pytest.mark.parametrize("workers_are_counted_every_s", [60.0, 0.0])
+@pytest.mark.parametrize("workers_are_counted_every_s", [pytest.param(60.0, marks=only_whole), 0.0])
 def test_a_scheduler_that_dies_as_the_client_reconnects_is_lost(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, workers_are_counted_every_s: float
 ) -> None:

@@ -21,6 +21,8 @@ from hexapods.runs.config import TrainingConfig, training_config
 from hexapods.runs.records import Evaluated, StepTaken
 from hexapods.runs.training import train
 from tests.figures import GREEDY_H, H_M, interquartile_mean, kinematic_rows
+from tests.promises.length import at_length
+from tests.quick_robot import HASTY
 
 
 def practice(**given: Any) -> TrainingConfig:
@@ -106,7 +108,7 @@ def test_the_paper_clock_charges_for_simulated_transitions() -> None:
 
 
 def test_distances_after_practice_agree_with_the_specification() -> None:
-    seeds = 80
+    seeds = at_length(40, 80)
     found = distances_h(trials("sweep", seeds=seeds, steps=(250, 500), observations=("measured",)))
     shares = [100 * interquartile_mean(row) / GREEDY_H for row in found.reshape(seeds, 2).T]
     assert shares == pytest.approx([60, 74], rel=0.05)
@@ -162,9 +164,10 @@ def test_evaluations_on_the_way_are_those_of_a_training() -> None:
 
 
 def test_learner_is_evaluated_in_the_world_as_it_is() -> None:
-    training = practice(steps=4, seed=1, simulator="mujoco", world=named_world("ice").later(2))
-    icy = practice(steps=4, seed=1, simulator="mujoco", world=named_world("ice"))
-    flat = practice(steps=4, seed=1, simulator="mujoco")
+    given: dict[str, Any] = {"steps": 4, "seed": 1, "simulator": "mujoco", "robot": HASTY}
+    training = practice(**given, world=named_world("ice").later(2))
+    icy = practice(**given, world=named_world("ice"))
+    flat = practice(**given)
 
     def frozen(config: TrainingConfig, steps: int) -> float:
         (distance_m,) = run_trial(TrialConfig(training=config, evaluations=(steps,))).distances_m
@@ -175,7 +178,8 @@ def test_learner_is_evaluated_in_the_world_as_it_is() -> None:
 
 
 def test_searcher_may_plan_with_the_robot_as_designed() -> None:
-    limp = practice(agent="greedy", steps=1, simulator="mujoco", world=named_world("limp-pair"))
+    given: dict[str, Any] = {"simulator": "mujoco", "robot": HASTY, "steps": 1}
+    limp = practice(agent="greedy", **given, world=named_world("limp-pair"))
     knows = run_trial(TrialConfig(training=limp, blocks=0))
     nominal = run_trial(TrialConfig(training=limp, blocks=0, plans_with="nominal"))
 

@@ -15,13 +15,14 @@ from hexapods.experiments.plan import Plan
 from hexapods.experiments.trial import run_trial
 from hexapods.runs.results import RaceResult, TrainingResult
 from tests.jobs.waiting import wait_until_ended
+from tests.quick_robot import HASTY, QUICK_STEPS
 
 SWEEP: dict[str, Any] = {
     "seeds": 2,
     "seed": 5,
     "gaits": ("left-right-origin",),
     "agents": ("sarsa", "look-ahead"),
-    "robots": (robot({"preset": "compliant", "femur_m": 0.09}),),
+    "robots": (robot({"preset": "compliant", "femur_m": 0.09, **QUICK_STEPS}),),
     "observations": ("commanded",),
     "steps": (40,),
     "alpha": (0.1,),
@@ -31,6 +32,7 @@ LEAGUE: dict[str, Any] = {
     "seeds": 2,
     "gaits": ("left-right-origin",),
     "agents": ("q-learning",),
+    "robots": (HASTY,),
     "worlds": ("limp:legs=1,4",),
     "steps": (30,),
 }

@@ -37,7 +37,8 @@ WALKERS = at_length(
     [
         (name, gait)
         for name, gait in EVERY_ROBOT_AND_GAIT
-        if name in ("stiff", "compliant") or gait == (EXCEPTIONAL if name == "soft" else GAITS[0])
+        if gait == (EXCEPTIONAL if name == "soft" else GAITS[0])
+        or (name in ("stiff", "compliant") and gait == EXCEPTIONAL)
     ],
     EVERY_ROBOT_AND_GAIT,
 )
@@ -73,13 +74,18 @@ def test_the_default_robot_covers_half_a_metre_in_every_gait(
     greedy_m: dict[tuple[str, str], float],
 ) -> None:
     for gait in GAITS:
-        assert greedy_m["stiff", gait] == pytest.approx(0.5, rel=0.1)
+        if ("stiff", gait) in WALKERS:
+            assert greedy_m["stiff", gait] == pytest.approx(0.5, rel=0.1)
 
 
 def test_compliant_servos_let_the_body_pitch_in_left_right_vertical(
     greedy_m: dict[tuple[str, str], float],
 ) -> None:
-    others = [greedy_m["compliant", gait] for gait in GAITS if gait != EXCEPTIONAL]
+    others = [
+        metres
+        for (name, gait), metres in greedy_m.items()
+        if name == "compliant" and gait != EXCEPTIONAL
+    ]
 
     assert greedy_m["compliant", EXCEPTIONAL] < 0.8 * min(others)
 

@@ -22,6 +22,7 @@ from hexapods.runs.records import LaneStep
 from hexapods.runs.tables import Checkpoint, snapshot
 from hexapods.runs.training import Learner, train
 from hexapods.runs.transition_log import Logged, TransitionLog, Transitions
+from tests.quick_robot import HASTY
 
 LEARNERS = [name for name in OURS if learns(name)]
 
@@ -89,7 +90,13 @@ def test_every_reading_of_the_feet_is_rebuilt(observation: Observation) -> None:
 def test_a_disturbed_training_on_mujoco_is_rebuilt_without_physics(agent: str) -> None:
     world = World((SensorNoise(sd_m=0.004), Limp(legs=(1, 4), at_step=12)))
     config = training_config(
-        agent, gait="left-right-origin", steps=25, world=world, tolerance=0.1, evaluate_every=10
+        agent,
+        gait="left-right-origin",
+        robot=HASTY,
+        steps=25,
+        world=world,
+        tolerance=0.1,
+        evaluate_every=10,
     )
     learner = build_learner(config)
     learner.logged = []

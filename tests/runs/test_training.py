@@ -19,6 +19,7 @@ from hexapods.runs.results import TrainingResult, training_result
 from hexapods.runs.tables import from_bytes, restore, snapshot, to_bytes
 from hexapods.runs.training import Learner, train
 from hexapods.runs.walker import Walker
+from tests.quick_robot import HASTY
 
 CONFIG = training_config(
     gait="left-right-vertical", simulator="kinematic", steps=200, seed=3, evaluate_every=50
@@ -167,7 +168,7 @@ def test_the_baseline_walks_once_in_a_process_for_what_it_depends_on() -> None:
 
 @on_both
 def test_evaluation_does_not_change_the_learner(simulator: SimulatorName) -> None:
-    config = replace(CONFIG, simulator=simulator, steps=70)
+    config = replace(CONFIG, simulator=simulator, robot=HASTY, steps=70)
 
     def learned(every: int) -> tuple[Any, ...]:
         *rest, (step, reward, _, epsilon) = everything(
@@ -200,14 +201,14 @@ def test_evaluation_takes_fifty_steps_from_rest() -> None:
 
 @on_both
 def test_the_same_config_and_seed_give_the_same_table(simulator: SimulatorName) -> None:
-    config = replace(CONFIG, simulator=simulator, steps=60, evaluate_every=0)
+    config = replace(CONFIG, simulator=simulator, robot=HASTY, steps=60, evaluate_every=0)
 
     assert everything(run(config)[0]) == everything(run(config)[0])
     assert table_hash(run(config)[0]) != table_hash(run(replace(config, seed=4))[0])
 
 
 def test_the_table_is_the_same_at_any_thread_count() -> None:
-    config = replace(CONFIG, simulator="mujoco", steps=40, evaluate_every=40)
+    config = replace(CONFIG, simulator="mujoco", robot=HASTY, steps=40, evaluate_every=40)
     runs = [run(config, threads) for threads in (1, 2, 4)]
 
     assert everything(runs[0][0]) == everything(runs[1][0]) == everything(runs[2][0])
@@ -218,7 +219,7 @@ def test_the_table_is_the_same_at_any_thread_count() -> None:
 @cache
 def unbroken_run(simulator: SimulatorName) -> tuple[TrainingConfig, Learner, list[TrainingRecord]]:
     """Return a training's config, and what `run` gives for it."""
-    config = replace(CONFIG, simulator=simulator, steps=90, evaluate_every=45)
+    config = replace(CONFIG, simulator=simulator, robot=HASTY, steps=90, evaluate_every=45)
     return config, *run(config)
 
 
@@ -367,6 +368,7 @@ def test_illegal_action_raises_an_error_that_names_agent_and_action() -> None:
 
 EVENTFUL = training_config(
     gait="left-right-origin",
+    robot=HASTY,
     steps=30,
     evaluate_every=20,
     seed=3,

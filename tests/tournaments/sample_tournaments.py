@@ -5,7 +5,6 @@ from functools import cache
 from typing import Any
 
 from hexapods.assembly import build_learner
-from hexapods.domain.robot import robot
 from hexapods.runs.config import training_config
 from hexapods.runs.tables import Checkpoint, from_bytes, snapshot, to_bytes
 from hexapods.runs.training import train
@@ -21,9 +20,6 @@ from hexapods.tournaments.tournament_file import (
 
 SECRET = "0123456789abcdef" * 4
 GAIT = "left-right-origin"
-QUICK_STEPS = {"dt_s": 0.005, "swing_s": 0.05, "shift_s": 0.05}
-HASTY = robot(QUICK_STEPS)
-"""Its steps are so quick that MuJoCo takes a third of the time for them."""
 
 
 def rules_of(**given: Any) -> TournamentRules:

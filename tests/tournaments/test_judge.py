@@ -19,9 +19,9 @@ from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement, judge
 from hexapods.tournaments.rules import TournamentRules
 from hexapods.tournaments.tournament_file import standings_of
+from tests.quick_robot import HASTY
 from tests.storage.stores import temporary_store
 from tests.timeouts import ProgressTimeout
-from tests.tournaments.sample_tournaments import HASTY
 
 QUICK = TournamentRules(gait="left-right-origin", simulator="kinematic", steps=60, draws=5)
 SLOW = TournamentRules(

@@ -20,7 +20,8 @@ from hexapods.tournaments.entry import EntryConfig, training_of
 from hexapods.tournaments.judging import Judgement, judge
 from hexapods.tournaments.rules import Draw
 from hexapods.tournaments.tournament_file import sha256_of
-from tests.tournaments.sample_tournaments import HASTY, rules_of, table_file, table_of
+from tests.quick_robot import HASTY
+from tests.tournaments.sample_tournaments import rules_of, table_file, table_of
 
 DRAW = Draw(5, "flat")
 

@@ -23,7 +23,8 @@ from hexapods.tournaments.tournament_file import (
 from hexapods.tournaments.verification import verify, version_note
 from tests.model_robots import model_of
 from tests.promises.length import only_whole
-from tests.tournaments.sample_tournaments import HASTY, QUICK_STEPS, judged, rules_of, table_file
+from tests.quick_robot import HASTY, QUICK_STEPS
+from tests.tournaments.sample_tournaments import judged, rules_of, table_file
 
 OTHER_SECRET = "fedcba9876543210" * 4
 
@@ -68,7 +69,9 @@ def test_a_tournament_in_mujoco_repeats_with_any_number_of_processes() -> None:
 @pytest.fixture
 def imported() -> Iterator[str]:
     """Store a robot from a file, and return its id."""
-    made = read_document(document_of(model_robot(model_of(PRESETS["stiff"]), "Own", **QUICK_STEPS)), "Own")
+    made = read_document(
+        document_of(model_robot(model_of(PRESETS["stiff"]), "Own", **QUICK_STEPS)), "Own"
+    )
     assert made.id is not None
     robot_documents.tell(made.id, robot_documents.About("Own", "tripod"))
     yield made.id
