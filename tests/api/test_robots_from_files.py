@@ -7,8 +7,10 @@ import pytest
 
 from hexapods.domain import robot_documents
 from tests.api.calls import Api, refused
-from tests.imports.robots import bug, dog, zipped
+from tests.imports.robots import HOME, bug, dog, zipped
 
+SPOT = dog(keyframes={"home": HOME})
+"""It stands as its file says: to search for a stance takes most of the time of an import."""
 SHORT = {"steps": 3, "evaluate_every": 0, "gait": "trot"}
 
 
@@ -23,7 +25,7 @@ def used(api: Api, robot_id: str) -> list[dict[str, Any]]:
 
 @pytest.fixture
 def spot(api: Api) -> Iterator[dict[str, Any]]:
-    answer = send(api, dog())
+    answer = send(api, SPOT)
     assert answer.status_code == 201, answer.text
     yield answer.json()
     for stored in api.get("/robots?hidden=true")["items"]:
@@ -45,7 +47,7 @@ def test_a_file_is_stored_with_what_was_guessed(api: Api, spot: dict[str, Any]) 
     assert option["body"] is None
     assert option["grid_side_m"] == pytest.approx(0.06, abs=0.02)
     assert option["joints"][0] == ["hip", "thigh", "calf"]
-    again = send(api, dog(), "Another")
+    again = send(api, SPOT, "Another")
     assert (again.status_code, again.json()) == (200, spot)
 
 

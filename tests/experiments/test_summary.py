@@ -23,15 +23,20 @@ from tests.experiments.sample_experiments import (
     walked,
 )
 from tests.figures import GREEDY_H, H_M
+from tests.promises.length import at_length
 
 LRO = "left-right-origin"
 Q500 = f"{LRO}/measured/stiff/q-learning/500"
 
 
+SEEDS = at_length(10, 30)
+"""Of the kinematic table; `tests/runs/test_figures.py` has the same figures of more."""
+
+
 def test_the_kinematic_table_agrees_with_the_specification() -> None:
     """IQM as a share of greedy after 500 and 1,000 steps: 74 and 83 %; 92 % walk after 500."""
     only = {"gaits": (LRO,), "observations": ("measured",), "robots": ROBOTS[:1]}
-    summary = summarise(*walked("table1", 30, **only))
+    summary = summarise(*walked("table1", SEEDS, **only))
     greedy = setting(summary, f"{LRO}/measured/stiff/greedy")
     assert greedy["total"]["iqm_m"] / greedy["half_side_m"] == pytest.approx(GREEDY_H, abs=0.001)
     assert greedy["half_side_m"] == H_M
@@ -40,7 +45,7 @@ def test_the_kinematic_table_agrees_with_the_specification() -> None:
     assert (greedy["elapsed_s"], two_step["elapsed_s"]) == pytest.approx((21.76, 90.88), abs=0.01)
     for steps, level in ((500, 0.74), (1000, 0.83)):
         found = setting(summary, f"{LRO}/measured/stiff/q-learning/{steps}")
-        assert found["n"] == 30
+        assert found["n"] == SEEDS
         assert found["relative"]["low"] < level < found["relative"]["high"]
     assert setting(summary, Q500)["walkers"]["share"] >= 0.8
     assert summary["trials"]["done"] == summary["trials"]["total"]
