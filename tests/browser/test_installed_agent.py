@@ -132,6 +132,7 @@ def test_a_value_out_of_its_limits_is_refused(client: httpx2.Client) -> None:
     ]
 
 
+@only_whole
 def test_a_sweep_tries_its_values(client: httpx2.Client) -> None:
     body = {
         "experiment": "sweep",

@@ -13,6 +13,7 @@ from playwright.sync_api import Page, expect
 from app.storage.run_ids import RunIds
 from tests.browser.dashboard import PATIENCE_MS, Dashboard
 from tests.browser.serving import Serving, serving
+from tests.promises.length import only_whole
 from tests.storage.stores import opened, training
 
 pytestmark = pytest.mark.timeout(300)
@@ -331,7 +332,7 @@ def test_groups_and_columns_are_chosen_and_kept(dashboard: Dashboard, sweep: Ser
     expect(dashboard.runs.last).to_contain_text("Of Greedy")
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("theme", ["light", pytest.param("dark", marks=only_whole)])
 def test_the_view_fills_the_window_and_a_phone_scrolls_it(
     dashboard: Dashboard, sweep: Serving, theme: str
 ) -> None:
