@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import psutil
+from distributed import Client
 from distributed.security import Security
 
 from hexapods.experiments.cluster import ClusterSpec
 from tests.timeouts import LONG_S
 
-_START_S = 30.0
 _OPTIONS = {"tls_ca": "--tls-ca-file", "tls_cert": "--tls-cert", "tls_key": "--tls-key"}
 
 
@@ -25,22 +25,31 @@ class ExistingCluster:
 
     def __init__(self, folder: Path, tls: bool, stack: ExitStack) -> None:
         self._folder, self._stack = folder, stack
-        self._files = _certificates(folder) if tls else {}
+        self._security = Security.temporary() if tls else Security()
+        self._files = _certificates(folder, self._security) if tls else {}
+        self._workers = 0
         file = folder / "scheduler.json"
         self.process = self._start(
             "scheduler",
             *("--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file)),
             *(("--protocol", "tls") if tls else ()),
         )
-        deadline = time.monotonic() + _START_S
+        deadline = time.monotonic() + LONG_S
         while not file.exists() or not file.read_text("utf-8").endswith("}"):
             assert time.monotonic() < deadline
             time.sleep(0.05)
         self.address: str = json.loads(file.read_text("utf-8"))["address"]
 
-    def worker(self, **variables: str) -> subprocess.Popen[bytes]:
-        """Start a worker, with additional environment variables."""
-        return self._start("worker", self.address, "--nthreads", "1", **variables)
+    def worker(self, **variables: str) -> None:
+        """Start a worker, with additional environment variables, and wait until it is known.
+
+        An experiment waits for one less long than it may take to start on a busy machine.
+        """
+        self._start("worker", self.address, "--nthreads", "1", **variables)
+        self._workers += 1
+        options: dict[str, Any] = {"timeout": LONG_S, "set_as_default": False}
+        with Client(self.address, security=self._security, **options) as client:
+            client.wait_for_workers(self._workers, timeout=LONG_S)
 
     @property
     def where(self) -> ClusterSpec:
@@ -74,9 +83,8 @@ def scheduler(folder: Path, tls: bool = False) -> Iterator[ExistingCluster]:
         yield ExistingCluster(folder, tls, stack)
 
 
-def _certificates(folder: Path) -> dict[str, Any]:
+def _certificates(folder: Path, made: Any) -> dict[str, Any]:
     """Write PEM files for scheduler, workers and clients; paths by field of `ClusterSpec`."""
-    made = Security.temporary()
     files = {}
     for name, text in (
         ("tls_ca", made.tls_ca_file),
