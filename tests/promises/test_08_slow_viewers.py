@@ -1,7 +1,7 @@
 """Promise 8: a slow viewer harms no one: with 20 stalled ones memory stays flat, and the others
 lose less than 5 % of their frames.
 
-In full by `make soak`, in two minutes. The gate's shorter form takes 6 s, and since it shares the
+In full by `make soak`, in two minutes. The gate's shorter form takes 3 s, and since it shares the
 machine with other tests it requires that the others get frames: without back-pressure per viewer
 they would get none.
 """
@@ -26,13 +26,13 @@ def test_stalled_viewers_cost_the_others_no_frames_and_the_server_no_memory(
     server: Serving,
 ) -> None:
     start_moving(server)
-    alone = watch(server, OTHERS, SECONDS)
+    frames_alone = watch(server, OTHERS, SECONDS)["frames_per_s_median"] if MIN_SHARE > 0 else 0.0
     with watched_memory(server.pid) as memory:
         with_stalled = watch(server, OTHERS, SECONDS, STALLED)
 
     assert with_stalled["viewers_lost"] == 0
-    frames_alone, frames = (one["frames_per_s_median"] for one in (alone, with_stalled))
-    assert min(frames_alone, frames) > 0
+    frames = with_stalled["frames_per_s_median"]
+    assert frames > 0
     assert frames >= MIN_SHARE * frames_alone
     assert memory.grown_bytes < FLAT_BYTES
     merged = next(

@@ -1,6 +1,7 @@
 """Promise 21: names are text: 200 XSS payloads as run names in a real browser.
 
-In full: 0 scripts run, 0 policy violations, on every page of the server.
+0 scripts run, 0 policy violations, on every page of the server. The gate has every seventh payload,
+which are all tags, each behind a few of the prefixes; in full by `make soak`.
 """
 
 import html
@@ -17,7 +18,7 @@ from tests.browser.dashboard import PATIENCE_MS, WITHOUT_3D
 from tests.browser.serving import Serving
 from tests.promises.length import at_length
 
-PAYLOADS = 200
+PAYLOADS, EVERY = 200, at_length(7, 1)
 ON_STAGE = at_length(1, PAYLOADS)
 """Number of payloads shown on stage, as 3D label and as caption."""
 
@@ -107,8 +108,8 @@ class Watched:
 @pytest.fixture
 def payload_runs(server: Serving) -> list[dict[str, Any]]:
     """A run for each payload; imported, since that needs no job process."""
-    names = payloads()
-    assert len(names) == PAYLOADS
+    names = payloads()[::EVERY]
+    assert len(names) == -(-PAYLOADS // EVERY)
     with httpx2.Client(base_url=f"{server.address}api/v1", timeout=60) as client:
         body = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 20}
         first = client.post("/trainings", json={**body, "name": names[0]}).json()

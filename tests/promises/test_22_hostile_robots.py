@@ -1,7 +1,7 @@
 """Promise 22: a hostile or damaged robot's file is refused in 5 s and 512 MB, and leaves nothing.
 
 In full: 1,000 damaged files, each refused with a sentence or read as a valid robot, and 50 hostile
-ones. The gate's shorter form damages 40. Limits of time and memory are those of the process that
+ones. The gate's shorter form damages 20. Limits of time and memory are those of the process that
 reads; only `make soak` measures the time, since others may keep a busy machine from its work.
 """
 
@@ -25,7 +25,7 @@ from tests.imports.damage import damaged
 from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
 from tests.promises.length import at_length
 
-DAMAGED = at_length(40, 1000)
+DAMAGED = at_length(20, 1000)
 USUAL_S, LONGEST_S = 5.0, at_length(120.0, 40.0)
 """Most of them, and any one: on a busy machine a process gets its 5 s of the processor later."""
 SURPRISED = "cannot be understood"

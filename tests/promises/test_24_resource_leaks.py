@@ -3,7 +3,7 @@
 The database has at most `SQLITE_FILES` open files, and the number of all others does not grow.
 
 In full by `make soak`: the use by a class in a day: 1,000 rounds of starting, watching,
-disconnecting, reading and deleting. The gate's shorter form has 4 rounds after 2 warm-up rounds,
+disconnecting, reading and deleting. The gate's shorter form has 2 rounds after 2 warm-up rounds,
 and allows 10 MB: so few cannot distinguish a leak from the allocator's behaviour.
 
 The pool of processes for what-ifs and estimates has a test of its own, in full with 300 rounds of
@@ -30,7 +30,7 @@ from tests.promises.test_12_reconnect import Events
 from tests.viewer.serving import PATIENCE_S, Viewer
 
 WARM_UP = at_length(2, 50)
-ROUNDS = at_length(4, 1000)
+ROUNDS = at_length(2, 1000)
 SOME_BYTES = at_length(10_000_000, 0)
 NOTICED_S = 2.0
 BODY = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 20, "evaluate_every": 10}

@@ -29,10 +29,11 @@ from tests.timeouts import LONG_S
 
 MOMENTS = at_length(3, 20)
 LONGEST_S = at_length(1.0, 60.0)
-PACED = {**BODY, "steps": 300, "pace": 20, "evaluate_every": 50, "seed": 30}
+STEPS = at_length(120, 300)
+PACED = {**BODY, "steps": STEPS, "pace": 20, "evaluate_every": STEPS // 6, "seed": 30}
 FAILED_S = at_length(LONG_S, 5.0)
 """Limit for fifty reads: if they waited for a connection, each would take 5 s."""
-RUN_S = 7.0
+RUN_S = STEPS / 43
 """Approximate duration of such a run."""
 
 
@@ -117,6 +118,8 @@ def test_after_the_longest_wait_a_job_is_interrupted_and_can_be_resumed(
             assert left.state == "interrupted"
             assert "PostgreSQL" in (left.error or "")
             jobs.resume(run.id)
+            wait_until(lambda: store.get(run.id).state == "running")
+            jobs.change(run.id, {"pace": "max"})
             assert wait_until_ended(store, run).state == "finished"
         finally:
             jobs.close()

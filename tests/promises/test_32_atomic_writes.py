@@ -1,7 +1,7 @@
 """Promise 32: every write is all or nothing.
 
 Promised: `kill -9` and a full disk at each write of start, import, finish and delete: no partial
-run is visible, and an orphaned file lasts until the next start at most. Here one in 24 of the
+run is visible, and an orphaned file lasts until the next start at most. Here one in 48 of the
 writes, chosen at random, and a kill of a server that imports runs; all of them, and 30 kills, by
 `make soak`.
 """
@@ -31,7 +31,7 @@ from tests.served import Served
 from tests.storage.ended_runs import ended_training
 from tests.storage.stores import opened
 
-SHARE = at_length(1 / 24, 1.0)
+SHARE = at_length(1 / 48, 1.0)
 KILLS = at_length(1, 30)
 QUOTA_MB = 10
 

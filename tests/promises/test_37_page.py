@@ -3,7 +3,7 @@
 Random starts, stops, shows, deletions, waits and kills of a real server, in front of a real
 browser; then the stage, the scoreboard, the form and the title are compared with the API.
 
-Promised: 200 sequences. Here 3; in full by `make soak`.
+Promised: 200 sequences. Here one, of two races and a kill; in full by `make soak`.
 """
 
 import random
@@ -21,7 +21,8 @@ from tests.browser.serving import Serving
 from tests.promises.length import at_length
 from tests.timeouts import LONG_S
 
-SEQUENCES = at_length(3, 200)
+SEEDS = at_length(range(57, 58), range(200))
+"""One for each sequence; the gate's has a race, which is shown, one that is stopped, and a kill."""
 EVENTS = at_length(5, 6)
 WEIGHTS = {"race": 4, "train": 2, "stop": 4, "show": 3, "end": 3, "delete": 1, "kill": 1}
 BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
@@ -208,7 +209,7 @@ class Words:
 
 @pytest.mark.timeout(at_length(600, 3 * 3600))
 def test_page_agrees_with_the_api_after_any_sequence(dashboard: Dashboard, tmp_path: Path) -> None:
-    for seed in range(SEQUENCES):
+    for seed in SEEDS:
         visit = Visit(dashboard, tmp_path / str(seed), random.Random(seed))
         try:
             names = visit.drive()

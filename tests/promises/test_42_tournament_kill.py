@@ -22,7 +22,7 @@ KILLS = at_length(2, 10)
 RULES: dict[str, Any] = {
     "gait": "left-right-origin",
     "simulator": "kinematic",
-    "steps": 400,
+    "steps": at_length(200, 400),
     "draws": 10,
 }
 ALPHAS = (0.1, 0.3, 0.5)
