@@ -100,6 +100,7 @@ soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
 		tests/physics/test_figures.py tests/browser \
 		tests/tournaments/test_verification.py tests/experiments/test_cluster.py \
 		tests/experiments/test_trial.py tests/experiments/report/test_files.py \
+		tests/experiments/test_summary.py tests/test_wheel.py \
 		tests/agents/test_linear_model_figures.py tests/agents/test_informed.py $(ARGS)
 
 .PHONY: format

@@ -1,5 +1,7 @@
 """Explanations: the rule with its numbers gives the stored value, to the last bit."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -84,9 +86,12 @@ def table_of(learner: Learner) -> FloatArray | None:
     return np.array([values for _, values, _ in agent.table.rows()])
 
 
-def explained(agent: str, seed: int = 4, steps: int = 90) -> list[ExplainedStep]:
-    learner = build_learner(config_of(agent, seed))
-    return [ExplainedStep(learner) for _ in range(steps)]
+@cache
+def explained(agent: str) -> list[ExplainedStep]:
+    """Return the steps of a training, which several tests look at."""
+    config = config_of(agent)
+    learner = build_learner(config)
+    return [ExplainedStep(learner) for _ in range(config.steps)]
 
 
 @pytest.fixture(params=LEARNERS)

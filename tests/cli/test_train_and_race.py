@@ -63,7 +63,7 @@ def test_train_and_race_print_the_best_known_distance_where_it_is_known(
     best_m = best_known_m(WalkingProblem(gait="left-right-origin"))
     assert best_m is not None
     train = ("train", *GAIT, "--steps", "5", "--evaluate-every", "0")
-    race = ("race", *GAIT, "--lane", "greedy", "--world", "flat")
+    race = ("race", *GAIT, "--lane", "wave", "--world", "flat")
 
     assert output(*race, folder=tmp_path, run=in_process)["best_known_m"] == best_m
     shown = in_process(*race, folder=tmp_path).stdout
@@ -72,7 +72,7 @@ def test_train_and_race_print_the_best_known_distance_where_it_is_known(
     assert shown.endswith(f" m, the best known walk is {best_m:.2f} m.\n")
 
     assert " best known " not in (folder / "said").read_text(), "it is computed in MuJoCo"
-    unknown = ("race", *QUICK, "--lane", "greedy")
+    unknown = ("race", *QUICK, "--lane", "wave")
     assert output(*unknown, folder=tmp_path, run=in_process)["best_known_m"] is None
     assert "Best known" not in in_process(*unknown, folder=tmp_path).stdout
 
