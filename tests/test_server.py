@@ -14,8 +14,8 @@ import viser
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from tests.forked import HEXAPODS
-from tests.served import BODY, ENDLESS, Events, Served, environ, is_job, serving_from
+from tests.cli.running import hexapods
+from tests.served import BODY, ENDLESS, Events, Served, is_job, serving_from
 from tests.timeouts import LONG_S
 
 TOKEN = "a-token-for-tests"
@@ -175,14 +175,7 @@ def test_snapshot_has_the_role_of_the_client(guarded: Served) -> None:
 
 
 def refusal(*arguments: str, **variables: str) -> str:
-    done = subprocess.run(
-        [*HEXAPODS, "serve", *arguments],
-        capture_output=True,
-        text=True,
-        timeout=LONG_S,
-        env=environ(**variables),
-        check=False,
-    )
+    done = hexapods("serve", *arguments, folder=Path.cwd(), **variables)
     assert done.returncode == 2, done.stderr
     assert "Traceback" not in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
