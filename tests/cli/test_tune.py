@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -15,21 +16,12 @@ from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.tuning.summary import summarise_tuning
 from tests.cli.running import ROOT, hexapods, in_process, output, refusal
 from tests.experiments.test_tuning import config, tuned
+from tests.forked import start_hexapods
+from tests.timeouts import LONG_S
 
 PLACE = ("--gait", "left-right-origin", "--simulator", "kinematic", "--steps", "50")
 SIZE = ("--candidates", "12", "--seeds", "3", "--held-out", "5", "--objective", "area")
 TUNE = ("tune", "q-learning", *PLACE, *SIZE)
-
-
-def start(*arguments: str, folder: Path) -> "subprocess.Popen[str]":
-    return subprocess.Popen(
-        [sys.executable, "-m", "app.cli", *arguments],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
 
 
 def kept(file: Path) -> dict[str, TrialResult]:
@@ -43,15 +35,22 @@ def kept(file: Path) -> dict[str, TrialResult]:
 def test_stopped_and_killed_it_goes_on_and_gives_what_an_unbroken_one_gives(tmp_path: Path) -> None:
     file, lines = tmp_path / "tuning-results" / TRIALS, 0
     for end in (signal.SIGTERM, signal.SIGKILL):
-        process = start(*TUNE, "--workers", "1", folder=tmp_path)
-        while not file.exists() or len(file.read_bytes().splitlines()) < lines + 10:
-            assert process.poll() is None
-            time.sleep(0.02)
-        process.send_signal(end)
-        out, err = process.communicate(timeout=60)
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as errors:
+            environment = {"PATH": "/usr/bin:/bin"}
+            process = start_hexapods((*TUNE, "--workers", "1"), environment, errors, tmp_path)
+            while not file.exists() or len(file.read_bytes().splitlines()) < lines + 10:
+                assert process.poll() is None
+                time.sleep(0.02)
+            process.send_signal(end)
+            assert process.stdout is not None
+            with process.stdout as printed:
+                out = printed.read()
+            code = process.wait(LONG_S)
+            errors.seek(0)
+            err = errors.read()
         lines = len(file.read_bytes().splitlines())
         if end == signal.SIGTERM:
-            assert (process.returncode, err) == (130, "")
+            assert (code, err) == (130, "")
             assert f"Interrupted: {lines - 1} trials are kept in tuning-results; the same" in out
 
     done = hexapods(*TUNE, "--workers", "2", folder=tmp_path)
