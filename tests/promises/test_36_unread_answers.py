@@ -5,7 +5,7 @@ race, of 300,000 steps of its lanes: while it runs, when it ends, and whatever i
 The largest table is one of 8 divisions, 52,728,000 values, as JSON, CSV and `.npz`. Beside it a
 race's recording, its arrays, its recorded stream and its timeline, an experiment's trials, report
 and files, curves, and exports. The gate's form has a table of 400,000 values that were visited,
-five of these answers, and a race of 24,000 steps, for 60 MB; `make soak` has 2,500,000 values, all
+five of these answers, and a race of 15,000 steps, for 40 MB; `make soak` has 2,500,000 values, all
 of the answers, and the longest race.
 """
 
@@ -36,7 +36,7 @@ VISITED_STATES = at_length(40_000, 250_000)
 SETTLED_S = at_length(0.5, 10.0)
 RACE = {**BODY, "steps": 60, "lanes": [{"agent": "greedy"}] * 4}
 LONG_RACE = {**BODY, "lanes": [{"agent": "random-walk"}, {"agent": "greedy"}] * 3}
-LONG_RACE_STEPS, MAX_RACE_BYTES = at_length((4_000, 60_000_000), (50_000, MAX_BYTES))
+LONG_RACE_STEPS, MAX_RACE_BYTES = at_length((2_500, 40_000_000), (50_000, MAX_BYTES))
 READ_BYTES = at_length(5_000_000, 100_000_000)
 EXPERIMENT = {
     "experiment": "sweep",
