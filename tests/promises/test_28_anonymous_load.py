@@ -2,7 +2,7 @@
 the heaviest reads, against a server with 1,024 files and 1 GB: no run fails, an operator's 95th
 percentile is under 500 ms, the log under 1 MB.
 
-In full by `make soak`, for two minutes. The gate's shorter form has 800 connections and four readers
+In full by `make soak`, for two minutes. The gate's shorter form has 800 connections and 4 readers
 for 2 s, and since it shares the machine with other tests it requires that each request is answered:
 without limits none is. The connections come from eight addresses, one of which is the operator's
 own, and are opened again when the server closes them. Every other request of the operator uses a
