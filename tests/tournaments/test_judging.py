@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -52,7 +53,12 @@ class Seer:
 
 
 IN_MUJOCO = rules_of(
-    simulator="mujoco", robot=HASTY, steps=20, tolerance=0.03, worlds=("flat", "ice")
+    simulator="mujoco",
+    gait="tripod",
+    robot=HASTY,
+    steps=20,
+    tolerance=0.03,
+    worlds=("flat", "ice"),
 )
 AGENTS = ("q-learning", "linear-model", "greedy", "random-walk")
 TWO_DRAWS = (Draw(5, "flat"), Draw(2**53 - 1, "ice"))
@@ -107,11 +113,12 @@ def test_what_learns_in_races_by_default_does_here() -> None:
 
 
 def test_the_world_and_the_tolerance_of_the_draw_hold() -> None:
-    rules = rules_of(simulator="mujoco", robot=HASTY, steps=5, worlds=("flat", "ice"))
+    hasty: dict[str, Any] = {"simulator": "mujoco", "gait": "tripod", "robot": HASTY, "steps": 5}
+    rules = rules_of(**hasty, worlds=("flat", "ice"))
     entry = EntryConfig(agent="greedy")
     flat, ice = (judge(rules, entry, Draw(5, world)).distance_m for world in ("flat", "ice"))
     assert ice < flat
-    built = rules_of(simulator="mujoco", robot=HASTY, steps=5, tolerance=0.1)
+    built = rules_of(**hasty, tolerance=0.1)
     assert judge(built, entry, DRAW) != judge(built, entry, Draw(6, "flat"))
     assert judge(built, entry, DRAW) != judge(rules, entry, DRAW)
 

@@ -78,7 +78,7 @@ def test_the_gaits_of_creatures_are_written_out() -> None:
     [
         ({"draws": 4}, "draws must be a whole number from 5 to 100, not 4"),
         ({"draws": 101}, "draws must be a whole number from 5 to 100, not 101"),
-        ({"steps": 5001}, "steps must be from 1 to 5,000"),
+        ({"steps": 5001}, "steps must be a whole number from 1 to 5,000"),
         ({"steps": 0}, "steps must be"),
         ({"transitions": 499}, "transitions must be a whole number from 500 to 100,000, not 499"),
         ({"transitions": 100_001}, "transitions must be a whole number from 500 to 100,000"),

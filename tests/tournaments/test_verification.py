@@ -52,6 +52,7 @@ def sentences(tournament: TournamentFile) -> list[str]:
 def test_a_tournament_in_mujoco_repeats_with_any_number_of_processes() -> None:
     rules = rules_of(
         simulator="mujoco",
+        gait="tripod",
         robot=HASTY,
         steps=10,
         tolerance=0.03,
@@ -80,7 +81,7 @@ def imported() -> Iterator[str]:
 
 def test_a_tournament_of_an_imported_robot_repeats_where_it_is_not_known(imported: str) -> None:
     own = read_document(robot_documents.find(imported), "Own")
-    rules = rules_of(simulator="mujoco", robot=HASTY, steps=10, robots=(own,))
+    rules = rules_of(simulator="mujoco", gait="tripod", robot=HASTY, steps=10, robots=(own,))
     assert rules.gaits == ("tripod",)
     data = write_file(judged(rules, [EntryConfig(agent="q-learning", robot=own)]))
     robot_documents.forget([imported])
