@@ -124,7 +124,6 @@ VALID: Mapping[str, str] = {
     "title": NAMES,
     "room": "the code of a room",
     "rules": "an object with gait, and what differs from the rules' defaults",
-    "entries_per_hour": "a whole number from 1 to 60",
     "tables": "true or false",
     "withdraw_waiting": "true or false",
     "format": "a format that the description of the route names",

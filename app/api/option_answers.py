@@ -237,6 +237,7 @@ class OptionsView(Answer):
         limits: [lowest, highest]; `settings` says which of them are not valid themselves.
         leg_fields: numbers of a leg that the editor of bodies offers.
         torso_fields: those of the rest of the robot.
+        tournament_fields: numbers of a new tournament, beside those of its walking problem.
         titles: names of fields that are no declared settings.
         exports: files of a recorded walk.
     """
@@ -246,6 +247,7 @@ class OptionsView(Answer):
     robots: list[RobotOption]
     leg_fields: dict[str, SettingOption]
     torso_fields: dict[str, SettingOption]
+    tournament_fields: dict[str, SettingOption]
     agents: list[AgentOption]
     worlds: list[WorldOption]
     disturbances: list[DisturbanceOption]

@@ -24,6 +24,7 @@ from app.api.option_texts import (
     SIMULATOR_TITLES,
 )
 from app.api.robot_options import built_in_options, gait_options, stored_options
+from app.api.tournament_bodies import tournament_fields
 from app.archive.transfer import MAX_RUNS
 from app.jobs.submissions import MAX_SETTINGS
 from app.storage.database.robots import RobotStore
@@ -132,6 +133,7 @@ def catalogue(agents: Collection[str], robots: Iterable[StoredRobot] = ()) -> di
         "robots": [*map(built_in_options, CREATURES.values()), *map(stored_options, robots)],
         "leg_fields": {name: _setting(setting) for name, setting in leg_fields().items()},
         "torso_fields": {name: _setting(setting) for name, setting in torso_fields().items()},
+        "tournament_fields": {name: _setting(one) for name, one in tournament_fields().items()},
         "agents": _agents(agents),
         "worlds": _worlds(),
         "disturbances": _disturbances(),

@@ -6,7 +6,6 @@ from pydantic import Field, create_model
 
 from app.api.descriptions import VALID
 from app.api.fields import (
-    INTEGRAL,
     Body,
     Declared,
     Name,
@@ -15,17 +14,26 @@ from app.api.fields import (
     given_settings,
     record_fields,
 )
-from app.tournaments.tournament import MAX_ENTRIES_PER_HOUR
+from app.tournaments.tournament import DEFAULT_ENTRIES_PER_HOUR, EntriesPerHour
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.observation import Observation
 from hexapods.domain.robot import AnyRobot
-from hexapods.domain.settings import SettingValues, declared_fields
-from hexapods.runs.config import TrainingConfig
+from hexapods.domain.settings import DeclaredSetting, SettingValues, declare, declared_fields
+from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.rules import MAX_ROBOTS, MAX_WORLDS, TournamentRules
 
 _MAX_WORLD = 500
 _Flag = Annotated[bool, Field(strict=True)]
+_ENTRIES_PER_HOUR = declare("entries_per_hour", EntriesPerHour, DEFAULT_ENTRIES_PER_HOUR)
+
+
+def tournament_fields() -> dict[str, DeclaredSetting]:
+    """Return the numbers of a new tournament beside those of its walking problem."""
+    of_walk = declared_fields(WalkingProblem)
+    of_rules = declared_fields(TournamentRules)
+    own = {name: setting for name, setting in of_rules.items() if name not in of_walk}
+    return own | {_ENTRIES_PER_HOUR.name: _ENTRIES_PER_HOUR}
 
 
 class RulesBody(Body):
@@ -67,11 +75,7 @@ class TournamentBody(Body):
 
     title: Name = ""
     room: Annotated[str, Field(max_length=20, description=VALID["room"])] | None = None
-    entries_per_hour: Annotated[
-        int,
-        Field(strict=True, ge=1, le=MAX_ENTRIES_PER_HOUR, description=VALID["entries_per_hour"]),
-        INTEGRAL,
-    ] = 6
+    entries_per_hour: Annotated[Any, Declared(_ENTRIES_PER_HOUR)] = _ENTRIES_PER_HOUR.default
     rules: _Rules
 
 

@@ -4,9 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Annotated, Any, Literal, NamedTuple, get_args
+
+from annotated_types import Ge, Le
 
 from app.storage.errors import Conflict
+from hexapods.domain.settings import Setting
 from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.ranking import RankedEntry
@@ -15,7 +18,13 @@ from hexapods.tournaments.rules import MAX_ENTRIES, Draw, TournamentRules, commi
 TournamentState = Literal["open", "ending", "ended"]
 STATES: tuple[TournamentState, ...] = get_args(TournamentState)
 EntryState = Literal["waiting", "judging", "judged", "withdrawn"]
-MAX_ENTRIES_PER_HOUR = 60
+EntriesPerHour = Annotated[
+    int,
+    Ge(1),
+    Le(60),
+    Setting(title="Entries per hour", help="Of each participant; the same again counts no more."),
+]
+DEFAULT_ENTRIES_PER_HOUR = 6
 HOUR = timedelta(hours=1)
 OUTCOME = ("standings", "robots", "versions", "machine")
 """Fields of a tournament's file that are kept at its end: a later version could not tell them."""

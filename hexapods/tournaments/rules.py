@@ -17,7 +17,7 @@ from hexapods.domain.records import Record
 from hexapods.domain.robot import AnyRobot, Robot
 from hexapods.domain.settings import Setting
 from hexapods.domain.world import UNDISTURBED, lasting_world
-from hexapods.runs.config import RACE_STEPS, PracticeSteps, Seed, WalkingProblem
+from hexapods.runs.config import RACE_STEPS, Seed, WalkingProblem
 
 MIN_DRAWS, MAX_DRAWS = 5, 100
 """The least is `experiments.statistics.MIN_RESAMPLED`, whose module imports SciPy for a second."""
@@ -53,12 +53,21 @@ class TournamentRules(WalkingProblem):
         Unreachable: if a robot's legs cannot reach the grid.
     """
 
-    steps: PracticeSteps = 500
+    steps: Annotated[
+        int,
+        Ge(1),
+        Le(MAX_BUDGET),
+        Setting(
+            title="Most steps of practice",
+            help="The most that an entry practises on each draw.",
+            unit="steps",
+        ),
+    ] = 500
     draws: Annotated[
         int,
         Ge(MIN_DRAWS),
         Le(MAX_DRAWS),
-        Setting(title="Draws", help="Secret seeds and worlds on which each entry is judged."),
+        Setting(title="Secret seeds", help="Draws, of which each has a world, too."),
     ] = 20
     worlds: tuple[str, ...] = ("flat",)
     robots: tuple[AnyRobot, ...] = ()
@@ -69,19 +78,13 @@ class TournamentRules(WalkingProblem):
         Ge(MIN_TRANSITIONS),
         Le(MAX_TRANSITIONS),
         Setting(
-            title="Transitions",
-            help="The most that a search may simulate on each draw; over it, it has failed there.",
+            title="Transitions a search may simulate",
+            help="The most on each draw; over it, the search has failed there.",
         ),
     ] = DEFAULT_TRANSITIONS
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.steps > MAX_BUDGET:
-            raise InvalidInput(
-                f"steps must be from 1 to {MAX_BUDGET:,}, the largest budget of a tournament, not "
-                f"{self.steps:,}",
-                field="steps",
-            )
         if self.world != UNDISTURBED:
             raise InvalidInput(
                 "a tournament has worlds, of which each draw has one; leave out disturbances"

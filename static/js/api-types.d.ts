@@ -2887,6 +2887,12 @@ export interface OptionsView {
   torso_fields: {
     [k: string]: SettingOption;
   };
+  /**
+   * numbers of a new tournament, beside those of its walking problem.
+   */
+  tournament_fields: {
+    [k: string]: SettingOption;
+  };
   agents: AgentOption[];
   worlds: WorldOption[];
   disturbances: DisturbanceOption[];
@@ -4125,11 +4131,11 @@ export interface TournamentRules {
    */
   tolerance: number;
   /**
-   * How many steps it practises; the paper uses 500 and 1000.
+   * The most that an entry practises on each draw.
    */
   steps: number;
   /**
-   * Secret seeds and worlds on which each entry is judged.
+   * Draws, of which each has a world, too.
    */
   draws: number;
   /**
@@ -4237,7 +4243,7 @@ export interface TournamentRules {
    */
   tables: boolean;
   /**
-   * The most that a search may simulate on each draw; over it, it has failed there.
+   * The most on each draw; over it, the search has failed there.
    */
   transitions: number;
 }

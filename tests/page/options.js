@@ -148,6 +148,12 @@ export const OPTIONS = {
     torso_length_m: setting("Length", { minimum: 0.02, maximum: 4, unit: "m", default: 0.2 }),
     torso_width_m: setting("Width", { minimum: 0.02, maximum: 4, unit: "m", default: 0.2 }),
   },
+  tournament_fields: {
+    steps: setting("Most steps of practice", { minimum: 1, maximum: 5000, is_whole: true, default: 500 }),
+    draws: setting("Secret seeds", { minimum: 5, maximum: 100, is_whole: true, default: 20 }),
+    transitions: setting("Most transitions", { minimum: 500, maximum: 100_000, is_whole: true, default: 40_000 }),
+    entries_per_hour: setting("Entries per hour", { minimum: 1, maximum: 60, is_whole: true, default: 6 }),
+  },
   agents: [
     {
       ...described("learner", "Learner"), color: "#111111", steps_ahead: null,

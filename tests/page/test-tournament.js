@@ -187,12 +187,15 @@ test("a table enters with nothing that its training says", () => {
 // ---- the form of a tournament
 
 test("a tournament is asked for with numbers, worlds and the page's walk", () => {
+  list.showForm();
   const of = { ...list.draft.value, title: " Cup ", worlds: ["flat"], room: "KM4T7Q" };
   assert.deepEqual(list.requestOf(of, { gait: "tripod" }), {
     title: "Cup", room: "KM4T7Q", entries_per_hour: 6,
     rules: { gait: "tripod", steps: 500, draws: 20, transitions: 40000, worlds: ["flat"], robots: [], tables: false },
   });
-  assert.equal(list.requestOf({ ...of, draws: "some" }, {}), null);
+  for (const draws of ["some", "4", "101", "5.5"]) {
+    assert.equal(list.requestOf({ ...of, numbers: { ...of.numbers, draws } }, {}), null);
+  }
   assert.equal(list.requestOf({ ...of, worlds: [] }, {}), null);
   assert.deepEqual(list.toggled(["ice"], "flat", ["flat", "ice"]), ["flat", "ice"], "in the order of all");
   assert.deepEqual(list.toggled(["ice"], "ice", ["flat", "ice"]), []);
@@ -201,6 +204,7 @@ test("a tournament is asked for with numbers, worlds and the page's walk", () =>
 test("a refusal names the fields of the form", () => {
   assert.equal(list.inFormWords("rules.draws must be a whole number from 5 to 100."),
     "Secret seeds must be a whole number from 5 to 100.");
+  assert.equal(list.inFormWords("Draws must be at least 5 here."), "Secret seeds must be at least 5 here.");
   assert.equal(list.inFormWords("Unknown world 'x'; it must be one of: flat."),
     "Unknown world 'x'; it must be one of: flat.");
 });

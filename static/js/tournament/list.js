@@ -10,7 +10,7 @@ import * as api from "../tournaments-api.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Parsed } from "../parse.js" */
-/** @import { ListedRoom, ListedTournament, Limits, Tournament } from "../types.js" */
+/** @import { ListedRoom, ListedTournament, Tournament } from "../types.js" */
 
 /** Null until the server has answered. @type {Signal<ListedTournament[] | null>} */
 export const tournaments = signal(null);
@@ -60,7 +60,10 @@ export function askForTournament(code, fields) {
 export function showForm() {
   batch(() => {
     opened.value = null;
-    draft.value = { ...NEW, room: ownRoom.peek() ?? "", worlds: [served().worlds[0].name] };
+    draft.value = {
+      ...NEW, room: ownRoom.peek() ?? "", worlds: [served().worlds[0].name],
+      numbers: Object.fromEntries(numberFields().map(([name, field]) => [name, String(field.default)])),
+    };
     isNew.value = true;
   });
 }
@@ -69,7 +72,7 @@ export function showForm() {
 
 /** As it was typed and chosen; numbers as texts. */
 const NEW = {
-  title: "", room: "", steps: "500", draws: "20", transitions: "40000", entries_per_hour: "6",
+  title: "", room: "", numbers: /** @type {Record<string, string>} */ ({}),
   worlds: /** @type {string[]} */ ([]), robots: /** @type {string[]} */ ([]), tables: false,
 };
 
@@ -83,28 +86,24 @@ export const change = (changes) => {
   draft.value = { ...draft.peek(), ...changes };
 };
 
+/** @param {string} name @param {string} text */
+export const changeNumber = (name, text) => change({ numbers: { ...draft.peek().numbers, [name]: text } });
+
 /** A list with a name, or without it, in the order of all names. */
 /** @type {(list: string[], name: string, all: string[]) => string[]} */
 export const toggled = (list, name, all) =>
   all.filter((one) => (one === name ? !list.includes(one) : list.includes(one)));
 
-/** The server knows the upper limits, and refuses more. @type {Limits} */
-const AT_LEAST_ONE = { minimum: 1, maximum: null, excludes_minimum: false, excludes_maximum: false };
-
-export const NUMBERS = /** @type {const} */ (["steps", "draws", "transitions", "entries_per_hour"]);
-
-/** @type {Record<string, string>} */
-export const TITLES = {
-  steps: "Most steps of practice", draws: "Secret seeds", transitions: "Transitions a search may simulate",
-  entries_per_hour: "Entries per hour",
-};
+/** The numbers of a tournament, with their titles, defaults and limits. */
+export const numberFields = () => Object.entries(served().tournament_fields);
 
 /** A sentence of the server, with the names of this form. @param {string} message */
 export const inFormWords = (message) =>
-  message.replace(/\b(?:rules\.)?([a-z_]+)(?= must be )/g, (whole, field) => TITLES[field] ?? whole);
+  message.replace(/\b(?:rules\.)?([a-z_]+)(?= must be )/gi,
+    (whole, field) => served().tournament_fields[field.toLowerCase()]?.title ?? whole);
 
-/** @type {(of: NewTournament, name: typeof NUMBERS[number]) => Parsed<number>} */
-export const readNumber = (of, name) => parseNumber(of[name], AT_LEAST_ONE, true);
+/** @type {(of: NewTournament, name: string) => Parsed<number>} */
+export const readNumber = (of, name) => parseNumber(of.numbers[name], served().tournament_fields[name], true);
 
 const WALK = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance"];
 
@@ -117,7 +116,7 @@ export const walk = computed(() => Object.fromEntries(WALK.map((field) => [field
  * @param {Record<string, unknown>} walking the walking problem
  */
 export function requestOf(of, walking) {
-  const numbers = NUMBERS.map((name) => [name, readNumber(of, name).value]);
+  const numbers = numberFields().map(([name]) => [name, readNumber(of, name).value]);
   if (numbers.some(([, value]) => value === undefined) || of.worlds.length === 0) return null;
   const { entries_per_hour: perHour, ...ofRules } = Object.fromEntries(numbers);
   const { worlds, robots, tables } = of;

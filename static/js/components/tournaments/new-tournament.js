@@ -1,8 +1,8 @@
 // The form of a new tournament. The walking problem is that of the page, or of the card of a room.
 import { root } from "../../api.js";
 import {
-  busy, change, draft, failures, inFormWords, NUMBERS, open, ownRoom, readNumber, refused, requestOf, rooms, TITLES,
-  toggled, walk,
+  busy, change, changeNumber, draft, failures, inFormWords, numberFields, open, ownRoom, readNumber, refused, requestOf,
+  rooms, toggled, walk,
 } from "../../tournament/list.js";
 import { walkInWords } from "../../tournament/words.js";
 import { presetOf } from "../../robots.js";
@@ -24,7 +24,7 @@ export function NewTournamentForm() {
       <${TitleAndRoom} />
       <${Walk} />
       <div class="number-fields">
-        ${NUMBERS.map((name) => html`<${NumberOf} key=${name} name=${name} />`)}
+        ${numberFields().map(([name, { title }]) => html`<${NumberOf} key=${name} name=${name} title=${title} />`)}
       </div>
       <${Choices} name="worlds" legend="Worlds, of which each seed has one"
         choices=${served().worlds.map(({ name, title }) => [name, title])} />
@@ -47,7 +47,7 @@ export function NewTournamentForm() {
 /** @param {string} field */
 const isAbout = (field) => Boolean(failures.value.open) && (refused.value.open ?? []).includes(field);
 /** Whether the refusal stands beside a field. */
-const isPlaced = () => ["title", "room", "worlds", "robots", ...NUMBERS].some(isAbout);
+const isPlaced = () => ["title", "room", "worlds", "robots", ...numberFields().map(([name]) => name)].some(isAbout);
 
 const problem = () => inFormWords(failures.value.open);
 
@@ -88,16 +88,16 @@ const Walk = () => html`
   </div>
 `;
 
-/** @param {{ name: typeof NUMBERS[number] }} props */
-function NumberOf({ name }) {
+/** @param {{ name: string, title: string }} props */
+function NumberOf({ name, title }) {
   const { mistake } = readNumber(draft.value, name);
   const id = `tournament-${name}`;
   return html`
     <div class="field">
-      <label for=${id}>${TITLES[name]}</label>
-      <input id=${id} type="text" inputmode="numeric" autocomplete="off" value=${draft.value[name]}
+      <label for=${id}>${title}</label>
+      <input id=${id} type="text" inputmode="numeric" autocomplete="off" value=${draft.value.numbers[name]}
         aria-invalid=${mistake || isAbout(name) ? "true" : undefined} aria-describedby=${`about-${id}`}
-        onInput=${(/** @type {Changed} */ { target }) => change({ [name]: target.value })} />
+        onInput=${(/** @type {Changed} */ { target }) => changeNumber(name, target.value)} />
       <div id=${`about-${id}`}>
         ${mistake && html`<p class="bad" role="alert">${mistake}</p>`}
         <${Refusal} field=${name} />
