@@ -19,6 +19,7 @@ from hexapods.runs.racing import record_race
 from hexapods.runs.results import LaneResult, race_result
 from tests.agents.walkers import kinematic_walker
 from tests.promises.length import at_length, only_whole
+from tests.quick_robot import HASTY
 
 GRID = FootGrid()
 PROBLEM = Problem(((1, 4), (2, 5), (3, 6)), GRID.cells)
@@ -141,9 +142,7 @@ def test_forty_transitions_are_worth_two_steps_of_look_ahead(preset: str) -> Non
 @pytest.mark.parametrize("agent", ["informed", "mcts", "beam"])
 def test_results_do_not_depend_on_the_number_of_threads(agent: str) -> None:
     def states(threads: int) -> list[bytes]:
-        config = RaceConfig(
-            gait="left-right-vertical", robot=robot("slippery"), lanes=(lane_config(agent),)
-        )
+        config = RaceConfig(gait="left-right-vertical", robot=HASTY, lanes=(lane_config(agent),))
         (walker,) = build_walkers(config, [None], threads=threads)
         found = []
         for _ in range(2):
