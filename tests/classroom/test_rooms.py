@@ -10,10 +10,11 @@ from sqlalchemy import text
 
 from app.classroom.lesson import read_lesson
 from app.classroom.rooms import IDLE, MAX_OPEN, Rooms
+from app.storage.database.room_rows import RoomRun
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, Forbidden, NotFound
 from tests.postgresql import PostgresServer
-from tests.storage.stores import BACKENDS, database_url, opened
+from tests.storage.stores import BACKENDS, database_url, opened, training
 
 LESSON = read_lesson(
     {
@@ -115,6 +116,27 @@ def test_what_ifs_are_there_after_a_restart(store: RunStore) -> None:
     assert len(asked) == 1
     after.reveal(code, 0)
     assert Rooms(store).get(code).runs_of(0, 0)[0].is_shown
+
+
+def test_a_run_that_a_kill_left_unstored_is_nobodys(store: RunStore) -> None:
+    """Whose a run is is noted before it is stored."""
+    rooms = Rooms(store)
+    code = rooms.create(LESSON).code
+    rooms.join(code)
+    noted = RoomRun(
+        run_id="0never1stored2",
+        room=code,
+        seed=0,
+        card=0,
+        given={},
+        is_main=True,
+        is_shown=False,
+        created_at=datetime.now(UTC),
+    )
+    store.rooms.add_runs([noted])
+    assert Rooms(store).get(code).runs == {}
+    store.create(training(noted.run_id))
+    assert list(Rooms(store).get(code).runs) == [noted.run_id]
 
 
 def test_a_damaged_row_is_left_out(store: RunStore) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Table, and_, delete, exists, not_, or_, update
+from sqlalchemy import Connection, Table, and_, delete, exists, not_, or_, select, update
 from sqlalchemy.sql.elements import ColumnElement
 
 from app.storage.database.engine import Database
@@ -123,10 +123,16 @@ class RoomRows:
         return all_rows(self._database, PREDICTIONS, PredictionRow, PREDICTIONS.c.made_at)
 
     def runs(self) -> list[RoomRun]:
-        """Return all runs of rooms that can be decoded, oldest first."""
+        """Return all runs of rooms that are stored and can be decoded, oldest first.
+
+        Whose a run is is noted before it is stored, so that a kill may leave a note of none.
+        """
         # Ids of what-ifs do not sort by time; those of runs do, also of one moment.
         order = ROOM_RUNS.c.created_at, ROOM_RUNS.c.run_id
-        return all_rows(self._database, ROOM_RUNS, RoomRun, *order)
+        query = select(RUNS.c.id).where(RUNS.c.id.in_(select(ROOM_RUNS.c.run_id)))
+        stored = self._database.read(lambda connection: set(connection.scalars(query)))
+        noted = all_rows(self._database, ROOM_RUNS, RoomRun, *order)
+        return [one for one in noted if one.answer is not None or one.run_id in stored]
 
     def add_room(self, row: RoomRow) -> None:
         """Insert a room."""
