@@ -73,13 +73,16 @@ def idle_connections(port: int, paths: list[str]) -> Iterator[list[dict[str, int
 def readers(port: int, paths: list[str]) -> Iterator[dict[str, int]]:
     """Run the process of `readers` on the heaviest answers; yields the counts by status.
 
-    The counts are added at the end of the context.
+    The counts are added at the end of the context, which waits until something was read: on a busy
+    machine readers of low priority may get no processor for some seconds.
     """
     arguments = [str(port), str(READERS), *paths]
     script = start_script("tests.promises.readers", *arguments, before=LOW_PRIORITY)
     outcomes: dict[str, int] = {}
     try:
         yield outcomes
+        assert script.stdout is not None
+        script.stdout.readline()
         output, _ = script.communicate(timeout=LONG_S)
         outcomes.update(json.loads(output))
     finally:
