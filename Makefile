@@ -13,8 +13,8 @@ DQN_STAMP := $(VENV)/.installed-dqn
 # The tools that check the page. Node and npm come with the tools of the tests, from the Python registry.
 PAGE_STAMP := node_modules/.installed
 TORCH := torch==2.13.0
-# On two cores: while two wait, for a process or a timer, two others work.
-TEST_PROCESSES := 4
+# On two cores: while one waits, for a process or a timer, two others work.
+TEST_PROCESSES := 3
 
 # Python compiles what it imports by itself; most of what is installed is never imported. Where the
 # environment forbids it to keep the result, as many containers do, each process compiles again:

@@ -123,7 +123,7 @@ def test_a_continued_training_begins_with_the_one_before(
 def test_what_changed_while_it_ran_changes_in_the_program_too(
     api: Api, code: Any, tmp_path: Path
 ) -> None:
-    run = api.train(steps=400, pace=20, evaluate_every=0, simulator="mujoco", robot=ROBOT)
+    run = api.train(steps=400, pace=5, evaluate_every=0, simulator="mujoco", robot=ROBOT)
     api.until(run, lambda now: now["progress"]["done"] > 3)
     change = {"settings": {"alpha": 0.05}}
     assert api.call("PATCH", f"/trainings/{run['id']}", json=change).status_code == 200

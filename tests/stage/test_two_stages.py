@@ -16,7 +16,6 @@ from app.limits.client_slots import ClientSlots
 from app.stage.roles import Roles
 from app.viewer.shared_stage import SharedStage
 from hexapods.drawing.viser_internals import stream
-from tests.quick_robot import HASTY_JSON
 from tests.stage.stage_parts import StageParts
 from tests.stage.two_stages import SECOND, TOKENS, two_stages
 from tests.timeouts import LONG_S, ProgressTimeout
@@ -52,8 +51,7 @@ class Client:
     def race(self, *agents: str) -> str:
         """Compute a race, and return its id."""
         lanes = [{"agent": agent} for agent in agents]
-        walk = {"gait": "left-right-origin", "simulator": "mujoco", "robot": HASTY_JSON}
-        body = {**walk, "steps": 8, "lanes": lanes}
+        body = {"gait": "left-right-origin", "simulator": "mujoco", "steps": 8, "lanes": lanes}
         response = self.http.post("/api/v1/races", json=body)
         assert response.status_code == 202, response.text
         location, stall_check = response.headers["location"], ProgressTimeout()
