@@ -67,7 +67,7 @@ class TournamentRules(WalkingProblem):
         int,
         Ge(MIN_DRAWS),
         Le(MAX_DRAWS),
-        Setting(title="Secret seeds", help="Draws, of which each has a world, too."),
+        Setting(title="Secret seeds", help="Draws on which each entry is judged; each has a world."),
     ] = 20
     worlds: tuple[str, ...] = ("flat",)
     robots: tuple[AnyRobot, ...] = ()

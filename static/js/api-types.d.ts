@@ -4135,7 +4135,7 @@ export interface TournamentRules {
    */
   steps: number;
   /**
-   * Draws, of which each has a world, too.
+   * Draws on which each entry is judged; each has a world.
    */
   draws: number;
   /**

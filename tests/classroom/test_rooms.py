@@ -119,11 +119,11 @@ def test_what_ifs_are_there_after_a_restart(store: RunStore) -> None:
 
 
 def test_a_run_that_a_kill_left_unstored_is_nobodys(store: RunStore) -> None:
-    """Whose a run is is noted before it is stored."""
+    """It is linked to its participant before it is stored."""
     rooms = Rooms(store)
     code = rooms.create(LESSON).code
     rooms.join(code)
-    noted = RoomRun(
+    linked = RoomRun(
         run_id="0never1stored2",
         room=code,
         seed=0,
@@ -133,10 +133,10 @@ def test_a_run_that_a_kill_left_unstored_is_nobodys(store: RunStore) -> None:
         is_shown=False,
         created_at=datetime.now(UTC),
     )
-    store.rooms.add_runs([noted])
+    store.rooms.add_runs([linked])
     assert Rooms(store).get(code).runs == {}
-    store.create(training(noted.run_id))
-    assert list(Rooms(store).get(code).runs) == [noted.run_id]
+    store.create(training(linked.run_id))
+    assert list(Rooms(store).get(code).runs) == [linked.run_id]
 
 
 def test_a_damaged_row_is_left_out(store: RunStore) -> None:

@@ -29,7 +29,7 @@ def known_machine(monkeypatch: pytest.MonkeyPatch) -> None:
     `hexapods doctor` in a process of its own checks them.
     """
     for name in ("physics", "browser"):
-        monkeypatch.setitem(machine_checks.CHECKS, name, lambda: "it is whole")
+        monkeypatch.delitem(machine_checks.CHECKS, name)
 
 
 def examined(folder: Path, **variables: str) -> dict[str, Any]:

@@ -125,14 +125,14 @@ class RoomRows:
     def runs(self) -> list[RoomRun]:
         """Return all runs of rooms that are stored and can be decoded, oldest first.
 
-        Whose a run is is noted before it is stored, so that a kill may leave a note of none.
+        A run is linked to its participant before it is stored: a kill may leave a link to none.
         """
         # Ids of what-ifs do not sort by time; those of runs do, also of one moment.
         order = ROOM_RUNS.c.created_at, ROOM_RUNS.c.run_id
         query = select(RUNS.c.id).where(RUNS.c.id.in_(select(ROOM_RUNS.c.run_id)))
         stored = self._database.read(lambda connection: set(connection.scalars(query)))
-        noted = all_rows(self._database, ROOM_RUNS, RoomRun, *order)
-        return [one for one in noted if one.answer is not None or one.run_id in stored]
+        linked = all_rows(self._database, ROOM_RUNS, RoomRun, *order)
+        return [one for one in linked if one.answer is not None or one.run_id in stored]
 
     def add_room(self, row: RoomRow) -> None:
         """Insert a room."""
