@@ -17,6 +17,7 @@ from app.storage.database.robots import damaged_robots
 from app.storage.disk_space import MB, DiskSpace
 from app.storage.private_folder import exposed_paths
 from app.storage.server_lock import LOCK_FILE, FolderInUse, lock_folder, read_address_file
+from hexapods.domain.text import counted
 
 WANTED_FREE_MB = 200
 _NEARLY_FULL = 0.9
@@ -113,7 +114,7 @@ def _visitors(settings: Settings) -> str:
             f"{len(damaged):,} of the links from runs to visitors cannot be read, {named}; a "
             "server that starts on this data folder deletes these runs in time"
         )
-    return f"{count:,} runs are of a demo's visitors" if count else "no run is of a demo's visitor"
+    return f"{counted(count, 'run')} of a demo's visitors" if count else "no run of a demo's visitor"
 
 
 def _address(settings: Settings) -> str:

@@ -87,11 +87,11 @@ def test_stored_robots_that_cannot_be_read_are_named(tmp_path: Path) -> None:
 
 
 def test_runs_of_visitors_whose_rows_are_damaged_are_named(tmp_path: Path) -> None:
-    assert examined(tmp_path)["visitors"] == (True, "no run is of a demo's visitor")
+    assert examined(tmp_path)["visitors"] == (True, "no run of a demo's visitor")
     with opened(tmp_path / "data", None) as store:
         row = VisitorRun("1m8agbvj657z5", 64 * "a", 100, True, datetime.now(UTC))
         store.visitors.add([row])
-    assert examined(tmp_path)["visitors"] == (True, "1 runs are of a demo's visitors")
+    assert examined(tmp_path)["visitors"] == (True, "1 run of a demo's visitors")
     with closing(sqlite3.connect(tmp_path / "data" / DATABASE_FILE)) as database, database:
         database.execute("UPDATE visitor_runs SET created_at = 'yesterday', visitor = 'x'")
     said = failures(examined(tmp_path))["visitors"]

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hexapods.agents.appearance import title_of
-from hexapods.domain.text import metres
+from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import Case
 from hexapods.experiments.labels import gait_name, gait_name_with_papers
 from hexapods.experiments.report.drawing import (
@@ -147,7 +147,7 @@ def _limits(cases: Sequence[Case]) -> tuple[float, float]:
 def _alt(case: Case) -> str:
     sentences = [
         f"{gait_name(one['gait'])}, {title_of(one['agent'])} after {one['steps']:,} steps: "
-        f"{one['n']} seeds from {metres(min(one['total']['points_m']))} to "
+        f"{counted(one['n'], 'seed')} from {metres(min(one['total']['points_m']))} to "
         f"{metres(max(one['total']['points_m']))}, middle {metres(one['total']['iqm_m'])}."
         for one in case.settings
         if one["role"] == "learner" and one["total"]

@@ -49,6 +49,7 @@ def test_figures_of_an_incomplete_experiment_can_be_drawn(experiment: str, done:
         for one in group:
             ElementTree.fromstring(inline_svg(one.figure, one.name))
             assert done or "No trials yet" in one.alt
+            assert "1 seeds" not in one.alt
     for one in sheets(summary):
         assert render(one.figure, "png")
 
