@@ -114,7 +114,9 @@ def _visitors(settings: Settings) -> str:
             f"{len(damaged):,} of the links from runs to visitors cannot be read, {named}; a "
             "server that starts on this data folder deletes these runs in time"
         )
-    return f"{counted(count, 'run')} of a demo's visitors" if count else "no run of a demo's visitor"
+    return (
+        f"{counted(count, 'run')} of a demo's visitors" if count else "no run of a demo's visitor"
+    )
 
 
 def _address(settings: Settings) -> str:

@@ -67,7 +67,9 @@ class TournamentRules(WalkingProblem):
         int,
         Ge(MIN_DRAWS),
         Le(MAX_DRAWS),
-        Setting(title="Secret seeds", help="Draws on which each entry is judged; each has a world."),
+        Setting(
+            title="Secret seeds", help="Draws on which each entry is judged; each has a world."
+        ),
     ] = 20
     worlds: tuple[str, ...] = ("flat",)
     robots: tuple[AnyRobot, ...] = ()
