@@ -12,7 +12,7 @@ from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.records import RaceRecord, TrainingRecord
+from hexapods.runs.records import LaneStep, RaceRecord, TrainingRecord
 from hexapods.runs.results import TrainingResult
 from hexapods.runs.tables import Checkpoint
 from hexapods.runs.transition_log import Transitions
@@ -39,10 +39,18 @@ class TrainingTask:
 
 @dataclass(frozen=True)
 class RaceTask:
-    """A race to run, with a table or None for each lane."""
+    """A race to run.
+
+    Attributes:
+        config: the race.
+        tables: a table or None for each lane.
+        prefix: for each lane the steps, without motion, that the race from which it branches off
+            has taken until then, as far as they are at hand.
+    """
 
     config: RaceConfig
     tables: tuple[Checkpoint | None, ...]
+    prefix: tuple[tuple[LaneStep, ...], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -215,7 +215,8 @@ class Supervisor:
 
     def _job(self, run: Run) -> Job:
         kind = ExperimentJob if run.kind == "experiment" else Job
-        task, services = task_for(run, self._store), (self._store, self._recordings, self._bus)
+        task = task_for(run, self._store, self._recordings)
+        services = self._store, self._recordings, self._bus
         return kind(run, task, *services, shutdown=self._shutdown, niceness=self._niceness)
 
     def _check_jobs(self) -> None:

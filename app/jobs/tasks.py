@@ -6,21 +6,41 @@ has the same result. A race is repeated from its start: it is short and determin
 runs the trials that are not done yet.
 """
 
+import logging
 from dataclasses import replace
+
+import numpy as np
 
 from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
+from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, RESUMABLE, Run
 from app.storage.stored_tables import load_checkpoint, load_table
 from app.storage.stored_trials import wall_s_of
+from hexapods.domain.errors import HexapodError
+from hexapods.domain.simulator import Motion
 from hexapods.experiments.config import SUMMARY, ExperimentConfig
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.records import LaneStep
+
+_logger = logging.getLogger(__name__)
 
 
-def task_for(run: Run, store: RunStore) -> Task:
+_MOST_REPEATED = 5_000
+"""Most lane steps that a race takes over from the one from which it branches off: they are sent."""
+_NO_MOTION = Motion(np.empty(0, np.float32), np.empty((0, 0), np.float32))
+
+
+def task_for(run: Run, store: RunStore, recordings: Recordings | None = None) -> Task:
     """Return the task of a run, with the tables, the checkpoint or the trials that it needs.
+
+    Args:
+        run: the run.
+        store: store of the runs.
+        recordings: their recordings, from which a race that branches off takes its first steps;
+            without them it computes all of its steps.
 
     Raises:
         Conflict, InvalidInput: if a table or checkpoint that it needs is missing or damaged.
@@ -32,8 +52,29 @@ def task_for(run: Run, store: RunStore) -> Task:
         return ExperimentTask(config, run.workers, rows, wall_s)
     if isinstance(config, RaceConfig):
         ids = run.lane_training_ids
-        return RaceTask(config, tuple(None if i is None else load_table(store, i) for i in ids))
+        tables = tuple(None if i is None else load_table(store, i) for i in ids)
+        return RaceTask(config, tables, _prefix_of(config, recordings))
     return _training_task(run, config, store)
+
+
+def _prefix_of(
+    config: RaceConfig, recordings: Recordings | None
+) -> tuple[tuple[LaneStep, ...], ...]:
+    """Return the steps that a race shares with the one from which it branches off, by lane."""
+    branch = config.branch_from
+    if branch is None or recordings is None:
+        return ()
+    lanes = recordings.race(branch.race_id)
+    if not lanes or len(lanes) != len(config.lanes):
+        return ()  # deleted, or it cannot be read
+    count = min(branch.step, _MOST_REPEATED // len(lanes))
+    try:
+        return tuple(
+            tuple(replace(step, motion=_NO_MOTION) for step in lane.steps[:count]) for lane in lanes
+        )
+    except HexapodError:
+        _logger.warning("the steps of race %s cannot be taken over", branch.race_id)
+        return ()
 
 
 def _training_task(run: Run, config: TrainingConfig, store: RunStore) -> TrainingTask:

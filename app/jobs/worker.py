@@ -145,7 +145,7 @@ def _race(task: RaceTask, control: JobControl, stopping: threading.Event) -> Non
     control.send(Began(tuple(_pose(walker) for walker in walkers)))
     done = 0
     try:
-        for record in race(walkers, task.config.steps, time.perf_counter):
+        for record in race(walkers, task.config.steps, time.perf_counter, task.prefix):
             done += isinstance(record, LaneStep)
             control.report(record, done)
             if not control.wait_for_turn(done):

@@ -19,6 +19,8 @@ from hexapods.domain.records import to_json
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.shows.race_show import RaceShow
 from hexapods.shows.show import TIME_LAPSE, IdleShow, RunLabel, Show
 from hexapods.shows.stage_frame import StageFrame
 
@@ -362,7 +364,9 @@ class Stage:
             playlist = tuple(StagedRun(run.id, run.state) for run in runs)
             self._state = before[0].show(playlist, origin)
             if is_anew or before[0].run is None or before[0].run.id != playlist[0].id:
+                shown = before[0].run, self._show.time_s
                 self._begin()
+                self._keep_moment(*shown)
             else:
                 self._publish()
         except HexapodError:
@@ -370,6 +374,16 @@ class Stage:
             changes.close()
             raise
         self._follow_changes(changes)
+
+    def _keep_moment(self, original: StagedRun | None, time_s: float) -> None:
+        """Show a race that branches off from the one before at the moment at which both part."""
+        config = self._runs[self._run_id].config if self._run_id else None
+        branch = config.branch_from if isinstance(config, RaceConfig) else None
+        if branch and original and branch.race_id == original.id:
+            if isinstance(self._show, RaceShow):
+                self._show.seek_branch(time_s)
+            self._follow_picture()
+            self._publish()
 
     def _follow_changes(self, changes: Subscription) -> None:
         """Take the events of a new subscription, instead of those of the one before."""

@@ -31,6 +31,7 @@ class Beam(Search):
     title = "Beam"
     description = "Looks several steps ahead, and follows only the best few sequences."
     color = "#CC79A7"
+    is_memoryless = True
 
     def __init__(
         self,

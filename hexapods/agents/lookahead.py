@@ -33,6 +33,7 @@ class LookAhead(Search):
     title = "Look-ahead"
     description = "Simulates every possible sequence of steps, and takes the best one."
     color = "#117733"
+    is_memoryless = True
 
     def __init__(self, expand: Expand, depth: Depth = 3, problem: Problem | None = None) -> None:
         super().__init__(expand)
@@ -85,6 +86,7 @@ class Greedy(LookAhead):
     title = "Greedy"
     description = "Simulates every possible step, and takes the best one."
     color = "#56B4E9"
+    is_memoryless = True
     steps_ahead = 1
 
     def __init__(self, expand: Expand) -> None:
@@ -97,6 +99,7 @@ class TwoStep(LookAhead):
     title = "Two-step"
     description = "Simulates every possible pair of steps, and takes the best one."
     color = "#009E73"
+    is_memoryless = True
     steps_ahead = 2
 
     def __init__(self, expand: Expand) -> None:

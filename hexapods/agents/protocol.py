@@ -19,6 +19,8 @@ Attributes of the class state the rest:
 - `learns = False`: practice does not change it;
 - `needs_practice = True`: it races only with what it has learned, or learning in the race;
 - `keeps_learning = True`: in a race it keeps learning, unless the lane says otherwise;
+- `is_memoryless = True`, not inherited: a decision follows from the present state alone, so that a
+  race that repeats another's first steps need not make it again;
 - `is_on_policy = True`: it chooses its next action before it learns from the last one, so that a
   changed exploration rate acts a step later.
 

@@ -176,6 +176,14 @@ def keeps_learning(name: str) -> bool:
     return bool(getattr(find(name), "keeps_learning", False))
 
 
+def is_memoryless(agent: Agent) -> bool:
+    """Whether an agent's class says that a decision follows from the present state alone.
+
+    It must say so itself, since a class that is derived from it may remember something.
+    """
+    return bool(vars(type(agent)).get("is_memoryless", False))
+
+
 def check_problem(name: str, problem: Problem, settings: Mapping[str, Any]) -> None:
     """Check by the agent's `check_problem`, if it has one, that its settings fit a problem.
 

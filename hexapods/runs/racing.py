@@ -1,11 +1,13 @@
 """Race loop: every lane has its own simulation, independent of measured decision times."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
 
 from hexapods.agents.explanation import ExplainingSearch
+from hexapods.agents.registry import is_memoryless
 from hexapods.domain.errors import Diverged, HexapodError
 from hexapods.domain.simulator import Motion
 from hexapods.runs.race_config import RaceConfig
@@ -14,7 +16,12 @@ from hexapods.runs.records import LaneFailed, LaneStep, RaceRecord
 from hexapods.runs.walker import Walker
 
 
-def race(walkers: Sequence[Walker], steps: int, timer: Callable[[], float]) -> Iterator[RaceRecord]:
+def race(
+    walkers: Sequence[Walker],
+    steps: int,
+    timer: Callable[[], float],
+    prefix: Sequence[Sequence[LaneStep]] = (),
+) -> Iterator[RaceRecord]:
     """Run every lane for `steps` steps, one step of each in turn (round-robin).
 
     A lane whose agent raises or whose physics diverges yields `LaneFailed` and stops; the others
@@ -25,13 +32,24 @@ def race(walkers: Sequence[Walker], steps: int, timer: Callable[[], float]) -> I
         walkers: one per lane, at rest.
         steps: number of steps of each lane.
         timer: clock in seconds that measures decisions, such as `time.perf_counter`.
+        prefix: for each lane the first steps of a race that is the same until then, whose motions
+            are not used. A memoryless agent does not search for them again: its actions are
+            carried out, and what its decisions took is taken over.
     """
     running: dict[int, tuple[Walker, LaneStep | None]] = {
         lane: (walker, None) for lane, walker in enumerate(walkers)
     }
+    repeated = {lane: list(recorded) for lane, recorded in enumerate(prefix)}
     for step in range(1, steps + 1):
         for lane, (walker, last) in list(running.items()):
-            record = _lane_step(lane, step, walker, last, timer)
+            recorded = repeated.get(lane, ())
+            record = None
+            if step <= len(recorded) and is_memoryless(walker.agent):
+                record = _repeat_step(walker, recorded[step - 1])
+                if record is None:  # another processor or engine: the lane goes its own way
+                    del repeated[lane]
+            if record is None:
+                record = _lane_step(lane, step, walker, last, timer)
             yield record
             if isinstance(record, LaneFailed):
                 del running[lane]
@@ -40,19 +58,34 @@ def race(walkers: Sequence[Walker], steps: int, timer: Callable[[], float]) -> I
 
 
 def record_race(
-    walkers: Sequence[Walker], config: RaceConfig, timer: Callable[[], float]
+    walkers: Sequence[Walker],
+    config: RaceConfig,
+    timer: Callable[[], float],
+    prefix: Sequence[Sequence[LaneStep]] = (),
 ) -> Iterator[list[LaneRecording]]:
-    """Run a race, append each record to a recording, and yield the recording after each step."""
+    """Run a race as `race` does, and yield its recording after each step."""
     lanes = [
         LaneRecording(lane.agent, walker.simulator.pose(walker.state).astype(np.float32))
         for lane, walker in zip(config.lanes, walkers, strict=True)
     ]
-    for record in race(walkers, config.steps, timer):
+    for record in race(walkers, config.steps, timer, prefix):
         if isinstance(record, LaneFailed):
             lanes[record.lane].failure = record.reason
         else:
             lanes[record.lane].steps.append(record)
         yield lanes
+
+
+def _repeat_step(walker: Walker, recorded: LaneStep) -> LaneStep | None:
+    """Carry out a recorded step's action; None if the robot does not come to the same place."""
+    if walker.observed != recorded.observation or recorded.action not in walker.legal:
+        return None
+    before = walker.state
+    outcome = walker.carry_out(recorded.action, record=True, effort=True)
+    if outcome.reward_m != recorded.reward_m:
+        walker.set_state(before)
+        return None
+    return replace(recorded, motion=cast(Motion, outcome.motion))
 
 
 def _lane_step(

@@ -94,11 +94,11 @@ class LaneSteps(Sequence[LaneStep]):
         observed, done = rows["observation"].tolist(), rows["action"].tolist()
         return [(tuple(o), Action(*a)) for o, a in zip(observed, done, strict=True)]
 
-    def so_far(self) -> "LaneSteps":
-        """Return the steps so far, to which none will be added."""
+    def so_far(self, most: int | None = None) -> "LaneSteps":
+        """Return the steps so far, or the first `most` of them, to which none will be added."""
         steps = LaneSteps()
         # The figures first: the others have at least as many steps.
-        steps._figures = GrowingArray(self.figures)
+        steps._figures = GrowingArray(self.figures[:most])
         steps._newest, steps._stored = self._newest, self._stored
         return steps
 
@@ -149,6 +149,10 @@ class LaneRecording:
     def so_far(self) -> "LaneRecording":
         """Return the recording so far, which does not grow."""
         return LaneRecording(self.agent, self.rest_qpos, self.steps.so_far(), self.failure)
+
+    def first(self, steps: int) -> "LaneRecording":
+        """Return the recording of the first steps, as if the lane had not come further."""
+        return LaneRecording(self.agent, self.rest_qpos, self.steps.so_far(steps))
 
     def start_qpos(self, step: int) -> NDArray[np.float32]:
         """Return the pose at the start of a step, (7 + joints,); steps are counted from 0 here."""

@@ -69,9 +69,12 @@ class RaceShow:
         """Whether they are those of the run since it has ended."""
         self._branch_step = 0
         self._original_lanes: list[RaceLane] = []
+        self._prefix: list[LaneRecording] = []
+        """What both races have in common: played until this one has computed as much."""
         if original is not None and len(original.lanes) == len(spec.lane_specs):
             self._branch_step = original.step
             self._original_lanes = self._playing(original.lanes, original.world)
+            self._prefix = [lane.first(original.step) for lane in original.lanes]
         self.time_s = 0.0
         """Playback position in race time [s]."""
         self._freeze_left_s = 0.0
@@ -164,6 +167,14 @@ class RaceShow:
         self._update_lanes()
         self._freeze_left_s = 0.0
         self.time_s = min(max(time_s, 0.0), self._horizon_s)
+
+    def seek_branch(self, time_s: float) -> None:
+        """Set the playback position to a race time of the original, at most to where both part."""
+        self._update_lanes()
+        for lane in self._original_lanes:
+            lane.update()
+        ends = [lane.timetable.ends[: self._branch_step] for lane in self._original_lanes]
+        self.seek(min([time_s, *(float(shared[-1]) if len(shared) else 0.0 for shared in ends)]))
 
     def seek_end(self) -> None:
         """Set the playback position to where the show ends: time-out, or the last step."""
@@ -280,16 +291,23 @@ class RaceShow:
         """Extend the lanes by newly recorded steps; a race that is resumed is recorded anew."""
         if not self._is_final:
             recorded = self._recording()
+            if not self._run_ended and self._prefix and not self._has_prefix(recorded):
+                recorded = self._prefix
             if not recorded or len(recorded) != len(self.spec.lane_specs):
                 return
             if recorded is not self._source:
                 self._source, self._lanes = recorded, self._playing(recorded, self._world)
-                self.time_s = min(self.time_s, self._horizon_s)
         self._is_final = self._run_ended
-        for lane in self._lanes:
+        for lane in (*self._lanes, *self._original_lanes):
             lane.update()
-        for lane in self._original_lanes:
-            lane.update()
+        self.time_s = min(self.time_s, self._horizon_s)
+
+    def _has_prefix(self, recorded: Sequence[LaneRecording] | None) -> bool:
+        """Whether each lane has taken the steps that it shares with the original, or has failed."""
+        return bool(recorded) and all(
+            lane.failure is not None or len(lane.steps) >= self._branch_step
+            for lane in recorded or ()
+        )
 
     def _playing(self, lanes: Sequence[LaneRecording], world: World) -> list[RaceLane]:
         robot = self.spec.robot

@@ -18,6 +18,7 @@ from hexapods.runs.config import training_config
 from hexapods.runs.lane import LaneConfig, lane_config
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.racing import race, record_race
+from hexapods.runs.recording import recording_sha256
 from hexapods.runs.records import LaneFailed, LaneStep, RaceRecord, StepTaken
 from hexapods.runs.results import race_result
 from hexapods.runs.seeding import RACING, generator
@@ -281,6 +282,52 @@ def test_branch_takes_the_same_steps_to_the_last_bit_until_something_happens(thr
     for was, now in zip(before, after, strict=True):
         assert now[:4] == was[:4]
         assert now[4:] != was[4:]
+
+
+def test_a_branch_does_not_search_again_for_the_steps_it_shares() -> None:
+    lanes = (
+        lane_config("two-step"),
+        lane_config("beam", width=4),
+        lane_config("mcts", budget=20),
+        lane_config("q-learning", keep_learning=True),
+        lane_config("informed", budget=3),
+    )
+    original = RaceConfig(gait="left-right-vertical", lanes=lanes, steps=4, seed=2, tolerance=0.03)
+    limp = original.world.then(Limp(legs=(1, 4), at_step=3))
+    branch = replace(original, world=limp, branch_from=Branch("abc", 3))
+
+    def recorded(prefix: list[list[LaneStep]], tick_s: float) -> tuple[list[int], list[Any]]:
+        walkers = build_walkers(branch, [None] * len(lanes), threads=1)
+        *_, recording = record_race(walkers, branch, ticking(tick_s), prefix)
+        return [walker.transitions for walker in walkers], recording
+
+    *_, first = record_race(build_walkers(original, [None] * len(lanes)), original, ticking())
+    prefix = [lane.steps[:3] for lane in first]
+    searched, whole = recorded([], 2.0)
+    searched_with_prefix, with_prefix = recorded(prefix, 2.0)
+
+    assert recording_sha256(with_prefix) == recording_sha256(whole)
+    assert searched_with_prefix[0] == searched[0] / 4 == 156
+    assert searched_with_prefix[1] == searched[1] / 4
+    assert searched_with_prefix[2:] == searched[2:], "what remembers something decides again"
+    for lane, shared in zip(with_prefix[:2], prefix[:2], strict=True):
+        decisions = [step.decision_s for step in lane.steps]
+        assert decisions == [*(step.decision_s for step in shared), 2.0]
+        assert [step.futures for step in lane.steps[:3]] == [step.futures for step in shared]
+
+
+def test_a_lane_whose_steps_do_not_repeat_decides_by_itself() -> None:
+    asked = config("greedy", steps=4)
+    steps = [record for record in run(asked) if isinstance(record, LaneStep)]
+    other_machine = [steps[0], replace(steps[1], reward_m=steps[1].reward_m + 1e-16), steps[2]]
+    walkers = build_walkers(asked, [None], threads=1)
+
+    again = list(race(walkers, asked.steps, ticking(), [other_machine]))
+
+    assert [step.action for step in again if isinstance(step, LaneStep)] == [
+        step.action for step in steps
+    ]
+    assert walkers[0].transitions == 3 * 12, "the first step alone is taken over"
 
 
 class Unteachable(Restless):

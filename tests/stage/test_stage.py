@@ -9,8 +9,9 @@ import pytest
 
 from app.stage.stage import ANNOUNCE_AFTER_S, NEXT_AFTER_S
 from app.storage.errors import NotFound
+from hexapods.runs.clocks import Timetable
 from hexapods.runs.lane import LaneConfig
-from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.recording import LaneRecording
 from tests.stage.stage_parts import GAIT, StageParts
 
@@ -394,3 +395,49 @@ def test_scene_is_plain_json(parts: StageParts) -> None:
             assert view["values_m"][pair][current] is None
         assert view["cell_names"][0] == "home"
         assert view["next"]["cell"] != view["current"][view["next"]["pair"]]
+
+
+def test_a_race_that_branches_off_keeps_the_moment_in_the_picture(parts: StageParts) -> None:
+    original = parts.finished_race(steps=8)
+    parts.stage.set(run_id=original.id, playing=False)
+    ends = step_ends(parts, original.id)
+    parts.stage.set(time_s=ends[4] + 0.1, playing=False)
+    before = parts.next_frame()
+
+    fork, advance = parts.running_race(steps=8, branch_from=Branch(original.id, 5))
+    assert parts.stage.offer(fork.id)
+    frame = parts.next_frame()
+
+    assert frame.run_id == fork.id
+    assert frame.time_s == pytest.approx(ends[4], abs=0.1), (
+        "where both part, one step at most before"
+    )
+    assert frame.lanes[0].qpos[1] == pytest.approx(before.lanes[0].qpos[1], abs=0.02)
+    shown = [parts.next_frame().time_s]
+    while advance():
+        shown.append(parts.next_frame().time_s)
+    assert min(shown) >= ends[4], "while it is computed the picture does not go back"
+    parts.set_state(fork, "finished")
+    last = parts.watch_to_end()[-1]
+    assert (last.run_id, last.lanes[0].step) == (fork.id, 8)
+    assert last.ghost_lanes[0] is not None
+
+
+def test_a_race_that_branches_off_a_race_elsewhere_is_shown_from_its_start(
+    parts: StageParts,
+) -> None:
+    original, other = parts.finished_race(steps=8), parts.finished_race(steps=8)
+    parts.stage.set(run_id=other.id, time_s=2.0, playing=False)
+
+    fork, _ = parts.running_race(steps=8, branch_from=Branch(original.id, 5))
+    parts.stage.offer(fork.id)
+
+    assert parts.stage.state()["time_s"] == 0
+
+
+def step_ends(parts: StageParts, race_id: str) -> list[float]:
+    """Return the times at which the steps of a race's first lane end on the paper clock [s]."""
+    lane = (parts.recordings.race(race_id) or [])[0]
+    timetable = Timetable("paper")
+    timetable.extend(lane.steps)
+    return [float(end) for end in timetable.ends]
