@@ -12,7 +12,10 @@ import {
   canPlay, isPlaying, isRaceRun, isStale, laneTables, matchingTable, myWork, shownRun, work,
 } from "./on-stage.js";
 import { isActive, isOperator, isVisitor, markAsMine, mayStart } from "./selectors.js";
-import { closeReplay, playReplay, seekReplay, setReplayClock, setReplaySpeed } from "./replay.js";
+import {
+  closeReplay, openReplay, plan, playReplay, replayTime, seekReplay, setReplayClock, setReplaySpeed,
+} from "./replay.js";
+import { beginOfStep } from "./replay-frames.js";
 import { formRobot } from "./robots.js";
 import { agentOf, isClosed, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
@@ -229,7 +232,9 @@ export const branchRace = (race, step, disturbances) =>
   attempt("branch", async () => {
     const body = { branch_from: { race_id: race.id, step }, disturbances };
     const run = await adopt(() => api.startRace(body));
-    if (run) await requestStage(() => api.putStage({ run_id: run.id, playing: true }));
+    // The stage keeps its moment by itself, for all who watch.
+    if (run && page.run.peek() === null) await requestStage(() => api.putStage({ run_id: run.id, playing: true }));
+    else if (run) await openReplay(run.id, { time_s: beginOfStep(plan.peek(), step, replayTime.peek()) });
     return run;
   });
 

@@ -206,6 +206,15 @@ const SAME_FRAME_S = 1e-6;
 /** The last moment that is recorded [s]. @param {ReplayPlan} plan */
 export const endOf = ({ recorded_s }) => recorded_s.at(-1)?.[1] ?? 0;
 
+/**
+ * The moment at which the first of the lanes has taken so many steps, or an earlier one [s].
+ * @type {(plan: ReplayPlan | null, steps: number, earlier_s: number) => number}
+ */
+export const beginOfStep = (plan, steps, earlier_s) => {
+  const ends = (plan?.step_ends_s ?? []).map((lane) => (steps ? lane[steps - 1] ?? Infinity : 0));
+  return Math.min(earlier_s, ...ends);
+};
+
 /** @type {(level: number, number: number) => string} */
 const addressOf = (level, number) => `segments/${level}/${number}`;
 

@@ -161,9 +161,42 @@ export function seekTo(at, { isHeld = false } = {}) {
   const known = scale.peek();
   const run = shownRun.peek();
   if (!known || !run || isStale.peek()) return;
+  lastPress.time_ms = -Infinity;
   const to_s = known.unit_s * Math.min(Math.max(at, 0), known.computed);
   if (canPlay.peek()) setStage(isHeld ? { time_s: to_s, playing: false } : { time_s: to_s });
   else openReplay(run.id, { time_s: to_s, clock: clock.peek(), isPlaying: !isHeld });
+}
+
+/** What a press of an arrow key moves by: a tenth of a second of a race, or a step of a practice. */
+const PRESS = { s: 0.1, step: 1 };
+const PAGE_PRESSES = 10;
+/** Presses that follow each other so soon go on from where the one before led: the picture comes later. */
+const PRESS_MS = 1000;
+let lastPress = { id: "", at: 0, time_ms: -Infinity };
+
+/**
+ * Keys of the time slider → the position to go to, from another.
+ * @type {Record<string, (at: number, of: Scale) => number>}
+ */
+const SLIDER_KEYS = {
+  ArrowRight: (at, { unit }) => at + PRESS[unit], ArrowUp: (at, { unit }) => at + PRESS[unit],
+  ArrowLeft: (at, { unit }) => at - PRESS[unit], ArrowDown: (at, { unit }) => at - PRESS[unit],
+  PageUp: (at, { unit }) => at + PAGE_PRESSES * PRESS[unit],
+  PageDown: (at, { unit }) => at - PAGE_PRESSES * PRESS[unit],
+  Home: () => 0, End: (_, { end }) => end,
+};
+
+/** Move by a key of the time slider; false if it is none. @param {string} key */
+export function pressSlider(key) {
+  const [known, run, move] = [scale.peek(), shownRun.peek(), SLIDER_KEYS[key]];
+  if (!move) return false;
+  if (!known || !run || isStale.peek()) return true;
+  const now_ms = performance.now();
+  const goesOn = lastPress.id === run.id && now_ms - lastPress.time_ms < PRESS_MS;
+  const at = Math.min(Math.max(move(goesOn ? lastPress.at : known.picture, known), 0), known.computed);
+  seekTo(at);
+  lastPress = { id: run.id, at, time_ms: now_ms };
+  return true;
 }
 
 /** Go to the next thing that happened, or to the one before. @param {1 | -1} direction */

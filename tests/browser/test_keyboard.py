@@ -103,6 +103,37 @@ def test_depths_tabs_and_time(dashboard: Dashboard, shared_server: Serving) -> N
     expect(page.get_by_role("banner")).to_be_visible()
 
 
+def test_each_press_moves_the_moment(dashboard: Dashboard, shared_server: Serving) -> None:
+    page = dashboard.page
+    with shared_server.api() as api:
+        hold(api, finished(api, "races", RACE), 2.0)
+    dashboard.open(shared_server.address)
+    seek = dashboard.moment
+    expect(seek).to_have_value("2")
+    seek.focus()
+    for _ in range(20):
+        page.keyboard.press("ArrowRight")
+        page.wait_for_timeout(70)  # as a person presses, while the stage tells where it is
+    expect(seek).to_have_value("4")
+    for _ in range(5):
+        page.keyboard.press("ArrowLeft")
+    expect(seek).to_have_value("3.5")
+    assert dashboard.get("/api/v1/stage")["time_s"] == 3.5
+
+
+def test_help_opens_at_its_beginning(dashboard: Dashboard, shared_server: Serving) -> None:
+    page = dashboard.page
+    dashboard.open(shared_server.address)
+    page.keyboard.press("?")
+    dialog = page.get_by_role("dialog", name="Keys")
+    expect(dialog.get_by_role("heading", name="Keys")).to_be_focused()
+    expect(dialog.get_by_role("heading", name="Keys")).to_be_in_viewport()
+    assert dialog.evaluate("element => element.scrollHeight > element.clientHeight"), "it is long"
+    assert dialog.evaluate("element => element.scrollTop") == 0
+    page.keyboard.press("Escape")
+    expect(dialog).to_be_hidden()
+
+
 def goes_through_depths_and_tabs(dashboard: Dashboard) -> None:
     """D shows more, E explains; arrows go through the tabs; a backslash hides the panel."""
     page = dashboard.page

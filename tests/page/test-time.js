@@ -6,7 +6,8 @@ import { followTimeline } from "../../static/js/race.js";
 import { closeReplay } from "../../static/js/replay.js";
 import { applyEvent, commonStage, connection, options } from "../../static/js/store.js";
 import {
-  laneRows, markInWords, marks, positionInWords, scale, seekTo, seekToMark, stepTimes, timeAtDistance, toggleTime,
+  laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, seekToMark, stepTimes, timeAtDistance,
+  toggleTime,
 } from "../../static/js/time.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
@@ -181,6 +182,36 @@ test("operators seek on the stage, never beyond what is computed", async () => {
   await settle();
   connection.value = "live";
   assert.deepEqual(asked, [["PUT", "stage", { time_s: 50 }], ["PUT", "stage", { time_s: 100, playing: false }]]);
+});
+
+test("each press of an arrow moves on from the one before, whatever the picture shows meanwhile", async () => {
+  const race = makeRace();
+  const at = (/** @type {number} */ time_s) => show(race, { time_s, duration_s: 16, computed_s: 16 });
+  at(3);
+  for (let press = 0; press < 10; press += 1) assert.ok(pressSlider("ArrowRight"));
+  at(3.1);
+  for (let press = 0; press < 10; press += 1) pressSlider("ArrowRight");
+  await settle();
+  const [, , last] = asked.at(-1) ?? [];
+  assert.deepEqual(Number(/** @type {{ time_s: number }} */ (last).time_s.toFixed(6)), 5);
+  seekTo(8);
+  at(8);
+  pressSlider("ArrowLeft");
+  await settle();
+  assert.deepEqual(asked.at(-1), ["PUT", "stage", { time_s: 7.9 }], "elsewhere in between");
+  pressSlider("PageUp");
+  pressSlider("End");
+  pressSlider("ArrowRight");
+  await settle();
+  assert.deepEqual(asked.at(-1), ["PUT", "stage", { time_s: 16 }]);
+  assert.equal(pressSlider("x"), false);
+});
+
+test("an arrow is a step of a practice", async () => {
+  show(makeRun({ progress: { done: 500, total: 500 } }), { time_s: 5, duration_s: 250, computed_s: 250 });
+  for (let press = 0; press < 4; press += 1) pressSlider("ArrowRight");
+  await settle();
+  assert.deepEqual(asked.at(-1), ["PUT", "stage", { time_s: 7 }], "14 steps of half a second");
 });
 
 test("the next mark is that after the picture, and tests are no stops", async () => {

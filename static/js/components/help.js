@@ -44,7 +44,7 @@ const Keys = ({ keys }) => html`
 
 export const HelpDialog = () => html`
   <${Dialog} id="help" labelledBy="help-title" isOpen=${helpIsOpen}>
-    <h2 id="help-title">Keys</h2>
+    <h2 id="help-title" tabindex="-1" autofocus>Keys</h2>
     <${Keys} keys=${KEYS} />
     <label class="check">
       <input type="checkbox" checked=${shortcuts.value === "on"}
@@ -65,7 +65,7 @@ export const HelpDialog = () => html`
     <${Citation} />
     <form method="dialog">
       <button type="button" class="secondary" onClick=${startLesson}>Show the first lesson</button>
-      <button class="secondary" autofocus>Close</button>
+      <button class="secondary">Close</button>
     </form>
   <//>
 `;

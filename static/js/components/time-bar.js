@@ -8,7 +8,10 @@ import { closeReplay, openReplay, replayProblem, stepReplay } from "../replay.js
 import { percent, shareOf, ticks } from "../scale.js";
 import { isOperator, isVisitor } from "../selectors.js";
 import { isAway, scene, stage } from "../store.js";
-import { laneRows, loadingInWords, markInWords, marks, positionInWords, scale, seekTo, toggleTime } from "../time.js";
+import {
+  laneRows, loadingInWords, markInWords, marks, positionInWords, pressSlider, scale, seekTo,
+  toggleTime,
+} from "../time.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, useWidth } from "./elements.js";
 import { Problem } from "./foot.js";
@@ -114,7 +117,11 @@ function Track({ known }) {
   };
   // The replay of this page's own follows the thumb; a stage that many watch is asked once.
   const handlers = page.run.value !== null ? { onInput: seek } : { onChange: seek };
-  const step = unit === "s" ? (page.run.value === null ? 0.1 : 0.01) : 1;
+  /** @param {KeyboardEvent} event */
+  const press = (event) => {
+    const isPlain = !event.ctrlKey && !event.altKey && !event.metaKey;
+    if (isPlain && pressSlider(event.key)) event.preventDefault();
+  };
   return html`
     <div class="track" ref=${host} style=${{ "--picture": place(picture), "--computed": place(computed) }}>
       <div class="above" aria-hidden="true">
@@ -123,7 +130,8 @@ function Track({ known }) {
         `)}
       </div>
       <div class="rail">
-        <input type="range" min="0" max=${end} step=${step} value=${picture} ...${handlers}
+        <input type="range" min="0" max=${end} step=${unit === "s" ? 0.01 : 1} value=${picture} onKeyDown=${press}
+          ...${handlers}
           aria-disabled=${isStale.value ? "true" : undefined}
           aria-label=${page.run.value === null ? "Moment that is shown" : "Moment of your replay"}
           aria-valuetext=${`${positionInWords(known, picture)} of ${positionInWords(known, end)}${words}`} />
