@@ -16,6 +16,9 @@ from hexapods.drawing.track import LAMP, SQUARE_M, WORLD, Position, draw_ground,
 from hexapods.shows.stage_frame import AT_ORIGIN, LaneFrame, SceneSpec, StageFrame
 
 SCENE_ROOT = f"{WORLD}/run"
+ROBOT_ROOTS = (f"{SCENE_ROOT}/robots", f"{SCENE_ROOT}/robots2")
+"""Scene nodes of the robots, in turn: where one is removed and made again at once, viser's client
+keeps its batched meshes, and draws those of another kind of robot with buffers that do not fit."""
 _SMOOTHING_S = 0.25
 """Time constant with which the camera follows the leader [s]."""
 _STEP_FORWARD_M = 0.45
@@ -38,6 +41,7 @@ class StageScene:
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = server
         self._run_scene: _RunScene | None = None
+        self._scenes = -1
         self._follow_positions: dict[str, Position] = {}
         self._smoothed: tuple[float, float] | None = None
         self._lamp_y_m = 0.0
@@ -58,7 +62,10 @@ class StageScene:
             if self._run_scene is None or self._run_scene.spec != frame.spec:
                 if self._run_scene is not None:
                     self._run_scene.remove()
-                self._run_scene, self._smoothed = _RunScene(self._server, frame.spec), None
+                self._scenes += 1
+                root = ROBOT_ROOTS[self._scenes % len(ROBOT_ROOTS)]
+                self._run_scene = _RunScene(self._server, frame.spec, root)
+                self._smoothed = None
             moved = self._run_scene.draw(frame)
             moved |= self._update_follow_positions(frame, self._run_scene.xs, now)
         self._server.flush()
@@ -117,7 +124,7 @@ class StageScene:
 class _RunScene:
     """The part of the scene graph that depends on the run: lanes, robots, labels and grids."""
 
-    def __init__(self, server: viser.ViserServer, spec: SceneSpec) -> None:
+    def __init__(self, server: viser.ViserServer, spec: SceneSpec, robots: str) -> None:
         self.spec = spec
         self._root = server.scene.add_frame(SCENE_ROOT, show_axes=False)
         self._ghost_spec = ghost_spec = spec.ghosts or spec
@@ -140,7 +147,7 @@ class _RunScene:
         ]
         self.xs = xs[: len(spec.lane_specs)]
         self._mesh = mesh = RobotMesh(spec.robot)
-        self._robots = Robots(server, f"{SCENE_ROOT}/robots", spec, mesh, self.xs)
+        self._robots = Robots(server, robots, spec, mesh, self.xs)
         self._ghost_xs = xs[: len(ghost_spec.lane_specs)]
         self._ghost_robots: Robots | None = None
         self._labels = [

@@ -1,6 +1,7 @@
 """The stage drawn in a real viser, checked by the scene graph that a client receives."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -29,7 +30,7 @@ def action_values(spec: SceneSpec, current: tuple[int, ...] = (0, 1, 2)) -> Acti
 def robot_batches(server: InProcessViser) -> set[str]:
     """Return the names of the scene nodes that draw the robots."""
     nodes = scene_nodes(server).items()
-    return {name for name, node in nodes if "/robots/" in name and "batched_positions" in node}
+    return {name for name, node in nodes if "/robots" in name and "batched_positions" in node}
 
 
 def test_number_of_robot_nodes_does_not_depend_on_the_lanes(
@@ -135,11 +136,25 @@ def test_change_of_scene_removes_all_old_nodes(server: InProcessViser) -> None:
 
     show_all()
     nodes = scene_nodes(server)
-    for _ in range(3):
+    for _ in range(4):  # an even number of scenes later the robots have the same names
         show_all()
 
     assert scene_nodes(server).keys() == nodes.keys()
     assert len(nodes) < 40
+
+
+def test_robots_of_consecutive_scenes_share_no_node(server: InProcessViser) -> None:
+    """A node that returns in the same window keeps the buffers of its batched meshes."""
+    scene = StageScene(server)
+    drawn: list[set[str]] = []
+    for spec in (idle_scene(), race_of(3), race_of(3, Robot(legs=ring(8))), race_of(1)):
+        scene.draw(frame_at_rest(spec))
+        drawn.append(robot_batches(server))
+
+    for before, after in pairwise(drawn):
+        assert before
+        assert not before & after
+    assert drawn[0] & drawn[2], "names return, so that they stay few"
 
 
 def test_cells_are_coloured_by_value_but_for_the_current_one(
