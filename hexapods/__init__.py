@@ -7,17 +7,11 @@
 
 `train`, `iter_train`, `evaluate`, `race`, `lane`, `experiment` and `load` are what the dashboard
 and the command line run; `Robot`, `Gait`, `World` and the agents are what they are given. All are
-loaded when the first of them is used. The import also makes `gymnasium.make` know
-`RacingHexapods/Walk-v0`, where Gymnasium is installed.
+loaded when the first of them is used. `hexapods.environment` is the Gymnasium environment.
 """
 
 import importlib
-import sys
 from collections.abc import Mapping
-from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
-from importlib.util import find_spec
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -52,44 +46,3 @@ if not TYPE_CHECKING:  # else every name would pass for one of its names
 def _public_names() -> Mapping[str, Any]:
     names = vars(importlib.import_module("hexapods.public"))
     return {name: names[name] for name in sorted(names) if not name.startswith("_")}
-
-
-class _GymnasiumFinder(MetaPathFinder):
-    """Registers the environment when Gymnasium is imported, which takes too long to do here."""
-
-    _is_looking = False
-
-    def find_spec(self, name: str, *_: object) -> ModuleSpec | None:
-        if name != "gymnasium" or self._is_looking:
-            return None
-        self._is_looking = True
-        try:
-            spec = find_spec(name)
-        finally:
-            self._is_looking = False
-        if spec is not None and spec.loader is not None:
-            spec.loader = _RegisteringLoader(spec.loader, self)
-        return spec
-
-
-class _RegisteringLoader(Loader):
-    def __init__(self, loader: Loader, finder: _GymnasiumFinder) -> None:
-        self._loader, self._finder = loader, finder
-
-    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
-        return self._loader.create_module(spec)
-
-    def exec_module(self, module: ModuleType) -> None:
-        if self._finder in sys.meta_path:
-            sys.meta_path.remove(self._finder)
-        module.__loader__ = self._loader
-        if module.__spec__ is not None:
-            module.__spec__.loader = self._loader
-        self._loader.exec_module(module)
-        importlib.import_module("hexapods.environment")
-
-
-if sys.modules.get("gymnasium") is not None:
-    importlib.import_module("hexapods.environment")
-else:
-    sys.meta_path.insert(0, _GymnasiumFinder())

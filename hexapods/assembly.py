@@ -72,7 +72,7 @@ def build_learner(
         config.agent,
         config.observation,
         rng=rng,
-        noise=_noise(config.seed),
+        noise=sensor_noise(config.seed),
         offered=offered,
         explore=True,
     )
@@ -90,7 +90,7 @@ def build_learner(
             config.agent,
             config.observation,
             rng=evaluation_rng,
-            noise=_noise(config.seed, EVALUATION),
+            noise=sensor_noise(config.seed, EVALUATION),
             offered=offered,
             explore=False,
         )
@@ -107,7 +107,7 @@ def build_learner(
             "greedy",
             "measured",
             rng=rng,
-            noise=_noise(config.seed, EVALUATION),
+            noise=sensor_noise(config.seed, EVALUATION),
             offered={},
             explore=False,
         )
@@ -216,7 +216,7 @@ def build_walkers(
             lane.agent,
             lane.observation,
             rng=generator(config.seed, RACING, number),
-            noise=_noise(config.seed, RACING, number),
+            noise=sensor_noise(config.seed, RACING, number),
             offered=offered,
             explore=lane.keep_learning,
             planner=_planner(config, lane, simulator, threads),
@@ -241,8 +241,13 @@ def _planner(
     return simulator if known == config else build_simulator(known, threads)
 
 
-def _noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
-    """Return a factory of the sensor-noise generator for a step count."""
+def sensor_noise(seed: int, *key: int) -> Callable[[int], np.random.Generator]:
+    """Return a factory of the sensor-noise generator for a step count.
+
+    Args:
+        seed: of the run.
+        key: further part of the spawn key; none for a practice.
+    """
     return lambda steps: generator(seed, SENSING, *key, steps)
 
 

@@ -1,29 +1,44 @@
 """The walking problem as a Gymnasium environment, for learners outside this product.
 
-`import hexapods` registers it; the package `gymnasium` comes with `racing-hexapods[gym]`:
+Importing this module registers it; the package `gymnasium` comes with `racing-hexapods[gym]`:
 
-    import hexapods
-    walk = gymnasium.make("RacingHexapods/Walk-v0", gait="left-right-origin")
+    walk = gymnasium.make("hexapods.environment:RacingHexapods/Walk-v0", gait="left-right-origin")
 
-`gymnasium.make("hexapods:RacingHexapods/Walk-v0")` does both.
+imports it, and makes one. After `import hexapods.environment` its name alone is enough.
 """
 
-from collections.abc import Mapping, Sequence
-from typing import Any, SupportsInt
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, SupportsInt
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from numpy.typing import NDArray
 
-from hexapods.assembly import build_simulator
-from hexapods.domain.errors import InvalidInput
-from hexapods.domain.gait import GaitSpec
-from hexapods.domain.observation import Observation, check_observation, legal_in, observe
-from hexapods.domain.robot import Robot
-from hexapods.domain.robot import robot as read_robot
-from hexapods.domain.simulator import WalkState
+from hexapods.arguments import (
+    GAIT,
+    GaitLike,
+    RobotLike,
+    WorldLike,
+    plain,
+    read_disturbance,
+    read_walk,
+    read_world,
+)
+from hexapods.assembly import build_simulator, sensor_noise
+from hexapods.domain.disturbances import Disturbance
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.observation import Observation, legal_in
+from hexapods.domain.simulator import Simulator
 from hexapods.domain.types import Action, IntArray
-from hexapods.runs.config import RACE_STEPS, SimulatorName, WalkingProblem
+from hexapods.domain.world import UNDISTURBED, World
+from hexapods.exports.video import robot_camera
+from hexapods.runs.config import RACE_STEPS, SimulatorName, TrainingConfig
+from hexapods.runs.walker import Sensors
+
+if TYPE_CHECKING:
+    from hexapods.exports.video_pictures import RobotCamera
 
 WALK_ID = "RacingHexapods/Walk-v0"
 
@@ -33,28 +48,39 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
 
     - Observation: `MultiDiscrete`, the observed cell of the foot grid of each group of legs.
     - Action: `Discrete`, group × cells + cell: move that group to that cell. `info["action_mask"]`
-      marks the legal actions, as `action_space.sample(mask)` expects. Sending a group to its
-      observed cell is illegal in the walking problem: it is carried out as a no-op with reward 0,
-      which counts as a step.
+      marks the legal actions, as `action_space.sample(mask)` expects, and `action_masks()` too, as
+      MaskablePPO of sb3-contrib does. Sending a group to its observed cell is illegal in the
+      walking problem: it is carried out as a no-op with reward 0, which counts as a step.
     - Reward: displacement of the torso's centre in the robot's forward direction [m], as the
       simulator measures it.
     - `info["distance_m"]`: displacement along the track since the start.
     - An episode starts from rest and never terminates: `gymnasium.make` truncates it after 50
       steps, the length of a race, or after `max_episode_steps`.
+    - Rendering: with `render_mode="rgb_array"`, `render()` returns a picture of the robot as videos
+      show it, (360, 640, 3); it needs `racing-hexapods[video]`. `metadata["render_fps"]` is the
+      number of steps that the robot takes in a second.
 
-    The environment is deterministic: every seed gives the same episodes. It has no render mode;
-    use the stage of `hexapods serve`.
+    Random are only the robot within its `tolerance`, the errors of noisy sensors, and the start
+    with `start_noise_m`. `reset(seed=…)` draws them as a training with that seed does; a `reset`
+    without one keeps the robot, and draws the rest from `np_random`.
     """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 2.5}  # noqa: RUF012  # Gymnasium's
 
     def __init__(
         self,
         *,
-        gait: str | GaitSpec = "left-right-origin",
-        robot: str | Mapping[str, Any] | Robot = "stiff",
+        gait: GaitLike = GAIT,
+        robot: RobotLike = "stiff",
         simulator: SimulatorName = "mujoco",
         divisions: int = 2,
         grid_side_m: float = 0.04,
         observation: Observation = "measured",
+        world: WorldLike = UNDISTURBED,
+        disturbances: Iterable[Disturbance | Mapping[str, Any] | str] = (),
+        tolerance: float = 0.0,
+        start_noise_m: float = 0.0,
+        render_mode: str | None = None,
     ) -> None:
         """Build the robot and put it at rest.
 
@@ -65,31 +91,59 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
             divisions: points along a side of the foot grid.
             grid_side_m: side length of the foot grid.
             observation: `measured`, `commanded` or `planned`, how the state is read.
+            world: as in `hexapods.train`: a name such as `ice`, a list of disturbances, or a
+                `World`. What happens at a step happens at that step of each episode.
+            disturbances: what is added to the world, such as `["limp:legs=1,4:at=10"]`.
+            tolerance: how far the robot that the seed draws differs from its design, as a share.
+            start_noise_m: each group's feet start up to so far from home, sideways and forward,
+                every offset with the same probability; at most half of `grid_side_m` [m].
+            render_mode: `rgb_array`, or None for no pictures.
 
         Raises:
             InvalidInput: if a value is invalid; the message names the valid ones.
         """
-        check_observation(observation)
-        walk = WalkingProblem(
-            gait=gait,
-            robot=read_robot(robot),
-            simulator=simulator,
-            divisions=divisions,
-            grid_side_m=grid_side_m,
-        )
-        self._simulator = build_simulator(walk)
-        self._observation = observation
-        self._state: WalkState = self._simulator.rest()
-        self._cells, groups = len(walk.grid), len(walk.resolved_gait.groups)
+        modes = type(self).metadata["render_modes"]
+        if render_mode is not None and render_mode not in modes:
+            raise UnknownName("render mode", render_mode, modes)
+        settings = {
+            "gait": gait,
+            "robot": robot,
+            "simulator": simulator,
+            "divisions": divisions,
+            "grid_side_m": grid_side_m,
+            "world": _world_with(world, disturbances),
+            "tolerance": tolerance,
+        }
+        self._config = TrainingConfig(**read_walk(plain(settings)), observation=observation)
+        self._start_noise_m = _checked_noise_m(start_noise_m, self._config.grid_side_m)
+        self.render_mode = render_mode
+        self.metadata = type(self).metadata | {"render_fps": 1 / self._config.robot.step_s}
+        self._camera: RobotCamera | None = None
+        self._simulator: Simulator[Any] = build_simulator(self._config)
+        self._state: Any = self._simulator.rest()
+        self._sensors = Sensors(self._simulator)
+        self._has_drawn_robot = False
+        self._cells, groups = len(self._config.grid), len(self._config.resolved_gait.groups)
         self.observation_space = spaces.MultiDiscrete([self._cells] * groups)
         self.action_space = spaces.Discrete(groups * self._cells)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[IntArray, dict[str, Any]]:
-        """Put the robot at rest on the start line; there are no options."""
+        """Put the robot at rest on the start line; there are no options.
+
+        Args:
+            seed: of `np_random`, and of what a training with this seed draws.
+            options: none are known.
+        """
         super().reset(seed=seed, options=options)
-        self._state = self._simulator.rest()
+        episode_seed = int(self.np_random.integers(2**32)) if seed is None else int(seed)
+        if self._config.tolerance and (seed is not None or not self._has_drawn_robot):
+            self._config = replace(self._config, seed=episode_seed)
+            self._simulator = build_simulator(self._config)
+            self._has_drawn_robot = True
+            self.close()  # its camera shows the robot as it was
+        self._begin(episode_seed)
         return self._observation_and_info()
 
     def step(self, action: SupportsInt) -> tuple[IntArray, float, bool, bool, dict[str, Any]]:
@@ -104,20 +158,82 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         chosen, reward_m = Action(*divmod(int(action), self._cells)), 0.0
         if chosen in self._legal():
             self._state, reward_m, _ = self._simulator.step(self._state, chosen)
+            self._sensors.at(self._state)
         cells, info = self._observation_and_info()
         return cells, reward_m, False, False, info
 
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Return for each action whether it is legal now, as sb3-contrib's MaskablePPO asks."""
+        legal = np.zeros((len(self._simulator.gait.groups), self._cells), bool)
+        legal[tuple(np.transpose(self._legal()))] = True
+        return legal.ravel()
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return a picture of the robot, (height, width, 3); None without a render mode.
+
+        Raises:
+            MissingExtra: if a package of the extra `video`, or OpenGL, is not installed.
+        """
+        if self.render_mode is None:
+            return None
+        if self._camera is None:
+            self._camera = robot_camera(self._config)
+        return self._camera.picture(self._simulator.pose(self._state))
+
+    def close(self) -> None:
+        """Free what rendering holds."""
+        if self._camera is not None:
+            self._camera.close()
+            self._camera = None
+
+    def _begin(self, episode_seed: int) -> None:
+        """Put the robot at rest, with its feet off home by the start noise."""
+        self._state = self._simulator.rest()
+        if self._start_noise_m:
+            size = (len(self._simulator.gait.groups), 2)
+            offsets_m = self.np_random.uniform(-self._start_noise_m, self._start_noise_m, size)
+            # Its next step is planned from where the feet are; an estimate knows where they were.
+            feet = self._state.feet.moved(offsets_m)
+            self._state = replace(self._simulator.estimate(self._state, offsets_m), feet=feet)
+        self._sensors = Sensors(self._simulator, sensor_noise(episode_seed))
+        self._sensors.at(self._state)
+
     def _legal(self) -> Sequence[Action]:
-        cells = observe(self._simulator, self._state, self._observation)
+        cells = self._sensors(self._config.observation)
         return legal_in(self._simulator, self._state, cells)
 
     def _observation_and_info(self) -> tuple[IntArray, dict[str, Any]]:
         """Return the current observation and its `info`."""
-        cells = observe(self._simulator, self._state, self._observation)
-        legal = np.zeros((len(cells), self._cells), np.int8)
-        legal[tuple(np.transpose(self._legal()))] = 1
-        info = {"action_mask": legal.ravel(), "distance_m": self._state.distance_m}
+        cells = self._sensors(self._config.observation)
+        info = {
+            "action_mask": self.action_masks().astype(np.int8),
+            "distance_m": self._state.distance_m,
+        }
         return np.array(cells, np.int64), info
+
+
+def _world_with(
+    world: WorldLike, disturbances: Iterable[Disturbance | Mapping[str, Any] | str]
+) -> World:
+    """Return a world with further disturbances."""
+    if isinstance(disturbances, str | Mapping) or not isinstance(disturbances, Iterable):
+        raise InvalidInput(
+            f'disturbances is a list, such as ["limp:legs=1,4:at=10"], not {disturbances!r}'
+        )
+    begun = read_world(world)
+    return World((*begun.disturbances, *map(read_disturbance, disturbances)))
+
+
+def _checked_noise_m(start_noise_m: object, grid_side_m: float) -> float:
+    number = plain(start_noise_m)
+    if isinstance(number, bool | str) or not isinstance(number, int | float):
+        number = float("nan")
+    if not 0 <= number <= grid_side_m / 2:
+        raise InvalidInput(
+            f"start_noise_m must be a number from 0 to {grid_side_m / 2:g}, half of the foot "
+            f"grid's side, not {start_noise_m!r}"
+        )
+    return float(number)
 
 
 gymnasium.register(WALK_ID, f"{__name__}:{WalkEnv.__name__}", max_episode_steps=RACE_STEPS)

@@ -9,15 +9,19 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-import hexapods.environment
-from hexapods.assembly import build_learner
+import hexapods.environment  # registers it
+from hexapods.assembly import build_learner, build_simulator
+from hexapods.domain.disturbance_documents import parse_disturbance
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.robot import robot
+from hexapods.domain.types import Action
+from hexapods.domain.world import World
 from hexapods.runs.config import training_config
 from hexapods.runs.records import StepTaken
 from hexapods.runs.training import train
 
-gymnasium.register_envs(hexapods.environment)
+ICE_UPHILL = ["friction:value=0.1", "slope:degrees=4"]
+DISTURBED = ["sensor-noise:sd_m=0.01", "limp:legs=1,4:at=10"]
 
 
 def make(**settings: Any) -> gymnasium.Env[Any, Any]:
@@ -31,11 +35,13 @@ def make(**settings: Any) -> gymnasium.Env[Any, Any]:
         {"gait": "front-back-vertical", "robot": "compliant", "observation": "commanded"},
         {"simulator": "kinematic", "divisions": 3, "grid_side_m": 0.03},
         {"simulator": "kinematic", "robot": {"n_legs": 8}},
+        {"world": "ice", "disturbances": DISTURBED, "tolerance": 0.02, "start_noise_m": 0.005},
+        {"render_mode": "rgb_array"},
     ],
-    ids=["as it comes", "another gait and robot", "a finer grid", "eight legs"],
+    ids=["default", "gait and robot", "a finer grid", "eight legs", "disturbed", "rendered"],
 )
 def test_it_passes_gymnasiums_check_env_without_a_warning(settings: dict[str, Any]) -> None:
-    check_env(make(**settings).unwrapped)
+    check_env(make(**settings).unwrapped)  # which renders in every declared mode, too
 
 
 @pytest.mark.parametrize(
@@ -44,13 +50,18 @@ def test_it_passes_gymnasiums_check_env_without_a_warning(settings: dict[str, An
         {"gait": "left-right-vertical", "robot": robot("compliant")},
         {"gait": "front-back-origin", "simulator": "kinematic", "observation": "commanded"},
         {"gait": "left-right-origin", "simulator": "kinematic", "divisions": 3},
+        {
+            "gait": "left-right-origin",
+            "world": World(tuple(map(parse_disturbance, DISTURBED))),
+            "tolerance": 0.03,
+        },
     ],
-    ids=["mujoco", "commanded", "a finer grid"],
+    ids=["mujoco", "commanded", "a finer grid", "disturbed"],
 )
 def test_each_step_equals_that_of_a_training_to_the_last_bit(settings: dict[str, Any]) -> None:
-    config = training_config(**settings, steps=60, evaluate_every=0)
+    config = training_config(**settings, steps=60, seed=7, evaluate_every=0)
     walk = make(**settings, max_episode_steps=60)
-    observation, info = walk.reset()
+    observation, info = walk.reset(seed=7)
     for record in train(build_learner(config), config):
         if isinstance(record, StepTaken):
             assert tuple(observation) == record.observation
@@ -110,6 +121,10 @@ def test_an_illegal_action_is_a_no_op_with_zero_reward_that_counts_as_a_step() -
         ({"observation": "guessed"}, "unknown observation 'guessed'; choose one of: measured"),
         ({"divisions": 1}, "divisions must be a whole number from 2 to 8"),
         ({"grid_side_m": 0.5}, "leg 1"),
+        ({"world": "swamp"}, "unknown"),
+        ({"disturbances": "ice"}, "disturbances is a list"),
+        ({"tolerance": 0.9}, "tolerance must be a number"),
+        ({"start_noise_m": 0.03}, r"start_noise_m must be a number from 0 to 0\.02"),
     ],
 )
 def test_an_invalid_setting_names_the_valid_values(settings: dict[str, Any], message: str) -> None:
@@ -125,6 +140,110 @@ def test_an_action_out_of_range_names_the_action_space(action: Any) -> None:
         walk.step(action)
 
 
-def test_gymnasium_can_import_and_register_it_by_module_name() -> None:
-    code = "import gymnasium; gymnasium.make('hexapods.environment:RacingHexapods/Walk-v0')"
-    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True, timeout=60)
+def test_action_masks_are_the_legal_actions_as_maskable_ppo_asks_for_them() -> None:
+    walks = gymnasium.vector.SyncVectorEnv([lambda: make(simulator="kinematic")] * 2)
+    _, infos = walks.reset(seed=0)
+    masks = walks.call("action_masks")
+
+    assert [mask.dtype for mask in masks] == [bool, bool]
+    assert np.array_equal(np.stack(masks), infos["action_mask"])
+    walks.close()
+
+
+def test_a_world_and_disturbances_are_those_of_a_training() -> None:
+    by_name = make(world="ice", disturbances=["slope:degrees=4"]).unwrapped
+    config = training_config(
+        gait="left-right-origin", world=World(tuple(map(parse_disturbance, ICE_UPHILL)))
+    )
+    by_name.reset(seed=0)
+    rewards_m = [by_name.step(2)[1], by_name.step(8)[1]]
+    simulator = build_simulator(config)
+    state, expected_m = simulator.rest(), []
+    for action in (Action(0, 2), Action(1, 3)):
+        state, reward_m, _ = simulator.step(state, action)
+        expected_m.append(reward_m)
+
+    assert rewards_m == expected_m
+
+
+def starts(walk: gymnasium.Env[Any, Any], *seeds: int | None) -> list[tuple[Any, ...]]:
+    """The first observation and reward of an episode of each seed; None goes on without one."""
+    return [(*walk.reset(seed=seed)[0].tolist(), walk.step(np.int64(2))[1]) for seed in seeds]
+
+
+@pytest.mark.parametrize("simulator", ["kinematic", "mujoco"])
+def test_start_noise_moves_the_feet_as_the_seed_says(simulator: str) -> None:
+    walk = make(simulator=simulator, start_noise_m=0.02)
+    first, second, third = starts(walk, 3, None, None)
+
+    assert len({first, second, third}) == 3  # each episode starts somewhere else
+    assert starts(walk, 3, None, None) == [first, second, third]
+    assert starts(make(simulator=simulator, start_noise_m=0.02), 4) != [first]
+    without = starts(make(simulator=simulator), 3, 4, None)
+    assert len(set(without)) == 1
+
+
+def test_the_robot_within_its_tolerance_is_drawn_by_the_seed() -> None:
+    walk = make(tolerance=0.03)
+    first, again, other = starts(walk, 1, None, 2)
+
+    assert first == again != other  # without a seed the robot stays as it was drawn
+    assert starts(walk, 1) == [first]
+
+
+def test_pictures_show_the_robot_as_videos_do_and_follow_it() -> None:
+    walk = make(render_mode="rgb_array")
+    walk.reset(seed=0)
+    standing: Any = walk.render()
+    for action in (2, 7, 12):
+        walk.step(action)
+    walking: Any = walk.render()
+
+    assert (standing.shape, standing.dtype) == ((360, 640, 3), np.uint8)
+    assert not np.array_equal(standing, walking)
+    assert len(np.unique(walking.reshape(-1, 3), axis=0)) > 100
+    assert walk.metadata["render_fps"] == 1 / robot("stiff").step_s
+    walk.close()
+
+
+def test_each_of_several_environments_renders_its_own_robot() -> None:
+    walks = gymnasium.vector.SyncVectorEnv([lambda: make(render_mode="rgb_array")] * 2)
+    walks.reset(seed=0)
+    walks.step(np.array([2, 3]))
+    first, second = walks.render() or ()
+    again, _ = walks.render() or ()
+
+    assert not np.array_equal(first, second)
+    assert np.array_equal(first, again)
+    walks.close()
+
+
+def test_workers_of_a_vector_environment_make_it() -> None:
+    code = (
+        "import gymnasium\n"
+        "if __name__ == '__main__':\n"
+        "    walks = gymnasium.make_vec('hexapods.environment:RacingHexapods/Walk-v0',"
+        " num_envs=2, vectorization_mode='async', simulator='kinematic',"
+        " vector_kwargs={'context': 'spawn'})\n"
+        "    walks.reset(seed=0)\n"
+        "    walks.step([2, 3])\n"
+        "    walks.close()\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
+
+
+def test_an_unknown_render_mode_names_the_valid_ones() -> None:
+    with pytest.raises(InvalidInput, match="unknown render mode 'human'; choose one of: rgb_array"):
+        hexapods.environment.WalkEnv(render_mode="human")
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        "import gymnasium; gymnasium.make('hexapods.environment:RacingHexapods/Walk-v0')",
+        "import gymnasium, hexapods.environment; gymnasium.make('RacingHexapods/Walk-v0')",
+        "import hexapods.environment, gymnasium; gymnasium.make('RacingHexapods/Walk-v0')",
+    ],
+)
+def test_gymnasium_can_import_and_register_it_by_module_name(program: str) -> None:
+    subprocess.run([sys.executable, "-W", "error", "-c", program], check=True, timeout=60)

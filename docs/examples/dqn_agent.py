@@ -65,7 +65,7 @@ def practise(walk, steps, seed):
     from stable_baselines3 import DQN
 
     torch.set_num_threads(1)  # is quicker with a network so small
-    environment = gymnasium.make("hexapods:RacingHexapods/Walk-v0", **walk)
+    environment = gymnasium.make("hexapods.environment:RacingHexapods/Walk-v0", **walk)
     # In centimetres, because a network learns badly from rewards of a hundredth.
     environment = gymnasium.wrappers.TransformReward(environment, lambda reward_m: 100 * reward_m)
     dqn = DQN(

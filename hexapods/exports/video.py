@@ -7,14 +7,14 @@ environment has `MUJOCO_GL=osmesa`.
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
@@ -26,6 +26,9 @@ from hexapods.exports.recorded_walks import ExportedLane, RecordedWalks
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.recording import pose_at
+
+if TYPE_CHECKING:
+    from hexapods.exports.video_pictures import RobotCamera
 
 VIDEO_EXTRA = "video"
 MAX_FRAMES = 9000
@@ -86,7 +89,7 @@ def write_video(shown: ShownPoses, options: VideoOptions, file: Path) -> None:
         MissingExtra: if a package of the extra, or OpenGL, is not installed.
         OSError: if it cannot be encoded or written.
     """
-    pictures = _drawing()
+    pictures = _drawing().pictures
     ffmpeg = import_extra("imageio_ffmpeg", VIDEO_EXTRA, "a video")
     size, coding = (options.width, options.height), _coding(options.fps, file.suffix)
     writer = ffmpeg.write_frames(str(file), size, **coding)
@@ -98,13 +101,30 @@ def write_video(shown: ShownPoses, options: VideoOptions, file: Path) -> None:
         writer.close()
 
 
-def _drawing() -> Callable[["ShownPoses", VideoOptions], Iterator[NDArray[np.uint8]]]:
+def robot_camera(
+    problem: WalkingProblem,
+    options: VideoOptions = VideoOptions(),  # noqa: B008  # immutable
+) -> "RobotCamera":
+    """Return a camera that draws one robot in any pose, as a video shows it.
+
+    Args:
+        problem: the walking problem, with the robot.
+        options: size of the pictures.
+
+    Raises:
+        MissingExtra: if a package of the extra, or OpenGL, is not installed.
+    """
+    camera: RobotCamera = _drawing().RobotCamera(problem, options)
+    return camera
+
+
+def _drawing() -> ModuleType:
     try:
-        from hexapods.exports.video_pictures import pictures  # noqa: PLC0415
+        from hexapods.exports import video_pictures  # noqa: PLC0415
     # MuJoCo loads the OpenGL of MUJOCO_GL when it is imported, and PyOpenGL fails in many ways.
     except (ImportError, AttributeError, RuntimeError) as error:
         raise no_opengl(error) from error
-    return pictures
+    return video_pictures
 
 
 def _coding(fps: int, ending: str) -> dict[str, Any]:

@@ -3,7 +3,6 @@
 import importlib
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from typing import Any
 
 import mujoco
@@ -18,6 +17,7 @@ from hexapods.exports.options import VideoOptions
 from hexapods.exports.video import VIDEO_EXTRA, ShownPoses
 from hexapods.physics.mjcf import VISIBLE_GROUP, is_painted, robot_spec
 from hexapods.runs.clocks import FINISH_LINE_M
+from hexapods.runs.config import WalkingProblem
 
 _GAP_M = 0.25
 _SMOOTHING_S = 0.25  # as in the live view (hexapods/drawing/scene.py)
@@ -30,7 +30,8 @@ def pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.ui
     scene = _Scene(shown, options)
     followed = 0.0
     caption = _Caption(shown.agents, options.height)
-    with _gl_context(options.width, options.height):
+    context = _new_gl_context(options.width, options.height)
+    try:
         painter = scene.painter()
         for number, (time_s, poses) in enumerate(zip(shown.times_s, shown.poses, strict=True)):
             leader = max(pose[1] for pose in poses)
@@ -40,11 +41,43 @@ def pictures(shown: ShownPoses, options: VideoOptions) -> Iterator[NDArray[np.ui
             followed = leader + (followed - leader) * lag
             picture = painter(poses, followed)
             yield caption.drawn(picture, time_s, [pose[1] for pose in poses])
+    finally:
+        context.free()
 
 
-@contextmanager
-def _gl_context(width: int, height: int) -> Iterator[None]:
-    """Make an OpenGL context the one of this thread within a `with` block."""
+class RobotCamera:
+    """Pictures of one robot on the track, drawn off screen like those of a video, from behind it.
+
+    Several cameras may be used in turn in one thread: each has an OpenGL context of its own.
+    """
+
+    def __init__(self, problem: WalkingProblem, options: VideoOptions) -> None:
+        """Draw the robot that a problem's seed builds; raises MissingExtra without OpenGL."""
+        shown = ShownPoses(problem, ("",), (), np.empty((0, 1, 0)))
+        self._scene = _Scene(shown, options)
+        self._context = _new_gl_context(options.width, options.height)
+        self._paint = self._scene.painter()
+
+    def picture(self, pose: FloatArray) -> NDArray[np.uint8]:
+        """Return the picture of a pose, (height, width, 3).
+
+        Args:
+            pose: position [m], quaternion, angles [rad], (7 + joints,).
+        """
+        self._context.make_current()
+        self._scene.center_x(float(pose[0]))
+        picture: NDArray[np.uint8] = self._paint(pose[None], float(pose[1])).copy()
+        return picture
+
+    def close(self) -> None:
+        """Free what OpenGL holds."""
+        self._context.make_current()
+        del self._paint  # with it what MuJoCo keeps in the context
+        self._context.free()
+
+
+def _new_gl_context(width: int, height: int) -> Any:
+    """Return a new OpenGL context, the current one of this thread."""
     name = "osmesa" if os.environ.get("MUJOCO_GL", "").lower() == "osmesa" else "egl"
     import_extra("OpenGL", VIDEO_EXTRA, "a video")
     try:
@@ -54,10 +87,7 @@ def _gl_context(width: int, height: int) -> Iterator[None]:
     # PyOpenGL raises errors of many kinds where the library is missing.
     except Exception as error:
         raise no_opengl(error) from error
-    try:
-        yield
-    finally:
-        context.free()
+    return context
 
 
 class _Scene:
