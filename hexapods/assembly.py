@@ -5,6 +5,7 @@ The only module that imports the concrete simulators; loops and commands use wha
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -189,7 +190,10 @@ def _agent_without_robot(
 
 
 def build_walkers(
-    config: RaceConfig, tables: Sequence[Checkpoint | None], threads: int = 0
+    config: RaceConfig,
+    tables: Sequence[Checkpoint | None],
+    threads: int = 0,
+    agents: Mapping[int, Agent] = MappingProxyType({}),
 ) -> list[Walker]:
     """Create the walkers of a race, one per lane, at rest.
 
@@ -197,6 +201,7 @@ def build_walkers(
         config: the race.
         tables: checkpoint of the agent of each lane, or None.
         threads: number of threads of look-ahead in MuJoCo; 0 for one per core.
+        agents: by the number of the lane, those that are there already: policies from outside.
 
     Raises:
         UnknownName, InvalidInput: if a lane's agent or one of its settings is invalid.
@@ -205,6 +210,10 @@ def build_walkers(
     simulator = build_simulator(config, threads)
     walkers = []
     for number, (lane, table) in enumerate(zip(config.lanes, tables, strict=True)):
+        if number in agents:
+            sensors = Sensors(simulator, sensor_noise(config.seed, RACING, number))
+            walkers.append(Walker(simulator, agents[number], lane.observation, sensors=sensors))
+            continue
         check_lane(lane, has_training=table is not None)
         if table is None:
             offered = _offered_in(config, lane)

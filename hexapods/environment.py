@@ -29,7 +29,7 @@ from hexapods.arguments import (
 from hexapods.assembly import build_simulator, sensor_noise
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
-from hexapods.domain.observation import Observation, legal_in
+from hexapods.domain.observation import Observation, action_mask, legal_in
 from hexapods.domain.simulator import Simulator
 from hexapods.domain.types import Action, IntArray
 from hexapods.domain.world import UNDISTURBED, World
@@ -164,9 +164,7 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return for each action whether it is legal now, as sb3-contrib's MaskablePPO asks."""
-        legal = np.zeros((len(self._simulator.gait.groups), self._cells), bool)
-        legal[tuple(np.transpose(self._legal()))] = True
-        return legal.ravel()
+        return action_mask(self._legal(), len(self._simulator.gait.groups), self._cells)
 
     def render(self) -> NDArray[np.uint8] | None:
         """Return a picture of the robot, (height, width, 3); None without a render mode.

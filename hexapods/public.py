@@ -67,6 +67,8 @@ from hexapods.domain.world import World as World
 from hexapods.experiments.folder import NotKept as NotKept
 from hexapods.experiments.worker import ClusterLost as ClusterLost
 from hexapods.experiments.worker import Outcome as Outcome
+from hexapods.policies import Policy as Policy
+from hexapods.policies import policy as policy
 from hexapods.practice import Practice as Practice
 from hexapods.practice import evaluate as evaluate
 from hexapods.practice import iter_train as iter_train

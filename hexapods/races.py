@@ -38,9 +38,10 @@ from hexapods.domain.records import from_json, to_json
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
+from hexapods.policies import Policy, PolicyAgent
 from hexapods.runs.best_known import best_known_in_race_m
 from hexapods.runs.clocks import Clock, check_clock
-from hexapods.runs.config import RACE_STEPS, SimulatorName, agent_settings
+from hexapods.runs.config import RACE_STEPS, SimulatorName, agent_settings, problem_of
 from hexapods.runs.lane import LaneConfig, PlanningModel, lane_config, observation_of
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.race_file import race_arrays, race_recording
@@ -61,6 +62,7 @@ class Lane(NamedTuple):
 
     config: LaneConfig
     training: Training | None
+    policy: Policy | None = None
 
 
 class Standing(NamedTuple):
@@ -169,7 +171,7 @@ class Race:
 
 
 def lane(
-    agent: str | AgentClass | Training,
+    agent: str | AgentClass | Training | Policy,
     *,
     table: Table | None = None,
     observation: Observation | None = None,
@@ -180,7 +182,8 @@ def lane(
     """Return a lane for `race`.
 
     Args:
-        agent: a training, or an agent's name or class.
+        agent: a training, an agent's name or class, or what `policy` returns, which takes no
+            argument but `observation`.
         table: what the agent has learned, unless `agent` is a training.
         observation: how it reads its state; with a table as in the practice, else `measured`.
         keep_learning: whether it learns from each step of the race; None for its default.
@@ -192,6 +195,16 @@ def lane(
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TableMismatch: if the table was learned by another agent.
     """
+    if isinstance(agent, Policy):
+        check_names("a policy's lane", settings, _LANE_ARGUMENTS)
+        if table is not None or keep_learning or plans_with is not None:
+            raise InvalidInput(
+                "a policy does not learn and plans with no simulator; leave out table, "
+                "keep_learning and plans_with"
+            )
+        return Lane(
+            LaneConfig(agent=agent.name, observation=observation or "measured"), None, agent
+        )
     name, trained = learned_by(agent, table)
     check_names(f"a {name} lane", settings, (*_LANE_ARGUMENTS, *agent_settings(name)))
     of_training = None if trained is None else trained.config.observation
@@ -212,7 +225,7 @@ def lane(
 
 
 def race(
-    lanes: Iterable[Lane | Training | str | AgentClass],
+    lanes: Iterable[Lane | Training | Policy | str | AgentClass],
     *,
     steps: int = RACE_STEPS,
     seed: int = 0,
@@ -229,7 +242,7 @@ def race(
     """Race one to six agents (paper §5), and record every step.
 
     Args:
-        lanes: agents by name or class, trainings, or what `lane` returns.
+        lanes: agents by name or class, trainings, or what `lane` or `policy` returns.
         steps: number of steps of each lane.
         seed: seed of all random generators.
         on_step: called after each step of a lane.
@@ -246,11 +259,12 @@ def race(
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TableMismatch: if a training is of another walking problem.
+        IllegalAction: if a policy returns no legal action; what it raises itself is raised.
     """
     given = given_of(locals(), WALK, "unknown")
     check_names("a race", given, ("steps", "seed", *WALK))
     check_callable("on_step", on_step)
-    if isinstance(lanes, str | Lane | Training) or not isinstance(lanes, Iterable):
+    if isinstance(lanes, str | Lane | Training | Policy) or not isinstance(lanes, Iterable):
         raise InvalidInput(f'lanes is a list, such as [training, "greedy"], not {lanes!r}')
     numbers = plain({"steps": steps, "seed": seed})
     built = [one if isinstance(one, Lane) else lane(one) for one in lanes]
@@ -262,9 +276,19 @@ def race(
     )
     check_ends(config.world.disturbances, config.steps)
     tables = [None if one.training is None else one.training.table for one in built]
+    problem = problem_of(config)
+    policies = {
+        number: PolicyAgent(one.policy, problem)
+        for number, one in enumerate(built)
+        if one.policy is not None
+    }
+    walkers = build_walkers(config, tables, agents=policies)
     recording: Sequence[LaneRecording] = ()
-    for grown in record_race(build_walkers(config, tables), config, time.perf_counter):
+    for grown in record_race(walkers, config, time.perf_counter):
         recording = grown
+        for agent in policies.values():
+            if agent.error is not None:  # of the calling program, which is to know it
+                raise agent.error
         if on_step is not None:
             on_step()
     return Race(config, recording, race_result(recording, config))

@@ -10,6 +10,9 @@ from functools import lru_cache
 from itertools import chain
 from typing import Literal, get_args
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hexapods.domain.errors import UnknownName
 from hexapods.domain.simulator import S, Simulator
 from hexapods.domain.types import Action, Cells, FloatArray
@@ -76,6 +79,13 @@ def legal_in(simulator: Simulator[S], state: S, observed: Cells) -> Sequence[Act
     Those that lead a foot out of reach are not legal.
     """
     return simulator.law.possible(state.feet, legal_actions(observed, len(simulator.grid)))
+
+
+def action_mask(legal: Sequence[Action], groups: int, cells: int) -> NDArray[np.bool_]:
+    """Return whether each action is legal, by its number in Gymnasium: group × cells + cell."""
+    mask = np.zeros((groups, cells), bool)
+    mask[tuple(np.transpose(legal))] = True
+    return mask.ravel()
 
 
 @lru_cache(maxsize=1 << 10)
