@@ -73,15 +73,16 @@ from hexapods.practice import Practice as Practice
 from hexapods.practice import evaluate as evaluate
 from hexapods.practice import iter_train as iter_train
 from hexapods.practice import train as train
+from hexapods.race_tables import Standing as Standing
 from hexapods.races import Lane as Lane
 from hexapods.races import Race as Race
-from hexapods.races import Standing as Standing
 from hexapods.races import lane as lane
 from hexapods.races import load as load
 from hexapods.races import race as race
 from hexapods.repetition import Experiment as Experiment
 from hexapods.repetition import SettingResult as SettingResult
 from hexapods.repetition import experiment as experiment
+from hexapods.result_table import ResultTable as ResultTable
 from hexapods.runs.recording import LaneRecording as LaneRecording
 from hexapods.runs.records import ActionValues as ActionValues
 from hexapods.runs.records import EpisodeEnded as EpisodeEnded

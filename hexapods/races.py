@@ -39,6 +39,8 @@ from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
 from hexapods.policies import Policy, PolicyAgent
+from hexapods.race_tables import Standing, lane_table, step_table
+from hexapods.result_table import ResultTable
 from hexapods.runs.best_known import best_known_in_race_m
 from hexapods.runs.clocks import Clock, check_clock
 from hexapods.runs.config import RACE_STEPS, SimulatorName, agent_settings, problem_of
@@ -63,22 +65,6 @@ class Lane(NamedTuple):
     config: LaneConfig
     training: Training | None
     policy: Policy | None = None
-
-
-class Standing(NamedTuple):
-    """A lane at the end of a race."""
-
-    rank: int | None
-    """By the distance at time-out; None if the race has none."""
-    lane: int
-    """Number of the lane, from 0 on."""
-    agent: str
-    finished_distance_m: float | None
-    """At time-out, when the first lane has used all its steps [m]."""
-    total_distance_m: float | None
-    """After all steps [m]; None if it has failed."""
-    elapsed_s: float
-    """Time that it took by the clock [s]."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -122,6 +108,28 @@ class Race:
             for number, lane in enumerate(self.result.lanes)
         ]
         return tuple(sorted(rows, key=lambda row: (row.rank or len(rows), row.lane)))
+
+    def table(self, clock: Clock = "paper") -> ResultTable:
+        """Return the lanes by rank under a clock, a row each, with all that was raced.
+
+        `pandas.DataFrame(race.table())` is a data frame, and so is one of polars. A lane that
+        failed has its `failure` as the reason.
+
+        Args:
+            clock: `paper`, `wall` or `free`; see `hexapods.runs.clocks`.
+
+        Raises:
+            UnknownName: if there is no such clock.
+        """
+        return lane_table(self.config, self.result, self.standings_under(clock))
+
+    def step_table(self) -> ResultTable:
+        """Return all steps of all lanes, a row each, as `LaneStep` describes them.
+
+        Of the action it has `group` and `cell`, of the observation `observed_0` and so on, the cell
+        of each group.
+        """
+        return step_table(self.recording)
 
     @property
     def best_known_m(self) -> float | None:

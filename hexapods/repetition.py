@@ -36,6 +36,7 @@ from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worker import Outcome
 from hexapods.files import path_of
 from hexapods.machine import cores
+from hexapods.result_table import ResultTable
 from hexapods.runs.config import SimulatorName
 
 if TYPE_CHECKING:
@@ -90,12 +91,23 @@ class Experiment:
         names = setting_names(self.summary["settings"], self.summary["parameters"])
         return tuple(
             SettingResult(
-                names[one["key"]],
+                names[one["key"]].replace("\u00a0", " "),
                 one["n"],
                 *((one["total"] or {}).get(name) for name in SettingResult._fields[2:]),
             )
             for one in self.summary["settings"]
         )
+
+    def table(self) -> ResultTable:
+        """Return all trials, a row each: its agent, gait, world, settings, seed and distances.
+
+        `pandas.DataFrame(experiment.table())` is a data frame, and so is one of polars. A trial
+        that failed has no distance, and its `failure` as the reason.
+        """
+        from hexapods.experiments.trial_rows import trial_rows  # noqa: PLC0415  # slow to import
+
+        set_aside = {row["key"]: row["reason"] for row in self.summary["trials"]["set_aside"]}
+        return ResultTable.of(trial_rows(self.config, self.trials, set_aside))
 
     def figures(self) -> "list[Picture]":
         """Return the figures of the report, drawn by Matplotlib, with their descriptions."""

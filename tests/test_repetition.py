@@ -27,8 +27,8 @@ def test_each_setting_has_its_mean_and_goes_on_where_it_ended(tmp_path: Path) ->
     assert len(seen) == len(done.trials) == 5
     assert [(one.name, one.seeds) for one in done.settings] == [
         ("Greedy", 1),
-        ("Q-learning, 20\N{NO-BREAK SPACE}steps, α\N{NO-BREAK SPACE}0.1", 2),
-        ("Q-learning, 20\N{NO-BREAK SPACE}steps, α\N{NO-BREAK SPACE}0.3", 2),
+        ("Q-learning, 20 steps, α 0.1", 2),
+        ("Q-learning, 20 steps, α 0.3", 2),
     ]
     assert all(one.iqm_m is not None for one in done.settings)
     again = hx.experiment("sweep", folder=tmp_path / "kept", on_trial=seen.append, **SWEEP)

@@ -10,7 +10,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, NamedTuple, TypeVar
 
-from hexapods.domain.disturbance_documents import SENT, as_mapping, disturbance, parse_disturbance
+from hexapods.domain.disturbance_documents import (
+    SENT,
+    as_mapping,
+    as_text,
+    disturbance,
+    parse_disturbance,
+)
 from hexapods.domain.disturbances import (
     Disturbance,
     Friction,
@@ -371,6 +377,12 @@ def parse_world(text: str) -> World:
     if text in WORLDS or ":" not in text:
         return named_world(text)
     return World(tuple(parse_disturbance(part) for part in text.split("+")))
+
+
+def world_text(world: World) -> str:
+    """Return a world as `parse_world` reads it: `flat`, a name, or disturbances joined by +."""
+    named = (name for name, known in WORLDS.items() if known.world == world)
+    return next(named, "+".join(map(as_text, world.disturbances)))
 
 
 def lasting_world(text: str) -> World:

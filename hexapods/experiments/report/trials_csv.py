@@ -9,6 +9,7 @@ from hexapods.domain.text import text_cell
 from hexapods.experiments.config import DISTURBED, ExperimentConfig
 from hexapods.experiments.plan import Plan, Trial
 from hexapods.experiments.trial import TrialResult
+from hexapods.experiments.trial_rows import practised_steps
 
 _FIRST = ("trial", "role", "gait", "observation", "robot", "agent")
 _LAST = (
@@ -53,7 +54,6 @@ def trials_csv(
 
 def _rows(trial: Trial, result: TrialResult, more: Sequence[str]) -> Iterator[list[Any]]:
     setting, training = trial.setting, trial.setting.training
-    learns = setting.role != "reference"
     named = [trial.key, setting.role, setting.gait, training.observation, setting.robot]
     varied = [value for name, value in setting.parameters.items() if name != "steps"]
     for block, distance_m in enumerate(result.distances_m or (None,)):
@@ -64,16 +64,10 @@ def _rows(trial: Trial, result: TrialResult, more: Sequence[str]) -> Iterator[li
             *(text_cell(value) if isinstance(value, str) else value for value in varied),
             trial.seed_number,
             trial.seed,
-            _practised_steps(trial, block) if learns else 0,
+            practised_steps(trial, block),
             distance_m,
             result.finished_distance_m,
             result.elapsed_s,
             result.transitions or None,
             text_cell(result.failure or ""),
         ]
-
-
-def _practised_steps(trial: Trial, number: int) -> int:
-    """Return the steps of practice before one of a trial's distances."""
-    points = trial.setting.trial.evaluations
-    return points[number] if points else trial.setting.training.steps * (1 + number)
