@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, Union
 
@@ -28,6 +28,7 @@ from hexapods.arguments import (
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import read_gait
 from hexapods.domain.observation import Observation
+from hexapods.domain.text import counted
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config
 from hexapods.experiments.folder import open_results
@@ -69,7 +70,7 @@ class SettingResult(NamedTuple):
     """Its 95 % interval by the bootstrap [m]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Experiment:
     """A finished experiment, as `experiment` returns it.
 
@@ -80,8 +81,8 @@ class Experiment:
     """
 
     config: ExperimentConfig
-    trials: Mapping[str, TrialResult] = field(repr=False)
-    summary: Mapping[str, Any] = field(repr=False)
+    trials: Mapping[str, TrialResult]
+    summary: Mapping[str, Any]
 
     @property
     def settings(self) -> tuple[SettingResult, ...]:
@@ -129,6 +130,10 @@ class Experiment:
 
         target = path_of(folder, "a folder")
         return files.write_files(target, files.report_files(self.summary, self.trials))
+
+    def __repr__(self) -> str:
+        settings = counted(len(self.summary["settings"]), "setting")
+        return f"<Experiment {self.config.experiment}: {settings}, {len(self.trials):,} trials>"
 
     def _repr_html_(self) -> str:
         rows = "".join(

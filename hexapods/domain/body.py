@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import ImpossibleLegs, InvalidInput
+from hexapods.domain.short_repr import short_repr
 
 MIN_LEGS, MAX_LEGS = 3, 12
 NO_NUMBERS = ("name", "legs", "id", "model")
@@ -26,6 +27,8 @@ class LegMount:
 
     Its place is in polar coordinates of the body frame. What is None is as the robot says.
     """
+
+    __repr__ = short_repr
 
     azimuth_deg: float
     """Anticlockwise from body x, seen from above."""
@@ -93,6 +96,8 @@ class Robot:
     Raises:
         InvalidInput: if a value is out of range.
     """
+
+    __repr__ = short_repr
 
     name: str = field(default="stiff", compare=False)
     """Name of the preset or stored robot; with the suffix `(modified)` if fields differ from it."""

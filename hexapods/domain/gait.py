@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal, get_args
 from hexapods.domain.body import MAX_LEGS
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import JsonForm, Schema
+from hexapods.domain.short_repr import short_repr
 from hexapods.domain.types import FloatArray
 
 Symmetry = Literal["origin", "vertical"]
@@ -46,6 +47,8 @@ class GaitSpec:
         InvalidInput: unless one of symmetry, pairs and groups is given, or if a leg is no number.
         UnknownName: if the symmetry or the rule is unknown.
     """
+
+    __repr__ = short_repr
 
     right_leg: int
     left_leg: int
@@ -213,6 +216,8 @@ class Gait:
     Raises:
         InvalidInput: if a leg is in no group or in several, or there are less than two groups.
     """
+
+    __repr__ = short_repr
 
     name: str
     forward_deg: float

@@ -19,6 +19,7 @@ from hexapods.domain.model_geometry import (
     quaternion_matrix,
 )
 from hexapods.domain.robot_model import ModelGeom, ModelJoint, RobotModel
+from hexapods.domain.short_repr import short_repr
 
 _SERVO = ("servo_kp", "servo_kv", "servo_torque_nm")
 _USUAL_LEG_M = math.hypot(0.15, 0.09)
@@ -43,6 +44,8 @@ class ModelRobot(Robot):
     change scales every joint. Feet at home stand on one plane, at the mean of their heights in
     the file.
     """
+
+    __repr__ = short_repr
 
     changeable: ClassVar[tuple[str, ...]] = (
         *_SERVO,

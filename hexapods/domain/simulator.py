@@ -53,6 +53,9 @@ class Motion(NamedTuple):
     work_j: NDArray[np.float32] | None = None
     """Positive mechanical work of all servos since the frame before [J], (k,); likewise None."""
 
+    def __repr__(self) -> str:
+        return f"<Motion of {len(self.time_s)} poses>"
+
 
 class Step(NamedTuple, Generic[S]):
     """Result of one step: the next state, its reward, and the motion if recorded."""

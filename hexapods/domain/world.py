@@ -36,6 +36,7 @@ from hexapods.domain.disturbances import (
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import JsonForm
 from hexapods.domain.robot import Robot
+from hexapods.domain.short_repr import short_repr
 
 MAX_DISTURBANCES = 20
 """Maximum that a request may start with."""
@@ -60,6 +61,8 @@ class World:
     Raises:
         InvalidInput: if two disturbances contradict each other.
     """
+
+    __repr__ = short_repr
 
     disturbances: tuple[Disturbance, ...] = ()
 

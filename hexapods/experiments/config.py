@@ -21,6 +21,7 @@ from hexapods.domain.settings import (
     Value,
     declared_fields,
 )
+from hexapods.domain.short_repr import short_repr
 from hexapods.domain.world import lasting_world
 from hexapods.runs.config import (
     Divisions,
@@ -85,6 +86,8 @@ class ExperimentConfig(Record):
     Raises:
         UnknownName, InvalidInput: if a value is invalid, empty or repeated.
     """
+
+    __repr__ = short_repr
 
     kind: ClassVar[str] = "experiment"
     """Name of the experiment in a results folder."""

@@ -10,6 +10,7 @@ from typing import Any
 from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.errors import Diverged
 from hexapods.domain.settings import SettingValues
+from hexapods.domain.short_repr import short_repr
 from hexapods.runs.clocks import Timetable, distance_at
 from hexapods.runs.config import RACE_STEPS, TrainingConfig
 from hexapods.runs.lane import LaneConfig, PlansWith
@@ -40,6 +41,8 @@ class TrialConfig:
         most_transitions: that a search may simulate in the race; over it, it fails. None for any
             number.
     """
+
+    __repr__ = short_repr
 
     training: TrainingConfig
     blocks: int = 1
@@ -73,6 +76,8 @@ class TrialResult:
         earned_m: rewards of the practice that follows each evaluation, added up over
             `TrialConfig.earning_steps` [m].
     """
+
+    __repr__ = short_repr
 
     distances_m: tuple[float, ...] = ()
     finished_distance_m: float | None = None

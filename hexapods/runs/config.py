@@ -28,6 +28,7 @@ from hexapods.domain.settings import (
     complete,
     declared_fields,
 )
+from hexapods.domain.short_repr import short_repr
 from hexapods.domain.tolerance import MAX_TOLERANCE, build_tolerance
 from hexapods.domain.world import UNDISTURBED, AnyWorld
 from hexapods.runs.seeding import BUILDING, generator
@@ -141,6 +142,8 @@ class WalkingProblem(Record):
         InvalidInput: if a value is out of its limits, or gait or world do not fit the robot.
     """
 
+    __repr__ = short_repr
+
     json_names: ClassVar[Mapping[str, str]] = MappingProxyType({"world": "disturbances"})
 
     gait: AnyGait
@@ -213,6 +216,8 @@ class TrainingConfig(WalkingProblem):
         pace: `max`, or a multiple of real time.
         agent: a registered name or `my.module:Agent`.
     """
+
+    __repr__ = short_repr
 
     steps: PracticeSteps = 500
     seed: Seed = 0

@@ -9,6 +9,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.observation import Observation, check_observation
 from hexapods.domain.records import Record
 from hexapods.domain.settings import Setting, SettingValues, Value, complete, declared_fields
+from hexapods.domain.short_repr import short_repr
 from hexapods.runs.config import WalkingProblem, agent_settings
 
 PlanningModel = Literal["world", "start", "nominal"]
@@ -59,6 +60,8 @@ class LaneConfig(Record):
         settings: the agent's settings by name; none for a trained agent, which has those of its
             training.
     """
+
+    __repr__ = short_repr
 
     agent: str
     observation: LaneObservation = "measured"

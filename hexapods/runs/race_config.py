@@ -9,6 +9,7 @@ from hexapods.domain.checks import check_whole
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.records import Record
 from hexapods.domain.settings import Setting, declared_fields
+from hexapods.domain.short_repr import short_repr
 from hexapods.runs.config import RACE_STEPS, Seed, WalkingProblem
 from hexapods.runs.lane import LaneConfig
 
@@ -72,6 +73,8 @@ class RaceConfig(WalkingProblem):
     Raises:
         InvalidInput: if there are no or too many lanes, or too many steps in all.
     """
+
+    __repr__ = short_repr
 
     lanes: tuple[LaneConfig, ...]
     steps: RaceSteps = RACE_STEPS

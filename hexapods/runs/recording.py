@@ -146,6 +146,10 @@ class LaneRecording:
         self.agent, self.rest_qpos, self.failure = agent, rest_qpos, failure
         self.steps = steps if isinstance(steps, LaneSteps) else LaneSteps(steps)
 
+    def __repr__(self) -> str:
+        failed = "" if self.failure is None else ", failed"
+        return f"<LaneRecording of {self.agent}: {len(self.steps):,} steps{failed}>"
+
     def so_far(self) -> "LaneRecording":
         """Return the recording so far, which does not grow."""
         return LaneRecording(self.agent, self.rest_qpos, self.steps.so_far(), self.failure)

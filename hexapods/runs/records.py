@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from hexapods.agents.explanation import Future
+from hexapods.domain.short_repr import short_repr
 from hexapods.domain.simulator import Motion
 from hexapods.domain.types import Action, Cells, FloatArray
 
@@ -10,6 +11,8 @@ from hexapods.domain.types import Action, Cells, FloatArray
 @dataclass(frozen=True)
 class ActionValues:
     """Action values of a learner in the state in which it is about to act."""
+
+    __repr__ = short_repr
 
     values: FloatArray
     """(groups, cells) expected return [m], NaN where illegal."""
@@ -20,6 +23,8 @@ class ActionValues:
 @dataclass(frozen=True)
 class StepTaken:
     """One step of practice."""
+
+    __repr__ = short_repr
 
     step: int
     """Counted from 1."""
@@ -65,6 +70,8 @@ class Reference:
 class Evaluated:
     """Evaluation after `step` steps of practice: 50 steps from rest at ε = 0."""
 
+    __repr__ = short_repr
+
     step: int
     epsilon: float
     """ε of the practice at that step."""
@@ -75,6 +82,8 @@ class Evaluated:
 @dataclass(frozen=True)
 class LaneStep:
     """One step of one lane of a race."""
+
+    __repr__ = short_repr
 
     lane: int
     step: int
@@ -96,6 +105,8 @@ class LaneStep:
 @dataclass(frozen=True)
 class LaneFailed:
     """Failure of a lane: its agent raised, or its physics diverged."""
+
+    __repr__ = short_repr
 
     lane: int
     step: int

@@ -14,6 +14,7 @@ from annotated_types import Ge, Le, MaxLen, MinLen, Predicate
 from hexapods.agents.protocol import Tabular
 from hexapods.domain.posture import have_fallen, heading_deg
 from hexapods.domain.robot import Robot
+from hexapods.domain.short_repr import short_repr
 from hexapods.domain.text import MAX_MESSAGE, message
 from hexapods.domain.world import World
 from hexapods.runs.best_known import best_known_m
@@ -50,6 +51,8 @@ class TrainingResult:
     Both walked in the world as it was at the end. `fell_at_step` is the first step of practice,
     counted from 0, in which the robot fell.
     """
+
+    __repr__ = short_repr
 
     distance_m: Metres | None
     greedy_distance_m: Metres | None = None
@@ -95,6 +98,8 @@ class LaneResult:
     fall; `heading_deg` is its heading at the end: 0 along the track, and 90 to the left.
     """
 
+    __repr__ = short_repr
+
     agent: Message
     training_id: str | None = None
     trained_robot: Mapping[str, Any] | None = None
@@ -117,6 +122,8 @@ class RaceResult:
     race is repeated; null if it was raced by an earlier version. `shared_machine`: whether other
     runs computed beside it, which slows its wall clock.
     """
+
+    __repr__ = short_repr
 
     lanes: Annotated[tuple[LaneResult, ...], MaxLen(MAX_LANES)]
     recording_sha256: Sha256 | None = None

@@ -22,6 +22,7 @@ from hexapods.domain.disturbance_documents import as_mapping
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json
+from hexapods.domain.short_repr import short_repr
 from hexapods.domain.world import world
 from hexapods.runs import seeding
 from hexapods.runs.config import TrainingConfig, WalkingProblem
@@ -46,6 +47,8 @@ class Checkpoint:
             `observation`, `agent`, `step`, `config`, and fields that the writer adds.
         arrays: the agent's state under the prefix `agent.`, the simulator's under `state.`.
     """
+
+    __repr__ = short_repr
 
     meta: Mapping[str, Any]
     arrays: Arrays
