@@ -66,6 +66,7 @@ def test_it_carries_the_page_and_the_models_and_no_tests(wheel: Path) -> None:
         expected = {f"hexapods/_{path.relative_to(CHECKOUT).as_posix()}" for path in files}
         assert expected <= packed
     assert "hexapods/exports/servo_maps/freenove.yaml" in packed
+    assert {"hexapods/py.typed", "app/py.typed"} <= packed
     packages = {name.split("/")[0] for name in packed if ".dist-info/" not in name}
     assert packages == {"app", "hexapods"}
 

@@ -20,11 +20,16 @@ to states that it never saw.
 """
 
 import argparse
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from hexapods.agents.protocol import AgentState, Problem, Transition
 from hexapods.assembly import build_learner
+from hexapods.domain.types import Action, Cells
 from hexapods.runs.config import training_config
 from hexapods.runs.results import training_result
 from hexapods.runs.tables import snapshot, to_bytes
@@ -33,41 +38,43 @@ from hexapods.runs.tables import snapshot, to_bytes
 class Agent:
     """Takes the legal action that the network values most. It learns beforehand, not here."""
 
-    def __init__(self, problem):
+    def __init__(self, problem: Problem) -> None:
         self.shape = len(problem.groups), len(problem.cells_m)
-        self.layers = []  # of each its weights and biases
+        self.layers: list[tuple[NDArray[Any], NDArray[Any]]] = []  # of each its weights and biases
 
-    def act(self, observation, legal):
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
         signal = np.eye(self.shape[1])[list(observation)].ravel()  # the cell of each pair, one-hot
         for number, (weights, biases) in enumerate(self.layers):
             signal = weights @ (np.maximum(signal, 0) if number else signal) + biases
         values = signal.reshape(self.shape)
         return max(legal, key=lambda action: values[action.group, action.cell])
 
-    def learn(self, transition):
+    def learn(self, transition: Transition) -> None:
         pass
 
-    def state(self):
-        arrays = {}
+    def state(self) -> AgentState:
+        arrays: AgentState = {}
         for number, (weights, biases) in enumerate(self.layers):
             arrays |= {f"weights{number}": weights.copy(), f"biases{number}": biases.copy()}
         return arrays
 
-    def load(self, state):
+    def load(self, state: AgentState) -> None:
         numbers = range(len(state) // 2)
         self.layers = [(state[f"weights{number}"], state[f"biases{number}"]) for number in numbers]
 
 
-def practise(walk, steps, seed):
+def practise(walk: Mapping[str, Any], steps: int, seed: int) -> AgentState:
     """Train a network on `RacingHexapods/Walk-v0`; what `Agent.load` takes."""
     import gymnasium
     import torch
     from stable_baselines3 import DQN
 
     torch.set_num_threads(1)  # is quicker with a network so small
-    environment = gymnasium.make("hexapods.environment:RacingHexapods/Walk-v0", **walk)
+    environment: Any = gymnasium.make("hexapods.environment:RacingHexapods/Walk-v0", **walk)
     # In centimetres, because a network learns badly from rewards of a hundredth.
-    environment = gymnasium.wrappers.TransformReward(environment, lambda reward_m: 100 * reward_m)
+    environment = gymnasium.wrappers.TransformReward(
+        environment, lambda reward_m: 100 * float(reward_m)
+    )
     dqn = DQN(
         "MlpPolicy",
         environment,
@@ -80,14 +87,14 @@ def practise(walk, steps, seed):
         device="cpu",
     ).learn(steps)
     layers = [layer for layer in dqn.q_net.q_net if isinstance(layer, torch.nn.Linear)]
-    arrays = {}
+    arrays: AgentState = {}
     for number, layer in enumerate(layers):
         arrays[f"weights{number}"] = layer.weight.detach().numpy().astype(float)
         arrays[f"biases{number}"] = layer.bias.detach().numpy().astype(float)
     return arrays
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--gait", default="left-right-origin")
     parser.add_argument("--simulator", default="mujoco")
@@ -96,7 +103,7 @@ def main():
     parser.add_argument("--out", type=Path, default=Path("dqn.npz"))
     options = parser.parse_args()
 
-    walk = {"gait": options.gait, "simulator": options.simulator}
+    walk: dict[str, Any] = {"gait": options.gait, "simulator": options.simulator}
     config = training_config(
         **walk, steps=options.steps, seed=options.seed, agent="dqn_agent:Agent", evaluate_every=0
     )

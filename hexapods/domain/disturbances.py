@@ -4,7 +4,7 @@ Each begins with a step and may end with one. Steps are counted from 0, so that 
 from the start. Each field is declared once, as `hexapods.domain.settings` describes.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, NamedTuple
@@ -137,7 +137,7 @@ class _OfLegs(Disturbance):
     """Something that happens to legs, given by their numbers from 1."""
 
     identified_by = ("legs",)
-    legs: tuple[int, ...]
+    legs: Sequence[int]
 
     def __post_init__(self) -> None:
         super().__post_init__()

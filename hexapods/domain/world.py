@@ -5,7 +5,7 @@ world whose disturbances all hold from the start, by which physics models are co
 """
 
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, NamedTuple, TypeVar
@@ -64,7 +64,7 @@ class World:
 
     __repr__ = short_repr
 
-    disturbances: tuple[Disturbance, ...] = ()
+    disturbances: Sequence[Disturbance] = ()
 
     def __post_init__(self) -> None:
         given: Any = self.disturbances  # as a user gave them
@@ -281,7 +281,7 @@ def _held_at(disturbances: Iterable[Disturbance], step: int) -> tuple[Disturbanc
     """Return what holds in a step, by its newest, leg by leg."""
     unchecked = object.__new__(World)
     object.__setattr__(unchecked, "disturbances", tuple(disturbances))
-    return unchecked._conditions_at(step).disturbances
+    return tuple(unchecked._conditions_at(step).disturbances)
 
 
 def _is_patch_on_bumps(one: Disturbance, other: Disturbance) -> bool:

@@ -1,4 +1,4 @@
-"""The examples of docs/python.md run, one after the other, each as a program of its own."""
+"""The programs of the documentation: those of docs/python.md run, and all have correct types."""
 
 import os
 import re
@@ -7,17 +7,16 @@ import sys
 from pathlib import Path
 
 from tests.cli.running import ROOT
-
-_BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+from tests.docs.programs import DOCS, blocks, programs
 
 
 def test_the_examples_run(tmp_path: Path) -> None:
-    blocks = _BLOCK.findall((ROOT / "docs" / "python.md").read_text("utf-8"))
+    examples = blocks(DOCS / "python.md")
     program, printed = tmp_path / "program.py", []
     # The page is opened in a browser that ends at once.
     variables = {"BROWSER": "true", "XDG_CACHE_HOME": str(tmp_path / "cache")}
-    for number, block in enumerate(blocks):
-        program.write_text("import hexapods as hx\n" * (number > 0) + block, "utf-8")
+    for example in examples:
+        program.write_text(example, "utf-8")
         done = subprocess.run(
             [sys.executable, "-W", "error", program.name],
             cwd=tmp_path,
@@ -26,8 +25,60 @@ def test_the_examples_run(tmp_path: Path) -> None:
             text=True,
             check=False,
         )
-        assert (done.returncode, done.stderr) == (0, ""), block
+        assert (done.returncode, done.stderr) == (0, ""), example
         printed += done.stdout.splitlines()
-    assert len(blocks) == 6
-    assert {"program.py", "race.npz", "sarsa.npz"} <= {path.name for path in tmp_path.iterdir()}
-    assert any(re.match(r"Q-learning, 50\ssteps, α\s0\.1 0\.\d", line) for line in printed), printed
+    assert len(examples) == 7
+    assert {"program.py", "race.npz", "sarsa.npz", "trials.csv"} <= {
+        path.name for path in tmp_path.iterdir()
+    }
+    assert any(re.match(r"Q-learning, 50 steps, α 0\.1 0\.\d", line) for line in printed), printed
+
+
+def test_the_settings_of_the_documented_agents_change_what_they_learn(tmp_path: Path) -> None:
+    """Each declares a setting: another value gives another table, and so another walk."""
+    [curious] = [block for block in blocks(ROOT / "README.md") if "class Curious" in block]
+    [hurried] = [block for block in blocks(DOCS / "python.md") if "class Hurried" in block]
+    (tmp_path / "curious.py").write_text(curious, "utf-8")
+    (tmp_path / "hurried.py").write_text(hurried.partition("\n\n\nfor ")[0], "utf-8")
+    program = """
+import hexapods as hx
+
+def learned(agent, **settings):
+    training = hx.train(agent, steps=200, seed=1, simulator="kinematic", **settings)
+    return training.q_table_sha256, training.distance_m
+
+def differ(*trainings):
+    tables, distances_m = zip(*trainings)
+    return len(set(tables)), len(set(distances_m))
+
+plain = learned("q-learning")
+later = [{"step": 20, "settings": {"curiosity": 0.1}}]
+for agent, name in (("curious:Curious", "curiosity"), ("hurried:Hurried", "cost_m")):
+    without, with_it = (learned(agent, **{name: number}) for number in (0.0, 0.02))
+    print(differ(plain, without), differ(plain, with_it))
+print(differ(plain, learned("curious:Curious", curiosity=0.0, changes=later)))
+"""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", program],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout.splitlines() == ["(1, 1) (2, 2)", "(1, 1) (2, 2)", "(2, 2)"], done.stderr
+
+
+def test_mypy_finds_nothing_in_any_program(tmp_path: Path) -> None:
+    written = programs()
+    for name, program in written.items():
+        (tmp_path / name).write_text(program, "utf-8")
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", *(str(tmp_path / name) for name in written)],
+        cwd=ROOT,  # its settings, and what it knows of the library already
+        env={**os.environ, "MYPYPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert checked.returncode == 0, checked.stdout
+    assert {"readme_0.py", "python_0.py", "my_agent.py", "reproduce_notebook.py"} <= set(written)

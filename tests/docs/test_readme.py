@@ -1,6 +1,5 @@
 """The README's Python examples do what it says."""
 
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -8,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from tests.cli.running import ROOT
+from tests.docs.programs import blocks
 
-BLOCKS = re.findall(
-    r"^```python\n(.*?)^```$", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE | re.DOTALL
-)
+BLOCKS = blocks(ROOT / "README.md")
 
 
 # `tests/test_wheel.py` runs the first, in an environment that has nothing else.

@@ -220,7 +220,7 @@ def test_later_world_begins_and_ends_later() -> None:
 def test_a_world_is_made_of_disturbances(given: Any) -> None:
     with pytest.raises(InvalidInput, match="made of disturbances, as World"):
         World(given)
-    assert World([Limp(legs=(1,))]) == World((Limp(legs=(1,)),))  # type: ignore[arg-type]
+    assert World([Limp(legs=(1,))]) == World((Limp(legs=(1,)),))
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case['happens']} in {case['step']}")
