@@ -36,9 +36,9 @@ def test_the_examples_run(tmp_path: Path) -> None:
 
 def test_the_settings_of_the_documented_agents_change_what_they_learn(tmp_path: Path) -> None:
     """Each declares a setting: another value gives another table, and so another walk."""
-    [curious] = [block for block in blocks(ROOT / "README.md") if "class Curious" in block]
+    [cautious] = [block for block in blocks(ROOT / "README.md") if "class Cautious" in block]
     [hurried] = [block for block in blocks(DOCS / "python.md") if "class Hurried" in block]
-    (tmp_path / "curious.py").write_text(curious, "utf-8")
+    (tmp_path / "cautious.py").write_text(cautious, "utf-8")
     (tmp_path / "hurried.py").write_text(hurried.partition("\n\n\nfor ")[0], "utf-8")
     program = """
 import hexapods as hx
@@ -52,11 +52,10 @@ def differ(*trainings):
     return len(set(tables)), len(set(distances_m))
 
 plain = learned("q-learning")
-later = [{"step": 20, "settings": {"curiosity": 0.1}}]
-for agent, name in (("curious:Curious", "curiosity"), ("hurried:Hurried", "cost_m")):
-    without, with_it = (learned(agent, **{name: number}) for number in (0.0, 0.02))
-    print(differ(plain, without), differ(plain, with_it))
-print(differ(plain, learned("curious:Curious", curiosity=0.0, changes=later)))
+later = [{"step": 20, "settings": {"caution": 4.0}}]
+for agent, off in (("cautious:Cautious", {"caution": 1.0}), ("hurried:Hurried", {"cost_m": 0.0})):
+    print(differ(plain, learned(agent, **off)), differ(plain, learned(agent)))
+print(differ(plain, learned("cautious:Cautious", caution=1.0, changes=later)))
 """
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", program],
