@@ -42,14 +42,13 @@ def race(
     repeated = {lane: list(recorded) for lane, recorded in enumerate(prefix)}
     for step in range(1, steps + 1):
         for lane, (walker, last) in list(running.items()):
-            recorded = repeated.get(lane, ())
-            record = None
+            recorded = repeated.get(lane, [])
+            repetition = None
             if step <= len(recorded) and is_memoryless(walker.agent):
-                record = _repeat_step(walker, recorded[step - 1])
-                if record is None:  # another processor or engine: the lane goes its own way
+                repetition = _repeat_step(walker, recorded[step - 1])
+                if repetition is None:  # another processor or engine: the lane goes its own way
                     del repeated[lane]
-            if record is None:
-                record = _lane_step(lane, step, walker, last, timer)
+            record = repetition or _lane_step(lane, step, walker, last, timer)
             yield record
             if isinstance(record, LaneFailed):
                 del running[lane]
