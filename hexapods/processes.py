@@ -23,6 +23,7 @@ from multiprocessing.context import ForkServerContext, SpawnContext
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
+from hexapods.clean_start import clean_start
 from hexapods.domain import robot_documents
 
 STALLED_S = 8.0
@@ -49,12 +50,14 @@ class SetUp:
         niceness: added to the nice value.
         leads_group: whether it leads a group of its own, so that it can be killed with the
             processes that it starts. One that does not is stopped and continued by the terminal.
+        imports_main: whether it imports the program that starts it, as it needs classes of that.
         environment: variables that are set, since a fork server has those of its own start.
     """
 
     name: str
     niceness: int = 0
     leads_group: bool = True
+    imports_main: bool = False
     environment: Mapping[str, str] = field(default_factory=dict)
 
     def apply(self) -> None:
@@ -178,7 +181,8 @@ class Child:
         arguments = self._target, self._set_up, robot_documents.known(), other_end
         self._process = context.Process(target=_run, args=arguments, name=self._set_up.name)
         try:
-            self._process.start()
+            with clean_start(imports_main=self._set_up.imports_main):
+                self._process.start()
         except (EOFError, ConnectionError):
             self.pipe.close()  # the fork server may have forked before it ended
             return False
@@ -218,7 +222,7 @@ def start_fork_server(preloaded: Sequence[str]) -> None:
     """
     if sys.platform == "linux":
         forkserver.set_forkserver_preload(list(preloaded))
-        with _sigint_blocked():
+        with _sigint_blocked(), clean_start(imports_main=False):
             forkserver.ensure_running()
 
 
@@ -254,7 +258,8 @@ def _sigint_blocked() -> Iterator[None]:
         yield
         return
     # Starting the resource tracker unblocks SIGINT, so that it must be running beforehand.
-    resource_tracker.ensure_running()
+    with clean_start(imports_main=False):
+        resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

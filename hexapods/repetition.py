@@ -32,6 +32,7 @@ from hexapods.domain.text import counted
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config
 from hexapods.experiments.folder import open_results
+from hexapods.experiments.local_workers import defines_agents
 from hexapods.experiments.progress import Progress
 from hexapods.experiments.trial import TrialResult
 from hexapods.experiments.worker import Outcome
@@ -167,8 +168,8 @@ def experiment(
 ) -> Experiment:
     """Repeat trainings over many seeds, on all cores, and summarise them with intervals.
 
-    Its trials run in processes, which import the calling program again: in a program call it under
-    `if __name__ == "__main__":`, and define agents in a module. A notebook needs neither.
+    Its trials run in processes, which know agents of modules. A program that defines agents itself
+    is imported again for them: there, call it under `if __name__ == "__main__":`.
 
     Args:
         name: `table1`, `figure4`, `sweep`, `league` or `recovery`; see `ExperimentConfig`.
@@ -222,11 +223,13 @@ def experiment(
 
 
 def _check_main_module() -> None:
-    """Check that a program which calls this is not one that its processes would run again.
+    """Check that a program which defines agents is not one that its processes would run again.
 
     Raises:
         InvalidInput: if it has no `if __name__ == "__main__":`.
     """
+    if not defines_agents():
+        return
     main = sys.modules["__main__"]
     frame, is_running = inspect.currentframe(), False
     while frame is not None and not is_running:
@@ -243,8 +246,8 @@ def _check_main_module() -> None:
     tests = (ast.unparse(node.test) for node in ast.walk(program) if isinstance(node, ast.If))
     if not any("__name__" in test for test in tests):
         raise InvalidInput(
-            f"the processes of an experiment import {Path(path).name} again, which would begin it "
-            'again: put the lines that call it under if __name__ == "__main__":'
+            f"the processes of an experiment import {Path(path).name} again for its agents, which "
+            'would begin it again: put the lines that call it under if __name__ == "__main__":'
         )
 
 

@@ -80,21 +80,33 @@ def test_what_is_no_list_of_these_is_refused(given: dict[str, Any], reason: str)
         hx.experiment("sweep", **{**SWEEP, **given})
 
 
-@pytest.mark.parametrize("guard", ["", 'if __name__ == "__main__":'])
-def test_a_program_that_would_begin_again_in_each_process_is_told_so(
-    tmp_path: Path, guard: str
+AGENT = """
+class Mine(hx.QLearning):
+    pass
+"""
+GUARD = 'if __name__ == "__main__":'
+
+
+@pytest.mark.parametrize(
+    ("agent", "line", "trials"),
+    [("", "if True:", 2), (AGENT, GUARD, 2), (AGENT, "if True:", None)],
+    ids=["no agents", "agents, guarded", "agents, not guarded"],
+)
+def test_only_a_program_that_defines_agents_needs_a_guard(
+    tmp_path: Path, agent: str, line: str, trials: int | None
 ) -> None:
     program = tmp_path / "program.py"
-    call = "print(len(hx.experiment('sweep', gaits='left-right-origin', steps=5, **given).trials))"
-    given = "given = {'simulator': 'kinematic', 'seeds': 1, 'workers': 1}"
-    program.write_text(f"import hexapods as hx\n{given}\n{guard or 'if True:'}\n    {call}\n")
+    agents = ", agents=[Mine]" if agent else ""
+    given = "simulator='kinematic', seeds=1, workers=1, gaits='left-right-origin', steps=5"
+    call = f"print(len(hx.experiment('sweep', {given}{agents}).trials))"
+    program.write_text(f"import hexapods as hx\n{agent}\n{line}\n    {call}\n")
     done = subprocess.run(
         [sys.executable, program.name], cwd=tmp_path, capture_output=True, text=True, check=False
     )
-    if guard:
-        assert done.stdout == "2\n", done.stderr
+    if trials is not None:
+        assert done.stdout == f"{trials}\n", done.stderr
     else:
-        told = "import program.py again, which would begin it again: put the lines that call it"
+        told = "import program.py again for its agents, which would begin it again: put the lines"
         assert told in done.stderr.splitlines()[-1]
         assert "distributed" not in done.stderr
 

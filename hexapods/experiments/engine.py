@@ -35,7 +35,7 @@ def run_trials(
 
     A trial whose worker died is retried alone; one that killed its worker `DEATHS` times, or
     raised an error, is set aside. Trials that measure time run last, one at a time. A script that
-    calls this needs `if __name__ == "__main__":`, since the worker processes import the script.
+    defines agents needs `if __name__ == "__main__":`, since the worker processes import it then.
 
     Args:
         trials: the trials, with unique keys.

@@ -1,6 +1,7 @@
 """Worker processes on this machine, which run trials."""
 
 import os
+import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Future
@@ -50,6 +51,7 @@ def local_pool(count: int, most_bytes: int | None = None) -> Iterator[WorkerPool
             name="trial worker",
             # They are stopped and continued together with this process.
             leads_group=False,
+            imports_main=defines_agents(),
             environment={**os.environ, "TMPDIR": folder},
         )
         pool = WorkerPool(count, set_up, most_bytes=most_bytes)
@@ -61,6 +63,14 @@ def local_pool(count: int, most_bytes: int | None = None) -> Iterator[WorkerPool
         finally:
             # Each would finish its trial first.
             pool.shutdown(cancel_futures=True)
+
+
+def defines_agents() -> bool:
+    """Whether the main module defines classes of agents, for which workers have to import it."""
+    return any(
+        isinstance(value, type) and value.__module__ == "__main__" and hasattr(value, "act")
+        for value in list(vars(sys.modules["__main__"]).values())
+    )
 
 
 class LocalWorkers:
@@ -100,8 +110,8 @@ def _wait_until_started(pool: WorkerPool) -> None:
             one.result()
     except BrokenExecutor as error:
         raise ClusterLost(
-            "no worker process can be started; does the program start its work under "
-            '`if __name__ == "__main__":`, as the workers import it?'
+            "no worker process can be started; the workers import the program for its agents: does "
+            'it start its work under `if __name__ == "__main__":`?'
         ) from error
     except OSError as error:
         raise _not_started(error) from error

@@ -86,7 +86,10 @@ def test_a_program_that_its_workers_cannot_import_is_told_how_to_start(tmp_path:
     script.write_text(
         "from hexapods.experiments.cluster import ClusterSpec\n"
         "from hexapods.experiments.engine import run_trials\n"
+        "from hexapods.agents.q_learning import QLearning\n"
         "from tests.experiments.clusters import small, trials_of\n"
+        "class Mine(QLearning):\n"
+        "    pass\n"
         "list(run_trials(trials_of(small(seeds=1)), ClusterSpec(workers=1)))\n",
         "utf-8",
     )
@@ -99,7 +102,7 @@ def test_a_program_that_its_workers_cannot_import_is_told_how_to_start(tmp_path:
         timeout=LONG_S,
     )
     assert ended.returncode == 1
-    assert ended.stderr.splitlines()[-1].endswith("as the workers import it?")
+    assert "the workers import the program for its agents" in ended.stderr.splitlines()[-1]
     assert 'if __name__ == "__main__":' in ended.stderr.splitlines()[-1]
 
 
