@@ -28,7 +28,7 @@ def clean_start(*, imports_main: bool) -> Iterator[None]:
     # `multiprocessing` has no options for it. Other threads may start processes of their own.
     thread = threading.get_ident()
     with _LOCK:
-        preparation, options = spawn.get_preparation_data, util._args_from_interpreter_flags
+        preparation, options = spawn.get_preparation_data, util._args_from_interpreter_flags  # noqa: SLF001
 
         def get_preparation_data(name: str) -> dict[str, Any]:
             data = preparation(name)
@@ -42,9 +42,9 @@ def clean_start(*, imports_main: bool) -> Iterator[None]:
             return [*interpreter, _SAFE_PATH] if is_added else interpreter
 
         spawn.get_preparation_data = get_preparation_data
-        util._args_from_interpreter_flags = get_options
+        util._args_from_interpreter_flags = get_options  # noqa: SLF001
         try:
             yield
         finally:
             spawn.get_preparation_data = preparation
-            util._args_from_interpreter_flags = options
+            util._args_from_interpreter_flags = options  # noqa: SLF001

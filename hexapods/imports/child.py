@@ -1,7 +1,8 @@
 """Reads a robot's file in a child process with limits, since its parsers are not to be trusted.
 
-The child has a share of processor time and of memory, writes no file, works in an empty folder, and
-is killed with its group when its time is over. Its answer comes as JSON, and is validated here.
+The child has a share of processor time and of memory, writes no file, works in an empty folder that
+has no name any more, so that nothing is left of it even after SIGKILL, and is killed with its group
+when its time is over. Its answer comes as JSON, and is validated here.
 """
 
 import json
@@ -28,7 +29,6 @@ from hexapods.imports.imported import ImportedRobot
 from hexapods.imports.upload import MAX_UPLOAD_BYTES
 from hexapods.processes import Child, SetUp
 
-_SET_UP = SetUp(name="robot import", niceness=5)
 _MAX_ANSWER_BYTES = 16 << 20
 _MAX_ERROR = 1000
 _START_S = 60.0
@@ -39,6 +39,10 @@ _READY = b"ready"
 _TURNS = threading.BoundedSemaphore(2)
 """Held while a file is read; others wait, since each may take much memory."""
 _logger = logging.getLogger(__name__)
+
+
+class NotRead(HexapodError):
+    """No process could read the file, of which nothing is known then: it may be good."""
 
 
 @dataclass(frozen=True)
@@ -75,16 +79,15 @@ def read_robot_file(
 
     Raises:
         InvalidInput: one sentence: what is wrong with the file or a choice, and what is valid.
-        OSError: if no process can be started.
+        NotRead: if no process can be started.
     """
     if len(data) > MAX_UPLOAD_BYTES:
         raise DamagedFile(
             f"the file has {len(data):,} bytes; a robot has at most {MAX_UPLOAD_BYTES:,}"
         )
-    with _TURNS, tempfile.TemporaryDirectory(prefix="robot-import-") as folder:
+    with _TURNS:
         answer = _ask(
             {
-                "folder": folder,
                 "file_name": visible(file_name or "robot.xml")[-200:],
                 "choices": to_json(choices),
                 "seconds": limits.seconds,
@@ -101,16 +104,20 @@ def _ask(head: dict[str, Any], data: bytes, limits: ReadingLimits) -> bytes:
 
     Raises:
         DamagedFile: if it took too long or too much, or ended without an answer.
+        NotRead: if it ended before it was given the file.
     """
-    child = Child(_answer_once, _SET_UP)
-    child.start()
     try:
-        _wait(child, _START_S, limits, "starting the process that reads it")
+        temporary = {"TMPDIR": tempfile.gettempdir()}
+        child = Child(_answer_once, SetUp(name="robot import", niceness=5, environment=temporary))
+        child.start()
+    except OSError as error:
+        raise _not_read(str(error)) from error
+    try:
+        _wait_until_ready(child)
         with suppress(OSError):  # it has ended, which is seen next
-            child.pipe.recv_bytes(len(_READY))
             child.pipe.send_bytes(json.dumps(head).encode())
             child.pipe.send_bytes(data)
-        _wait(child, limits.clock_seconds, limits, "reading it")
+        _wait(child, limits)
         return child.pipe.recv_bytes(_MAX_ANSWER_BYTES)
     except (EOFError, OSError):
         child.kill()
@@ -121,18 +128,38 @@ def _ask(head: dict[str, Any], data: bytes, limits: ReadingLimits) -> bytes:
         child.pipe.close()
 
 
-def _wait(child: Child, seconds: float, limits: ReadingLimits, what: str) -> None:
+def _wait_until_ready(child: Child) -> None:
+    """Wait until the child has imported what it needs, and has a folder.
+
+    Raises:
+        NotRead: if it does not in `_START_S`, or ends.
+    """
+    if not child.wait(_START_S):
+        raise _not_read(f"it has not begun after {_START_S:g} s")
+    try:
+        said = child.pipe.recv_bytes(_MAX_ERROR)
+    except (EOFError, OSError):
+        raise _not_read("it ended as it began") from None
+    if said != _READY:
+        raise _not_read(said.decode())
+
+
+def _not_read(reason: str) -> NotRead:
+    return NotRead(f"the process that reads robots' files cannot be started ({reason}); try again")
+
+
+def _wait(child: Child, limits: ReadingLimits) -> None:
     """Wait until the child has sent something.
 
     Raises:
         DamagedFile: if it does not in this time, or takes too much memory.
         EOFError: if it has ended.
     """
-    deadline_s = time.monotonic() + seconds
+    deadline_s = time.monotonic() + limits.clock_seconds
     at_start = child.memory_bytes()
     while not child.wait(_CHECK_EVERY_S):
         if time.monotonic() > deadline_s:
-            raise DamagedFile(f"{what} takes longer than {seconds:g} s: simplify its meshes")
+            raise DamagedFile(_too_long(limits.clock_seconds))
         if child.memory_bytes() - at_start > limits.memory_bytes:
             raise DamagedFile(_too_much_memory(limits.memory_bytes))
     if not child.pipe.poll():
@@ -141,11 +168,15 @@ def _wait(child: Child, seconds: float, limits: ReadingLimits, what: str) -> Non
 
 def _why_it_ended(code: int | None, limits: ReadingLimits) -> str:
     if sys.platform != "win32" and code in (-signal.SIGXCPU, -signal.SIGKILL):
-        return f"reading it takes longer than {limits.seconds:g} s: simplify its meshes"
+        return _too_long(limits.seconds)
     return (
         "MuJoCo breaks down on the file: something in it, most likely a mesh, is not as its "
         "format says"
     )
+
+
+def _too_long(seconds: float) -> str:
+    return f"reading it takes longer than {seconds:g} s: simplify its meshes"
 
 
 def _too_much_memory(most_bytes: int) -> str:
@@ -179,6 +210,11 @@ def _answer_once(pipe: Connection) -> None:
 
     silence_mujoco()
     warnings.simplefilter("ignore")  # of NumPy and MuJoCo, on files that are refused or mended
+    try:
+        _enter_empty_folder()
+    except OSError as error:
+        pipe.send_bytes(str(error).encode()[:_MAX_ERROR])
+        return
     pipe.send_bytes(_READY)
     head = json.loads(pipe.recv_bytes())
     _limit(head)
@@ -214,11 +250,30 @@ def _told(read: Callable[[], dict[str, Any]], memory_bytes: int) -> dict[str, An
         }
 
 
-def _limit(head: dict[str, Any]) -> None:
-    """Limit this process, let it work in an empty folder, and forget its environment."""
-    os.chdir(head["folder"])
+def _enter_empty_folder() -> None:
+    """Forget the environment, and work in a folder that is empty, and deleted already.
+
+    No file can be made in it. On Windows, where it could not be deleted, it is the folder of
+    temporary files.
+
+    Raises:
+        OSError: if it cannot be made.
+    """
+    folder = tempfile.gettempdir()
+    if sys.platform == "win32":
+        os.chdir(folder)
+    else:
+        folder = tempfile.mkdtemp(prefix="robot-import-")
+        try:
+            os.chdir(folder)
+        finally:
+            Path(folder).rmdir()
     os.environ.clear()
-    os.environ["TMPDIR"] = head["folder"]
+    os.environ["TMPDIR"] = tempfile.tempdir = folder
+
+
+def _limit(head: dict[str, Any]) -> None:
+    """Limit the resources of this process."""
     if sys.platform == "win32":
         return
     import resource  # noqa: PLC0415 - not on Windows

@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 from hexapods.domain.errors import DamagedFile, InvalidInput
-from hexapods.imports.child import ReadingLimits, read_robot_file
+from hexapods.imports.child import NotRead, ReadingLimits, read_robot_file
 from hexapods.imports.choices import Choices
 from tests.imports.robots import HOME, box_triangles, bug, dog, read, stl, zipped
 
@@ -111,11 +111,37 @@ def test_a_child_that_is_killed_is_told() -> None:
     mesh = stl(box_triangles((1, 1, 1), cells=100))
     torso = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
 
-    with pytest.raises(DamagedFile, match=r"breaks down|longer than"):
+    with pytest.raises((DamagedFile, NotRead), match=r"breaks down|longer than|as it began"):
         read_robot_file(zipped({"bug.urdf": bug(torso=torso), "a.stl": mesh}))
 
     killer.join()
     assert children() == []
+
+
+def test_a_child_that_cannot_begin_says_nothing_of_the_file(temporary: Path) -> None:
+    (temporary / "mujoco.py").write_text("raise SystemExit\n")
+    (temporary / "bug.urdf").write_text(bug())
+    script = (
+        "from hexapods.imports.child import NotRead, read_robot_file\n"
+        "try:\n"
+        "    read_robot_file(open('bug.urdf', 'rb').read())\n"
+        "except NotRead as error:\n"
+        "    print(error)\n"
+    )
+    paths = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+
+    done = subprocess.run(
+        [sys.executable, "-"],
+        check=False,
+        input=script,
+        cwd=temporary,
+        env=paths,
+        capture_output=True,
+        text=True,
+    )
+
+    assert "cannot be started (it ended as it began)" in done.stdout, done.stderr
+    assert {path.name for path in temporary.iterdir()} == {"bug.urdf", "mujoco.py"}
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,8 @@
 """Promise 22: a hostile or damaged robot's file is refused in 5 s and 512 MB, and leaves nothing.
 
 In full: 1,000 damaged files, each refused with a sentence or read as a valid robot, and 50 hostile
-ones. The gate's shorter form damages 20. Limits of time and memory are those of the process that
+ones; and 30 programs that are killed (SIGKILL) while they read, at another moment each. The gate's
+shorter form damages 20, and kills three. Limits of time and memory are those of the process that
 reads; only `make soak` measures the time, since others may keep a busy machine from its work.
 """
 
@@ -9,6 +10,8 @@ import io
 import os
 import stat
 import struct
+import subprocess
+import sys
 import time
 import zipfile
 from collections.abc import Callable, Iterator
@@ -26,6 +29,7 @@ from tests.imports.robots import HOME, box_triangles, bug, dog, stl, zipped
 from tests.promises.length import at_length
 
 DAMAGED = at_length(20, 1000)
+KILLED = at_length(3, 30)
 USUAL_S, LONGEST_S = 5.0, at_length(120.0, 40.0)
 """Most of them, and any one: on a busy machine a process gets its 5 s of the processor later."""
 SURPRISED = "cannot be understood"
@@ -284,3 +288,38 @@ def test_what_is_no_body_takes_no_memory(section: str) -> None:
     found = outcome(with_section(section))
 
     assert isinstance(found, ImportedRobot)
+
+
+LIBRARY = ("-c", "import hexapods as hx; hx.load_robot('bug.zip')")
+COMMAND = ("-m", "app.cli", "robots", "import", "bug.zip", "--data", "data")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the name of a process is set on Linux")
+@pytest.mark.timeout(at_length(300, 1800))
+@pytest.mark.parametrize("number", range(KILLED))
+def test_nothing_is_left_when_the_program_that_reads_is_killed(
+    number: int, leaves_nothing: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.mktemp("program")
+    mesh = stl(box_triangles((1, 1, 1), cells=200))
+    (folder / "bug.zip").write_bytes(zipped({"bug.urdf": bug(torso=shape("a.stl")), "a.stl": mesh}))
+    environment = {"TMPDIR": str(leaves_nothing), "PYTHONPATH": str(Path(__file__).parents[2])}
+    program = psutil.Popen(
+        [sys.executable, *(LIBRARY, COMMAND)[number % 2]],
+        cwd=folder,
+        env={**os.environ, **environment},
+        stderr=subprocess.PIPE,
+    )
+    reader = None
+    while reader is None and program.poll() is None:
+        below = program.children(recursive=True)
+        reader = next((child for child in below if child.name() == "robot import"), None)
+    assert reader is not None, program.communicate()
+    time.sleep(number / KILLED)  # no longer than it reads
+
+    below = program.children(recursive=True)
+    program.kill()
+
+    assert program.wait() == -9
+    _, running = psutil.wait_procs(below, timeout=LONGEST_S)
+    assert not running
