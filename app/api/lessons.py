@@ -23,8 +23,9 @@ LessonPath = Annotated[str, Path(description="id of the lesson", max_length=100)
 router = APIRouter(prefix="/lessons", tags=["lessons"])
 
 
-def _lesson(request: Request, body: BodyDep) -> Lesson:
+def _lesson(services: ServicesDep, request: Request, body: BodyDep) -> Lesson:
     """Return the lesson of a request's body, in JSON or YAML by its media type."""
+    services.store.check_disk_space(len(body))
     media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if len(body) > MAX_BYTES:
         raise InvalidInput(f"a lesson has at most {MAX_BYTES // 1024} kB")

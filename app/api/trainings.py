@@ -1,5 +1,6 @@
 """Routes of trainings: import, learning curve and Q-table."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from fastapi import Body, Query, Request
@@ -20,7 +21,7 @@ from app.explanations.service import MAX_VALUES_SHOWN
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
 from app.storage.json_text import finite
-from app.storage.run import Run, world_of
+from app.storage.run import IdempotencyKey, Run, world_of
 from app.storage.stored_tables import open_table, read_rows
 from hexapods.domain.disturbance_documents import AnyDisturbance, as_mapping
 from hexapods.domain.errors import InvalidInput
@@ -49,9 +50,12 @@ def import_training(
     if not start_request.body:
         raise InvalidInput("send the .npz file of a Q-table as the request's body")
     jobs, agents, table = services.jobs, services.agents, start_request.body
-    (run,) = start_request.runs(
-        services, lambda key: [table_import.import_table(jobs, table, agents, name, key)]
-    )
+
+    def create(key: IdempotencyKey | None) -> Sequence[Run]:
+        services.store.check_disk_space(len(table))
+        return [table_import.import_table(jobs, table, agents, name, key)]
+
+    (run,) = start_request.runs(services, create)
     return located(services, request, run, 201)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from app.storage.database.robots import RobotOrigin
 from app.storage.database.store import RunStore
+from app.storage.errors import Busy
 from app.storage.stored_robot import StoredRobot, distinct_name
 from hexapods.domain import robot_documents
 from hexapods.domain.creatures import own_gait
@@ -18,7 +19,7 @@ from hexapods.domain.records import to_json
 from hexapods.domain.robot import Robot, document_of, parse_document, robot
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.domain.text import MAX_NAME, check_name, visible
-from hexapods.imports.child import read_robot_file
+from hexapods.imports.child import NotRead, read_robot_file
 from hexapods.imports.choices import AS_FOUND, Choices
 from hexapods.imports.imported import ImportedRobot
 from hexapods.runs.config import WalkingProblem
@@ -27,6 +28,7 @@ from hexapods.runs.preview import preview
 MEMBERS = ("robot", "gait", "name")
 """Of the JSON by which a body is stored."""
 _UNNAMED = "Robot"
+_RETRY_S = 5
 _TOLD = (
     'send {"robot": …}, with a robot as in any request; the document of a robot as '
     "`GET /robots/{id}/file` and `hexapods robots export` give it; or MJCF or URDF, alone or in a "
@@ -55,13 +57,15 @@ def import_robot(
     Raises:
         InvalidInput: if it is no robot, or one that cannot stand or reach its feet's homes.
         DamagedFile: if its document was changed, or the file is damaged.
+        Busy: if no process can read the file at present.
         Conflict: if another robot has its name.
         StorageFull: if there are too many, or too little disk space.
     """
     if not data:
         raise InvalidInput(f"the body is empty: {_TOLD}")
+    store.check_disk_space(len(data))
     if _is_model(data):
-        imported = read_robot_file(data, file)
+        imported = _read(data, file)
         about, document = _of_file(imported, AS_FOUND, file)
         own = name if name is not None else _distinct(store, check_name(imported.name[:MAX_NAME]))
         about = replace(about, name=_named(store, own or None))
@@ -94,15 +98,25 @@ def correct_robot(store: RunStore, robot_id: str, choices: Choices) -> StoredRob
     Raises:
         NotFound: if there is no such robot.
         InvalidInput: if it is from no file, or a choice is not valid.
+        Busy: if no process can read the file at present.
+        StorageFull: if there is too little disk space.
     """
     stored, origin = store.robots.get(robot_id), store.robots.origin(robot_id)
     if origin is None:
         raise InvalidInput(f"{stored.name} is from no file here: there is nothing to read again")
-    imported = read_robot_file(origin.upload, stored.file, choices)
+    store.check_disk_space(len(origin.upload))
+    imported = _read(origin.upload, stored.file, choices)
     about, document = _of_file(imported, choices, stored.file)
     return store.robots.replace(
         robot_id, document, about, RobotOrigin(origin.upload, _found(imported))
     )
+
+
+def _read(data: bytes, file: str | None, choices: Choices = AS_FOUND) -> ImportedRobot:
+    try:
+        return read_robot_file(data, file, choices)
+    except NotRead as error:
+        raise Busy(str(error), _RETRY_S) from error
 
 
 def _of_file(

@@ -169,6 +169,7 @@ def import_runs(
         InvalidInput: if an agent, robot or gait is not supported here.
         StorageFull: if there is too little disk space.
     """
+    store.check_disk_space(len(data))
     members = archive.unpack(data, label, _is_member_name if is_one else _is_any_member_name)
     if is_one or RUN in members:
         checked = [_checked(members, ids, agents, label)]

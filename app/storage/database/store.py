@@ -93,13 +93,16 @@ class RunStore:
         self.tournaments = TournamentRows(database)
         self.visitors = VisitorRows(database)
 
-    def check_disk_space(self) -> None:
-        """Check that there is disk space for one more run.
+    def check_disk_space(self, size: int = START_BYTES) -> None:
+        """Check that there is disk space, before the work whose result needs it.
+
+        Args:
+            size: of what is to be stored [bytes]; by default that of one more run.
 
         Raises:
-            StorageFull: if there is too little, or would be while the run runs.
+            StorageFull: if there is too little.
         """
-        self.files.check_disk_space(START_BYTES)
+        self.files.check_disk_space(size)
 
     def check_writable(self) -> None:
         """Check that the last write to the database succeeded, or one that was tried since then.
