@@ -11,8 +11,14 @@ from app.api.contract import GIVEN_LESSON, TEXT, answers
 from app.api.deps import BodyDep, ServicesDep
 from app.api.formats import attachment, negotiated
 from app.api.spectators import page_address, qr_image
-from app.classroom.lesson import Lesson, adapter, html_of, read_lesson
-from app.classroom.lesson_file import MAX_BYTES, MEDIA_TYPE, read_file, write_file
+from app.classroom.lesson import Lesson, adapter, html_of
+from app.classroom.lesson_file import (
+    MAX_BYTES,
+    MEDIA_TYPE,
+    read_file,
+    read_plain_values,
+    write_file,
+)
 from app.classroom.lessons import FoundLesson
 from hexapods.domain.errors import InvalidInput
 
@@ -37,7 +43,7 @@ def _lesson(services: ServicesDep, request: Request, body: BodyDep) -> Lesson:
         raise InvalidInput(
             f"the body is no JSON; send a lesson as application/json, or as {MEDIA_TYPE}"
         ) from error
-    return read_lesson(data)
+    return read_plain_values(data)
 
 
 @router.post(

@@ -1,7 +1,8 @@
-"""YAML from outside, read as plain values: limited in size and depth, without aliases and tags.
+"""YAML from outside, as plain values: limited in number and depth, without aliases and tags.
 
 A few lines with aliases repeat a value a billion times (an alias bomb), and tags construct objects
-of Python, so neither is read.
+of Python, so neither is read. Each name and value costs up to 40 µs of the processor, so that they
+are counted.
 """
 
 import re
@@ -12,6 +13,8 @@ import yaml
 
 from hexapods.domain.errors import InvalidInput
 
+MAX_NODES = 10_000
+"""Names and values that `read_plain` reads."""
 _TAG = "tag:yaml.org,2002:"
 
 
@@ -20,16 +23,22 @@ class NodeLoader(yaml.SafeLoader):  # type: ignore[misc]  # PyYAML has no annota
 
     Attributes:
         max_depth: levels of nesting that are read.
+        max_nodes: names and values that are read.
     """
 
     max_depth = 5
-    _depth = 0
+    max_nodes = 5_000
+    _depth = _nodes = 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         """Return the next node; raises a `YAMLError` for one that is not read."""
         event = self.peek_event()
         if isinstance(event, yaml.AliasEvent):
             problem = f"*{event.anchor[:40]}: aliases are not read; write the value out"
+            raise yaml.composer.ComposerError(problem=problem, problem_mark=event.start_mark)
+        self._nodes += 1
+        if self._nodes > self.max_nodes:
+            problem = f"it has more than {self.max_nodes:,} names and values"
             raise yaml.composer.ComposerError(problem=problem, problem_mark=event.start_mark)
         self._depth += 1
         if self._depth > self.max_depth:
@@ -44,6 +53,7 @@ class _PlainLoader(NodeLoader):
     """Composes nodes whose plain scalars are what JSON has: YAML 1.1 takes `no` for false."""
 
     max_depth = 16
+    max_nodes = MAX_NODES
     yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 - PyYAML's own, by first letter
 
 
@@ -111,6 +121,13 @@ def read_plain(content: bytes, name: str, what: str) -> Any:
         InvalidInput: as `root_node`; also for a name that is given twice, and for other tags.
     """
     return _plain(root_node(content, name, what, _PlainLoader), name)
+
+
+def nodes_of(value: Any) -> int:
+    """Return how many names and values plain values have, as `MAX_NODES` counts them."""
+    if isinstance(value, dict):
+        return 1 + len(value) + sum(map(nodes_of, value.values()))
+    return 1 + (sum(map(nodes_of, value)) if isinstance(value, list) else 0)
 
 
 def write_plain(value: Any) -> str:

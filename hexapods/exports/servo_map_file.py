@@ -23,6 +23,8 @@ from hexapods.exports.servo_map import (
 
 MAX_MAP_BYTES = 64 * 1024
 
+_MAX_DIGITS = 100
+"""Of a number: with colons it is one to the base of 60, and takes a time by its length's square."""
 _FRAME_US = 20_000.0
 """Servos get a pulse every 20 ms, so none is longer."""
 _ZERO_US = (-2 * _FRAME_US, 2 * _FRAME_US)
@@ -201,6 +203,8 @@ class _Reader:
         if not isinstance(node, yaml.ScalarNode):
             self._refuse(node, f"{valid}, not a list or mapping")
         if node.tag not in ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float"):
+            self._refuse(node, f"{valid}, not {_quoted(node.value)}")
+        if len(node.value) > _MAX_DIGITS:
             self._refuse(node, f"{valid}, not {_quoted(node.value)}")
         try:
             number = float(yaml.constructor.SafeConstructor().construct_object(node))

@@ -72,6 +72,16 @@ def test_built_in_lessons_can_be_started_and_exported(api: Api) -> None:
         refused(api.call("DELETE", f"/lessons/{lesson_id}"), 404, "built in stay")
 
 
+@pytest.mark.parametrize("form", ["json", "yaml"])
+def test_a_lesson_has_no_more_names_and_values_than_its_file(api: Api, form: str) -> None:
+    if form == "yaml":
+        text = "".join(f"k{number:05d}: 1\n" for number in range(25_000))
+        answer = api.call("POST", "/lessons", content=text, headers=YAML)
+    else:
+        answer = api.call("POST", "/lessons", json={"title": "x", "cards": [{}] * 25_000})
+    refused(answer, 422, "more than 10,000 names and values")
+
+
 def card(**fields: Any) -> dict[str, Any]:
     return {"title": "x", "cards": [{"text": "x", **fields}]}
 

@@ -45,6 +45,9 @@ def test_words_mean_what_they_say(text: str, value: object) -> None:
         ("a: 1\na: 2\n", "line 2: 'a' is given twice"),
         ("a: <<\n<<: {b: 1}\n", ""),
         ("[" * 30 + "]" * 30, "nested too deeply"),
+        ("k: 1\n" * 25_000, "line 5000: not valid YAML: it has more than 10,000 names and values"),
+        ("{" + "a," * 130_000, "it has more than 10,000 names and values"),
+        ("[" + "1," * 130_000 + "]", "it has more than 10,000 names and values"),
     ],
 )
 def test_what_is_not_read_is_told_with_its_line(text: str, words: str) -> None:

@@ -143,6 +143,7 @@ BOMB = "a: &a [x, x]\n" + "".join(
         (BOMB, "line 2: not valid YAML: *a: aliases are not read; write the value out"),
         ("servos: &own\n  leg1_coxa: *own\n", "aliases are not read"),
         ("[" * 60_000, "nested too deeply"),
+        ("{" + "a," * 30_000, "it has more than 5,000 names and values"),
         ("servos: " + "9" * 65_536, "is no servo map: it is larger than 64 kB"),
         ("speed_share: " + "9" * 60_000 + "\nservos: {}\n", "speed_share must be a number"),
         ("speed_share: !!int ''\nservos: {}\n", "speed_share must be a number"),
