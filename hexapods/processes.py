@@ -8,6 +8,7 @@ where the libraries that are used do not all survive a fork, each is started ane
 import ctypes
 import multiprocessing
 import os
+import shutil
 import signal
 import sys
 import tempfile
@@ -30,6 +31,8 @@ STALLED_S = 8.0
 """A process stopped by a signal (SIGSTOP) for longer is killed: it would never be done."""
 LOST = 255
 """Exit code that `multiprocessing` gives a process when the fork server has ended, not it."""
+_PRELOADED = "hexapods.fork_server_end"
+"""Module that each fork server imports."""
 _START_S = 5.0
 """Time in which a process starts although the fork server has just ended."""
 _RETRY_S, _CONTINUED_EVERY_S = 0.1, 0.5
@@ -51,6 +54,8 @@ class SetUp:
         leads_group: whether it leads a group of its own, so that it can be killed with the
             processes that it starts. One that does not is stopped and continued by the terminal.
         imports_main: whether it imports the program that starts it, as it needs classes of that.
+        temporary: folder for its temporary files, which it deletes if the process that starts it
+            dies; that deletes it otherwise.
         environment: variables that are set, since a fork server has those of its own start.
     """
 
@@ -58,6 +63,7 @@ class SetUp:
     niceness: int = 0
     leads_group: bool = True
     imports_main: bool = False
+    temporary: str | None = None
     environment: Mapping[str, str] = field(default_factory=dict)
 
     def apply(self) -> None:
@@ -67,10 +73,12 @@ class SetUp:
             os.nice(self.niceness)
         # Ctrl-C goes to the terminal's whole process group; who starts processes ends them itself.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        _end_with_parent()
+        _end_with_parent(self.temporary)
         if self.leads_group:
             os.setpgrp()
         os.environ.update(self.environment)
+        if self.temporary is not None:
+            os.environ["TMPDIR"] = self.temporary
         tempfile.tempdir = None  # a fork server may have looked for the folder already
 
 
@@ -207,6 +215,10 @@ def process_context() -> ForkServerContext | SpawnContext:
     """Return the `multiprocessing` context that creates processes."""
     if sys.platform != "linux":
         return multiprocessing.get_context("spawn")
+    # No public attribute has it.
+    preloaded = vars(forkserver._forkserver)["_preload_modules"]  # noqa: SLF001
+    if _PRELOADED not in preloaded:
+        forkserver.set_forkserver_preload([*preloaded, _PRELOADED])
     _start_watch()
     return multiprocessing.get_context("forkserver")
 
@@ -221,7 +233,7 @@ def start_fork_server(preloaded: Sequence[str]) -> None:
         OSError: if the system cannot create a process.
     """
     if sys.platform == "linux":
-        forkserver.set_forkserver_preload(list(preloaded))
+        forkserver.set_forkserver_preload([*preloaded, _PRELOADED])
         with _sigint_blocked(), clean_start(imports_main=False):
             forkserver.ensure_running()
 
@@ -273,8 +285,12 @@ def die_with_parent() -> None:
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def _end_with_parent() -> None:
-    """End this process when the one that started it does, however that ends."""
+def _end_with_parent(temporary: str | None) -> None:
+    """End this process when the one that started it does, however that ends.
+
+    Args:
+        temporary: folder that is deleted then; None for none.
+    """
     die_with_parent()
 
     def watch() -> None:
@@ -282,6 +298,8 @@ def _end_with_parent() -> None:
         parent = multiprocessing.parent_process()
         if parent is not None:
             parent.join()
+            if temporary is not None:
+                shutil.rmtree(temporary, ignore_errors=True)
             os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

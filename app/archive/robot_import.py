@@ -14,6 +14,7 @@ from hexapods.domain import robot_documents
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.gait import GaitSpec, gait_spec, read_gait, resolve
+from hexapods.domain.json_lists import check_lists
 from hexapods.domain.model_robot import ModelRobot, model_robot
 from hexapods.domain.records import to_json
 from hexapods.domain.robot import Robot, document_of, parse_document, robot
@@ -197,9 +198,10 @@ def _json(data: bytes) -> dict[str, Any]:
     if len(data) > robot_documents.MAX_BYTES:
         raise InvalidInput(f"a robot has at most {robot_documents.MAX_BYTES:,} bytes; {_TOLD}")
     try:
+        check_lists(data)
         content = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise InvalidInput(f"it is no JSON: {_TOLD}") from error
+        raise InvalidInput(f"it is no JSON that can be read: {_TOLD}") from error
     if not isinstance(content, Mapping):
         raise InvalidInput(f"it is no JSON object: {_TOLD}")
     unknown = [one for one in content if one not in MEMBERS]

@@ -192,6 +192,9 @@ def walk_from(options: argparse.Namespace) -> dict[str, Any]:
     }
 
 
+_TOO_DEEP = "it is nested too deeply"
+
+
 def read_gait(text: str) -> str | GaitSpec:
     """Parse a gait: a name, or a specification in JSON.
 
@@ -215,8 +218,9 @@ def read_robot(text: str) -> Robot:
         return robot(text) if text in PRESETS else stored_robot(text)
     try:
         return robot(tomllib.loads(Path(text).read_text("utf-8")))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InvalidInput(f"--robot {text}: cannot be read as TOML: {error}") from error
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        reason = _TOO_DEEP if isinstance(error, RecursionError) else error
+        raise InvalidInput(f"--robot {text}: cannot be read as TOML: {reason}") from error
 
 
 def integer(text: str) -> int:
@@ -230,8 +234,9 @@ def integer(text: str) -> int:
 def _json(option: str, text: str) -> dict[str, Any]:
     try:
         value = json.loads(text)
-    except json.JSONDecodeError as error:
-        raise InvalidInput(f"{option}: not valid JSON: {error}") from error
+    except (json.JSONDecodeError, RecursionError) as error:
+        reason = _TOO_DEEP if isinstance(error, RecursionError) else error
+        raise InvalidInput(f"{option}: not valid JSON: {reason}") from error
     if not isinstance(value, dict):
         raise InvalidInput(f"{option}: must be a JSON object")
     return value

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any, ClassVar, TypeVar
 
+from hexapods.domain.json_lists import check_lists
+
 T = TypeVar("T")
 Schema = dict[str, Any]
 
@@ -137,8 +139,11 @@ def from_json(kind: type[T], data: Any, **how: Any) -> T:
 
     Raises:
         InvalidInput: if a value is invalid.
-        ValueError: if the structure is not that of the output of `to_json`.
+        ValueError: if the structure is not that of the output of `to_json`, or bytes have too many
+            lists and objects.
     """
+    if isinstance(data, bytes):
+        check_lists(data)
     from pydantic import ValidationError  # noqa: PLC0415 - as in `_adapter`
 
     adapter = _adapter(kind)  # type: ignore[arg-type]  # mypy: no hash

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hexapods.domain.errors import DamagedFile, InvalidInput
+from hexapods.domain.json_lists import check_lists
 
 ID_DIGITS = 16
 FORMAT = "hexapods-robot-1"
@@ -70,6 +71,7 @@ def decode(data: bytes, label: str = "the document of a robot") -> dict[str, Any
     try:
         if len(data) > MAX_BYTES:
             raise ValueError(f"it has more than {MAX_BYTES:,} bytes")
+        check_lists(data)
         content: dict[str, Any] = dict(json.loads(data))
         if content.pop("format") != FORMAT:
             raise ValueError(f"its format is not {FORMAT}")

@@ -45,14 +45,16 @@ def local_pool(count: int, most_bytes: int | None = None) -> Iterator[WorkerPool
     total_bytes = memory_bytes()
     if most_bytes is None and total_bytes is not None:
         most_bytes = int(_MEMORY_SHARE * total_bytes / count)
-    # Of a killed worker too, the temporary files are deleted with this folder.
+    # Of a killed worker too, the temporary files are deleted with this folder; if this process is
+    # killed, the workers delete it.
     with tempfile.TemporaryDirectory(prefix="hexapods-", ignore_cleanup_errors=True) as folder:
         set_up = SetUp(
             name="trial worker",
             # They are stopped and continued together with this process.
             leads_group=False,
             imports_main=defines_agents(),
-            environment={**os.environ, "TMPDIR": folder},
+            temporary=folder,
+            environment=dict(os.environ),
         )
         pool = WorkerPool(count, set_up, most_bytes=most_bytes)
         try:

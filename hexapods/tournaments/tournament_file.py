@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, TooLong
+from hexapods.domain.json_lists import check_lists
 from hexapods.domain.records import Record, from_json, to_json
 from hexapods.domain.robot import parse_document
 from hexapods.domain.text import check_name, visible
@@ -22,9 +23,8 @@ from hexapods.tournaments.rules import MAX_ENTRIES, TournamentRules, commitment_
 
 FORMAT = 1
 MEDIA_TYPE = "application/json"
-MAX_BYTES = 256 << 20
-MAX_TABLES_BYTES = MAX_BYTES // 2
-"""Size of all trained tables of a tournament, as files: in JSON they take a third more."""
+MAX_BYTES = 48 << 20
+"""Size of a file; most have a few MB, and reading one takes up to ten times as much memory."""
 _MAX_REASON = 1_000
 
 
@@ -205,12 +205,13 @@ def _checked(data: bytes) -> dict[str, Any]:
     """Return the plain content of a file, of this format.
 
     Raises:
-        ValueError: if it is too large, no object of JSON, has a number that is none, or is of
-            another format.
+        ValueError: if it is too large, has too many lists and objects, is no object of JSON, has a
+            number that is none, or is of another format.
         RecursionError: if it is nested too deeply.
     """
     if len(data) > MAX_BYTES:
         raise ValueError(f"it has {len(data):,} bytes; at most {MAX_BYTES:,} are read")
+    check_lists(data)
     content = json.loads(data, parse_constant=_refuse)
     if not isinstance(content, dict) or "format" not in content:
         raise ValueError("it does not say its format")

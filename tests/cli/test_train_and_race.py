@@ -169,6 +169,8 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
         (("--gait", "moonwalk"), "left-right-origin, left-right-vertical"),
         (("--gait", '{"right_leg": 1}'), "right_leg and left_leg"),
         (("--gait", "{"), "not valid JSON"),
+        (("--gait", '{"groups": ' + "[" * 20_000), "nested too deeply"),
+        ((*GAIT, "--robot", "deep.toml"), "nested too deeply"),
         ((*GAIT, "--steps", "0"), "from 1 to 10,000,000"),
         ((*GAIT, "--steps", "-1"), "from 1 to 10,000,000"),
         ((*GAIT, "--steps", "1e12"), "a whole number"),
@@ -199,6 +201,7 @@ def test_custom_robot_and_gait_are_accepted(tmp_path: Path) -> None:
 def test_invalid_input_to_train_is_refused_in_one_sentence(
     arguments: tuple[str, ...], names: str, tmp_path: Path
 ) -> None:
+    (tmp_path / "deep.toml").write_text("legs = " + "[" * 20_000)
     assert names in refusal("train", *arguments, folder=tmp_path, run=in_process)
 
 

@@ -116,6 +116,7 @@ def test_the_error_names_what_is_stored_here(stored: Robot) -> None:
         lambda data: data.replace(b'"femur_m":0.09', b'"femur_m":0.090'),
         lambda data: data.replace(b'"femur_m":0.09', b'"id":0.09'),
         lambda _: b"[" * 100_000,
+        lambda _: b"[" + b"[]," * 100_000 + b"[]]",
         lambda _: b"{}",
         lambda _: b"\xff",
     ],

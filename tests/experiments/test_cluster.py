@@ -120,9 +120,11 @@ def test_workers_end_when_the_process_that_started_them_is_killed(tmp_path: Path
         "        print(outcome.key, flush=True)\n",
         "utf-8",
     )
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
     process = subprocess.Popen(
         [sys.executable, str(script)],
-        env={**os.environ, "PYTHONPATH": str(Path.cwd())},
+        env={**os.environ, "PYTHONPATH": str(Path.cwd()), "TMPDIR": str(temporary)},
         stdout=subprocess.PIPE,
         text=True,
     )
@@ -134,6 +136,7 @@ def test_workers_end_when_the_process_that_started_them_is_killed(tmp_path: Path
     process.communicate()
     _, left = psutil.wait_procs(children, timeout=LONG_S)
     assert not left
+    assert list(temporary.iterdir()) == []
 
 
 def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(

@@ -7,12 +7,14 @@ from typing import Any
 
 import pytest
 
+from app.tournaments.tournaments import MAX_ROBOTS_BYTES, MAX_TABLES_BYTES
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.robot import PRESETS, document_of, read_document, robot
 from hexapods.tournaments.entry import EntryConfig
-from hexapods.tournaments.rules import MAX_ENTRIES
+from hexapods.tournaments.rules import MAX_DRAWS, MAX_ENTRIES
 from hexapods.tournaments.tournament_file import (
+    MAX_BYTES,
     TournamentFile,
     read_file,
     sha256_of,
@@ -150,3 +152,17 @@ def test_the_number_of_entries_is_limited(tournament: TournamentFile) -> None:
     many = tuple(replace(first, number=number) for number in range(MAX_ENTRIES + 1))
     with pytest.raises(InvalidInput, match="at most 300 entries, not 301"):
         replace(tournament, entries=many)
+
+
+@pytest.mark.parametrize("part", [b"[],", b"{},"])
+def test_a_file_of_very_many_lists_is_refused_before_it_is_read(part: bytes) -> None:
+    data = b'{"format":1,"machine":{"x":[' + part * 200_000 + b"0]}}"
+
+    with pytest.raises(DamagedFile, match="more than 100,000 lists and objects"):
+        read_file(data, "it")
+
+
+def test_a_file_is_no_larger_than_all_that_a_tournament_may_hold() -> None:
+    most = MAX_TABLES_BYTES + 2 * MAX_ROBOTS_BYTES + MAX_ENTRIES * MAX_DRAWS * 100
+
+    assert most < MAX_BYTES < 1.25 * most
