@@ -18,6 +18,7 @@ from hexapods.domain.robot import PRESETS, Robot, document_of, read_document, ro
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.files import path_of
 from hexapods.imports.child import read_robot_file
+from hexapods.imports.upload import MAX_UPLOAD_BYTES
 from hexapods.runs.config import WalkingProblem
 
 GAIT = "left-right-origin"
@@ -135,10 +136,12 @@ def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
     Raises:
         InvalidInput: if the file cannot be read, or its robot is not valid.
         DamagedFile: if it is no robot.
+        NotRead: if no process can be started to read it.
     """
     path = path_of(file, "a robot's file")
     try:
-        data = path.read_bytes()
+        with path.open("rb") as opened:
+            data = opened.read(MAX_UPLOAD_BYTES + 1)
     except OSError as error:
         raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
     if path.suffix.lower() != ".json":

@@ -14,6 +14,8 @@ from typing import Any
 _LOCK = threading.Lock()
 _MAIN = ("init_main_from_name", "init_main_from_path")
 """What a process is told of the main module that it is to import."""
+_OPTIONS = "_args_from_interpreter_flags"
+"""Function that returns the options of the interpreter for a process; no public one has them."""
 _SAFE_PATH = "-P"
 """Option of the interpreter: it does not look for modules in the working folder."""
 
@@ -28,7 +30,7 @@ def clean_start(*, imports_main: bool) -> Iterator[None]:
     # `multiprocessing` has no options for it. Other threads may start processes of their own.
     thread = threading.get_ident()
     with _LOCK:
-        preparation, options = spawn.get_preparation_data, util._args_from_interpreter_flags  # noqa: SLF001
+        preparation, options = spawn.get_preparation_data, vars(util)[_OPTIONS]
 
         def get_preparation_data(name: str) -> dict[str, Any]:
             data = preparation(name)
@@ -42,9 +44,9 @@ def clean_start(*, imports_main: bool) -> Iterator[None]:
             return [*interpreter, _SAFE_PATH] if is_added else interpreter
 
         spawn.get_preparation_data = get_preparation_data
-        util._args_from_interpreter_flags = get_options  # noqa: SLF001
+        setattr(util, _OPTIONS, get_options)
         try:
             yield
         finally:
             spawn.get_preparation_data = preparation
-            util._args_from_interpreter_flags = options  # noqa: SLF001
+            setattr(util, _OPTIONS, options)
