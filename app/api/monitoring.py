@@ -23,7 +23,7 @@ from app.api.answers import HealthView
 from app.api.contract import TEXT, answers
 from app.api.deps import Services, ServicesDep
 from app.api.problems import problem
-from app.events.damage import damage_count
+from app.events.damage import damage_counts
 from app.storage.run import STATES
 from hexapods import __version__
 from hexapods.domain.errors import HexapodError
@@ -86,12 +86,12 @@ def registry_of(services: Services) -> CollectorRegistry:
 class _ServicesCollector(Collector):
     def __init__(self, services: Services) -> None:
         self._services = services
-        self._damaged = damage_count(services.store)
+        self._damaged = damage_counts(services.store)
 
     def collect(self) -> Iterable[Metric]:
         services = self._services
         counters = [shared.hub.counters for shared in services.stages]
-        counts = services.store.counts()
+        counts, damaged = services.store.counts(), self._damaged()
         runs = GaugeMetricFamily("hexapods_runs", "Runs that are kept, by state.", labels=["state"])
         for state in STATES:
             runs.add_metric([state], counts.get(state, 0))
@@ -99,8 +99,16 @@ class _ServicesCollector(Collector):
         yield GaugeMetricFamily(
             "hexapods_runs_damaged",
             "Runs that are kept and cannot be shown; hexapods doctor names them.",
-            self._damaged(),
+            damaged["runs"],
         )
+        rows = GaugeMetricFamily(
+            "hexapods_rows_damaged",
+            "Rows of the database that are left out, by table; hexapods doctor names them.",
+            labels=["table"],
+        )
+        for table, number in damaged.items():
+            rows.add_metric([table], number)
+        yield rows
         yield GaugeMetricFamily(
             "hexapods_queue_depth", "Runs that wait for their turn.", counts.get("queued", 0)
         )

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from app.classroom.lesson import Lesson, plain, read_lesson
 from app.classroom.lesson_file import read_file
 from app.storage.database.lesson_rows import LessonRows
 from app.storage.errors import Busy, NotFound
-from hexapods.domain.errors import HexapodError
 
 MAX_LESSONS = 500
 """Lessons stored at most."""
@@ -51,7 +51,8 @@ class Lessons:
         """
         document = plain(lesson)
         found = FoundLesson(_content_id(document), lesson, is_built_in=False)
-        if not self._rows.add(found.id, lesson.title, document, MAX_LESSONS):
+        is_stored = bool(self._rows.read(_stored, found.id).sound)
+        if not is_stored and not self._rows.put(found.id, lesson.title, document, MAX_LESSONS):
             raise Busy(f"{MAX_LESSONS} lessons are stored, which is the most; delete one", _RETRY_S)
         return found
 
@@ -64,23 +65,18 @@ class Lessons:
         known = built_in().get(lesson_id)
         if known is not None:
             return FoundLesson(lesson_id, known, is_built_in=True)
-        document = self._rows.get(lesson_id)
-        if document is None:
+        rows = self._rows.read(_stored, lesson_id)
+        for row in rows.damaged:
+            raise NotFound(f"the lesson {lesson_id} is damaged: {row.damaged}; delete it")
+        if not rows.sound:
             raise NotFound(f"there is no lesson {lesson_id!r}; GET /api/v1/lessons lists all")
-        try:
-            return FoundLesson(lesson_id, read_lesson(document), is_built_in=False)
-        except HexapodError as error:
-            raise NotFound(f"the lesson {lesson_id} is damaged: {error}; delete it") from error
+        found: FoundLesson = rows.sound[0]
+        return found
 
     def all(self) -> list[FoundLesson]:
         """Return all lessons that can be read: the built-in ones, then the stored, newest first."""
         found = [FoundLesson(one, lesson, is_built_in=True) for one, lesson in built_in().items()]
-        for lesson_id in self._rows.ids():
-            try:
-                found.append(self.get(lesson_id))
-            except NotFound:
-                continue  # damaged, or deleted meanwhile
-        return found
+        return found + self._rows.read(_stored).sound
 
     def delete(self, lesson_id: str) -> None:
         """Delete a stored lesson; rooms that have it keep it.
@@ -98,6 +94,10 @@ def built_in() -> Mapping[str, Lesson]:
     return {
         one.stem: read_file(one.read_bytes(), one.name) for one in sorted(_FOLDER.glob("*.yaml"))
     }
+
+
+def _stored(**row: Any) -> FoundLesson:
+    return FoundLesson(row["id"], read_lesson(row["document"]), is_built_in=False)
 
 
 def _content_id(document: Mapping[str, object]) -> str:

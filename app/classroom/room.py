@@ -33,6 +33,7 @@ class Room:
         participants: by seed, those who left too.
         predictions: by seed and card.
         runs: by id, oldest first.
+        taken_seeds: of participants whose rows are there, also if they are damaged.
         finished: of runs that have finished, what came of them, by id; it is filled as it is asked.
     """
 
@@ -49,6 +50,7 @@ class Room:
     participants: dict[int, ParticipantRow] = field(default_factory=dict)
     predictions: dict[tuple[int, int], Any] = field(default_factory=dict)
     runs: dict[str, RoomRun] = field(default_factory=dict)
+    taken_seeds: set[int] = field(default_factory=set, compare=False, repr=False)
     finished: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
 
     @property

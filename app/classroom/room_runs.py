@@ -11,6 +11,7 @@ from app.jobs.submissions import Start
 from app.storage.database.room_rows import RoomRun, Seat
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, NotFound
+from app.storage.json_text import is_finite
 from app.storage.run import NOT_ENDED, Run
 from hexapods.domain.errors import HexapodError
 
@@ -31,13 +32,16 @@ class RoomRuns:
         """
         self._store, self._rows = store, store.rooms
         self._runs: dict[str, RoomRun] = {}
+        self._unread: set[str] = set()
+        """Ids of the runs whose rows are damaged: it is not known to whom they are shown."""
 
     def load(self, rooms: Mapping[str, Room]) -> None:
         """Load the runs of the participants of rooms, by code; those of other rooms stay hidden."""
-        for run in self._rows.runs():
+        for run in self._rows.runs(lambda run: _sound(run, rooms)):
             self._runs[run.run_id] = run
             if run.room in rooms and run.seed in rooms[run.room].participants:
                 rooms[run.room].runs[run.run_id] = run
+        self._unread = self._rows.run_ids() - self._runs.keys()
 
     def forget(self, room: Room) -> None:
         """Leave the runs of a room to all: they are ordinary ones from then on."""
@@ -56,6 +60,8 @@ class RoomRuns:
             run_id: of the run; None for none.
             reader: the participants that the reader is.
         """
+        if run_id in self._unread:
+            return True
         run = self._runs.get(run_id or "")
         return run is not None and not run.is_shown and (run.room, run.seed) not in reader
 
@@ -181,6 +187,23 @@ class RoomRuns:
         except NotFound:
             return None
         return run if isinstance(run, Run) else None
+
+
+def _sound(run: RoomRun, rooms: Mapping[str, Room]) -> RoomRun:
+    """Return a stored run, or what-if.
+
+    Raises:
+        ValueError, NotFound: if the row is damaged.
+    """
+    if not isinstance(run.given, Mapping) or not is_finite(run.given):
+        raise ValueError("given: it is no object of settings")
+    if run.answer is not None:
+        distance_m = run.answer["chosen"]["iqm_m"]
+        if not isinstance(distance_m, int | float) or not is_finite(run.answer):
+            raise ValueError("answer: its distance is no number")
+    if run.room in rooms:
+        rooms[run.room].check_card(run.card)
+    return run
 
 
 def _alike(room: Room, seed: int, card: int, given: Mapping[str, Any]) -> list[RoomRun]:

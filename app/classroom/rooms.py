@@ -3,7 +3,6 @@
 All is written to the database before it counts, so that a server that is killed goes on with it.
 """
 
-import logging
 import secrets
 import threading
 from collections.abc import Callable, Iterable, Mapping
@@ -16,13 +15,19 @@ from app.classroom.lessons import FoundLesson
 from app.classroom.names import Choose, new_code, normalized
 from app.classroom.room import Deed, Room
 from app.classroom.room_runs import RoomRuns
-from app.classroom.seats import Joined, Seats, key_of, new_key, new_participant
+from app.classroom.seats import (
+    Joined,
+    Seats,
+    key_of,
+    new_key,
+    new_participant,
+    sound_participant,
+)
 from app.jobs.submissions import Start
 from app.storage.database.room_rows import ParticipantRow, PredictionRow, RoomRow, Seat
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, Forbidden, NotFound
 from app.storage.run import Run
-from hexapods.domain.errors import HexapodError
 
 MAX_OPEN = 16
 """Rooms that are open at once; each has a stage of its own."""
@@ -33,7 +38,6 @@ _EMPTY: Mapping[str, Any] = {
     "title": "A room",
     "cards": [{"text": "Watch what the teacher shows."}],
 }
-_logger = logging.getLogger(__name__)
 
 
 class Rooms:
@@ -67,18 +71,27 @@ class Rooms:
         self._load()
 
     def _load(self) -> None:
-        for row in self._rows.rooms():
-            try:
-                self._rooms[row.code] = _room(row)
-            except (HexapodError, ValueError, TypeError):
-                _logger.warning("the room %s cannot be read", row.code, exc_info=True)
-        for participant in self._rows.participants():
+        self._rooms = {room.code: room for room in self._rows.rooms(_room)}
+        for participant in self._rows.participants(sound_participant):
             if participant.room in self._rooms:
                 self._seats.add(self._rooms[participant.room], participant)
-        for one in self._rows.predictions():
+        for code, seed in self._rows.seeds():
+            if code in self._rooms:
+                self._rooms[code].taken_seeds.add(seed)
+        for one in self._rows.predictions(self._sound_prediction):
             if one.room in self._rooms:
                 self._rooms[one.room].predictions[one.seed, one.card] = one.value
         self._runs.load(self._rooms)
+
+    def _sound_prediction(self, row: PredictionRow) -> PredictionRow:
+        room = self._rooms.get(row.room)
+        if room is None:
+            return row  # its room is left out
+        room.check_card(row.card)
+        ask = room.lesson.cards[row.card].ask
+        if ask is None:
+            raise ValueError(f"card {row.card} asks nothing")
+        return row._replace(value=check_answer(ask, row.value))
 
     # ---- of the teacher
 
@@ -500,6 +513,10 @@ def _check_allowed(room: Room, deed: Deed) -> None:
 
 
 def _room(row: RoomRow) -> Room:
+    if row.code != normalized(row.code) or not (row.code.isascii() and row.code.isalnum()):
+        raise ValueError("code: it is no code")
+    if not isinstance(row.revealed, list) or not all(type(one) is int for one in row.revealed):
+        raise ValueError("revealed: it is no list of numbers")
     lesson = read_lesson(row.lesson)
     card = min(max(row.card, 0), len(lesson.cards) - 1)
     fields = {**row._asdict(), "lesson": lesson, "card": card, "revealed": frozenset(row.revealed)}

@@ -9,9 +9,12 @@ from app.classroom.names import Choose, new_name
 from app.classroom.room import Room
 from app.storage.database.room_rows import ParticipantRow, Seat
 from app.storage.errors import Busy
+from hexapods.domain.text import check_name
 
 MAX_PARTICIPANTS = 64
 """In a room, without those who have left."""
+MAX_SEED = 1_000_000
+"""Above the seed of any participant."""
 _RETRY_S = 60
 
 
@@ -75,7 +78,7 @@ def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Join
         raise Busy(f"{MAX_PARTICIPANTS} are in the room {room.code}, which is the most", _RETRY_S)
     row = ParticipantRow(
         room=room.code,
-        seed=max(room.participants, default=-1) + 1,
+        seed=_free_seed(room),
         name=new_name(choose, {one.name for one in room.participants.values()}),
         key_sha256=_sha256(key),
         is_name_hidden=False,
@@ -84,6 +87,23 @@ def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Join
         left_at=None,
     )
     return Joined(row, key, is_new=True)
+
+
+def _free_seed(room: Room) -> int:
+    taken = {*room.participants, *room.taken_seeds}
+    return max((one for one in taken if 0 <= one < MAX_SEED), default=-1) + 1
+
+
+def sound_participant(row: ParticipantRow) -> ParticipantRow:
+    """Return a stored participant.
+
+    Raises:
+        ValueError: if the row is damaged.
+    """
+    if not 0 <= row.seed < MAX_SEED:
+        raise ValueError("seed: it is none of a participant")
+    check_name(row.name)
+    return row
 
 
 def new_key() -> str:

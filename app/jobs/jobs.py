@@ -82,7 +82,7 @@ class Jobs:
         self._store, self._recordings, self._bus = store, recordings, bus
         self._on_queued = on_queued
         self.new_id = RunIds.of(store)
-        self._queue = RunQueue(store, self._publish, owner_of)
+        self._queue = RunQueue(store, bus.publish_run, owner_of)
         self._supervisor = Supervisor(
             store,
             recordings,

@@ -53,14 +53,14 @@ class RunQueue:
 
     Args:
         store: store of the runs.
-        publish: called with every run that changes here.
+        publish: called with every run that changes here, and its position in the queue.
         owner_of: returns who waits for the run of an id; None for an operator.
     """
 
     def __init__(
         self,
         store: RunStore,
-        publish: Callable[[Run], None],
+        publish: Callable[[Run, int | None], None],
         owner_of: Callable[[str], Owner | None] = lambda run_id: None,  # noqa: ARG005
     ) -> None:
         self._store, self._publish, self._owner_of = store, publish, owner_of
@@ -106,8 +106,9 @@ class RunQueue:
             self._unreconciled |= {run.id for run in runs}
             raise
         self._runs |= {run.id: run for run in runs}
+        positions = self._positions()
         for run in runs:
-            self._publish(run)
+            self._publish(run, positions[run.id])
         return runs[-1]
 
     def _check_room_for(self, runs: Sequence[Run], free: int) -> None:
@@ -141,7 +142,8 @@ class RunQueue:
                 now = datetime.now(UTC)
                 reason = "The database failed when it was started."
                 self._publish(
-                    self._store.change(run_id, QUEUED, "interrupted", error=reason, ended_at=now)
+                    self._store.change(run_id, QUEUED, "interrupted", error=reason, ended_at=now),
+                    None,
                 )
             except (StorageFailed, StorageFull):
                 return
@@ -192,21 +194,19 @@ class RunQueue:
 
     def publish_positions(self) -> None:
         """Publish all queued runs after their positions changed."""
-        for run_id in self._runs:
-            self._publish(self._store.get(run_id))
+        positions = self._positions()
+        for run_id, run in self._runs.items():
+            self._publish(run, positions[run_id])
 
     def position(self, run_id: str) -> int | None:
         """Return a run's position, 1 for the first, None if absent; callable from any thread."""
-        ids = list(self._runs)
-        if run_id not in ids:
-            return None
-        owner = self._owner_of(run_id)
-        if owner is None or not owner.is_visitor:
-            return [one for one in ids if self._class_of(one) != "visitor"].index(run_id) + 1
-        return self._visitors_order(ids).index(run_id) + 1
+        return self._positions().get(run_id) if run_id in self._runs else None
 
-    def _visitors_order(self, ids: Sequence[str]) -> list[str]:
-        """Return ids in the order in which visitors' runs are started if none is added."""
+    def _positions(self) -> dict[str, int]:
+        return {one: number for number, one in enumerate(self._order(list(self._runs)), start=1)}
+
+    def _order(self, ids: Sequence[str]) -> list[str]:
+        """Return ids in the order in which runs are started if none is added."""
         others = [one for one in ids if self._class_of(one) != "visitor"]
         owners = {one: owner for one in ids if (owner := self._owner_of(one)) and owner.is_visitor}
         ahead: Counter[str] = Counter()
@@ -223,13 +223,11 @@ class RunQueue:
 
     def interrupt(self, reason: str) -> None:
         """Set all queued runs to `interrupted`, which can be resumed, and empty the queue."""
-        for run in self._runs.values():
-            now = max(datetime.now(UTC), run.created_at)
-            changed = {"error": reason, "ended_at": now, "waiting_for": ()}
-            # It is stored as `running` if its start failed halfway.
-            states = QUEUED | RUNNING
-            self._publish(self._store.change(run.id, states, "interrupted", **changed))
+        # One is stored as `running` if its start failed halfway.
+        runs = self._store.interrupt(self._runs, QUEUED | RUNNING, reason)
         self._runs = {}
+        for run in runs:
+            self._publish(run, None)
 
     def run_needing(self, training_id: str) -> Run | None:
         """Return a queued run that needs the table of this training, None if there is none."""
@@ -249,7 +247,7 @@ class RunQueue:
                 remaining = tuple(one for one in run.waiting_for if one != ended.id)
                 # If the write fails, the run still waits, so that it is retried.
                 self._runs[run.id] = self._store.update(run.id, waiting_for=remaining)
-                self._publish(self._runs[run.id])
+                self._publish(self._runs[run.id], self.position(run.id))
             elif ended.state == "failed":
                 self._drop(run, "failed", f"Its training {ended.id} failed: {ended.error}")
             else:
@@ -260,7 +258,7 @@ class RunQueue:
         run = self._store.change(run.id, QUEUED, state, error=error, ended_at=now)
         # After the write, so that the run stays queued if it fails.
         self._runs.pop(run.id, None)
-        self._publish(run)
+        self._publish(run, None)
         self.publish_positions()
         self.settle(run)
         return run

@@ -7,10 +7,11 @@ from collections.abc import Callable, Collection, Sequence
 from datetime import UTC, datetime, timedelta
 from typing import NamedTuple
 
-from sqlalchemy import delete, insert, select
+from sqlalchemy import delete, insert
 
 from app.storage.database.engine import Database
 from app.storage.database.schema import SESSIONS
+from app.storage.database.stored_rows import read_rows
 
 SESSION_S = 30 * 24 * 3600
 """Lifetime of a session [s]."""
@@ -41,14 +42,17 @@ class SessionRows:
         self._database = database
 
     def load(self) -> Sequence[SessionRow]:
-        """Return all stored sessions, oldest first."""
-        query = select(SESSIONS).order_by(SESSIONS.c.created_at)
-        rows = self._database.read(lambda connection: connection.execute(query).mappings().all())
-        return [SessionRow(**row) for row in rows]
+        """Return all stored sessions that can be read, oldest first."""
+        return read_rows(self._database, SESSIONS, SessionRow, SESSIONS.c.created_at).sound
 
     def add(self, row: SessionRow) -> None:
         """Store a session."""
         statement = insert(SESSIONS).values(row._asdict())
+        self._database.write(lambda connection: connection.execute(statement))
+
+    def keep(self, ids_sha256: Collection[str]) -> None:
+        """Delete all sessions but those with these hashed ids; also those that are damaged."""
+        statement = delete(SESSIONS).where(SESSIONS.c.id_sha256.not_in(ids_sha256))
         self._database.write(lambda connection: connection.execute(statement))
 
     def remove(self, ids_sha256: Collection[str]) -> None:
@@ -70,7 +74,7 @@ class Sessions:
         token: str,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
-        """Load the stored sessions; delete those that expired or belong to another token.
+        """Load the stored sessions; delete those that expired, are damaged, or of another token.
 
         Args:
             rows: persistent storage, of the sessions of this token alone; None for none.
@@ -86,7 +90,8 @@ class Sessions:
         stored = [] if rows is None else rows.load()
         valid = [row for row in stored if self._is_valid(row)]
         self._open = {row.id_sha256: row for row in valid}
-        self._remove({row.id_sha256 for row in stored} - self._open.keys())
+        if rows is not None:
+            rows.keep(list(self._open))
 
     def open(self) -> str:
         """Open a session and return its id; beyond `MAX_SESSIONS` the oldest is closed.

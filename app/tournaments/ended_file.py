@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from app.tournaments.tournament import Tournament, TournamentEntry
 from app.tournaments.tournaments import Tournaments
+from hexapods.domain.errors import DamagedFile
 from hexapods.tournaments.tournament_file import JudgedEntry, TournamentFile, write_file
 
 
@@ -29,6 +30,10 @@ def file_of(
         )
         for one in tournament.judged
     )
+    if {one.number for one in entries} != {one.number for one in tournament.standings}:
+        raise DamagedFile(
+            "what the database holds of this tournament's entries is damaged; put a backup back"
+        )
     digests = dict.fromkeys(one.entry.table for one in entries if one.entry.table is not None)
     file = TournamentFile(
         title=tournament.title,

@@ -15,7 +15,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from app.jobs.process_pool import OutOfProcessorTime, ProcessPool, TookTooLong
-from app.storage.errors import Busy
+from app.storage.errors import Busy, NotFound
 from app.tournaments.tournament import OUTCOME, Tournament, TournamentEntry
 from app.tournaments.tournaments import Tournaments
 from hexapods.domain.errors import HexapodError, InvalidInput
@@ -200,19 +200,16 @@ class Judge:
 
     def _judgement(self, pool: ProcessPool, draw: _Draw) -> Judgement | None:
         """Return a judgement; None if there is none, as its process ended or nobody waits."""
-        tournament, entry, number = draw
-        table = None
-        if entry.entry.table is not None:
-            table = base64.b64decode(self._tournaments.table(tournament, entry.entry.table))
-        task = JudgingTask(tournament.rules, entry.entry, tournament.draws[number], table)
+        tournament, entry, _ = draw
         limit = limit_s(tournament.rules, self._limit_s)
         try:
+            task = self._task(draw)
             (judgement,) = pool.map(judge, [task], partial(self._check, draw), limit)
         except _GivenUp:
             return None
         except OutOfProcessorTime:
             return Judgement(0.0, f"It took over {limit:g} s of processor time.")
-        except InvalidInput as error:
+        except (InvalidInput, NotFound) as error:
             return Judgement(0.0, message(str(error)))
         except TookTooLong:
             judgement = None
@@ -227,6 +224,14 @@ class Judge:
             if deaths >= MAX_DEATHS:
                 return Judgement(0.0, f"{MAX_DEATHS} processes ended while they judged it.")
         return judgement
+
+    def _task(self, draw: _Draw) -> JudgingTask:
+        """Return what is judged; raises NotFound or DamagedFile if its table cannot be read."""
+        tournament, entry, number = draw
+        table = None
+        if entry.entry.table is not None:
+            table = base64.b64decode(self._tournaments.table(tournament, entry.entry.table))
+        return JudgingTask(tournament.rules, entry.entry, tournament.draws[number], table)
 
     def _check(self, draw: _Draw) -> None:
         """Raise _GivenUp if an entry is not waited for any more."""

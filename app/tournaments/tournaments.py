@@ -3,12 +3,12 @@
 All is written to the database before it counts, so that a server that is killed goes on with it.
 """
 
-import logging
 import math
+import re
 import secrets
 import threading
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
@@ -16,20 +16,23 @@ from app.storage.database.store import RunStore
 from app.storage.database.tournament_rows import EntryRow, JudgementRow, TournamentRow
 from app.storage.errors import Busy, Conflict, NotFound
 from app.tournaments.tournament import (
+    OUTCOME,
     STATES,
     EnteredTable,
     Entrant,
     Tournament,
     TournamentEntry,
 )
-from hexapods.domain.errors import HexapodError, InvalidInput
-from hexapods.domain.records import from_json, to_json
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.records import Record, from_json, to_json
 from hexapods.domain.robot import Robot
 from hexapods.tournaments.entry import EntryConfig, completed, references
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.ranking import RankedEntry
 from hexapods.tournaments.rules import TournamentRules
 
+MAX_NUMBER = 1_000_000
+"""Above the number of any entry."""
 MAX_OPEN = 16
 """Tournaments that have not ended, at once."""
 MAX_TABLES_BYTES = 24 << 20
@@ -37,7 +40,7 @@ MAX_TABLES_BYTES = 24 << 20
 MAX_ROBOTS_BYTES = 8 << 20
 """Of the documents of all stored robots of the rules, which are in the file too."""
 _RETRY_S = 60
-_logger = logging.getLogger(__name__)
+_SECRET = re.compile("[0-9a-f]{64}")
 
 
 class Entered(NamedTuple):
@@ -83,34 +86,25 @@ class Tournaments:
         self._load()
 
     def _load(self) -> None:
-        for row in self._rows.tournaments():
-            try:
-                self._tournaments[row.id] = _tournament(row)
-            except (HexapodError, ValueError, TypeError, KeyError):
-                _logger.warning("the tournament %s cannot be read", row.id, exc_info=True)
-        for tournament_id, number in self._rows.newest_numbers().items():
+        loaded = self._rows.tournaments(_tournament)
+        self._tournaments = {one.id: one for one in loaded}
+        for tournament_id, number in self._rows.numbers():
+            tournament = self._tournaments.get(tournament_id)
+            if tournament is not None and 0 <= number < MAX_NUMBER:
+                tournament.next_number = max(tournament.next_number, number + 1)
+        for tournament_id, entry in self._rows.entries(lambda row: (row.tournament, _entry(row))):
             if tournament_id in self._tournaments:
-                self._tournaments[tournament_id].next_number = number + 1
-        self._load_entries()
+                self._tournaments[tournament_id].entries[entry.number] = entry
+        for row, judgement in self._rows.judgements(self._judgement):
+            tournament = self._tournaments.get(row.tournament)
+            if tournament is not None and row.number in tournament.entries:
+                tournament.entries[row.number].judgements[row.draw] = judgement
 
-    def _load_entries(self) -> None:
-        for entry in self._rows.entries():
-            tournament = self._tournaments.get(entry.tournament)
-            if tournament is not None:
-                try:
-                    tournament.entries[entry.number] = _entry(entry)
-                except (HexapodError, ValueError, TypeError):
-                    told = "entry %d of tournament %s cannot be read"
-                    _logger.warning(told, entry.number, entry.tournament, exc_info=True)
-        for one in self._rows.judgements():
-            tournament = self._tournaments.get(one.tournament)
-            if tournament is not None and one.number in tournament.entries:
-                judgements = tournament.entries[one.number].judgements
-                try:
-                    judgements[one.draw] = Judgement(one.distance_m, one.failure)
-                except HexapodError:
-                    told = "a judgement of tournament %s cannot be read"
-                    _logger.warning(told, one.tournament, exc_info=True)
+    def _judgement(self, row: JudgementRow) -> tuple[JudgementRow, Judgement]:
+        tournament = self._tournaments.get(row.tournament)
+        if tournament is not None and not 0 <= row.draw < tournament.rules.draws:
+            raise ValueError("draw: it is none of the tournament")
+        return row, Judgement(row.distance_m, row.failure)
 
     def all(self) -> list[Tournament]:
         """Return all tournaments, oldest first; a copy, for which no write is waited for."""
@@ -301,6 +295,7 @@ class Tournaments:
 
         Raises:
             NotFound: if the tournament has none of this SHA-256.
+            DamagedFile: if it is damaged.
         """
         data = self._rows.table(tournament.id, sha256)
         if data is None:
@@ -389,10 +384,26 @@ def _minutes(seconds: int) -> str:
     return f"{seconds} s" if seconds < 120 else f"{-(-seconds // 60)} minutes"
 
 
+@dataclass(frozen=True)
+class _Outcome(Record):
+    """What is kept of a tournament at its end; see `OUTCOME`."""
+
+    standings: tuple[RankedEntry, ...]
+    robots: Mapping[str, Mapping[str, Any]]
+    versions: Mapping[str, str]
+    machine: Mapping[str, Any]
+
+
 def _tournament(row: TournamentRow) -> Tournament:
     if row.state not in STATES:
-        raise ValueError(f"its state is none of {', '.join(STATES)}")
+        raise ValueError(f"state: it is none of {', '.join(STATES)}")
+    if row.entries_per_hour < 1:
+        raise ValueError("entries_per_hour: it is none")
+    if not _SECRET.fullmatch(row.secret):
+        raise ValueError("secret: it is none")
     outcome = row.outcome or {}
+    if row.state == "ended":
+        from_json(_Outcome, {name: outcome[name] for name in OUTCOME})
     return Tournament(
         id=row.id,
         title=row.title,
@@ -413,6 +424,8 @@ def _standings(outcome: Mapping[str, Any]) -> tuple[RankedEntry, ...]:
 
 
 def _entry(row: EntryRow) -> TournamentEntry:
+    if not 0 <= row.number < MAX_NUMBER:
+        raise ValueError("number: it is none of an entry")
     return TournamentEntry(
         number=row.number,
         entrant=Entrant(row.seed, row.name),

@@ -22,7 +22,7 @@ def queue_of(store: RunStore) -> RunQueue:
             return Owner(name, run_id[1], is_visitor=True)
         return None if name == "o" else Owner(name)
 
-    return RunQueue(store, lambda run: None, owner_of)
+    return RunQueue(store, lambda run, position: None, owner_of)
 
 
 def add(queue: RunQueue, *run_ids: str) -> None:

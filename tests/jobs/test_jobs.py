@@ -392,7 +392,7 @@ def test_submission_that_fails_halfway_leaves_no_run_queued(store: RunStore) -> 
     for run_id in ids:
         store.create(Run(id=run_id, kind="training", name=run_id, config=config, total=10))
         store.change(run_id, QUEUED, "interrupted")
-    queue = RunQueue(store, lambda run: None)
+    queue = RunQueue(store, lambda run, position: None)
     runs = [run for run_id in ids for run in resumed_runs(store.get(run_id), store)]
     store.fail_after = 1
     with pytest.raises(StorageFailed):

@@ -1,7 +1,14 @@
 """Adverse values for columns of the database, and for fields of imported files."""
 
-from collections.abc import Iterator
+import json
+import math
+from collections.abc import Callable, Iterator
+from datetime import datetime
 from typing import Any
+
+from sqlalchemy import BigInteger, Boolean, Column, Double
+
+from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
 
 _DEEP = "[" * 50_000 + "]" * 50_000
 STORED: list[Any] = [
@@ -82,3 +89,45 @@ def put_value(shown: Any, path: tuple[Any, ...], value: Any) -> None:
     for part in path[:-1]:
         shown = shown[part]
     shown[path[-1]] = value
+
+
+def is_certain_damage(column: Column[Any], stored: Any) -> bool:
+    """Whether a value is none of a column's type, whatever the column means.
+
+    Args:
+        column: of the schema.
+        stored: the value as SQLite has it, which may have converted it; invalid UTF-8 escaped.
+    """
+    if stored is None:
+        return not column.nullable
+    return not _IS_OF_TYPE[type(column.type)](stored)
+
+
+def _is_text(stored: Any) -> bool:
+    return isinstance(stored, str) and stored == stored.encode("utf-8", "replace").decode()
+
+
+def _is_time(stored: Any) -> bool:
+    try:
+        return 1970 <= datetime.fromisoformat(stored).year < 9999
+    except (ValueError, TypeError):
+        return False
+
+
+def _is_json(stored: Any) -> bool:
+    try:
+        json.loads(stored if isinstance(stored, str | bytes) else repr(stored))
+    except (ValueError, RecursionError):
+        return False
+    return True
+
+
+_IS_OF_TYPE: dict[type, Callable[[Any], bool]] = {
+    PortableText: _is_text,
+    TagList: _is_text,
+    BigInteger: lambda stored: isinstance(stored, int),
+    Boolean: lambda stored: stored in (0, 1),
+    Double: lambda stored: isinstance(stored, float) and math.isfinite(stored),
+    UtcTime: _is_time,
+    JsonWithNan: _is_json,
+}

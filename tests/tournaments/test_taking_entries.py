@@ -20,6 +20,7 @@ from hexapods.domain.settings import SettingValues
 from hexapods.tournaments.entry import REFERENCES, EntryConfig
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.rules import MAX_ENTRIES, TournamentRules, commitment_of
+from hexapods.tournaments.tournament_file import sha256_of
 from tests.postgresql import PostgresServer
 from tests.storage.stores import BACKENDS, database_url, opened, temporary_store
 
@@ -60,7 +61,8 @@ def judged(tournaments: Tournaments, tournament: Tournament, number: int) -> Non
 def test_all_is_there_after_a_restart(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = opened_one(tournaments)
-    table = EnteredTable("a training", "ab" * 32, b"\x00\xff" * 100)
+    data = b"\x00\xff" * 100
+    table = EnteredTable("a training", sha256_of(data), data)
     tournaments.enter(tournament.id, ONE, practised(0.25))
     with_table = EntryConfig(agent="q-learning", table=table.sha256)
     tournaments.enter(tournament.id, OTHER, with_table, table)

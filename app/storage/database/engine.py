@@ -75,6 +75,8 @@ class Database:
         fencing_token: number of this server's ownership, which every write compares with the one
             in the database; None, before the database is claimed, skips the check.
         write_problem: why the last write or probe failed; None if it succeeded.
+        decoders: by table, what its rows stand for; see `stored_rows`.
+        logged_damage: the damaged rows that were logged.
         check_available: circuit breaker; while it raises `StorageFailed` every call fails at once,
             so that threads do not pile up behind a database that hangs.
     """
@@ -83,6 +85,8 @@ class Database:
         self.engine, self.on_disk_full = engine, on_disk_full
         self.fencing_token: int | None = None
         self.write_problem: HexapodError | None = None
+        self.decoders: dict[str, Callable[[dict[str, Any]], Any]] = {}
+        self.logged_damage: set[str] = set()
         self.check_available: Callable[[], None] = lambda: None
         # SQLite's busy handler polls, and the pool's queue is not fair, so waiters would starve.
         is_sqlite = engine.dialect.name == "sqlite"

@@ -9,8 +9,9 @@ from datetime import UTC, datetime
 from sqlalchemy import Connection, delete, insert, select
 
 from app.storage.database.engine import Database
-from app.storage.database.queries import fetch_rows
 from app.storage.database.schema import IDEMPOTENCY_KEYS
+from app.storage.database.stored_rows import Values, read_rows
+from app.storage.errors import Conflict
 from app.storage.run import KEY_LIFETIME, MAX_KEYS, IdempotencyKey, KeyRecord
 
 _KEYS = IDEMPOTENCY_KEYS
@@ -46,10 +47,20 @@ class Keys:
         self._database.write(lambda connection: connection.execute(statement))
 
     def find(self, key: str) -> KeyRecord | None:
-        """Look up an idempotency key; None if it was not used within its lifetime."""
+        """Look up an idempotency key; None if it was not used within its lifetime.
+
+        Raises:
+            Conflict: if what is stored of it is damaged.
+        """
+        rows = read_rows(self._database, _KEYS, Values, where=_KEYS.c.key == key)
+        if rows.damaged:
+            raise Conflict(
+                "what the database holds of this Idempotency-Key is damaged; see whether its run "
+                "is there, and send a new key to start another",
+                "damaged",
+            )
         since = datetime.now(UTC) - KEY_LIFETIME
-        query = select(_KEYS.c.digest, _KEYS.c.run_id).where(
-            _KEYS.c.key == key, _KEYS.c.created_at >= since
+        recent = (row for row in rows.sound if row["created_at"] >= since)
+        return next(
+            (KeyRecord(row["digest"], tuple(row["run_id"].split())) for row in recent), None
         )
-        rows = self._database.read(lambda connection: fetch_rows(connection, query))
-        return KeyRecord(rows[0]["digest"], tuple(rows[0]["run_id"].split())) if rows else None

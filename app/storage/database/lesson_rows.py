@@ -1,15 +1,14 @@
 """Rows of the `lessons` table."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, String, cast, delete, func, insert, select
+from sqlalchemy import Connection, delete, func, select
 
-from app.storage.database.columns import decode_json
 from app.storage.database.engine import Database
 from app.storage.database.schema import LESSONS
-from app.storage.json_text import read_json
+from app.storage.database.stored_rows import Rows, put_rows, read_rows
 
 
 class LessonRows:
@@ -18,33 +17,29 @@ class LessonRows:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def add(self, lesson_id: str, title: str, document: Mapping[str, Any], most: int) -> bool:
-        """Store a lesson, unless one of this id is there; False if there are too many."""
+    def put(self, lesson_id: str, title: str, document: Mapping[str, Any], most: int) -> bool:
+        """Store a lesson, in the place of a damaged one of this id; False if there are too many."""
 
         def work(connection: Connection) -> bool:
-            known = select(LESSONS.c.id).where(LESSONS.c.id == lesson_id)
-            if connection.execute(known).first() is not None:
-                return True
             count = connection.execute(select(func.count()).select_from(LESSONS)).scalar_one()
             if count >= most:
                 return False
             row = {"id": lesson_id, "title": title, "document": dict(document)}
-            connection.execute(insert(LESSONS), [{**row, "created_at": datetime.now(UTC)}])
+            put_rows(connection, LESSONS, [{**row, "created_at": datetime.now(UTC)}])
             return True
 
         return self._database.write(work)
 
-    def get(self, lesson_id: str) -> Any:
-        """Return the document of a lesson as it is stored; None if there is none."""
-        query = select(cast(LESSONS.c.document, String)).where(LESSONS.c.id == lesson_id)
-        text = self._database.read(lambda connection: connection.execute(query).scalar())
-        return None if text is None else decode_json(read_json(text))
+    def read(self, decode: Callable[..., Any], lesson_id: str | None = None) -> Rows:
+        """Return lessons, newest first.
 
-    def ids(self) -> list[str]:
-        """Return the ids of all lessons, newest first."""
-        query = select(LESSONS.c.id).order_by(LESSONS.c.created_at.desc(), LESSONS.c.id)
-        rows = self._database.read(lambda connection: connection.execute(query).scalars().all())
-        return [str(one) for one in rows]
+        Args:
+            decode: returns a lesson from the columns.
+            lesson_id: of the one that is wanted; None for all.
+        """
+        order = LESSONS.c.created_at.desc(), LESSONS.c.id
+        where = None if lesson_id is None else LESSONS.c.id == lesson_id
+        return read_rows(self._database, LESSONS, decode, *order, where=where)
 
     def delete(self, lesson_id: str) -> bool:
         """Delete a lesson; whether there was one."""

@@ -59,7 +59,7 @@ def open_store(
             ownership = Ownership(database, on_lost)
             with _locked(ownership):
                 migrate(database)
-                database_id = claim(database).database_id
+                database_id = claim(database, settings.data / ARTIFACTS_FOLDER).database_id
                 files, robots = (
                     _folder(settings.data / name, database_id)
                     for name in (ARTIFACTS_FOLDER, ROBOTS_FOLDER)

@@ -11,6 +11,7 @@ with the server's own.
 """
 
 import logging
+import re
 import secrets
 import threading
 import time
@@ -35,6 +36,8 @@ _HAS_LOCK = text(
     "AND granted"
 )
 _LOCK_WAIT_S = 5.0
+_ID = re.compile("[0-9a-f]{16}")
+_MAX_TOKEN = 1 << 40
 WATCH_EVERY_S = 0.5
 _HANG_S = 3.0
 """A poll that takes longer opens the circuit breaker: other threads' calls fail at once."""
@@ -51,24 +54,48 @@ class ClaimedDatabase(NamedTuple):
     """Number of this ownership, one higher than that of the previous owner."""
 
 
-def claim(database: Database) -> ClaimedDatabase:
-    """Increment the fencing token, so that previous owners of the database can no longer write.
+def claim(database: Database, files: Path) -> ClaimedDatabase:
+    """Change the fencing token, so that previous owners of the database can no longer write.
+
+    A damaged row gets a token that no owner had, and the id of the only folder of files there is.
+
+    Args:
+        database: the database.
+        files: folder that has a folder of files for each database.
 
     Raises:
         StorageFailed: if the database is unavailable.
     """
 
     def work(connection: Connection) -> ClaimedDatabase:
-        database_id = connection.execute(select(ABOUT.c.id)).scalar()
-        if database_id is None:
-            database_id = secrets.token_hex(8)
-            connection.execute(insert(ABOUT), [{"id": database_id, "owner": 0}])
-        increment = update(ABOUT).values(owner=ABOUT.c.owner + 1).returning(ABOUT.c.owner)
-        return ClaimedDatabase(database_id, connection.execute(increment).scalar_one())
+        row = connection.execute(select(ABOUT).with_for_update()).mappings().first()
+        if row is None:
+            row = {"id": secrets.token_hex(8), "owner": 0}
+            connection.execute(insert(ABOUT), [row])
+        owner = row["owner"]
+        is_sound = isinstance(owner, int) and 0 <= owner < _MAX_TOKEN
+        token = owner + 1 if is_sound else secrets.randbelow(_MAX_TOKEN // 2)
+        claimed = ClaimedDatabase(id_of_files(row["id"], files) or secrets.token_hex(8), token)
+        connection.execute(update(ABOUT).values(id=claimed.database_id, owner=token))
+        return claimed
 
     claimed = database.write(work)
     database.fencing_token = claimed.fencing_token
     return claimed
+
+
+def id_of_files(stored: object, files: Path) -> str | None:
+    """Return the id of a database, of its folder of files; None if the stored one is damaged.
+
+    Args:
+        stored: id in the database; in the place of a damaged one is that of the only folder.
+        files: folder that has a folder of files for each database.
+    """
+    if isinstance(stored, str) and _ID.fullmatch(stored):
+        return stored
+    folders = files.iterdir() if files.is_dir() else ()
+    ids = [path.name for path in folders if _ID.fullmatch(path.name)]
+    return ids[0] if len(ids) == 1 else None
 
 
 class FileReplaced(StorageFailed):

@@ -14,6 +14,7 @@ from app.storage.artifacts import ArtifactFiles
 from app.storage.database.engine import BUSY_S, Database, decode_leniently, postgresql_engine
 from app.storage.database.migration import check_current
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
+from app.storage.database.ownership import id_of_files
 from app.storage.database.robots import RobotStore
 from app.storage.database.schema import ABOUT, METADATA
 from app.storage.database.sqlite_file import check_file
@@ -35,8 +36,9 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         database_id = database.read(_id)
         if database_id is None:
             database = stack.enter_context(closing(Database(_empty_engine())))
-        disk_space, name = DiskSpace(settings.data), database_id or "none"
-        files = ArtifactFiles(settings.data / ARTIFACTS_FOLDER / name, disk_space)
+        disk_space, artifacts = DiskSpace(settings.data), settings.data / ARTIFACTS_FOLDER
+        name = id_of_files(database_id, artifacts) or "none"
+        files = ArtifactFiles(artifacts / name, disk_space)
         robots = RobotStore(database, settings.data / ROBOTS_FOLDER / name, disk_space)
         stack.enter_context(robots.known())
         yield RunStore(database, files, robots)

@@ -9,12 +9,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, String, cast, delete, func, insert, or_, select, update
+from sqlalchemy import Connection, String, cast, delete, func, or_, select, update
 
 from app.storage.database.engine import Database
-from app.storage.database.queries import Row, fetch_rows
 from app.storage.database.rows import forget_configs
 from app.storage.database.schema import ROBOTS, RUNS, TOURNAMENTS
+from app.storage.database.stored_rows import Rows, put_rows, read_rows, rows_in
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import Conflict, NotFound, StorageFailed, StorageFull
 from app.storage.stored_robot import MAX_ROBOTS, StoredRobot, distinct_name
@@ -23,6 +23,7 @@ from hexapods.domain.errors import HexapodError
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import Robot
 from hexapods.domain.robot_documents import ENDING
+from hexapods.domain.text import check_name
 from hexapods.files import is_disk_full, write_atomically
 
 UPLOAD_ENDING = ".upload"
@@ -87,9 +88,8 @@ class RobotStore:
         Args:
             hidden: whether hidden ones are listed too.
         """
-        query = select(ROBOTS).order_by(ROBOTS.c.created_at, ROBOTS.c.id)
-        rows = self._database.read(lambda connection: fetch_rows(connection, query))
-        robots = filter(None, map(_decode, rows))
+        order = ROBOTS.c.created_at, ROBOTS.c.id
+        robots = read_rows(self._database, ROBOTS, _decode, *order).sound
         return [one for one in robots if hidden or not one.hidden]
 
     def readable(self, *, hidden: bool = False) -> Sequence[StoredRobot]:
@@ -232,8 +232,7 @@ class RobotStore:
         count = connection.execute(select(func.count()).select_from(ROBOTS)).scalar_one()
         if count + len(robots) > MAX_ROBOTS:
             raise StorageFull(f"at most {MAX_ROBOTS} robots are stored; delete some that none use")
-        if robots:
-            connection.execute(insert(ROBOTS), [_encode(one) for one in robots])
+        put_rows(connection, ROBOTS, [_encode(one) for one in robots])
 
     def check(self, connection: Connection, robots: Iterable[Robot]) -> None:
         """Check within a transaction that those of some robots that are stored ones are here.
@@ -311,7 +310,7 @@ class RobotStore:
             return self.get(about.id)
 
     def delete(self, robot_id: str) -> None:
-        """Delete a robot.
+        """Delete a robot; also one whose row is damaged.
 
         Raises:
             NotFound: if there is no such robot.
@@ -319,13 +318,17 @@ class RobotStore:
         """
 
         def work(connection: Connection) -> None:
-            robot, users = _fetch(connection, robot_id), _users(connection, robot_id)
+            rows, users = _rows(connection, robot_id), _users(connection, robot_id)
+            if not (rows.sound or rows.damaged):
+                raise _not_here(robot_id)
+            name = rows.sound[0].name if rows.sound else robot_id
+            is_hidden = bool(rows.sound) and rows.sound[0].hidden
             for noun, count in users.items():
                 told = f"a {noun} uses" if count == 1 else f"{count:,} {noun}s use"
                 raise Conflict(
-                    f"{told} {robot.name}, and could not be shown without it; hide it instead, "
+                    f"{told} {name}, and could not be shown without it; hide it instead, "
                     f"or delete {f'that {noun}' if count == 1 else f'those {noun}s'} first",
-                    "hidden" if robot.hidden else "used",
+                    "hidden" if is_hidden else "used",
                 )
             connection.execute(delete(ROBOTS).where(ROBOTS.c.id == robot_id))
 
@@ -389,11 +392,19 @@ def _name_taken(name: str) -> Conflict:
 
 
 def _fetch(connection: Connection, robot_id: str) -> StoredRobot:
-    rows = fetch_rows(connection, select(ROBOTS).where(ROBOTS.c.id == robot_id))
-    robot = _decode(rows[0]) if rows else None
-    if robot is None:
-        raise NotFound(f"there is no robot {robot_id!r} (any more)")
+    rows = _rows(connection, robot_id)
+    if not rows.sound:
+        raise _not_here(robot_id)
+    robot: StoredRobot = rows.sound[0]
     return robot
+
+
+def _rows(connection: Connection, robot_id: str) -> Rows:
+    return rows_in(connection, ROBOTS, _decode, where=ROBOTS.c.id == robot_id)
+
+
+def _not_here(robot_id: str) -> NotFound:
+    return NotFound(f"there is no robot {robot_id!r} (any more)")
 
 
 def _users(connection: Connection, robot_id: str) -> dict[str, int]:
@@ -414,13 +425,10 @@ def _encode(robot: StoredRobot) -> dict[str, Any]:
     return {**to_json(robot), "hidden": int(robot.hidden), "created_at": robot.created_at}
 
 
-def _decode(row: Row) -> StoredRobot | None:
-    """Return the robot of a row; None, with a warning in the log, if it is damaged."""
-    values: Mapping[str, Any] = {**row, "hidden": bool(row["hidden"])}
-    try:
-        if not robot_documents.is_id(row["id"]):
-            raise ValueError("its id is malformed")
-        return from_json(StoredRobot, values)
-    except (HexapodError, ValueError, TypeError) as error:
-        _logger.warning("the row of robot %.40r is damaged: %s", row["id"], error)
-        return None
+def _decode(**row: Any) -> StoredRobot:
+    """Return the robot of a row; raises HexapodError or ValueError if it is damaged."""
+    if not robot_documents.is_id(row["id"]):
+        raise ValueError("id: it is no id of a robot")
+    if not check_name(row["name"]):
+        raise ValueError("name: it is empty")
+    return from_json(StoredRobot, {**row, "hidden": bool(row["hidden"])})

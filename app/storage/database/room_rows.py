@@ -1,10 +1,10 @@
 """Rows of rooms of classes: `rooms`, `participants`, `predictions` and `room_runs`.
 
-All are read when the server starts; from then on they are only written. A row that cannot be
-decoded is left out, and logged.
+All are read when the server starts; from then on they are only written. A damaged row is left out,
+and logged: see `stored_rows`.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
@@ -12,11 +12,15 @@ from sqlalchemy import Connection, Table, and_, delete, exists, not_, or_, selec
 from sqlalchemy.sql.elements import ColumnElement
 
 from app.storage.database.engine import Database
-from app.storage.database.named_rows import all_rows, insert_rows
 from app.storage.database.schema import PARTICIPANTS, PREDICTIONS, ROOM_RUNS, ROOMS, RUNS
+from app.storage.database.stored_rows import put_rows, read_rows
 
 Seat = tuple[str, int]
 """A participant: code of the room, and seed."""
+
+
+def _as_it_is(row: Any) -> Any:
+    return row
 
 
 class RoomRow(NamedTuple):
@@ -110,20 +114,25 @@ class RoomRows:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def rooms(self) -> list[RoomRow]:
-        """Return all rooms that can be decoded, oldest first."""
-        return all_rows(self._database, ROOMS, RoomRow, ROOMS.c.created_at)
+    def rooms(self, decode: Callable[[RoomRow], Any] = _as_it_is) -> list[Any]:
+        """Return all sound rooms, oldest first; what `decode` raises is damage."""
+        return self._read(ROOMS, RoomRow, decode, ROOMS.c.created_at)
 
-    def participants(self) -> list[ParticipantRow]:
-        """Return all participants that can be decoded."""
-        return all_rows(self._database, PARTICIPANTS, ParticipantRow, PARTICIPANTS.c.seed)
+    def participants(self, decode: Callable[[ParticipantRow], Any] = _as_it_is) -> list[Any]:
+        """Return all sound participants."""
+        return self._read(PARTICIPANTS, ParticipantRow, decode, PARTICIPANTS.c.seed)
 
-    def predictions(self) -> list[PredictionRow]:
-        """Return all predictions that can be decoded."""
-        return all_rows(self._database, PREDICTIONS, PredictionRow, PREDICTIONS.c.made_at)
+    def seeds(self) -> list[Seat]:
+        """Return the seats of all participants, also of those whose rows are damaged."""
+        seats = self._column_values(PARTICIPANTS.c.room, PARTICIPANTS.c.seed)
+        return [(room, seed) for room, seed in seats if isinstance(seed, int)]
 
-    def runs(self) -> list[RoomRun]:
-        """Return all runs of rooms that are stored and can be decoded, oldest first.
+    def predictions(self, decode: Callable[[PredictionRow], Any] = _as_it_is) -> list[Any]:
+        """Return all sound predictions."""
+        return self._read(PREDICTIONS, PredictionRow, decode, PREDICTIONS.c.made_at)
+
+    def runs(self, decode: Callable[[RoomRun], Any] = _as_it_is) -> list[Any]:
+        """Return all sound runs of rooms that are stored, oldest first.
 
         A run is linked to its participant before it is stored: a kill may leave a link to none.
         """
@@ -131,8 +140,25 @@ class RoomRows:
         order = ROOM_RUNS.c.created_at, ROOM_RUNS.c.run_id
         query = select(RUNS.c.id).where(RUNS.c.id.in_(select(ROOM_RUNS.c.run_id)))
         stored = self._database.read(lambda connection: set(connection.scalars(query)))
-        linked = all_rows(self._database, ROOM_RUNS, RoomRun, *order)
+        linked = self._read(ROOM_RUNS, RoomRun, decode, *order)
         return [one for one in linked if one.answer is not None or one.run_id in stored]
+
+    def run_ids(self) -> set[str]:
+        """Return the ids of all runs of rooms, also of those whose rows are damaged."""
+        return {run_id for (run_id,) in self._column_values(ROOM_RUNS.c.run_id)}
+
+    def _read(
+        self,
+        table: Table,
+        kind: Callable[..., Any],
+        decode: Callable[[Any], Any],
+        *order: ColumnElement[Any],
+    ) -> list[Any]:
+        return read_rows(self._database, table, lambda **row: decode(kind(**row)), *order).sound
+
+    def _column_values(self, *columns: ColumnElement[Any]) -> Sequence[Any]:
+        query = select(*columns)
+        return self._database.read(lambda connection: connection.execute(query).all())
 
     def add_room(self, row: RoomRow) -> None:
         """Insert a room."""
@@ -186,7 +212,8 @@ class RoomRows:
         self._database.write(lambda connection: connection.execute(statement))
 
     def _insert(self, table: Table, rows: Sequence[Any]) -> None:
-        self._database.write(lambda connection: insert_rows(connection, table, rows))
+        values = [row._asdict() for row in rows]
+        self._database.write(lambda connection: put_rows(connection, table, values))
 
 
 def is_seen_by(reader: Sequence[Seat]) -> ColumnElement[bool]:
@@ -198,7 +225,8 @@ def is_seen_by(reader: Sequence[Seat]) -> ColumnElement[bool]:
     own: list[ColumnElement[bool]] = [
         and_(ROOM_RUNS.c.room == room, ROOM_RUNS.c.seed == seed) for room, seed in reader
     ]
-    hidden = and_(ROOM_RUNS.c.run_id == RUNS.c.id, not_(ROOM_RUNS.c.is_shown))
+    # A value that is neither true nor false hides.
+    hidden = and_(ROOM_RUNS.c.run_id == RUNS.c.id, ROOM_RUNS.c.is_shown.is_not(True))
     return not_(exists().where(and_(hidden, not_(or_(*own))) if own else hidden))
 
 

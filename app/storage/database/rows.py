@@ -94,9 +94,6 @@ def _decode(row: Mapping[str, Any]) -> Run:
         values[name] = _text(name, row[name], is_needed=name == "name")
     values["tags"] = tuple(visible(tag) for tag in decode_tags(_limited("tags", row["tags"])))
     values["notes"] = visible(_limited("notes", row["notes"]), NOTES_CONTROLS)
-    for name in ("eta_s", "greedy_distance_m", "changes"):
-        if not is_finite(values[name]):
-            raise ValueError(f"its {name} has NaN or an infinity")
     parse = _config if len(row["config"]) <= _MAX_CACHED_CONFIG_CHARS else _config.__wrapped__
     values["config"] = config = parse(row["kind"], row["config"])
     if (result := _json("result", row["result"])) is not None:
@@ -104,7 +101,12 @@ def _decode(row: Mapping[str, Any]) -> Run:
         values["result"] = from_json(RESULTS[row["kind"]], finite(result), extra="ignore")
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
         raise ValueError("its numbers of lanes and of training ids differ")
-    return from_json(Run, values)
+    run = from_json(Run, values)
+    for name in ("eta_s", "greedy_distance_m", "changes"):
+        # Of the run, as `NaN` in a column of text is read as a number.
+        if not is_finite(getattr(run, name)):
+            raise ValueError(f"its {name} has NaN or an infinity")
+    return run
 
 
 @lru_cache(maxsize=512)

@@ -7,6 +7,7 @@ from typing import Any
 
 from sqlalchemy import (
     Connection,
+    Update,
     case,
     delete,
     func,
@@ -60,6 +61,7 @@ from app.storage.run import (
 from app.storage.sessions import SessionRows
 from hexapods.domain.errors import DamagedFile
 
+_IDS_AT_ONCE = 1_000
 _INTERRUPTED_ERROR = "The server ended before the run did."
 
 
@@ -426,22 +428,30 @@ class RunStore:
         Returns:
             ids of these runs.
         """
-        now = literal(datetime.now(UTC), UtcTime)
-        # The clock may have been set back since the run started.
-        ended_at = case((RUNS.c.started_at > now, RUNS.c.started_at), else_=now)
-        statement = (
-            update(RUNS)
-            .where(RUNS.c.state.in_(NOT_ENDED))
-            .values(
-                state="interrupted",
-                error=_INTERRUPTED_ERROR,
-                eta_s=None,
-                waiting_for=[],
-                ended_at=ended_at,
-            )
-            .returning(RUNS.c.id)
-        )
+        statement = _interrupted(NOT_ENDED, _INTERRUPTED_ERROR).returning(RUNS.c.id)
         return self.database.write(lambda connection: connection.execute(statement).scalars().all())
+
+    def interrupt(
+        self, run_ids: Collection[str], from_states: Collection[State], error: str
+    ) -> Sequence[Run]:
+        """Mark runs as interrupted whose state is in `from_states`, in one transaction.
+
+        Returns:
+            these runs.
+        """
+        statement = _interrupted(from_states, error).returning(*RAW_RUN)
+
+        def work(connection: Connection) -> Sequence[Row]:
+            ids, changed = list(run_ids), list[Row]()
+            for first in range(0, len(ids), _IDS_AT_ONCE):
+                of_part = RUNS.c.id.in_(ids[first : first + _IDS_AT_ONCE])
+                changed += fetch_rows(connection, statement.where(of_part))
+            return changed
+
+        rows = self.database.write(work)
+        for row in rows:
+            self._progress.drop(row["id"])
+        return [run for run in map(try_decode_run, rows) if isinstance(run, Run)]
 
     def delete_orphans(self) -> int:
         """Delete the artifact files that no run references; only safe before the first write.
@@ -454,6 +464,23 @@ class RunStore:
     def _invalidate_progress(self, run_id: str, fields: Mapping[str, Any]) -> None:
         if "done" in fields:
             self._progress.drop(run_id)
+
+
+def _interrupted(from_states: Collection[State], error: str) -> Update:
+    now = literal(datetime.now(UTC), UtcTime)
+    # The clock may have been set back since the run was created, or started.
+    since = func.coalesce(RUNS.c.started_at, RUNS.c.created_at)
+    return (
+        update(RUNS)
+        .where(RUNS.c.state.in_(from_states))
+        .values(
+            state="interrupted",
+            error=error,
+            eta_s=None,
+            waiting_for=[],
+            ended_at=case((since > now, since), else_=now),
+        )
+    )
 
 
 def _with_progress(row: Row, progress: Mapping[str, Any]) -> Row:

@@ -4,21 +4,25 @@ All but the tables are read when the server starts; from then on they are only w
 """
 
 import base64
+import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
-from sqlalchemy import Connection, Table, and_, delete, func, select, update
+from sqlalchemy import ColumnElement, Connection, Table, and_, delete, func, select, update
 
 from app.storage.database.engine import Database
-from app.storage.database.named_rows import all_rows, insert_rows
 from app.storage.database.schema import (
     TOURNAMENT_ENTRIES,
     TOURNAMENT_JUDGEMENTS,
     TOURNAMENT_TABLES,
     TOURNAMENTS,
 )
+from app.storage.database.stored_rows import put_rows, read_rows
 from app.storage.errors import NotFound
+from hexapods.domain.errors import DamagedFile
+
+T = TypeVar("T")
 
 
 class TournamentRow(NamedTuple):
@@ -97,20 +101,25 @@ class TournamentRows:
 
     def __init__(self, database: Database) -> None:
         self._database = database
+        database.decoders[TOURNAMENT_TABLES.name] = _sound_table
 
-    def tournaments(self) -> list[TournamentRow]:
-        """Return all tournaments that can be decoded, oldest first."""
+    def tournaments(self, decode: Callable[[TournamentRow], T]) -> list[T]:
+        """Return all sound tournaments, oldest first; what `decode` raises is damage."""
         order = TOURNAMENTS.c.created_at, TOURNAMENTS.c.id
-        return all_rows(self._database, TOURNAMENTS, TournamentRow, *order)
+        return self._read(TOURNAMENTS, lambda **row: decode(TournamentRow(**row)), *order)
 
-    def entries(self) -> list[EntryRow]:
-        """Return all entries that can be decoded, in the order of their numbers."""
-        return all_rows(self._database, TOURNAMENT_ENTRIES, EntryRow, TOURNAMENT_ENTRIES.c.number)
+    def entries(self, decode: Callable[[EntryRow], T]) -> list[T]:
+        """Return all sound entries, in the order of their numbers."""
+        table = TOURNAMENT_ENTRIES
+        return self._read(table, lambda **row: decode(EntryRow(**row)), table.c.number)
 
-    def judgements(self) -> list[JudgementRow]:
-        """Return all judgements that can be decoded, in the order of their draws."""
+    def judgements(self, decode: Callable[[JudgementRow], T]) -> list[T]:
+        """Return all sound judgements, in the order of their draws."""
         table = TOURNAMENT_JUDGEMENTS
-        return all_rows(self._database, table, JudgementRow, table.c.draw)
+        return self._read(table, lambda **row: decode(JudgementRow(**row)), table.c.draw)
+
+    def _read(self, table: Table, decode: Callable[..., T], *order: ColumnElement[Any]) -> list[T]:
+        return read_rows(self._database, table, decode, *order).sound
 
     def add(
         self,
@@ -122,31 +131,26 @@ class TournamentRows:
 
         def work(connection: Connection) -> None:
             check(connection)
-            insert_rows(connection, TOURNAMENTS, [row])
-            insert_rows(connection, TOURNAMENT_ENTRIES, entries)
+            put_rows(connection, TOURNAMENTS, [row._asdict()])
+            put_rows(connection, TOURNAMENT_ENTRIES, [one._asdict() for one in entries])
 
         self._database.write(work)
 
-    def newest_numbers(self) -> Mapping[str, int]:
-        """Return by tournament the highest number of its entries, of those that are damaged too."""
-        entries = TOURNAMENT_ENTRIES.c
-        highest = func.max(entries.number)
-        query = select(entries.tournament, highest).group_by(entries.tournament)
+    def numbers(self) -> list[tuple[str, int]]:
+        """Return tournaments with the numbers of their entries, of those that are damaged too."""
+        query = select(TOURNAMENT_ENTRIES.c.tournament, TOURNAMENT_ENTRIES.c.number)
         rows = self._database.read(lambda connection: connection.execute(query).all())
-        return {str(tournament): int(number) for tournament, number in rows}
+        return [(tournament, number) for tournament, number in rows if isinstance(number, int)]
 
     def add_entry(self, row: EntryRow, table: tuple[str, bytes] | None = None) -> None:
-        """Insert an entry, with its table by SHA-256 unless the tournament has it."""
+        """Insert an entry, with its table by SHA-256."""
 
         def work(connection: Connection) -> None:
-            # In an outage one of this number may have been committed with its reply lost.
-            _replace(connection, TOURNAMENT_ENTRIES, row)
+            put_rows(connection, TOURNAMENT_ENTRIES, [row._asdict()])
             if table is not None:
-                known = select(TOURNAMENT_TABLES.c.sha256).where(_is(row.tournament, table[0]))
-                if connection.execute(known).first() is None:
-                    data = base64.b64encode(table[1]).decode()
-                    copied = TableRow(row.tournament, table[0], data)
-                    insert_rows(connection, TOURNAMENT_TABLES, [copied])
+                data = base64.b64encode(table[1]).decode()
+                copied = TableRow(row.tournament, table[0], data)
+                put_rows(connection, TOURNAMENT_TABLES, [copied._asdict()])
 
         self._database.write(work)
 
@@ -162,7 +166,7 @@ class TournamentRows:
             is_of = and_(entries.c.tournament == row.tournament, entries.c.number == row.number)
             if connection.execute(select(entries.c.number).where(is_of)).first() is None:
                 raise NotFound(f"there is no tournament {row.tournament!r} (any more)")
-            _replace(connection, TOURNAMENT_JUDGEMENTS, row)
+            put_rows(connection, TOURNAMENT_JUDGEMENTS, [row._asdict()])
 
         self._database.write(work)
 
@@ -190,9 +194,16 @@ class TournamentRows:
         self._database.write(lambda connection: connection.execute(statement))
 
     def table(self, tournament: str, sha256: str) -> str | None:
-        """Return a table in base64; None if the tournament has none of this SHA-256."""
-        query = select(TOURNAMENT_TABLES.c.data).where(_is(tournament, sha256))
-        return self._database.read(lambda connection: connection.execute(query).scalar())
+        """Return a table in base64; None if the tournament has none of this SHA-256.
+
+        Raises:
+            DamagedFile: if it is damaged.
+        """
+        where = _is(tournament, sha256)
+        rows = read_rows(self._database, TOURNAMENT_TABLES, _sound_table, where=where)
+        for row in rows.damaged:
+            raise DamagedFile(f"the table {sha256[:64]} that entered is damaged: {row.damaged}")
+        return rows.sound[0].data if rows.sound else None
 
     def size_of_tables(self, tournament: str) -> int:
         """Return the length of all tables of a tournament, in base64."""
@@ -202,11 +213,11 @@ class TournamentRows:
         return int(size or 0)
 
 
-def _replace(connection: Connection, table: Table, row: EntryRow | JudgementRow) -> None:
-    """Insert a row, in the place of one with the same primary key."""
-    is_same = [one == getattr(row, one.name) for one in table.primary_key]
-    connection.execute(delete(table).where(and_(*is_same)))
-    insert_rows(connection, table, [row])
+def _sound_table(**row: str) -> TableRow:
+    table = TableRow(**row)
+    if hashlib.sha256(base64.b64decode(table.data, validate=True)).hexdigest() != table.sha256:
+        raise ValueError("data: it is not what entered")
+    return table
 
 
 def _is(tournament: str, sha256: str) -> Any:

@@ -3,15 +3,14 @@
 import re
 from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC, datetime
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sqlalchemy import delete, insert, select, update
 
 from app.storage.database.engine import Database
-from app.storage.database.named_rows import ReadRow, read_rows
 from app.storage.database.schema import RUNS, VISITOR_RUNS
+from app.storage.database.stored_rows import read_rows
 from app.storage.run import STATES, State
-from hexapods.domain.text import visible
 
 UNREADABLE = "unreadable"
 """Visitor of the runs of which that cannot be read; no key has such a hash."""
@@ -54,34 +53,13 @@ class VisitorRows:
         self._database = database
 
     def all(self) -> list[VisitorRun]:
-        """Return all, oldest first; what cannot be read of one is as in `_IF_DAMAGED`.
+        """Return all, sound ones oldest first; what cannot be read of one is as in `_IF_DAMAGED`.
 
         So each run is deleted in time: one that is left out here would stay for ever.
         """
-        return [
-            VisitorRun(**{**_IF_DAMAGED, **one.values})
-            for one in self._read()
-            if "run_id" not in one.damaged
-        ]
-
-    def damaged(self) -> dict[str, str]:
-        """Return what cannot be read, a sentence each, by id of the run."""
-        return {
-            visible(str(one.values.get("run_id", "?"))): "; ".join(
-                f"{name}: {visible(reason)}" for name, reason in one.damaged.items()
-            )
-            for one in self._read()
-            if one.damaged
-        }
-
-    def _read(self) -> list[ReadRow]:
-        rows = read_rows(self._database, VISITOR_RUNS, VISITOR_RUNS.c.run_id)
-        for one in rows:
-            visitor = one.values.get("visitor", "")
-            if "visitor" not in one.damaged and not _HASH.fullmatch(visitor):
-                del one.values["visitor"]
-                one.damaged["visitor"] = "it is no SHA-256"
-        return rows
+        rows = read_rows(self._database, VISITOR_RUNS, _run, VISITOR_RUNS.c.run_id)
+        damaged = (one.values for one in rows.damaged if "run_id" in one.values)
+        return [*rows.sound, *(VisitorRun(**{**_IF_DAMAGED, **_checked(one)}) for one in damaged)]
 
     def states(
         self, states: Collection[State] = STATES, *, visitor: str | None = None
@@ -119,3 +97,15 @@ class VisitorRows:
         """Delete the links of runs."""
         statement = delete(VISITOR_RUNS).where(VISITOR_RUNS.c.run_id.in_(run_ids))
         self._database.write(lambda connection: connection.execute(statement))
+
+
+def _run(**values: Any) -> VisitorRun:
+    if _checked(values) != values:
+        raise ValueError("visitor: it is no SHA-256")
+    return VisitorRun(**values)
+
+
+def _checked(values: dict[str, Any]) -> dict[str, Any]:
+    """Return what can be read without a visitor that is none."""
+    is_hash = _HASH.fullmatch(values.get("visitor", ""))
+    return {name: value for name, value in values.items() if is_hash or name != "visitor"}
