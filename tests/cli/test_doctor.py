@@ -56,7 +56,7 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     names = [line[2:].partition(":")[0] for line in lines]
     assert names[:5] == ["python", "packages", "physics", "browser", "cores"]
     assert names[5:7] == ["exports", "settings"]
-    checked = ["data folder", "room", "lock", "database", "robots", "visitors", "address"]
+    checked = ["data folder", "room", "lock", "database", "rows", "robots", "visitors", "address"]
     assert names[7:] == checked
     assert list(tmp_path.iterdir()) == []
 
@@ -94,11 +94,10 @@ def test_runs_of_visitors_whose_rows_are_damaged_are_named(tmp_path: Path) -> No
     assert examined(tmp_path)["visitors"] == (True, "1 run of a demo's visitors")
     with closing(sqlite3.connect(tmp_path / "data" / DATABASE_FILE)) as database, database:
         database.execute("UPDATE visitor_runs SET created_at = 'yesterday', visitor = 'x'")
-    said = failures(examined(tmp_path))["visitors"]
-    assert said.startswith("1 of the links from runs to visitors")
-    assert "run 1m8agbvj657z5: created_at: " in said
-    assert "visitor: it is no SHA-256" in said
-    assert "a server that starts on this data folder" in said
+    said = failures(examined(tmp_path))["rows"]
+    assert said.startswith("1 row of visitor_runs cannot be read: ")
+    assert "visitor_runs run_id 1m8agbvj657z5: created_at: " in said
+    assert "the next start of a server deletes these runs in time" in said
 
 
 def test_unusable_data_folder_is_named(tmp_path: Path) -> None:

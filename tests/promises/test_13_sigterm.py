@@ -9,16 +9,22 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import httpx2
 import psutil
 
 from app.events.run_view import run_view
+from app.storage.run import NOT_ENDED
 from tests.promises.length import at_length
 from tests.promises.trainings import checkpoint_step
-from tests.served import ENDLESS, Served
+from tests.served import BODY, ENDLESS, Served
 from tests.storage.stores import opened
 from tests.timeouts import LONG_S
 
 ENDED_S = at_length(LONG_S, 10.0)
+VISITORS = at_length(20, 120)
+"""Of a demo: each has two runs that wait."""
+OF_ADDRESS = 30
+TOKEN = "a-token-for-tests"
 
 
 def end_and_check(server: Served, by: int) -> None:
@@ -37,7 +43,8 @@ def occupy(server: Served, runs: list[dict[str, Any]]) -> dict[str, int]:
         server.after_step(run, server.look(run)["progress"]["done"] + 1)
         if run is runs[0]:
             assert server.tell(run, "pause").status_code == 202
-    assert server.look(runs[-1])["state"] == "queued"
+    states = {server.look(run)["state"] for run in runs}
+    assert states == NOT_ENDED, "a run in each state that it can leave"
     return {run["id"]: server.look(run)["progress"]["done"] for run in runs}
 
 
@@ -67,6 +74,33 @@ def test_a_signal_drains_the_server(launch: Callable[..., Served], tmp_path: Pat
     with opened(tmp_path, None) as store:
         for run in runs:
             check_interrupted(tmp_path, run_view(store.get(run["id"])), done_before)
+
+
+def test_sigterm_drains_a_long_queue(launch: Callable[..., Served], tmp_path: Path) -> None:
+    demo = {"HEXAPODS_DEMO": "1", "HEXAPODS_STARTS_PER_MINUTE": "1000000"}
+    server = launch(HEXAPODS_TOKEN=TOKEN, **demo)
+    operator = {"Authorization": f"Bearer {TOKEN}"}
+    for _ in range(psutil.cpu_count() or 1):
+        started = server.client.post("/api/v1/trainings", json=ENDLESS, headers=operator)
+        assert started.status_code == 202, started.text
+    ids = [run_id for number in range(VISITORS) for run_id in visit(server, number)]
+    end_and_check(server, signal.SIGTERM)
+    with opened(tmp_path, None) as store:
+        runs = [store.get(run_id) for run_id in ids]
+    told = {(run.state, run.error) for run in runs}
+    assert told == {("interrupted", "The server was stopped before its turn came.")}
+    assert all(run.ended_at is not None for run in runs)
+
+
+def visit(server: Served, number: int) -> list[str]:
+    """Start two runs as a visitor, of an address that it shares; return their ids."""
+    address = f"127.0.0.{2 + number // OF_ADDRESS}"
+    transport = httpx2.HTTPTransport(local_address=address)
+    with httpx2.Client(base_url=server.address, transport=transport, timeout=LONG_S) as client:
+        body = {**BODY, "steps": 20}
+        answers = [client.post("/api/v1/trainings", json=body) for _ in range(2)]
+    assert [answer.status_code for answer in answers] == [202, 202], answers[-1].text
+    return [answer.json()["id"] for answer in answers]
 
 
 def test_sigterm_ends_an_experiment_and_its_cluster(

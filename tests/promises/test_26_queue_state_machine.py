@@ -14,7 +14,7 @@ import signal
 import sqlite3
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
@@ -28,8 +28,10 @@ from starlette.testclient import TestClient
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.server import create_app
 from app.settings import Settings
+from app.storage.database import schema
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from app.storage.errors import StorageFailed
+from app.storage.run import LIVE, NOT_ENDED, PAUSED, RESUMABLE, RUNNING, STATES
 from tests.api.calls import ADDRESS
 from tests.jobs.waiting import wait_until
 from tests.promises.length import at_length
@@ -42,14 +44,19 @@ RUNS = 10
 STARTS = at_length(0.04, 0.2)
 """Share of starts, each of which takes a process."""
 SHORT = {**BODY, "steps": 30, "evaluate_every": 10}
-LIVE = {"running", "paused"}
-ENDED = {"finished", "stopped", "failed", "interrupted"}
+ENDED = frozenset(STATES) - NOT_ENDED
 SPONTANEOUS = {"queued": {"running"}, "running": {"finished"}, "paused": {"finished"}}
 """State → the states that a run may have reached by itself.
 
 A paused run may finish: its last step may be done, and the message of its end in transit.
 """
-
+assert SPONTANEOUS.keys() == NOT_ENDED, "each state that a run leaves by itself is in the model"
+RESUMED = {**dict.fromkeys(PAUSED, "running"), **dict.fromkeys(RESUMABLE["training"], "queued")}
+OF_RUNS = [
+    table.name
+    for table in schema.METADATA.sorted_tables
+    if table is schema.RUNS or any(key.references(schema.RUNS) for key in table.foreign_keys)
+]
 
 WEIGHTS = {"look": 4, "pause": 4, "resume": 4, "change": 4, "stop": 1, "delete": 2}
 
@@ -76,14 +83,17 @@ class Model:
         return found
 
     def expect(
-        self, response: httpx2.Response, transitions: dict[str, str], refusing_states: set[str]
+        self,
+        response: httpx2.Response,
+        transitions: Mapping[str, str],
+        refusing_states: Collection[str],
     ) -> None:
         """Check an answer against the model, and update the model.
 
         Args:
             response: to a verb.
-            goes: state before → state after, where the verb is possible.
-            fits: states in which it is refused.
+            transitions: state before → state after, where the verb is possible.
+            refusing_states: states in which it is refused.
         """
         before = self.possible()
         if response.status_code < 300:
@@ -96,7 +106,7 @@ class Model:
             self.states = {shown}
             self.is_killed &= shown in LIVE
         elif response.status_code == 409:
-            self.states = before & refusing_states
+            self.states = before & set(refusing_states)
             assert self.states, (before, response.text)
         else:
             assert response.status_code in (429, 503), response.text
@@ -118,23 +128,17 @@ def apply_verb(client: httpx2.Client, run: Model, chance: random.Random) -> bool
         assert shown in run.possible(), (run.states, shown)
         run.states = {shown}
     elif name == "pause":
-        run.expect(
-            client.post(f"{run.path}/pause"), {"running": "paused"}, ENDED | LIVE | {"queued"}
-        )
+        run.expect(client.post(f"{run.path}/pause"), dict.fromkeys(RUNNING, "paused"), STATES)
     elif name == "resume":
-        transitions = {"paused": "running", "failed": "queued", "interrupted": "queued"}
-        refusing_states = {"queued", "running", "finished", "stopped"}
-        run.expect(client.post(f"{run.path}/resume"), transitions, refusing_states)
+        refusing_states = set(STATES) - RESUMED.keys()
+        run.expect(client.post(f"{run.path}/resume"), RESUMED, refusing_states)
     elif name == "stop":
-        transitions = {"queued": "stopped", "running": "stopped", "paused": "stopped"}
-        run.expect(client.post(f"{run.path}/stop"), transitions, ENDED)
+        run.expect(client.post(f"{run.path}/stop"), dict.fromkeys(NOT_ENDED, "stopped"), ENDED)
     elif name == "change":
-        transitions = {state: state for state in LIVE}
         changed = client.patch(run.path, json={"settings": {"alpha": 0.5}})
-        run.expect(changed, transitions, ENDED | {"queued"})
+        run.expect(changed, {state: state for state in LIVE}, set(STATES) - LIVE)
     else:
-        transitions = dict.fromkeys(ENDED, "deleted")
-        run.expect(client.delete(run.path), transitions, LIVE | {"queued"})
+        run.expect(client.delete(run.path), dict.fromkeys(ENDED, "deleted"), NOT_ENDED)
     return run.states != {"deleted"}
 
 
@@ -181,8 +185,7 @@ def delete_continually(address: str, done: threading.Event) -> int:
 def rows_and_files(data: Path) -> tuple[int, int]:
     """Count the rows and artifact files in a data folder."""
     with closing(sqlite3.connect(data / DATABASE_FILE)) as database:
-        tables = ("runs", "artifacts", "evaluations", "trials")
-        rows = sum(database.execute(f"SELECT count(*) FROM {t}").fetchone()[0] for t in tables)
+        rows = sum(database.execute(f"SELECT count(*) FROM {t}").fetchone()[0] for t in OF_RUNS)
     return rows, sum(path.is_file() for path in (data / ARTIFACTS_FOLDER).rglob("*"))
 
 

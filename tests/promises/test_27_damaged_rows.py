@@ -32,7 +32,7 @@ from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.schema import METADATA
 from app.storage.database.store import RunStore
 from app.storage.errors import Damaged
-from app.storage.run import TABLE, DamagedRun
+from app.storage.run import STATES, TABLE, DamagedRun
 from hexapods.runs import tables
 from hexapods.runs.tables import from_bytes
 from tests.archive.exported import export_run
@@ -105,7 +105,7 @@ def check_all_reads(server: Served, ids: dict[str, str]) -> dict[str, str]:
     for kind in ("trainings", "races", "experiments"):
         runs = listed(server, kind)
         damaged |= {i: run["damaged"] for i, run in runs.items() if "damaged" in run}
-        for state in ("finished", "running"):
+        for state in STATES:
             assert server.client.get(f"/api/v1/{kind}?state={state}").status_code == 200
     assert SOUND in listed(server, "trainings")
     assert "damaged" not in listed(server, "trainings")[SOUND]
