@@ -195,7 +195,8 @@ def _sound(run: RoomRun, rooms: Mapping[str, Room]) -> RoomRun:
     Raises:
         ValueError, NotFound: if the row is damaged.
     """
-    if not isinstance(run.given, Mapping) or not is_finite(run.given):
+    given: Any = run.given
+    if not isinstance(given, Mapping) or not is_finite(given):
         raise ValueError("given: it is no object of settings")
     if run.answer is not None:
         distance_m = run.answer["chosen"]["iqm_m"]

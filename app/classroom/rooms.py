@@ -515,7 +515,8 @@ def _check_allowed(room: Room, deed: Deed) -> None:
 def _room(row: RoomRow) -> Room:
     if row.code != normalized(row.code) or not (row.code.isascii() and row.code.isalnum()):
         raise ValueError("code: it is no code")
-    if not isinstance(row.revealed, list) or not all(type(one) is int for one in row.revealed):
+    revealed: Any = row.revealed
+    if not isinstance(revealed, list) or not all(type(one) is int for one in revealed):
         raise ValueError("revealed: it is no list of numbers")
     lesson = read_lesson(row.lesson)
     card = min(max(row.card, 0), len(lesson.cards) - 1)

@@ -85,7 +85,7 @@ class Model:
     def expect(
         self,
         response: httpx2.Response,
-        transitions: Mapping[str, str],
+        transitions: Mapping[Any, str],
         refusing_states: Collection[str],
     ) -> None:
         """Check an answer against the model, and update the model.

@@ -85,7 +85,7 @@ class Database:
         self.engine, self.on_disk_full = engine, on_disk_full
         self.fencing_token: int | None = None
         self.write_problem: HexapodError | None = None
-        self.decoders: dict[str, Callable[[dict[str, Any]], Any]] = {}
+        self.decoders: dict[str, Callable[..., Any]] = {}
         self.logged_damage: set[str] = set()
         self.check_available: Callable[[], None] = lambda: None
         # SQLite's busy handler polls, and the pool's queue is not fair, so waiters would starve.

@@ -68,14 +68,13 @@ def claim(database: Database, files: Path) -> ClaimedDatabase:
     """
 
     def work(connection: Connection) -> ClaimedDatabase:
-        row = connection.execute(select(ABOUT).with_for_update()).mappings().first()
+        row = connection.execute(select(ABOUT.c.id, ABOUT.c.owner).with_for_update()).first()
+        stored, owner = (secrets.token_hex(8), 0) if row is None else row
         if row is None:
-            row = {"id": secrets.token_hex(8), "owner": 0}
-            connection.execute(insert(ABOUT), [row])
-        owner = row["owner"]
+            connection.execute(insert(ABOUT), [{"id": stored, "owner": owner}])
         is_sound = isinstance(owner, int) and 0 <= owner < _MAX_TOKEN
         token = owner + 1 if is_sound else secrets.randbelow(_MAX_TOKEN // 2)
-        claimed = ClaimedDatabase(id_of_files(row["id"], files) or secrets.token_hex(8), token)
+        claimed = ClaimedDatabase(id_of_files(stored, files) or secrets.token_hex(8), token)
         connection.execute(update(ABOUT).values(id=claimed.database_id, owner=token))
         return claimed
 
