@@ -151,6 +151,30 @@ def test_a_damaged_row_is_left_out(store: RunStore) -> None:
         left.get(bad)
 
 
+def test_what_a_damaged_row_has_is_not_given_away_again(store: RunStore) -> None:
+    """Nor is a run shown to all of which it is not known to whom it is shown."""
+    rooms = Rooms(store)
+    code = rooms.create(LESSON).code
+    rooms.join(code)
+    rooms.join(code)
+    rooms.predict(code, 0, 0, 0.25)
+    run = RoomRun("0a1run", code, 0, 0, {}, True, False, datetime.now(UTC))
+    store.create(training(run.run_id))
+    store.rooms.add_runs([run])
+    for damage in (
+        "UPDATE participants SET name = '\u200b' WHERE seed = 1",
+        "UPDATE predictions SET value = '[]'",
+        "UPDATE room_runs SET given = '[]'",
+    ):
+        store.database.write(lambda connection, damage=damage: connection.execute(text(damage)))  # type: ignore[misc]
+    left = Rooms(store)
+    assert list(left.get(code).participants) == [0]
+    assert left.join(code).participant.seed == 2
+    left.predict(code, 0, 0, 0.5)
+    assert Rooms(store).get(code).predictions == {(0, 0): 0.5}
+    assert left.is_hidden(run.run_id, [(code, 0)])
+
+
 def test_an_idle_room_makes_place_for_another(store: RunStore) -> None:
     now = datetime(2026, 11, 25, tzinfo=UTC)
     rooms = Rooms(store, now=lambda: now)

@@ -28,13 +28,13 @@ from starlette.testclient import TestClient
 from app.jobs.supervisor import STUCK_S, Supervisor
 from app.server import create_app
 from app.settings import Settings
-from app.storage.database import schema
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from app.storage.errors import StorageFailed
 from app.storage.run import LIVE, NOT_ENDED, PAUSED, RESUMABLE, RUNNING, STATES
 from tests.api.calls import ADDRESS
 from tests.jobs.waiting import wait_until
 from tests.promises.length import at_length
+from tests.promises.worst_values import OF_RUNS
 from tests.served import BODY, ENDLESS, Served
 from tests.storage.stores import opened
 from tests.timeouts import LONG_S
@@ -52,11 +52,6 @@ A paused run may finish: its last step may be done, and the message of its end i
 """
 assert SPONTANEOUS.keys() == NOT_ENDED, "each state that a run leaves by itself is in the model"
 RESUMED = {**dict.fromkeys(PAUSED, "running"), **dict.fromkeys(RESUMABLE["training"], "queued")}
-OF_RUNS = [
-    table.name
-    for table in schema.METADATA.sorted_tables
-    if table is schema.RUNS or any(key.references(schema.RUNS) for key in table.foreign_keys)
-]
 
 WEIGHTS = {"look": 4, "pause": 4, "resume": 4, "change": 4, "stop": 1, "delete": 2}
 

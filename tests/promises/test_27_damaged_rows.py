@@ -29,7 +29,6 @@ from app.archive.transfer import RUN
 from app.events.run_view import run_view
 from app.storage.database.engine import Database, postgresql_engine
 from app.storage.database.opening import DATABASE_FILE
-from app.storage.database.schema import METADATA
 from app.storage.database.store import RunStore
 from app.storage.errors import Damaged
 from app.storage.run import STATES, TABLE, DamagedRun
@@ -41,7 +40,14 @@ from tests.browser.serving import serving
 from tests.cli.running import in_process
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
-from tests.promises.worst_values import BROKEN_TEXT, IMPORTED, STORED, paths_to_values, put_value
+from tests.promises.worst_values import (
+    BROKEN_TEXT,
+    IMPORTED,
+    OF_RUNS,
+    STORED,
+    paths_to_values,
+    put_value,
+)
 from tests.served import Served
 from tests.storage.ended_runs import ended_experiment, ended_race, ended_training
 from tests.storage.stores import opened, training
@@ -269,8 +275,7 @@ Damage = tuple[str, str, Any, str]
 def damage_of_each_kind() -> list[tuple[Damage, ...]]:
     """Every adverse value of every column; each time a run of each kind, each in another column."""
     values = [*STORED, BROKEN_TEXT]
-    tables = [METADATA.tables[name] for name in ("runs", "evaluations", "trials", "artifacts")]
-    names = [(table.name, column.name) for table in tables for column in table.columns]
+    names = [(table.name, column.name) for table in OF_RUNS for column in table.columns]
     return [
         tuple((*names[number - shift], value, run_id) for shift, run_id in enumerate(KINDS))
         for number in range(len(names))

@@ -9,6 +9,7 @@ from typing import Any
 from sqlalchemy import BigInteger, Boolean, Column, Double
 
 from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
+from app.storage.database.schema import METADATA, RUNS
 
 _DEEP = "[" * 50_000 + "]" * 50_000
 STORED: list[Any] = [
@@ -44,6 +45,12 @@ STORED: list[Any] = [
 ]
 """For any column of SQLite, which is dynamically typed; by `CAST` also text that is not UTF-8, see
 `BROKEN_TEXT`."""
+OF_RUNS = [
+    table
+    for table in METADATA.sorted_tables
+    if table is RUNS or any(key.references(RUNS) for key in table.foreign_keys)
+]
+"""Tables that have a run, and what goes with it."""
 BROKEN_TEXT = b"\xff\xc3\x28"
 IMPORTED: list[Any] = [
     None,

@@ -6,10 +6,11 @@ from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from sqlalchemy import text
 
 from app.storage.database import keys
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Gone
+from app.storage.errors import Busy, Conflict, Gone
 from app.storage.idempotency import Idempotency
 from app.storage.run import KEY_LIFETIME, Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
@@ -131,3 +132,16 @@ def test_keys_expire_after_a_day_or_beyond_the_maximum(
         run_of(idempotency, f"key {number}", b"x", start)
     kept = [n for n in range(10) if store.keys.find(f"key {n}") is not None]
     assert kept == [5, 6, 7, 8, 9]
+
+
+def test_a_key_whose_row_is_damaged_starts_no_second_run(store: RunStore) -> None:
+    """Whether it is the same request is not known any more."""
+    idempotency, start = Idempotency(store), Starts(store)
+    run_of(idempotency, "key", b"x", start)
+    is_sqlite = store.database.engine.dialect.name == "sqlite"
+    value = "'yesterday'" if is_sqlite else "'infinity'"
+    damage = text(f"UPDATE idempotency_keys SET created_at = {value}")
+    store.database.write(lambda connection: connection.execute(damage))
+    with pytest.raises(Conflict, match="send a new key"):
+        run_of(idempotency, "key", b"x", start)
+    assert count(store) == 1

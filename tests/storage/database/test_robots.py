@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from sqlalchemy import text
 
 from app.settings import ROBOTS_FOLDER
 from app.storage.database.store import RunStore
@@ -122,3 +123,16 @@ def test_a_rename_is_seen_in_runs(store: RunStore) -> None:
     assert store.get("a").config.robot.name == "Rex"  # type: ignore[union-attr]
     store.robots.change(rex.id, name="Max")
     assert store.get("a").config.robot.name == "Max"  # type: ignore[union-attr]
+
+
+def test_a_robot_whose_row_is_damaged_can_be_deleted_and_stored_again(store: RunStore) -> None:
+    rex = add(store, body(), "Rex")
+    damage = text("UPDATE robots SET guesses = '{}'")
+    for way in ("stored", "deleted"):
+        store.database.write(lambda connection: connection.execute(damage))
+        with pytest.raises(NotFound):
+            store.robots.get(rex.id)
+        if way == "deleted":
+            store.robots.delete(rex.id)
+        assert add(store, body(), "Rex").name == "Rex"
+        assert store.robots.get(rex.id).robot == body()
