@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any, NoReturn, TypedDict
 
 import numpy as np
@@ -15,6 +15,7 @@ from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import GaitSpec, read_gait
 from hexapods.domain.model_robot import model_robot
 from hexapods.domain.robot import PRESETS, Robot, document_of, read_document, robot
+from hexapods.domain.text import MAX_NAME, visible
 from hexapods.domain.world import WORLDS, World, parse_world
 from hexapods.files import path_of
 from hexapods.imports.child import read_robot_file
@@ -113,14 +114,16 @@ def read_walk(given: Mapping[str, Any], like: WalkingProblem | None = None) -> d
 
 
 def read_robot(given: RobotLike) -> Robot:
-    """Return a robot.
+    """Return a robot, whose name can be shown and stored.
 
     Raises:
         UnknownName, InvalidInput: if it is none.
     """
     if not isinstance(given, str | Mapping | Robot):
         _refuse("robot", f"{' or '.join(PRESETS)}, a mapping or a Robot", given)
-    return robot(given)
+    made = robot(given)
+    # No file, database or terminal takes each character that a text of Python may have.
+    return replace(made, name=visible(made.name)[:MAX_NAME])
 
 
 def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
@@ -131,13 +134,16 @@ def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
 
     Args:
         file: its path.
-        name: the robot's name; that of the file by default.
+        name: the robot's name, of at most 100 characters; by default that of the file, as much of
+            it as a name may have.
 
     Raises:
-        InvalidInput: if the file cannot be read, or its robot is not valid.
+        InvalidInput: if the file cannot be read, or its robot or its name is not valid.
         DamagedFile: if it is no robot.
         NotRead: if no process can be started to read it.
     """
+    if name is not None and not (isinstance(name, str) and len(name) <= MAX_NAME):
+        raise InvalidInput(f"a robot's name is a text of at most {MAX_NAME} characters")
     path = path_of(file, "a robot's file")
     try:
         with path.open("rb") as opened:
@@ -146,7 +152,7 @@ def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
         raise InvalidInput(f"cannot read {path}: {error.strerror}") from error
     if path.suffix.lower() != ".json":
         data = document_of(model_robot(read_robot_file(data, path.name).model, path.stem))
-    return read_document(data, name or path.stem)
+    return read_document(data, name or path.stem[:MAX_NAME])
 
 
 def _refuse(name: str, valid: str, given: object) -> NoReturn:

@@ -24,6 +24,7 @@ from hexapods.assembly import build_learner
 from hexapods.domain.checks import check_whole
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.observation import Observation
+from hexapods.domain.records import check_kept
 from hexapods.domain.world import check_ends
 from hexapods.runs import training
 from hexapods.runs.config import (
@@ -225,7 +226,7 @@ class Practice(Iterator[TrainingRecord]):
             name = TrainingConfig.agent if trained is None else trained.config.agent
         else:
             name, trained = learned_by(agent_name(agent), table)
-        self.config = _config(name, trained, given)
+        self.config = check_kept(_config(name, trained, given))
         check_ends(self.config.world.disturbances, self.config.steps)
         self._changes = _read_changes(changes, self.config)
         self._learner = build_learner(self.config, None if trained is None else trained.table)

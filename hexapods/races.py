@@ -34,7 +34,7 @@ from hexapods.arguments import (
 from hexapods.assembly import build_walkers
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
-from hexapods.domain.records import from_json, to_json
+from hexapods.domain.records import check_kept, from_json, to_json
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
@@ -277,10 +277,12 @@ def race(
     numbers = plain({"steps": steps, "seed": seed})
     built = [one if isinstance(one, Lane) else lane(one) for one in lanes]
     like = next((one.training.config for one in built if one.training is not None), None)
-    config = RaceConfig(
-        **read_walk(plain(given), like),
-        lanes=tuple(one.config for one in built),
-        **numbers,
+    config = check_kept(
+        RaceConfig(
+            **read_walk(plain(given), like),
+            lanes=tuple(one.config for one in built),
+            **numbers,
+        )
     )
     check_ends(config.world.disturbances, config.steps)
     tables = [None if one.training is None else one.training.table for one in built]

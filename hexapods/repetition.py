@@ -28,6 +28,7 @@ from hexapods.arguments import (
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import read_gait
 from hexapods.domain.observation import Observation
+from hexapods.domain.records import check_kept
 from hexapods.domain.text import counted
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config
@@ -205,7 +206,7 @@ def experiment(
 
     check_callable("on_trial", on_trial)
     _check_main_module()
-    config = experiment_config(name, _read(given))
+    config = check_kept(experiment_config(name, _read(given)))
     spec = ClusterSpec(workers=workers)
     kept: AbstractContextManager[Progress] = (
         nullcontext(Progress(config))

@@ -78,6 +78,11 @@ def ring(legs: int, radius_m: float = 0.10) -> tuple[LegMount, ...]:
     return tuple(LegMount(360 * i / legs, radius_m) for i in range(legs))
 
 
+def _check_name(name: object) -> None:
+    if not isinstance(name, str):
+        raise InvalidInput(f"robot.name must be a text, not {name!r}")
+
+
 def _check_count(legs: int) -> None:
     if not MIN_LEGS <= legs <= MAX_LEGS:
         raise InvalidInput(f"a robot has {MIN_LEGS} to {MAX_LEGS} legs, not {legs}")
@@ -100,7 +105,10 @@ class Robot:
     __repr__ = short_repr
 
     name: str = field(default="stiff", compare=False)
-    """Name of the preset or stored robot; with the suffix `(modified)` if fields differ from it."""
+    """Name of the preset or stored robot; with the suffix `(modified)` if fields differ from it.
+
+    Any other is one's own: it is not saved with what was computed.
+    """
     legs: tuple[LegMount, ...] = ring(6)
     torso_radius_m: float = 0.10
     torso_half_height_m: float = 0.02
@@ -153,6 +161,7 @@ class Robot:
         vars(self).update(state)
 
     def __post_init__(self) -> None:
+        _check_name(self.name)
         numbers = {name: value for name, value in vars(self).items() if name not in NO_NUMBERS}
         if (self.torso_length_m is None) != (self.torso_width_m is None):
             raise InvalidInput("robot.torso_length_m and torso_width_m go together: give both")

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any, ClassVar, TypeVar
 
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.json_lists import check_lists
 
 T = TypeVar("T")
@@ -153,6 +154,23 @@ def from_json(kind: type[T], data: Any, **how: Any) -> T:
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False, include_context=False)[0]
         raise ValueError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from None
+    return record
+
+
+def check_kept(record: T) -> T:
+    """Return a record that can be saved and read again: to be called before what it decides.
+
+    Raises:
+        InvalidInput: if it cannot, so that nothing is computed that could not be described.
+    """
+    try:
+        read = from_json(type(record), to_json(record))
+    except InvalidInput:
+        raise
+    except Exception as error:  # of functions that convert values of agents and robots
+        raise InvalidInput(f"it could not be saved: {error}") from error
+    if read != record:
+        raise InvalidInput("it could not be saved: a file of it would be read as something else")
     return record
 
 

@@ -137,13 +137,18 @@ def changed_model(base: ModelRobot, given: Mapping[str, Any]) -> ModelRobot:
 
 
 def as_mapping(value: Robot) -> dict[str, Any]:
-    """Return a robot as its preset or id and overrides, fit for JSON; the inverse of `robot`."""
+    """Return a robot as its preset or id and overrides, fit for JSON; the inverse of `robot`.
+
+    One without an id whose name is no preset's, as `Robot(name="x")`, differs from `stiff`: it is
+    read again without its name.
+    """
     name = value.name.removesuffix(_MODIFIED)
     if value.id is not None:
         return {"id": value.id, "name": name, **_differing(value, _by_id(value.id, name))}
-    if PRESETS.get(value.name) == value:
-        return {"preset": value.name}
-    return {"preset": name, **_differing(value, PRESETS[name])}
+    base = PRESETS.get(name, PRESETS["stiff"])
+    if None in _differing(value, base).values():  # no override says that there is no box
+        base = PRESETS["stiff"]
+    return {"preset": base.name, **_differing(value, base)}
 
 
 def _differing(value: Robot, from_base: Robot) -> dict[str, Any]:
