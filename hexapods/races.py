@@ -10,7 +10,7 @@ import json
 import os
 import time
 import zipfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, Unpack
@@ -132,6 +132,12 @@ class Race:
         return step_table(self.recording)
 
     @property
+    def failed(self) -> Mapping[int, str]:
+        """Why each lane failed that did not take all its steps, by its number from 0 on."""
+        lanes = enumerate(self.result.lanes)
+        return {number: lane.failure for number, lane in lanes if lane.failure is not None}
+
+    @property
     def best_known_m(self) -> float | None:
         """The farthest walk known of this robot, gait and world [m]; None if none is."""
         return best_known_in_race_m(self.config)
@@ -159,15 +165,27 @@ class Race:
 
     def __repr__(self) -> str:
         ranking = ", ".join(
-            f"{one.agent} {_metres(one.finished_distance_m) or 'without rank'}"
-            for one in self.standings
+            f"{one.agent} {self._failure(one) or metres or 'without rank'}"
+            for one, metres in (
+                (each, _metres(each.finished_distance_m)) for each in self.standings
+            )
         )
         return f"<Race over {self.config.steps:,} steps: {ranking}>"
+
+    def _failure(self, standing: Standing) -> str:
+        """Say that a lane failed, and why; "" if it did not."""
+        reason = self.failed.get(standing.lane)
+        return "" if reason is None else f"failed: {reason}"
 
     def _repr_html_(self) -> str:
         head = ("rank", "agent", "at time-out", "total")
         rows = [
-            (one.rank, one.agent, _metres(one.finished_distance_m), _metres(one.total_distance_m))
+            (
+                one.rank,
+                one.agent,
+                _metres(one.finished_distance_m),
+                self._failure(one) or _metres(one.total_distance_m),
+            )
             for one in self.standings
         ]
         cells = "".join(f"<th>{name}</th>" for name in head)

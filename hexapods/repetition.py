@@ -5,6 +5,7 @@ import html
 import inspect
 import os
 import sys
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass, fields
@@ -32,6 +33,7 @@ from hexapods.domain.records import check_kept
 from hexapods.domain.text import counted
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config
+from hexapods.experiments.failures import failed_trials, failures_sentence
 from hexapods.experiments.folder import open_results
 from hexapods.experiments.local_workers import defines_agents
 from hexapods.experiments.progress import Progress
@@ -70,6 +72,8 @@ class SettingResult(NamedTuple):
     low_m: float | None
     high_m: float | None
     """Its 95 % interval by the bootstrap [m]."""
+    failed: int = 0
+    """Number of seeds without a distance, because the trial failed."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -96,7 +100,8 @@ class Experiment:
             SettingResult(
                 names[one["key"]].replace("\u00a0", " "),
                 one["n"],
-                *((one["total"] or {}).get(name) for name in SettingResult._fields[2:]),
+                *((one["total"] or {}).get(name) for name in ("iqm_m", "low_m", "high_m")),
+                one["failed"],
             )
             for one in self.summary["settings"]
         )
@@ -111,6 +116,11 @@ class Experiment:
 
         set_aside = {row["key"]: row["reason"] for row in self.summary["trials"]["set_aside"]}
         return ResultTable.of(trial_rows(self.config, self.trials, set_aside))
+
+    @property
+    def failed(self) -> Mapping[str, str]:
+        """Why each trial without a distance failed, by the trial in words."""
+        return {one["label"]: one["reason"] for one in failed_trials(self.summary["trials"])}
 
     def figures(self) -> "list[Picture]":
         """Return the figures of the report, drawn by Matplotlib, with their descriptions."""
@@ -135,7 +145,9 @@ class Experiment:
 
     def __repr__(self) -> str:
         settings = counted(len(self.summary["settings"]), "setting")
-        return f"<Experiment {self.config.experiment}: {settings}, {len(self.trials):,} trials>"
+        failures = failures_sentence(self.summary["trials"])
+        told = f"{settings}, {len(self.trials):,} trials{f', {failures}' if failures else ''}"
+        return f"<Experiment {self.config.experiment}: {told}>"
 
     def _repr_html_(self) -> str:
         rows = "".join(
@@ -143,7 +155,9 @@ class Experiment:
             for one in self.settings
         )
         head = "<tr><th></th><th>seeds</th><th>total, 95 % interval</th></tr>"
-        return f"<table><thead>{head}</thead><tbody>{rows}</tbody></table>"
+        failures = html.escape(failures_sentence(self.summary["trials"]))
+        caption = f"<caption>{failures}</caption>" if failures else ""
+        return f"<table>{caption}<thead>{head}</thead><tbody>{rows}</tbody></table>"
 
 
 def experiment(
@@ -196,6 +210,9 @@ def experiment(
 
     What may have several values is a list, or one value as it is: `steps=500`.
 
+    A trial whose agent raises, or ends its process, has failed: the others go on, and a warning
+    says which failed and why, as the result's `failed` does.
+
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         ClusterLost: if the processes cannot be started, or are lost.
@@ -220,7 +237,10 @@ def experiment(
                     on_trial(outcome)
         trials, set_aside = progress.planned()
         cost = progress.cost(workers or cores())
-    return Experiment(config, trials, summarise(config, trials, set_aside, cost))
+    done = Experiment(config, trials, summarise(config, trials, set_aside, cost))
+    if done.failed:
+        warnings.warn(failures_sentence(done.summary["trials"]), stacklevel=2)
+    return done
 
 
 def _check_main_module() -> None:
@@ -260,10 +280,57 @@ def _read(given: Mapping[str, Any]) -> dict[str, Any]:
     values = {
         name: plain(value) if name in _SINGLE else values_of(value) for name, value in given.items()
     }
-    readers = {"agents": agent_name, "robots": read_robot, "gaits": read_gait, "worlds": _world}
+    readers = {
+        "agents": _agent_of_processes,
+        "robots": read_robot,
+        "gaits": read_gait,
+        "worlds": _world,
+    }
     for name in readers.keys() & values.keys():
         values[name] = tuple(map(readers[name], values[name]))
     return values
+
+
+def _agent_of_processes(given: str | AgentClass) -> str:
+    """Return the name of an agent that the processes of an experiment can import.
+
+    Raises:
+        UnknownName, InvalidInput: if there is none, or it is in no file that they could read.
+    """
+    name = agent_name(given)
+    module_name, _, class_name = name.partition(":")
+    module = sys.modules.get(module_name) if class_name else None
+    if module is None:
+        return name
+    how = (
+        "which the processes of an experiment cannot import; write it into a module, such as "
+        "my_agents.py, and import it from there"
+    )
+    if module_name == "__main__":
+        if class_name not in _classes_of_program():
+            raise InvalidInput(
+                f"{class_name} is defined in a notebook or at a prompt, or when the "
+                f"program runs, {how}"
+            )
+    elif module.__spec__ is None:
+        raise InvalidInput(f"{class_name} is defined in no file, {how}")
+    return name
+
+
+def _classes_of_program() -> set[str]:
+    """Return the classes that a process has which imports the calling program, if it has a file."""
+    path = getattr(sys.modules["__main__"], "__file__", None)
+    try:
+        program = ast.parse(b"" if path is None else Path(path).read_bytes())
+    except (OSError, SyntaxError, ValueError):  # not a source file
+        return set()
+    body = [
+        node
+        for node in program.body
+        if not (isinstance(node, ast.If) and "__name__" in ast.unparse(node.test))
+    ]
+    inner = (part for node in body for part in ast.walk(node))
+    return {part.name for part in inner if isinstance(part, ast.ClassDef)}
 
 
 def _world(given: object) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from hexapods.agents.linear_model import LinearModel
 from hexapods.agents.lookahead import LookAhead
 from hexapods.agents.protocol import AgentState, Expand, Observe, Problem, Transition
+from hexapods.agents.q_learning import QLearning
 from hexapods.domain.observation import OBSERVATIONS
 from hexapods.domain.settings import Setting
 from hexapods.domain.types import Action, Cells
@@ -137,6 +138,18 @@ class Clumsy(Restless):
         if self.acted == 3:
             raise RuntimeError("I tripped")
         return legal[0]
+
+
+class Stumbling(QLearning):
+    """Learns, but breaks on its third step."""
+
+    acted = 0
+
+    def act(self, observation: Cells, legal: Sequence[Action]) -> Action:
+        self.acted += 1
+        if self.acted == 3:
+            raise RuntimeError("I tripped")
+        return super().act(observation, legal)
 
 
 class Forgetful:

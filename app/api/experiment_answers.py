@@ -60,7 +60,10 @@ class Reason(Answer):
 
 
 class SummaryCounts(Answer):
-    """Number of trials by outcome, with the reasons of those that failed or were set aside."""
+    """Number of trials by outcome, with the reasons of those that failed or were set aside.
+
+    `failed` counts both; `done` are all with a result, also those whose walk failed.
+    """
 
     done: Count
     total: Count

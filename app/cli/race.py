@@ -26,6 +26,8 @@ from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recorded_walk import walk_of_lane
 from hexapods.trainings import read_table
 
+FAILED = 1
+"""Exit code if a lane failed."""
 _SETTING = re.compile(r",\s*([^\W\d]\w*)=")
 """A setting in a lane, `,name=`; its value ends before the next."""
 
@@ -54,7 +56,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run a race and print its result.
+    """Run a race, print its result, and return the exit code: 1 if a lane failed.
 
     Raises:
         HexapodError: if the options are not valid.
@@ -81,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps(shown))
     else:
         show_lanes(done, options.clock)
-    return 0
+    return FAILED if done.failed else 0
 
 
 def _lane(text: str, observation: Any) -> Lane:

@@ -14,11 +14,14 @@ from app.cli.terminal import progress, show_table
 from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import DISTURBED, REPORT, ExperimentConfig
+from hexapods.experiments.failures import failures_text
 from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.plan import Trial
 from hexapods.machine import cores
 
 INTERRUPTED = 130
+FAILED = 1
+"""Exit code if something was computed that failed, beside what did not."""
 RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
 _HEAD = ("setting", "seeds", "total m", "95\u00a0%")
 
@@ -27,6 +30,8 @@ def run_experiment(
     config: ExperimentConfig, cluster: ClusterSpec, options: argparse.Namespace
 ) -> int:
     """Run the remaining trials of an experiment, write the report, and return the exit code.
+
+    It is 1 if a trial failed, now or before, and 130 if it was interrupted.
 
     Args:
         config: config of the experiment.
@@ -56,7 +61,7 @@ def run_experiment(
         print(json.dumps(summary))
     else:
         _print_summary(summary, path)
-    return 0
+    return FAILED if summary["trials"]["failed"] else 0
 
 
 def workers_text(cluster: ClusterSpec) -> str:
@@ -113,14 +118,22 @@ def report_errors(path: Path) -> Iterator[None]:
 def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
     show_table("Interquartile means over the seeds", *_table(summary))
     trials, cost = summary["trials"], summary["cost"]
-    for one in trials["set_aside"]:
-        print(f"Set aside: {one['label']}: {one['reason']}")
+    print_failures(trials)
     for claim in summary["claims"]:
         print(f"{claim['verdict']:>15}: {claim['claim']}")
     print(
         f"{trials['done']:,} trials in {cost['wall_s']:,.0f} s, {cost['trials_per_s']:.2f} a "
         f"second. The report is {path / REPORT}."
     )
+
+
+def print_failures(trials: Mapping[str, Any]) -> None:
+    """Print the trials that failed, with their reasons; `trials` is that of a summary."""
+    for name, reasons in (("Failed", trials["failures"]), ("Set aside", trials["set_aside"])):
+        for one in reasons:
+            print(f"{name}: {one['label']}: {one['reason']}")
+    if trials["failed"]:
+        print(f"{failures_text(trials)}; what is said here is of the others.")
 
 
 def _table(summary: Mapping[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:

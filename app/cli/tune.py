@@ -23,9 +23,11 @@ from app.cli.options import (
 from app.cli.terminal import progress, show_table
 from app.cli.trial_options import add_machine_options, cluster_from
 from app.cli.trials import (
+    FAILED,
     INTERRUPTED,
     RATE_WINDOW_S,
     discard,
+    print_failures,
     report_errors,
     share_text,
     stop_signals,
@@ -168,7 +170,7 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps(summary))
     else:
         _print_summary(summary, path)
-    return 0
+    return FAILED if summary["trials"]["failed"] else 0
 
 
 def config_from(options: argparse.Namespace) -> TuningConfig:
@@ -245,8 +247,7 @@ def _print_summary(summary: Mapping[str, Any], path: Path) -> None:
     best_known_m = entries[0]["best_known_m"] if entries else None
     if best_known_m is not None:
         print(f"Best known: {best_known_m:.3f} m")
-    for one in summary["trials"]["set_aside"]:
-        print(f"Set aside: {one['label']}: {one['reason']}")
+    print_failures(summary["trials"])
     for sentence in summary["said"]:
         print(sentence)
     search = summary["search"]

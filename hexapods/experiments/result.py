@@ -12,7 +12,7 @@ Name = Annotated[str, MaxLen(100)]
 
 @dataclass(frozen=True, kw_only=True)
 class TrialCounts:
-    """Number of trials by outcome."""
+    """Number of trials by outcome; `failed` are all without a distance, `set_aside` among them."""
 
     done: Count
     total: Count

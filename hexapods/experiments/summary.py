@@ -1,5 +1,6 @@
 """Build an experiment's summary from its trials: the data of the report, the page and the CLI."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from importlib.metadata import version
@@ -53,7 +54,8 @@ def summarise(
         cost: wall_s, compute_s, trials_per_s and workers of the run, if known.
 
     Returns:
-        Plain types, fit for JSON: `trials` (counts), `settings` (one entry per setting), `pooled`
+        Plain types, fit for JSON: `trials` (counts; `failed` are all without a distance, also those
+        that were set aside), `settings` (one entry per setting), `pooled`
         (one per setting over its gaits), `curves` (settings with several blocks), `versus`
         (pairs of learning agents), `timed` (races timed on this machine), `worlds` (agents in the
         worlds of a league or recovery), and `claims`, `story` and `finding` as text. What cannot be
@@ -62,6 +64,7 @@ def summarise(
     plan = _plan(config)
     settings = group_by_setting(plan, results)
     walked = [one for one in settings if one.setting.role != "timed"]
+    aside = Counter(key.rpartition("#")[0] for key in set_aside or {})
     is_disturbed = config.experiment in DISTURBED
     summary: dict[str, Any] = {
         "format": SUMMARY_FORMAT,
@@ -72,7 +75,7 @@ def summarise(
         "trials": _count_trials(plan, settings, set_aside or {}),
         "cost": None if cost is None else dict(cost),
         "parameters": list(plan.settings[0].parameters),
-        "settings": [_setting(one, config) for one in walked],
+        "settings": [_setting(one, config, aside[one.setting.key]) for one in walked],
         "pooled": _pooled(walked, config),
         "curves": [_curve(one, config.seed) for one in walked if one.setting.trial.blocks > 1],
         "versus": [] if is_disturbed else _versus(walked, config.seed),
@@ -91,7 +94,7 @@ def _plan(config: ExperimentConfig) -> Plan:
     return Plan(config)
 
 
-def _setting(one: SettingResults, config: ExperimentConfig) -> dict[str, Any]:
+def _setting(one: SettingResults, config: ExperimentConfig, set_aside: int) -> dict[str, Any]:
     cell = published(one.setting.gait, one.setting.training.agent, one.setting.practised_steps)
     printed = compare_with_published(cell, one.total_m, one.finished_m)
     elapsed = [result.elapsed_s for result in one.succeeded if result.elapsed_s is not None]
@@ -100,7 +103,7 @@ def _setting(one: SettingResults, config: ExperimentConfig) -> dict[str, Any]:
         "role": one.setting.role,
         **setting_fields(one),
         "n": len(one.total_m),
-        "failed": len(one.results) - len(one.succeeded),
+        "failed": len(one.results) - len(one.succeeded) + set_aside,
         "total": summarise_distances(one.total_m, config.seed),
         "finished": summarise_distances(one.finished_m, config.seed),
         "best_known_m": one.reference.best_known_m,
@@ -223,7 +226,7 @@ def _count_trials(
     return {
         "done": sum(len(one.results) for one in settings),
         "total": plan.total,
-        "failed": len(failed),
+        "failed": len(failed) + len(set_aside),
         "failures": reasons(failed),
         "set_aside": reasons(dict(sorted(set_aside.items()))),
     }

@@ -79,7 +79,7 @@ def test_custom_agent_is_compared_and_its_failed_trials_are_retried(tmp_path: Pa
     agents = ("--agent", "q-learning", "--agent", "mine:Agent", "--workers", "1")
     figure4 = ("experiment", "figure4", *ONE_GAIT, "--observation", "measured", "--seeds", "3")
     done = hexapods(*figure4, *agents, folder=tmp_path)
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 1, done.stderr
     assert done.stdout.count("Set aside: ") == 3
     assert "division by zero" in done.stdout
 

@@ -153,7 +153,7 @@ def test_invalid_trials_are_set_aside_and_the_others_are_kept(jobs: Jobs, store:
     config = sweep(agents=("q-learning", "tests.own_agents:Clumsy"))
     run = wait_until_ended(store, jobs.start(ExperimentStart(config, name="Mine", workers=1)))
     assert (run.name, run.state, run.done) == ("Mine", "finished", run.total)
-    assert experiment_result(run).trials == TrialCounts(done=4, total=7, failed=0, set_aside=3)
+    assert experiment_result(run).trials == TrialCounts(done=4, total=7, failed=3, set_aside=3)
     for row in store.trials.get(run.id):
         assert (row["result"] is None) == ("Clumsy" in row["key"])
         assert row["result"] is not None or "I tripped" in row["set_aside"]

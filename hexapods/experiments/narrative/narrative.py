@@ -5,6 +5,7 @@ from typing import Any
 
 from hexapods.domain.text import counted
 from hexapods.experiments.claims.cases import Case, cases_of
+from hexapods.experiments.failures import failures_text
 from hexapods.experiments.formatting import listed
 from hexapods.experiments.narrative.figure4 import FIGURE4_NARRATIVE
 from hexapods.experiments.narrative.sweep import SWEEP_NARRATIVE
@@ -58,15 +59,8 @@ def _caution(summary: Mapping[str, Any]) -> str:
             "and all gaits and robots walk alike. What depends on physics needs MuJoCo."
         )
     remaining = trials["total"] - trials["done"] - len(trials["set_aside"])
-    missing = [
-        counted(number, one, many)
-        for number, one, many in (
-            (remaining, "trial is missing", "trials are missing"),
-            (trials["failed"], "trial failed", "trials failed"),
-            (len(trials["set_aside"]), "trial was set aside", "trials were set aside"),
-        )
-        if number > 0
-    ]
+    missing = [counted(remaining, "trial is missing", "trials are missing")] if remaining else []
+    missing += [failures_text(trials)] if trials["failed"] else []
     if missing:
         sentences.append(f"{listed(missing)}; what is said here is of the others.")
     return " ".join(sentences)

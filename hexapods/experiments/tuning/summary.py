@@ -54,10 +54,7 @@ def summarise_tuning(tuning: Tuning, progress: Progress, workers: int | None) ->
         "versions": {**versions(), "optuna": version("optuna")},
         "machine": description(),
         "cost": dict(progress.cost(workers)),
-        "trials": {
-            "done": progress.done,
-            "set_aside": _set_aside(tuning, progress),
-        },
+        "trials": _trials(tuning, progress),
         "search": {
             "ranges": [_range(one, config.agent) for one in config.search_ranges],
             "candidates": [_candidate(one) for one in tuning.candidates],
@@ -71,9 +68,20 @@ def summarise_tuning(tuning: Tuning, progress: Progress, workers: int | None) ->
     return summary
 
 
-def _set_aside(tuning: Tuning, progress: Progress) -> list[dict[str, str]]:
-    """Return key, name and reason of each trial that was set aside."""
-    reasons = progress.set_aside
+def _trials(tuning: Tuning, progress: Progress) -> dict[str, Any]:
+    """Return the counts of trials, with key, name and reason of each that failed."""
+    failures = {key: one.failure for key, one in progress.results.items() if one.failure}
+    return {
+        "done": progress.done,
+        "total": progress.done,
+        "failed": len(failures) + len(progress.set_aside),
+        "failures": _named(tuning, failures),
+        "set_aside": _named(tuning, progress.set_aside),
+    }
+
+
+def _named(tuning: Tuning, reasons: Mapping[str, str]) -> list[dict[str, str]]:
+    """Return key, name and reason of some trials, by their reasons."""
     if not reasons:
         return []
     names = trial_names(tuning.plan, reasons)

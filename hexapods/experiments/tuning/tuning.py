@@ -180,11 +180,14 @@ class Tuning:
         if aside:
             return candidate._replace(reason=aside[0])
         results = [progress.results[one.key] for one in trials]
+        failures = [one.failure for one in results if one.failure is not None]
+        if len(failures) == len(results):
+            return candidate._replace(reason=failures[0], failed=len(failures))
         return candidate._replace(
             value_m=fmean(
                 objective_m(self.config.objective, trials[0].config, one) for one in results
             ),
-            failed=sum(one.failure is not None for one in results),
+            failed=len(failures),
         )
 
     def _setting(

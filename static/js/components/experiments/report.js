@@ -248,11 +248,10 @@ function Files({ run }) {
 function LeftOut({ trials }) {
   const aside = trials.set_aside ?? [];
   const failures = trials.failures ?? [];
-  if (!aside.length && !trials.failed) return null;
-  const counts = [
-    trials.failed && `${count(trials.failed, "trial")} failed`,
-    aside.length && `${count(aside.length, "trial")} set aside`,
-  ];
+  // Summaries of earlier versions count those that were set aside apart.
+  const failed = Math.max(trials.failed, failures.length + aside.length);
+  if (!failed) return null;
+  const counts = [`${count(failed, "trial")} failed`, aside.length && `${aside.length} of them set aside`];
   return html`
     <section class="panel left-out" aria-labelledby="left-out">
       <h2 id="left-out">Left out: ${counts.filter(Boolean).join(", ")}</h2>
