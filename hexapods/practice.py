@@ -1,7 +1,11 @@
 """The verbs of trainings: `train`, `iter_train` and `evaluate`."""
 
+import os
+import signal
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields
+from pathlib import Path
 from typing import Any, cast
 
 from hexapods.agents.protocol import Tunable
@@ -17,26 +21,27 @@ from hexapods.arguments import (
     check_names,
     given_of,
     plain,
-    read_disturbance,
     read_walk,
 )
 from hexapods.assembly import build_learner
-from hexapods.domain.checks import check_whole
-from hexapods.domain.errors import InvalidInput
+from hexapods.changes import LATER, change_as_json, read_changes
+from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import check_kept
 from hexapods.domain.world import check_ends
+from hexapods.files import path_of, write_atomically
+from hexapods.interruption import Interrupted, stop_signals
 from hexapods.runs import training
 from hexapods.runs.config import (
     SimulatorName,
     TrainingConfig,
     agent_settings,
-    changeable_settings,
     training_config,
 )
 from hexapods.runs.records import Evaluated, TrainingRecord
 from hexapods.runs.results import training_result
-from hexapods.runs.tables import check_fits, load_agent, snapshot
+from hexapods.runs.tables import Checkpoint, check_fits, load_agent, restore, snapshot, to_bytes
+from hexapods.runs.training import Learner
 from hexapods.trainings import CurvePoint, Table, Training, learned_by, read_table
 
 FIELDS = tuple(
@@ -55,6 +60,7 @@ def train(
     table: Table | None = None,
     changes: Iterable[Mapping[str, Any]] = (),
     on_record: OnRecord | None = None,
+    checkpoint: str | os.PathLike[str] | None = None,
     gait: GaitLike = NOT_GIVEN,
     robot: RobotLike = NOT_GIVEN,
     simulator: SimulatorName = NOT_GIVEN,
@@ -80,6 +86,9 @@ def train(
         changes: while it practises: mappings with the number of steps after which they happen,
             `step`, and values of the agent's live `settings` by name, or a `disturbance`.
         on_record: called with each record of the loop.
+        checkpoint: path of a file that keeps the state between two steps if the training is
+            interrupted by Ctrl-C, or `on_record` raises: `resume` goes on from there, exactly. A
+            second Ctrl-C ends at once.
         gait: a name, such as `left-right-origin` (default), or a `Gait` or its fields.
         robot: a preset's name, `stiff` (default), `compliant` or `slippery`, or a `Robot`, or what
             differs from a preset.
@@ -99,13 +108,88 @@ def train(
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.
         TableMismatch: if the table is of another walking problem or agent.
         Diverged: if the physics diverges.
+        Interrupted: a `KeyboardInterrupt`, once the checkpoint is written.
     """
     check_callable("on_record", on_record)
-    practice = Practice(agent, table, changes, given_of(locals(), FIELDS, "settings"))
-    for record in practice:
-        if on_record is not None:
-            on_record(record)
-    return practice.training
+    path = None if checkpoint is None else path_of(checkpoint, "a checkpoint")
+    practice = _begun(agent, table, changes, given_of(locals(), FIELDS, "settings"))
+    return _run(practice, on_record, path)
+
+
+def resume(
+    checkpoint: str | os.PathLike[str] | Training,
+    *,
+    on_record: OnRecord | None = None,
+) -> Training:
+    """Go on with a training that was interrupted; the result is that of the unbroken one.
+
+    Table, generators and the robot are in the state in which they were, so that it is equal to the
+    last bit. Interrupted again, it is kept in the same file.
+
+    Args:
+        checkpoint: path of the file that `train` has kept, or that `Training.save` has of a
+            training that was not finished, or such a training itself.
+        on_record: called with each further record of the loop.
+
+    Raises:
+        InvalidInput: if the file cannot be read.
+        DamagedFile: if it is no table, or was changed since it was written.
+        Diverged: if the physics diverges.
+        Interrupted: as `train`.
+    """
+    check_callable("on_record", on_record)
+    interrupted = read_table(checkpoint)
+    later = interrupted.table.meta.get(LATER, ())
+    practice = Practice(interrupted.config, None, later, interrupted=interrupted)
+    path = None if isinstance(checkpoint, Training) else path_of(checkpoint, "a checkpoint")
+    return _run(practice, on_record, path)
+
+
+def _begun(
+    agent: str | AgentClass | None,
+    table: Table | None,
+    changes: Iterable[Mapping[str, Any]],
+    given: Mapping[str, Any],
+    record: bool = False,
+) -> "Practice":
+    """Return a practice that begins; `given` has fields of the config and the agent's settings."""
+    if agent is None:
+        trained = None if table is None else read_table(table)
+        name = TrainingConfig.agent if trained is None else trained.config.agent
+    else:
+        name, trained = learned_by(agent_name(agent), table)
+    config = check_kept(_config(name, trained, given))
+    check_ends(config.world.disturbances, config.steps)
+    return Practice(config, None if trained is None else trained.table, changes, record)
+
+
+def _restore(learner: Learner, interrupted: Training) -> None:
+    try:
+        restore(learner, interrupted.table)
+    except (KeyError, TypeError, ValueError) as error:
+        raise DamagedFile(f"the training has no state to go on from: {error}") from error
+
+
+def _run(practice: "Practice", on_record: OnRecord | None, path: Path | None) -> Training:
+    """Run a practice to its end, or until it is interrupted; then keep it in a file, if one is."""
+    if path is None:
+        for record in practice:
+            if on_record is not None:
+                on_record(record)
+        return practice.training
+    with stop_signals(signal.SIGINT) as interrupted:
+        for record in practice:
+            try:
+                if on_record is not None:
+                    on_record(record)
+            except BaseException as error:
+                write_atomically(path, to_bytes(practice.checkpoint))
+                error.add_note(f"The training is kept: hexapods.resume({str(path)!r}) goes on.")
+                raise
+            if interrupted.is_set() and not practice.is_complete:
+                write_atomically(path, to_bytes(practice.checkpoint))
+                raise Interrupted(path, practice.step, practice.config.steps)
+        return practice.training
 
 
 def iter_train(
@@ -140,7 +224,7 @@ def iter_train(
         UnknownName, InvalidInput, TableMismatch: at the call, as `train`.
         Diverged: if the physics diverges.
     """
-    return Practice(agent, table, changes, given_of(locals(), FIELDS, "settings"), record)
+    return _begun(agent, table, changes, given_of(locals(), FIELDS, "settings"), record)
 
 
 def evaluate(
@@ -214,35 +298,71 @@ class Practice(Iterator[TrainingRecord]):
 
     def __init__(
         self,
-        agent: str | AgentClass | None,
-        table: Table | None,
-        changes: Iterable[Mapping[str, Any]],
-        given: Mapping[str, Any],
+        config: TrainingConfig,
+        table: Checkpoint | None,
+        changes: Iterable[object],
         record: bool = False,
+        interrupted: Training | None = None,
     ) -> None:
-        """Build the learner; `given` has fields of the config and the agent's settings."""
-        if agent is None:
-            trained = None if table is None else read_table(table)
-            name = TrainingConfig.agent if trained is None else trained.config.agent
-        else:
-            name, trained = learned_by(agent_name(agent), table)
-        self.config = check_kept(_config(name, trained, given))
-        check_ends(self.config.world.disturbances, self.config.steps)
-        self._changes = _read_changes(changes, self.config)
-        self._learner = build_learner(self.config, None if trained is None else trained.table)
-        self._records = training.train(self._learner, self.config, record)
+        """Build the learner.
+
+        Args:
+            config: of the training.
+            table: what it begins with.
+            changes: while it practises.
+            record: see `iter_train`.
+            interrupted: the training with which it goes on, as that was; then changes are those
+                that are still to be made.
+        """
+        self.config = config
+        self._changes = read_changes(changes, config)
+        self._made: list[dict[str, Any]] = []
+        self._learner = build_learner(config, table)
+        self._records = training.train(self._learner, config, record)
         self._curve: list[CurvePoint] = []
+        if interrupted is not None:
+            _restore(self._learner, interrupted)
+            self._made += interrupted.table.meta.get("changes", ())
+            self._curve += interrupted.curve
         self._change()
+
+    @property
+    def step(self) -> int:
+        """Number of steps done."""
+        return self._learner.step
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all steps are done, and the last evaluation."""
+        return self.step == self.config.steps and self._learner.due_epsilon is None
+
+    @property
+    def checkpoint(self) -> Checkpoint:
+        """All of its state between two records, from which it goes on exactly."""
+        lists = {
+            "curve": [list(point) for point in self._curve],
+            "changes": self._made,
+            LATER: [change_as_json(change) for change in self._changes],
+        }
+        filled = {name: values for name, values in lists.items() if values}
+        return snapshot(self._learner, self.config, **filled)
 
     @property
     def training(self) -> Training:
         """The training so far; at the end it is the one that `train` returns.
 
-        Before the end its reference distance is known only if it was measured already.
+        Before the end its reference distance is known only if it was measured already. If what was
+        learned cannot be evaluated, a warning says so, and the result is None.
         """
         learner, config = self._learner, self.config
-        result = training_result(learner, config, measure_reference=learner.step == config.steps)
-        return Training(config, snapshot(learner, config), tuple(self._curve), result)
+        is_done = learner.step == config.steps
+        try:
+            result = training_result(learner, config, measure_reference=is_done)
+        except Exception as error:  # of the agent, or of the physics: the practice is not lost
+            result = None
+            reason = f"{type(error).__name__}: {error}"
+            warnings.warn(f"what was learned cannot be evaluated ({reason})", stacklevel=2)
+        return Training(config, self.checkpoint, tuple(self._curve), result)
 
     def __next__(self) -> TrainingRecord:
         record = next(self._records)
@@ -254,6 +374,7 @@ class Practice(Iterator[TrainingRecord]):
     def _change(self) -> None:
         while self._changes and self._changes[0]["step"] <= self._learner.step:
             values = self._changes.pop(0)
+            self._made.append({**change_as_json(values), "step": self._learner.step})
             if "disturbance" in values:
                 self._learner.disturb(values["disturbance"], self.config)
             if values["settings"]:
@@ -263,36 +384,6 @@ class Practice(Iterator[TrainingRecord]):
     def __repr__(self) -> str:
         config, step = self.config, self._learner.step
         return f"<Practice of {config.agent}: {step:,} of {config.steps:,} steps>"
-
-
-_CHANGE = '{"step": 20, "settings": {"alpha": 0.1}}'
-
-
-def _read_changes(changes: Iterable[object], config: TrainingConfig) -> list[dict[str, Any]]:
-    """Return changes that happen while a training runs, checked."""
-    if isinstance(changes, str | Mapping) or not isinstance(changes, Iterable):
-        raise InvalidInput(f"changes is a list, such as [{_CHANGE}], not {changes!r}")
-    live = {k: v for k, v in changeable_settings(config.agent).items() if k != "pace"}
-    read: list[dict[str, Any]] = []
-    for change in changes:
-        if not isinstance(change, Mapping) or "step" not in change:
-            raise InvalidInput(f"a change is a mapping such as {_CHANGE}, not {change!r}")
-        values = plain(change)
-        check_names("a change", values, ("step", "settings", "disturbance"))
-        settings = values.setdefault("settings", {})
-        if not isinstance(settings, Mapping):
-            raise InvalidInput(f"settings of a change are a mapping, as in {_CHANGE}")
-        if settings and not live:
-            raise InvalidInput(f"{config.agent} has no settings that change in practice")
-        check_names(f"a change of {config.agent}", settings, live)
-        check_whole(
-            "step of a change", values["step"], read[-1]["step"] if read else 0, config.steps
-        )
-        if "disturbance" in values:
-            values["disturbance"] = read_disturbance(values["disturbance"])
-        values["settings"] = {k: live[k].normalized(v) for k, v in plain(settings).items()}
-        read.append(values)
-    return read
 
 
 def _config(name: str, trained: Training | None, given: Mapping[str, Any]) -> TrainingConfig:

@@ -67,11 +67,13 @@ from hexapods.domain.world import World as World
 from hexapods.experiments.folder import NotKept as NotKept
 from hexapods.experiments.worker import ClusterLost as ClusterLost
 from hexapods.experiments.worker import Outcome as Outcome
+from hexapods.interruption import Interrupted as Interrupted
 from hexapods.policies import Policy as Policy
 from hexapods.policies import policy as policy
 from hexapods.practice import Practice as Practice
 from hexapods.practice import evaluate as evaluate
 from hexapods.practice import iter_train as iter_train
+from hexapods.practice import resume as resume
 from hexapods.practice import train as train
 from hexapods.race_tables import Standing as Standing
 from hexapods.races import Lane as Lane

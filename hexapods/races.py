@@ -81,6 +81,21 @@ class Race:
     recording: Sequence[LaneRecording]
     result: RaceResult
 
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> "Race":
+        """Return the race that `save` has saved.
+
+        Raises:
+            InvalidInput: if the file cannot be read.
+            DamagedFile: if it is no race, or was changed since it was written.
+        """
+        file = path_of(path, "a file")
+        try:
+            data = file.read_bytes()
+        except OSError as error:
+            raise InvalidInput(f"{file} cannot be read: {error.strerror}") from error
+        return race_from_bytes(data, str(file))
+
     @property
     def standings(self) -> tuple[Standing, ...]:
         """The lanes by rank under the paper's clock; `pandas.DataFrame(race.standings)` is one."""

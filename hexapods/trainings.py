@@ -49,6 +49,16 @@ class Training:
     curve: tuple[CurvePoint, ...] = ()
     result: TrainingResult | None = None
 
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> "Training":
+        """Return the training that `save`, the dashboard or the command line has saved.
+
+        Raises:
+            InvalidInput: if the file cannot be read.
+            DamagedFile: if it is no table, or was changed since it was written.
+        """
+        return read_table(path_of(path, "a table"))
+
     @property
     def distance_m(self) -> float | None:
         """Distance in 50 steps from rest, after the practice [m]; None if it is not known."""

@@ -134,6 +134,7 @@ def test_changes_happen_while_it_practises() -> None:
         ("q-learning", {"step": 1, "settings": {"alpha": 0.1}}, "changes is a list"),
         ("q-learning", [{"step": 1, "disturbance": "ice"}], r'ice is a world and no .*"friction:'),
         ("wave", [{"step": 1, "disturbance": 3}], "a disturbance is such as .*, not 3"),
+        ("wave", [{"step": 50, "disturbance": "limp:legs=1"}], "kinematic simulator knows no limp"),
     ],
 )
 def test_invalid_changes_are_refused(agent: str, changes: Any, reason: str) -> None:

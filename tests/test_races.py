@@ -61,7 +61,7 @@ def test_steps_are_told() -> None:
 def test_a_race_in_which_all_fail_has_no_ranking() -> None:
     race = hx.race(["tests.own_agents:Clumsy", "tests.own_agents:Clumsy"], **QUICK)
     assert [one.rank for one in race.standings] == [None, None]
-    assert "without rank" in repr(race)
+    assert "failed: its agent failed: RuntimeError: I tripped" in repr(race)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ export), `export`, `imports`, `verify`, `doctor` (with checks in `machine_checks
 Their module docstrings are the descriptions in `--help`.
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `stored_runs` (runs of a data folder),
-`server_client` (requests to a running server), `terminal` (progress bars and tables).
+`server_client` (requests to a running server), `terminal` (progress bars and tables), `exit_codes`.
 """
 
 import argparse
@@ -22,6 +22,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
+from app.cli.exit_codes import INTERRUPTED
 from app.cli.options import CommandParser
 from app.cli.robot_names import stored_robots_known
 from hexapods import __version__
@@ -51,8 +52,9 @@ _OUTPUT_CLOSED = 128 + 13
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code.
 
-    It is 2 after a `HexapodError`, 130 after SIGINT, and 141 if the reader of standard output has
-    gone, as of `| head`: what a shell reports of its own tools.
+    It is 1 if something that was computed failed, 2 after a `HexapodError`, 130 after SIGINT, and
+    141 if the reader of standard output has gone, as of `| head`: what a shell reports of its own
+    tools.
     """
     # Replace characters that the terminal cannot encode, rather than fail.
     for stream in (sys.stdout, sys.stderr):
@@ -85,7 +87,7 @@ def _run(given: Sequence[str]) -> int:
         return 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
-        return 130
+        return INTERRUPTED
     return code
 
 

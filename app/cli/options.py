@@ -23,11 +23,11 @@ from hexapods.experiments.config import settings_by_name
 from hexapods.runs.config import SIMULATORS, TrainingConfig, WalkingProblem, usable_agents
 
 
-def add_walk_options(parser: argparse.ArgumentParser) -> None:
+def add_walk_options(parser: argparse.ArgumentParser, needs_gait: bool = True) -> None:
     """Add the options of the walking problem: gait, robot, simulator, foot grid."""
     parser.add_argument(
         "--gait",
-        required=True,
+        required=needs_gait,
         help=f"gait: {', '.join(NAMED_GAITS)}, or JSON such as "
         '\'{"right_leg": 1, "left_leg": 2, "symmetry": "origin"}\' (or "pairs": [[1, 4], …], '
         'or "groups": [[1, 3, 5], …])',

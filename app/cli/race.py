@@ -5,6 +5,7 @@ import json
 import re
 from typing import Any
 
+from app.cli.exit_codes import FAILED
 from app.cli.options import (
     CommandParser,
     add_observation,
@@ -26,8 +27,6 @@ from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recorded_walk import walk_of_lane
 from hexapods.trainings import read_table
 
-FAILED = 1
-"""Exit code if a lane failed."""
 _SETTING = re.compile(r",\s*([^\W\d]\w*)=")
 """A setting in a lane, `,name=`; its value ends before the next."""
 

@@ -3,13 +3,12 @@
 import argparse
 import json
 import signal
-import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
+from app.cli.exit_codes import FAILED, INTERRUPTED
 from app.cli.terminal import progress, show_table
 from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.cluster import ClusterSpec
@@ -17,11 +16,10 @@ from hexapods.experiments.config import DISTURBED, REPORT, ExperimentConfig
 from hexapods.experiments.failures import failures_text
 from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.plan import Trial
+from hexapods.interruption import stop_signals
 from hexapods.machine import cores
 
-INTERRUPTED = 130
-FAILED = 1
-"""Exit code if something was computed that failed, beside what did not."""
+STOPPING = (signal.SIGINT, signal.SIGTERM)
 RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
 _HEAD = ("setting", "seeds", "total m", "95\u00a0%")
 
@@ -48,7 +46,7 @@ def run_experiment(
         done = total - len(remaining)
         before = f"; {done:,} are there already" if done else ""
         print_line(f"{total:,} trials {workers_text(cluster)}, kept in {path}{before}")
-        with stop_signals() as interrupted:
+        with stop_signals(*STOPPING) as interrupted:
             _run(remaining, cluster, folder, lambda: not interrupted.is_set())
         if interrupted.is_set():
             print_line(
@@ -180,30 +178,6 @@ def _shares(one: Mapping[str, Any] | None) -> tuple[str, str]:
 def share_text(share: Mapping[str, Any] | None) -> str:
     """Return the interquartile mean of a share as text, with a no-break space: `96 %`."""
     return "" if share is None else f"{100 * share['iqm']:.0f}\u00a0%"
-
-
-@contextmanager
-def stop_signals() -> Iterator[threading.Event]:
-    """Handle SIGINT and SIGTERM: yield an event that the first signal sets.
-
-    The experiment then stops once the workers have ended; a second signal raises
-    `KeyboardInterrupt` at once.
-    """
-    stop_requested = threading.Event()
-
-    def handle_signal(_number: int, _frame: FrameType | None) -> None:
-        if stop_requested.is_set():
-            raise KeyboardInterrupt
-        stop_requested.set()
-
-    before = {
-        number: signal.signal(number, handle_signal) for number in (signal.SIGINT, signal.SIGTERM)
-    }
-    try:
-        yield stop_requested
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def discard(_: str) -> None:

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
+from app.cli.exit_codes import FAILED, INTERRUPTED
 from app.cli.options import (
     CommandParser,
     add_observation,
@@ -23,14 +24,12 @@ from app.cli.options import (
 from app.cli.terminal import progress, show_table
 from app.cli.trial_options import add_machine_options, cluster_from
 from app.cli.trials import (
-    FAILED,
-    INTERRUPTED,
     RATE_WINDOW_S,
+    STOPPING,
     discard,
     print_failures,
     report_errors,
     share_text,
-    stop_signals,
     workers_text,
 )
 from hexapods.domain.checks import check_whole
@@ -45,6 +44,7 @@ from hexapods.experiments.folder import ResultsFolder, open_results
 from hexapods.experiments.plan import Trial
 from hexapods.experiments.tuning.config import Objective, TuningConfig, tuning_config
 from hexapods.experiments.worker import Outcome, Workers
+from hexapods.interruption import stop_signals
 from hexapods.machine import cores
 from hexapods.runs.config import SIMULATORS, TrainingConfig, WalkingProblem
 
@@ -205,7 +205,7 @@ def config_from(options: argparse.Namespace) -> TuningConfig:
 
 
 def _run(tuning: "Tuning", cluster: ClusterSpec, folder: ResultsFolder, retry: bool) -> None:
-    with stop_signals() as interrupted, ExitStack() as stack:
+    with stop_signals(*STOPPING) as interrupted, ExitStack() as stack:
 
         @cache
         def workers() -> Workers:

@@ -8,6 +8,7 @@ import argparse
 import json
 from typing import TYPE_CHECKING
 
+from app.cli.exit_codes import FAILED
 from app.cli.files import read_bounded
 from app.cli.options import CommandParser, integer
 from app.cli.terminal import progress, show_table
@@ -17,9 +18,6 @@ from hexapods.domain.text import visible
 
 if TYPE_CHECKING:
     from hexapods.tournaments.tournament_file import TournamentFile
-
-DIFFERS = 1
-"""Exit code if something differs."""
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
@@ -61,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
             "standings": [to_json(one) for one in tournament.standings],
         }
         print(json.dumps(shown))
-        return DIFFERS if differences else 0
+        return FAILED if differences else 0
     _show_ranking(tournament)
     for sentence in differences:
         print(sentence)
@@ -69,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
         print(note)
     if differences:
         print(f"{options.file} does not repeat: see the differences above.")
-        return DIFFERS
+        return FAILED
     judged = f"{len(tournament.entries)} entries on {tournament.rules.draws} draws"
     print(f"{options.file} repeats to the last digit: {judged}.")
     return 0
