@@ -100,8 +100,8 @@ class Experiment:
             SettingResult(
                 names[one["key"]].replace("\u00a0", " "),
                 one["n"],
-                *((one["total"] or {}).get(name) for name in ("iqm_m", "low_m", "high_m")),
-                one["failed"],
+                **{name: (one["total"] or {}).get(name) for name in ("iqm_m", "low_m", "high_m")},
+                failed=one["failed"],
             )
             for one in self.summary["settings"]
         )

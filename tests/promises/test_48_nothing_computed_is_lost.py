@@ -15,8 +15,8 @@ import hexapods as hx
 from hexapods.domain.body import NO_NUMBERS
 from hexapods.domain.robot import PRESETS, document_of
 from hexapods.domain.text import MAX_NAME
-from hexapods.experiments.report.files import trials_csv
 from hexapods.experiments.report.page import page
+from hexapods.experiments.report.trials_csv import trials_csv
 from tests.promises.length import at_length
 
 QUICK: dict[str, Any] = {
@@ -75,7 +75,8 @@ def test_a_number_that_no_file_may_have_is_refused_before_the_practice(
     usual = getattr(hx.Robot(), number) or 0.2
     pairs = {"torso_length_m": "torso_width_m", "torso_width_m": "torso_length_m"}
     for factor in (1e-5, 1.01, 1e4):
-        values = dict.fromkeys((number, pairs.get(number, number)), factor * usual)
+        numbers = (number, pairs.get(number, number))
+        values: dict[str, Any] = dict.fromkeys(numbers, factor * usual)
         try:
             robot = hx.Robot(**values)
         except hx.InvalidInput:
