@@ -66,10 +66,8 @@ def test_a_training_that_is_resumed_equals_the_unbroken_one(
 @pytest.mark.parametrize("agent", ["q-learning", "expected-sarsa"])
 def test_in_mujoco_too(agent: str, tmp_path: Path) -> None:
     given: dict[str, Any] = {**QUICK, "simulator": "mujoco", "steps": 12, "evaluate_every": 0}
-    disturbed: dict[str, Any] = {
-        "tolerance": 0.03,
-        "world": ["sensor-noise:sd_m=0.003", "slope:degrees=3:at=8"],
-    }
+    world = ["sensor-noise:sd_m=0.003", "slope:degrees=3:at=8"]
+    disturbed: dict[str, Any] = {"tolerance": 0.03, "world": world}
     interrupted(tmp_path / "q.npz", 7, agent, **given, **disturbed)
     assert_equal(hx.resume(tmp_path / "q.npz"), hx.train(agent, **given, **disturbed))
 
