@@ -9,6 +9,7 @@ import numpy as np
 
 from app.classroom.lesson import Ask, Card
 from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.sums import ordered_sum
 
 MAX_POINTS = 200
 """Points of a drawn curve."""
@@ -116,7 +117,7 @@ def _choice_score(value: Any, answer: Any, outcomes: Sequence[WalkOutcome]) -> S
     # Where no race has an agent of this name, the choices are no agents.
     return Score(
         is_right=None if answer is None else value == answer,
-        share=sum(won) / len(won) if any(won) or (won and answer is None) else None,
+        share=ordered_sum(won) / len(won) if any(won) or (won and answer is None) else None,
     )
 
 
@@ -151,4 +152,4 @@ def _curve_score(points: Sequence[Sequence[float]], means: Mapping[float, float]
         return Score()
     steps, distances = list(means), list(means.values())
     errors = [abs(y - float(np.interp(x, steps, distances))) for x, y in points]
-    return Score(error=sum(errors) / len(errors))
+    return Score(error=ordered_sum(errors) / len(errors))

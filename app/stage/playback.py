@@ -145,7 +145,7 @@ class _HeldRecordings:
     @property
     def size(self) -> int:
         """Approximate size in memory [bytes]."""
-        return sum(list(self._sizes.values()))
+        return sum(list(self._sizes.values()))  # whole numbers
 
     def training(self, run_id: str) -> PracticeRecording | None:
         """Return the recording of the training that is shown; None if there is none."""

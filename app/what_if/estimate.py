@@ -26,6 +26,7 @@ from app.jobs.turns import Turns
 from app.what_if.step_time import TimedSteps, step_s_of
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.sums import ordered_sum
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.experiments.plan import Plan
 from hexapods.runs.config import RACE_STEPS, TrainingConfig, training_config
@@ -100,7 +101,7 @@ class Estimates:
         practices = [[*_practice(training.config)] for training in trainings]
         measured = self._measured(one.steps for one in chain(lanes, *practices))
         alone = [_seconds(parts, measured) for parts in practices]
-        at_once = max([*alone, sum(alone) / self._cores], default=0.0)
+        at_once = max([*alone, ordered_sum(alone) / self._cores], default=0.0)
         return at_once + _seconds(lanes, measured)
 
     def workers_of(
@@ -123,7 +124,7 @@ class Estimates:
         by_class: defaultdict[_CostClass, list[float]] = defaultdict(list)
         for steps, step_s in measured.items():
             by_class[_cost_class(steps)].append(step_s)
-        return sum(
+        return ordered_sum(
             one.number
             * measured.get(
                 one.steps, fmean(by_class[_cost_class(one.steps)] or [*measured.values()])
@@ -162,7 +163,7 @@ class Estimates:
 
 
 def _seconds(parts: Iterable[_Part], measured: Mapping[TimedSteps, float]) -> float:
-    return sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
+    return ordered_sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
 
 
 def _cost_class(steps: TimedSteps) -> _CostClass:

@@ -17,6 +17,7 @@ from hexapods.agents.q_table import table_size
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import SettingValues
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.world import check_ends
 from hexapods.experiments.plan import trial_seed
 from hexapods.experiments.trial import TrialConfig, TrialResult
@@ -160,7 +161,7 @@ class WhatIf:
         trainings = [one.training for one in trials if one.blocks]
         kinds = [TimedSteps(one, practises=True) for one in trainings]
         times_s = self._pool.map(step_s_of, kinds, check, limit_s * self._pool.count)
-        work_s = sum(
+        work_s = ordered_sum(
             SEEDS * one.steps * step_s for one, step_s in zip(trainings, times_s, strict=True)
         )
         if (total_s := work_s / self._pool.count) > limit_s:
@@ -177,7 +178,7 @@ class WhatIf:
         distances: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
         for (one, _), (result, _) in zip(trials, results, strict=True):
             distances[one] += (_distance_m(result),)
-        return distances, sum(cpu_s for _, cpu_s in results) / self._pool.count
+        return distances, ordered_sum(cpu_s for _, cpu_s in results) / self._pool.count
 
     def _cached(self, trials: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
         with self._cache_lock:

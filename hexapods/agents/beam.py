@@ -1,6 +1,7 @@
 """Beam search over the next few steps (Lowerre 1976; Russell and Norvig 2021, §4.1.3)."""
 
 from collections.abc import Sequence
+from itertools import accumulate
 
 import numpy as np
 
@@ -54,10 +55,8 @@ class Beam(Search):
             InvalidInput: if it is.
         """
         actions = action_count(problem)
-        sizes = [
-            actions + actions * sum(min(width, actions**level) for level in range(1, levels))
-            for levels in range(1, depth + 1)
-        ]
+        parents = [min(width, actions**level) for level in range(depth)]
+        sizes = [actions * after for after in accumulate(parents)]
         check_depth(depth, sizes, actions)
 
     def act(self, observation: Cells, legal: Sequence[Action]) -> Action:

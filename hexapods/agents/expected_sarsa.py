@@ -3,6 +3,7 @@
 from hexapods.agents.explanation import Rule, Term
 from hexapods.agents.protocol import Transition
 from hexapods.agents.tabular import TabularLearner
+from hexapods.domain.sums import ordered_sum
 
 
 class ExpectedSarsa(TabularLearner):
@@ -19,7 +20,7 @@ class ExpectedSarsa(TabularLearner):
     def _next_value(self, transition: Transition) -> float:
         """Q(s, a) ← (1 − α) Q(s, a) + α (r + γ Σ π(a′|s′) Q(s′, a′)), π being ε-greedy."""
         epsilon, values = self.epsilon, self._next_values(transition)
-        return (1 - epsilon) * max(values) + epsilon * sum(values) / len(values)
+        return (1 - epsilon) * max(values) + epsilon * ordered_sum(values) / len(values)
 
     def _next_values(self, transition: Transition) -> list[float]:
         return self.table.values_of(transition.next_observation, transition.next_legal)
@@ -29,6 +30,6 @@ class ExpectedSarsa(TabularLearner):
         return "((1 − ε) · Q⁺ + ε · Σ / n)", (
             Term("ε", self.epsilon, "probability that the next action is a random one"),
             Term("Q⁺", max(values), "highest value in the next state"),
-            Term("Σ", sum(values), "sum of all values in the next state"),
+            Term("Σ", ordered_sum(values), "sum of all values in the next state"),
             Term("n", len(values), "number of actions there"),
         )

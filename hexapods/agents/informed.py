@@ -117,7 +117,8 @@ class _Candidate(NamedTuple):
 def shares_of(budget: int) -> list[int]:
     """Return how many transitions of a budget each layer of the tree gets."""
     weights = LAYER_WEIGHTS[: 1 + budget // BUDGET_PER_LAYER]
-    ends = [budget * weight // sum(weights) for weight in accumulate(weights, initial=0)]
+    total = sum(weights)  # whole numbers
+    ends = [budget * weight // total for weight in accumulate(weights, initial=0)]
     return [end - start for start, end in pairwise(ends)]
 
 

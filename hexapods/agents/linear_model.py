@@ -130,8 +130,8 @@ class LinearModel:
             Policy(measured, None, _UNTRIED_MEASURED),
         )
         sizes = [len(group) for group in problem.groups]
-        legs = sum(sizes)
-        squares = sum(size * size for size in sizes) / (legs * legs)
+        legs = sum(sizes)  # whole numbers
+        squares = sum(size * size for size in sizes) / (legs * legs)  # whole numbers
         self._law_m = 2 * self._half_side_m / (groups * (1 + squares))
         """Advance per step of the steady walk without slip."""
         self._deciding, self._decided, self._last_group = 0, 0, groups - 1

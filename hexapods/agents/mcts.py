@@ -9,6 +9,7 @@ import numpy as np
 from hexapods.agents.explanation import Future
 from hexapods.agents.protocol import Expand, Node
 from hexapods.agents.search import Budget, Search
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import Action, Cells
 
 HORIZON = 3
@@ -94,7 +95,7 @@ class Mcts(Search):
             tree_node = tree_node.children[action]
             path.append(tree_node)
         stretch = self._horizon / (len(path) - 1)  # over 1 if the budget cut it short
-        total_m = stretch * sum(one.reward_m for one in path)
+        total_m = stretch * ordered_sum(one.reward_m for one in path)
         self._lowest, self._highest = min(self._lowest, total_m), max(self._highest, total_m)
         for one in path:
             one.visits += 1

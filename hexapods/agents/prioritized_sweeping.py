@@ -14,6 +14,7 @@ from hexapods.agents.protocol import AgentState, Transition
 from hexapods.agents.tabular import Alpha, summary_of
 from hexapods.agents.tabular_model import TriedPair
 from hexapods.domain.settings import Setting
+from hexapods.domain.sums import ordered_sum
 
 Threshold = Annotated[
     float,
@@ -85,7 +86,7 @@ class PrioritizedSweeping(PlanningLearner):
     def _later(self, pair: TriedPair) -> float:
         """Return the sum of the highest values in all states that followed a pair."""
         best = self.table.best
-        return sum(count * best(state) for state, count in pair.outcomes.items())
+        return ordered_sum(count * best(state) for state, count in pair.outcomes.items())
 
     def _explain_sweep(self, pair: TriedPair, later: float) -> Rule:
         return "r̄ + γ · Σ / N", (

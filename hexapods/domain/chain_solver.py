@@ -183,7 +183,7 @@ class ChainSolver:
             turned += np.where(is_there, 0.0, change)
             is_there |= missing <= near * near * feet.squared_length
             if self._is_any_flat:
-                rests = sum(change[joint] * change[joint] for joint in range(self.most))
+                rests = np.add.reduce(change * change)
                 is_there |= feet.is_flat & (rests <= _RESTS * near * _RESTS * near)
             if is_there.all():
                 break

@@ -17,6 +17,7 @@ from hexapods.domain.gait import Gait
 from hexapods.domain.legs import FootKinematics, Joint, Legs
 from hexapods.domain.model_geometry import home_angles, leg_chains
 from hexapods.domain.model_robot import ModelRobot
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 
 _CHUNK = 1500
@@ -47,7 +48,7 @@ class ChainLegs(Legs):
                 for leg in legs
                 for joint in model.joints_of(leg)
             ],
-            [sum(link.mass_kg for link in model.links_of(leg)) for leg in legs],
+            [ordered_sum(link.mass_kg for link in model.links_of(leg)) for leg in legs],
         )
         angles = home_angles(model)
         self.standing = leg_chains(model, angles)

@@ -13,6 +13,7 @@ import numpy as np
 
 from hexapods.domain.gait import Gait
 from hexapods.domain.grid import FootGrid
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import Action, Cells, FloatArray
 
 
@@ -65,8 +66,8 @@ class Feet(NamedTuple):
 
         For pairs and single legs it is the mean over groups to the last bit.
         """
-        total: float = sum(map(mul, self.forward_m, sizes))
-        return total / sum(sizes)
+        total = ordered_sum(map(mul, self.forward_m, sizes))
+        return total / sum(sizes)  # whole numbers
 
     def shifted(self, advance_m: float) -> "Feet":
         """Return the offsets after the body has moved forward."""

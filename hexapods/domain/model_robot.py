@@ -20,6 +20,7 @@ from hexapods.domain.model_geometry import (
 )
 from hexapods.domain.robot_model import ModelGeom, ModelJoint, RobotModel
 from hexapods.domain.short_repr import short_repr
+from hexapods.domain.sums import ordered_sum
 
 _SERVO = ("servo_kp", "servo_kv", "servo_torque_nm")
 _USUAL_LEG_M = math.hypot(0.15, 0.09)
@@ -138,7 +139,7 @@ def model_robot(model: RobotModel, name: str, **changes: float) -> ModelRobot:
         torso_half_height_m=half_z,
         torso_length_m=2 * half_y,
         torso_width_m=2 * half_x,
-        torso_kg=sum(link.mass_kg for link in model.links_of(0)),
+        torso_kg=ordered_sum(link.mass_kg for link in model.links_of(0)),
         home_radius_m=max(fmean(math.hypot(*chain.foot_m[:2]) for chain in chains), 0.01),
         body_height_m=max(-ground_m - foot_radius_m, 0.001),
         foot_radius_m=foot_radius_m,

@@ -89,7 +89,7 @@ class StepMotion:
         angles = self.kinematics.solve(places, samples.lift, frames)
         most = angles.shape[-1]
         by_leg = angles.reshape(-1, most).take(order, 0)
-        by_leg = by_leg.reshape(len(plans), sum(self._counts), -1, most)
+        by_leg = by_leg.reshape(len(plans), sum(self._counts), -1, most)  # whole numbers
         targets = self.kinematics.in_pose_order(by_leg)
         if self._swing is None and self._shift is None:
             return targets

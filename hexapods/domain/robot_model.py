@@ -231,7 +231,8 @@ class RobotModel(Record):
             yield f"it must have {MIN_LEGS} to {MAX_LEGS} legs, not {legs}"
         if sum(len(link.geoms) for link in self.links) > MAX_GEOMS:
             yield f"it must have at most {MAX_GEOMS} geoms"
-        if sum(link.mesh.triangles for link in self.links if link.mesh) > MAX_TRIANGLES:
+        triangles = sum(link.mesh.triangles for link in self.links if link.mesh)
+        if triangles > MAX_TRIANGLES:
             yield f"its meshes must have at most {MAX_TRIANGLES} triangles"
 
     def _problems_of_place(self, number: int, link: ModelLink) -> Iterator[str]:

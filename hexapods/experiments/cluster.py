@@ -116,7 +116,7 @@ class _ClusterWorkers:
 
     def count(self) -> int:
         try:
-            return sum(self._client.nthreads().values())
+            return sum(self._client.nthreads().values())  # whole numbers
         # Tornado raises a ValueError if the connection is closed as it begins to be encrypted.
         except (OSError, TimeoutError, ValueError) as error:
             raise ClusterLost(_LOST) from error

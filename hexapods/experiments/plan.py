@@ -134,7 +134,7 @@ class Plan:
         """
         self.config = config
         self.settings: Sequence[TrialSetting] = [*_settings(config), *more]
-        self.total = sum(self.count(setting) for setting in self.settings)
+        self.total = sum(self.count(setting) for setting in self.settings)  # whole numbers
         if self.total > MAX_TRIALS:
             raise InvalidInput(
                 f"the grid has {self.total:,} trials, the most is {MAX_TRIALS:,}; choose fewer "

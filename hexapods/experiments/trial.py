@@ -11,6 +11,7 @@ from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.errors import Diverged
 from hexapods.domain.settings import SettingValues
 from hexapods.domain.short_repr import short_repr
+from hexapods.domain.sums import ordered_sum
 from hexapods.runs.clocks import Timetable, distance_at
 from hexapods.runs.config import RACE_STEPS, TrainingConfig
 from hexapods.runs.lane import LaneConfig, PlansWith
@@ -175,7 +176,9 @@ def _practise_and_evaluate(config: TrialConfig) -> TrialResult:
         if isinstance(record, StepTaken):
             rewards.append(record.reward_m)
             evaluate_if_due()
-    earned = [sum(rewards[step : step + config.earning_steps]) for step in config.evaluations]
+    earned = [
+        ordered_sum(rewards[step : step + config.earning_steps]) for step in config.evaluations
+    ]
     return TrialResult(
         distances_m=tuple(distances), earned_m=tuple(earned) if config.earning_steps else ()
     )

@@ -55,7 +55,7 @@ def mcap_log(walks: RecordedWalks, clock: Clock, execution: Execution = HERE) ->
     foxglove = import_extra("foxglove", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.messages", MCAP_EXTRA, "an MCAP file")
     import_extra("foxglove.channels", MCAP_EXTRA, "an MCAP file")
-    frames = sum(lane.frames for lane in walks.lanes)
+    frames = sum(lane.frames for lane in walks.lanes)  # whole numbers
     if execution.max_frames is not None and frames > execution.max_frames:
         raise InvalidInput(
             f"the log would have {frames:,} frames, and may have {execution.max_frames:,}; export "

@@ -90,7 +90,8 @@ def _segments_that_fit(
             continue
         # Of a level that is far too large, only a few are encoded.
         few = numbers[:: max(1, len(numbers) // _SAMPLED)]
-        if sum(size_of(level, number) for number in few) * len(numbers) > 2 * room * len(few):
+        size = sum(size_of(level, number) for number in few)  # whole numbers
+        if size * len(numbers) > 2 * room * len(few):
             continue
         for number in numbers:
             size += size_of(level, number)

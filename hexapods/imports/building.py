@@ -16,6 +16,7 @@ from hexapods.domain.robot_model import (
     ModelMesh,
     RobotModel,
 )
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 from hexapods.imports.chain import LegChain
 from hexapods.imports.choices import Choices
@@ -138,7 +139,7 @@ class _Builder:
         links: dict[int | None, str] = {None: self._name_of_torso()}
         links |= {joint: self._name_of_link(joint) for joint in self._joints}
         masses = find_masses(self._posed, links, self._ends(), self._notes)
-        mass_kg = sum(mass.kg for mass in masses.values())
+        mass_kg = ordered_sum(mass.kg for mass in masses.values())
         if not 0.001 <= mass_kg <= 10_000:
             raise InvalidInput(f"it weighs {mass_kg:.3g} kg; a robot has from 0.001 to 10,000 kg")
         guess_nm = guessed_torque(mass_kg, legged.length_m, len(self._chains))

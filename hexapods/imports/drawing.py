@@ -2,6 +2,7 @@
 
 import base64
 from collections.abc import Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -32,7 +33,8 @@ def find_meshes(
         notes: gets what is simplified.
     """
     geoms = {joint: _drawn(posed, joint) for joint in origins}
-    before = sum(posed.triangles(geom) for parts in geoms.values() for geom in parts)
+    all_geoms = chain.from_iterable(geoms.values())
+    before = sum(posed.triangles(geom) for geom in all_geoms)  # whole numbers
     aim = _AIM * MAX_TRIANGLES
     while True:
         simplified = _Simplified(posed, min(1.0, aim / max(before, 1)))

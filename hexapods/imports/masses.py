@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 from hexapods.imports.compiling import LEAST_KG
 from hexapods.imports.notes import Notes, listed
@@ -60,8 +61,8 @@ def find_masses(
     by_shapes = {}
     for joint in unknown:
         by_shapes[joint] = _of_shapes(posed, posed.geoms_of(posed.bodies_of(joint)))
-    known_kg = sum(mass.kg for joint, mass in found.items() if joint not in unknown)
-    shaped_kg = sum(mass.kg for mass in by_shapes.values() if mass is not None)
+    known_kg = ordered_sum(mass.kg for joint, mass in found.items() if joint not in unknown)
+    shaped_kg = ordered_sum(mass.kg for mass in by_shapes.values() if mass is not None)
     if known_kg < _NO_MASS_KG and shaped_kg <= 0:
         raise InvalidInput(
             "no link has a mass, nor a shape by which to guess one: give the links <inertial>"
@@ -85,10 +86,10 @@ def _together(posed: Posed, bodies: Sequence[int]) -> Mass:
         for body in bodies
         if masses[body] > 0
     ]
-    kg = sum(part.kg for part in parts)
+    kg = ordered_sum(part.kg for part in parts)
     if kg <= 0:
         return Mass(0.0, np.zeros(3), np.zeros((3, 3)))
-    center = sum((part.kg * part.center_m for part in parts), np.zeros(3)) / kg
+    center = ordered_sum((part.kg * part.center_m for part in parts), np.zeros(3)) / kg
     inertia = np.zeros((3, 3))
     for part in parts:
         out = part.center_m - center
@@ -107,11 +108,11 @@ def _of_shapes(posed: Posed, geoms: Sequence[int]) -> Mass | None:
             # Round shapes and meshes fill about half of the box around them.
             kg = 0.5 * _DENSITY * float(np.prod(high - low))
             parts.append(_ball(kg, (low + high) / 2, np.array([low, high])))
-    kg = sum(part.kg for part in parts)
+    kg = ordered_sum(part.kg for part in parts)
     if kg <= 0:
         return None
-    center = sum((part.kg * part.center_m for part in parts), np.zeros(3)) / kg
-    return Mass(kg, center, sum((part.inertia for part in parts), np.zeros((3, 3))))
+    center = ordered_sum((part.kg * part.center_m for part in parts), np.zeros(3)) / kg
+    return Mass(kg, center, ordered_sum((part.inertia for part in parts), np.zeros((3, 3))))
 
 
 def _ball(kg: float, center: FloatArray, ends: FloatArray) -> Mass:

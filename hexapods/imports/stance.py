@@ -212,7 +212,8 @@ def search(legged: Legged) -> Angles:
     fewest, found = len(legged.chains) + 1, list[FloatArray]()
     for lower in range(_POSTURES):
         angles = _posture(legged, lower)
-        unreached = sum(_unreached(chain, one) for chain, one in _pairs(legged, angles))
+        pairs = _pairs(legged, angles)
+        unreached = sum(_unreached(chain, one) for chain, one in pairs)  # whole numbers
         if unreached < fewest:
             fewest, found = unreached, angles
         if not unreached:

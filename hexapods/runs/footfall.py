@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from hexapods.domain.disturbances import Lost
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.terrain import ground_heights
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
@@ -91,4 +92,5 @@ def clipped(intervals: Sequence[Interval], from_s: float, to_s: float) -> list[I
 
 def duty_factor(stance: Sequence[Interval], from_s: float, to_s: float) -> float:
     """Return the share of the time between two times in which a foot is on the ground."""
-    return sum(end - start for start, end in clipped(stance, from_s, to_s)) / (to_s - from_s)
+    parts = clipped(stance, from_s, to_s)
+    return ordered_sum(end - start for start, end in parts) / (to_s - from_s)

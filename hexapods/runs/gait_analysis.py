@@ -23,6 +23,7 @@ from hexapods.domain.kinematics import legs_of
 from hexapods.domain.posture import rotation_matrices
 from hexapods.domain.records import Record
 from hexapods.domain.robot import Robot
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import World
 from hexapods.runs.footfall import Interval, clearances_m, clipped, duty_factor, stance_intervals
@@ -224,7 +225,7 @@ def gait_figures(walk: RecordedWalk, from_s: float, to_s: float) -> GaitFigures 
         distance_m=distance,
         speed_m_s=speed,
         speed_body_lengths_s=speed / (2 * robot.torso_half_sides_m[1]),
-        duty_factor=sum(duties) / max(1, len(duties)),
+        duty_factor=ordered_sum(duties) / max(1, len(duties)),
         mass_kg=mass,
         legs=legs,
         cycle=_cycle(walk),
@@ -322,7 +323,7 @@ def _mean_mass_kg(robot: Robot, world: World, steps: NDArray[np.int64]) -> float
         conditions = world.as_of(number)
         lost = {leg for one in conditions.all_of(Lost) for leg in one.legs}
         legs = math.fsum(kg for leg, kg in masses_kg.items() if leg not in lost)
-        payload = sum(one.kg for one in conditions.all_of(Payload))
+        payload = ordered_sum(one.kg for one in conditions.all_of(Payload))
         total += count * (robot.torso_kg + legs + payload)
     return total / len(steps)
 

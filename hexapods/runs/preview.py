@@ -16,6 +16,7 @@ from hexapods.domain.kinematics import check_reach, legs_of, out_of_reach
 from hexapods.domain.legs import Legs
 from hexapods.domain.records import Record
 from hexapods.domain.robot import legs_written_out, written_out
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 
@@ -180,7 +181,7 @@ def preview(walk: WalkingProblem) -> Preview:
         margin_m=least,
         tips=least < STANDS_M,
         stands=support.margin_m() >= STANDS_M,
-        mass_kg=robot.torso_kg + sum(legs.masses_kg),
+        mass_kg=robot.torso_kg + ordered_sum(legs.masses_kg),
         states=states,
         actions=actions,
         values=states * actions,
@@ -226,8 +227,8 @@ def law_m_per_step(gait: Gait, grid: FootGrid) -> float:
 
     The G groups, w their shares of the feet, take turns to the front edge, h ahead of home.
     """
-    legs = sum(gait.sizes)
-    squares = sum((size / legs) ** 2 for size in gait.sizes)
+    legs = sum(gait.sizes)  # whole numbers
+    squares = ordered_sum((size / legs) ** 2 for size in gait.sizes)
     return 2 * grid.half_side_m / (len(gait.sizes) * (1 + squares))
 
 

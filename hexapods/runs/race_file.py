@@ -304,7 +304,7 @@ def _npy_chunks(
         for file in files
     ]
     buffer = io.BytesIO()
-    header = {"fortran_order": False, "shape": (sum(lengths), *shape[1:])}
+    header = {"fortran_order": False, "shape": (sum(lengths), *shape[1:])}  # whole numbers
     descr = np.lib.format.dtype_to_descr(kind)
     np.lib.format.write_array_header_1_0(buffer, {**header, "descr": descr})
     yield buffer.getvalue()

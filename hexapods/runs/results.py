@@ -15,6 +15,7 @@ from hexapods.agents.protocol import Tabular
 from hexapods.domain.posture import have_fallen, heading_deg
 from hexapods.domain.robot import Robot
 from hexapods.domain.short_repr import short_repr
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.text import MAX_MESSAGE, message
 from hexapods.domain.world import World
 from hexapods.runs.best_known import best_known_m
@@ -182,7 +183,7 @@ def race_result(lanes: Sequence[LaneRecording], config: RaceConfig) -> RaceResul
 
 def decision_s(lane: LaneRecording) -> float:
     """Return the time that a lane thought, in all its steps [s]."""
-    return float(sum(lane.steps.figures["decision_s"].tolist()))
+    return float(ordered_sum(lane.steps.figures["decision_s"].tolist()))
 
 
 def fell_at_step(lane: LaneRecording, robot: Robot, world: World, first: int = 0) -> int | None:

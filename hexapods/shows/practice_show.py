@@ -15,6 +15,7 @@ from operator import attrgetter, itemgetter
 import numpy as np
 
 from hexapods.domain.posture import has_fallen, yaw_rad
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.clocks import Clock
@@ -310,7 +311,7 @@ class PracticeShow:
         before = index - MARCHING_STEPS
         if before < 0 or self._step_numbers[before] != self._step_numbers[index] - MARCHING_STEPS:
             return False
-        gained = sum(step.reward_m for step in self._steps[before:index])
+        gained = ordered_sum(step.reward_m for step in self._steps[before:index])
         return gained < MARCHING_M
 
     def _action_values(self, step: StepTaken) -> ActionValuesView | None:

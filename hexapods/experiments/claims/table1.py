@@ -5,6 +5,7 @@ from functools import partial
 from statistics import fmean, median
 from typing import Any
 
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
 from hexapods.experiments.claims.gaits import gait_claims
@@ -36,8 +37,8 @@ def _dominates(case: Case) -> CaseFinding | None:
         for steps, pool in pools
         if pool and pool["relative"]
     ]
-    n = sum(one["n"] for one in raced)
-    wins = sum(one["n"] * one["beats_greedy_total"]["share"] for one in raced)
+    n = sum(one["n"] for one in raced)  # whole numbers
+    wins = ordered_sum(one["n"] * one["beats_greedy_total"]["share"] for one in raced)
     return CaseFinding.of(
         verdict,
         f"Q-learning covers {listed(shares_of_greedy)}; {wins:.0f} of its {counted(n, 'walk')} "

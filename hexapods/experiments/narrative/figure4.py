@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from hexapods.agents.appearance import title_of
+from hexapods.domain.sums import ordered_sum
 from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
 from hexapods.experiments.formatting import listed, percent
@@ -20,13 +21,13 @@ def describe_seed_spread(cases: Sequence[Case]) -> str | None:
         return None
     one, at = curves[0], next(c.label for c in cases if curves[0] in c.curves)
     last, falls = one["points_m"][-1], [_falls(curve) for curve in curves]
-    blocks = sum(of for _, of in falls)
+    down, blocks = (sum(column) for column in zip(*falls, strict=True))  # whole numbers
     return (
         f"The paper draws one curve a gait. Here every curve is {counted(len(last), 'seed')}: "
         "the line is the middle of them, the band its interval, the faint lines are the seeds. "
         f"{gait_name(one['gait'])} with {at}: after {one['steps'][-1]:,} steps the worst seed "
         f"covers {metres(min(last))}, the best {metres(max(last))}. A single seed's curve goes "
-        f"down from one block to the next in {percent(sum(down for down, _ in falls) / blocks)} of "
+        f"down from one block to the next in {percent(down / blocks)} of "
         "cases; who draws one curve draws these dents as well."
     )
 
@@ -74,7 +75,7 @@ def _describe_curve(case: Case) -> str | None:
 
 
 def _mean_share(curves: Sequence[Curve], block: int) -> float:
-    return sum(float(one["iqm_m"][block] / one["greedy_m"]) for one in curves) / len(curves)
+    return ordered_sum(float(one["iqm_m"][block] / one["greedy_m"]) for one in curves) / len(curves)
 
 
 def compare_agents(cases: Sequence[Case]) -> str | None:

@@ -45,7 +45,8 @@ def _best_of(cases: Sequence[Case]) -> str:
     share = f"{shares(best['relative'])} of greedy's distance"
     if best["relative"]["low"] is None:
         return f"{name} leads with {share}; so few seeds tell little."
-    equals = sum(_reaches(one["relative"], best["relative"]["low"]) for one in others)
+    low = best["relative"]["low"]
+    equals = sum(_reaches(one["relative"], low) for one in others)  # whole numbers
     if not equals:
         return f"{name} walks farthest: {share}."
     return f"{name} leads with {share}; {_some_of(equals, len(others))} may be as good."

@@ -1,0 +1,107 @@
+"""Digests of results: of each agent and each robot, to the last bit.
+
+Run as a program it prints them as JSON, so that other Pythons, and a processor with other
+instructions, can be compared with this one.
+"""
+
+import hashlib
+import json
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import astuple, is_dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+import hexapods as hx
+from hexapods.agents.registry import OURS, learns
+from hexapods.domain.model_robot import model_robot
+from hexapods.domain.robot import PRESETS, Robot
+from hexapods.runs.config import SimulatorName, WalkingProblem
+from hexapods.runs.preview import preview
+from tests.model_robots import model_of
+
+STEPS = 100
+
+
+def digests() -> dict[str, str]:
+    """Return by the name of each result the beginning of its SHA-256."""
+    return {name: _digest(make()) for name, make in results()}
+
+
+def results() -> Iterator[tuple[str, Callable[[], Any]]]:
+    """Yield the name of each result, and what computes it."""
+    yield "training", partial(_training, "q-learning", "mujoco")
+    yield "race", _race
+    for agent in OURS:
+        yield agent, partial(_practice_and_race, agent)
+    for name, robot in PRESETS.items():
+        yield f"robot {name}", partial(_walk, robot)
+    yield "robot of a file", _walk_of_model
+
+
+def _training(agent: str, simulator: SimulatorName) -> tuple[Any, ...]:
+    trained = hx.train(agent, simulator=simulator, steps=STEPS, seed=3)
+    return trained.table.arrays, trained.curve
+
+
+def _race() -> Any:
+    raced = hx.race(["greedy", "linear-model", "random-walk"], steps=6, seed=1, tolerance=0.03)
+    return raced.recording_sha256, [_motions(lane) for lane in raced.recording]
+
+
+def _practice_and_race(agent: str) -> tuple[Any, ...]:
+    """Practise on the kinematic simulator if the agent learns, and race six steps there."""
+    if not learns(agent):
+        raced = hx.race([agent], simulator="kinematic", steps=6, seed=1)
+        return (_motions(raced.recording[0]),)
+    trained = hx.train(agent, simulator="kinematic", steps=STEPS, seed=3)
+    raced = hx.race([trained], simulator="kinematic", steps=6, seed=1)
+    return trained.table.arrays, trained.curve, _motions(raced.recording[0])
+
+
+def _walk(robot: Robot) -> tuple[Any, ...]:
+    """Take three greedy steps in MuJoCo, and say what is known beforehand."""
+    gait = "one-by-one"
+    raced = hx.race(["greedy"], robot=robot, gait=gait, steps=3)
+    known = preview(WalkingProblem(robot=robot, gait=gait))
+    return _motions(raced.recording[0]), known.law_m, known.mass_kg, known.margin_m
+
+
+def _walk_of_model() -> tuple[Any, ...]:
+    return _walk(model_robot(model_of(PRESETS["stiff"]), "of a file"))
+
+
+def _motions(lane: Any) -> list[Any]:
+    """Return what each step of a recorded lane gave, in the files' precision, and its distance."""
+    return [[step.distance_m, step.reward_m, step.motion] for step in lane.steps]
+
+
+def _digest(value: Any) -> str:
+    digest = hashlib.sha256()
+    for part in _parts(value):
+        digest.update(part)
+    return digest.hexdigest()[:12]
+
+
+def _parts(value: Any) -> Iterator[bytes]:
+    """Yield the bits of a value; of an array the little-endian ones."""
+    if isinstance(value, np.ndarray):
+        yield f"{value.dtype.kind}{value.shape}".encode()
+        yield value.astype(value.dtype.newbyteorder("<")).tobytes()
+    elif isinstance(value, dict):
+        for key in sorted(value):
+            yield key.encode()
+            yield from _parts(value[key])
+    elif isinstance(value, list | tuple):
+        for part in value:
+            yield from _parts(part)
+    elif is_dataclass(value) and not isinstance(value, type):
+        yield from _parts(astuple(value))
+    else:
+        yield (float(value).hex() if isinstance(value, int | float) else repr(value)).encode()
+
+
+if __name__ == "__main__":
+    json.dump({"python": sys.version.split()[0], "digests": digests()}, sys.stdout)
