@@ -43,7 +43,7 @@ venv: $(DQN_STAMP) $(PAGE_STAMP) ## Make or update .venv with everything a devel
 
 .PHONY: test
 test: ## Run every check; this is the gate
-	@$(MAKE) --no-print-directory --jobs=3 lint browser $(DQN_STAMP)
+	@$(MAKE) --no-print-directory --jobs=3 lint browser pythons $(DQN_STAMP)
 	@$(MAKE) --no-print-directory --jobs=4 test-page types docs pytest
 
 .PHONY: check
@@ -67,6 +67,11 @@ pytest: $(DQN_STAMP)
 .PHONY: browser
 browser: $(DEV_STAMP)
 	$(BIN)/python tests/install_browser.py
+
+# Before the other checks: it mostly installs, and pytest's closing line is to be the last.
+.PHONY: pythons
+pythons: $(DEV_STAMP) ## Compare results to the last bit in every other Python that is here
+	$(BIN)/python -m tests.other_pythons
 
 .PHONY: test-page
 test-page: check-page-types ## Check the page's JavaScript: linter, types, unit tests

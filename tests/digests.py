@@ -1,15 +1,17 @@
 """Digests of results: of each agent and each robot, to the last bit.
 
-Run as a program it prints them as JSON, so that other Pythons, and a processor with other
-instructions, can be compared with this one.
+Run as a program it prints them as JSON, for other Pythons and other instructions of the processor.
 """
 
 import hashlib
 import json
+import os
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import astuple, is_dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,9 +27,37 @@ from tests.model_robots import model_of
 STEPS = 100
 
 
+ROOT = Path(__file__).parent.parent
+COMMON_INSTRUCTIONS = {
+    "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR",
+    "OPENBLAS_CORETYPE": "Haswell",
+}
+"""Environment in which NumPy takes the same instructions on every x86-64 processor with AVX2."""
+
+
 def digests() -> dict[str, str]:
     """Return by the name of each result the beginning of its SHA-256."""
     return {name: _digest(make()) for name, make in results()}
+
+
+def digests_of(python: str | Path = sys.executable, **environment: str) -> dict[str, str]:
+    """Return the digests by another Python, or in another environment.
+
+    Args:
+        python: its command; it has what requirements.lock names.
+        environment: variables beside those of this process.
+    """
+    done = subprocess.run(
+        [python, "-m", "tests.digests"],
+        cwd=ROOT,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    by_name: dict[str, str] = json.loads(done.stdout)
+    return by_name
 
 
 def results() -> Iterator[tuple[str, Callable[[], Any]]]:
@@ -52,9 +82,9 @@ def _race() -> Any:
 
 
 def _practice_and_race(agent: str) -> tuple[Any, ...]:
-    """Practise on the kinematic simulator if the agent learns, and race six steps there."""
+    """Practise on the kinematic simulator if the agent learns, and race there."""
     if not learns(agent):
-        raced = hx.race([agent], simulator="kinematic", steps=6, seed=1)
+        raced = hx.race([agent], simulator="kinematic", steps=2, seed=1)
         return (_motions(raced.recording[0]),)
     trained = hx.train(agent, simulator="kinematic", steps=STEPS, seed=3)
     raced = hx.race([trained], simulator="kinematic", steps=6, seed=1)
@@ -104,4 +134,4 @@ def _parts(value: Any) -> Iterator[bytes]:
 
 
 if __name__ == "__main__":
-    json.dump({"python": sys.version.split()[0], "digests": digests()}, sys.stdout)
+    json.dump(digests(), sys.stdout)

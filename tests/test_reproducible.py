@@ -1,10 +1,14 @@
 """The same config and seed give the same results, also after the code was redesigned.
 
-On one machine they are the same to the last bit. Other processors round sines differently, so that
-distances and values are compared to a billionth here.
+On one machine they are the same to the last bit, in every Python: `make pythons` runs this file in
+each that is here. Other processors round sines differently, so that distances and values are
+compared to a billionth; hashes of all agents and robots are those of Linux on x86-64, with
+instructions that all processors with AVX2 have.
 """
 
 import hashlib
+import platform
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -20,6 +24,59 @@ from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.racing import record_race
 from hexapods.runs.tables import Checkpoint, snapshot
 from hexapods.runs.training import train
+from tests.digests import COMMON_INSTRUCTIONS, digests_of, results
+
+DIGESTS = {
+    "training": "3fd5285abdd8",
+    "race": "8aea485629bb",
+    "q-learning": "e51eacd968ea",
+    "double-q": "fe0efba730fc",
+    "q-lambda": "2171349623f9",
+    "sarsa": "46ab440a20df",
+    "expected-sarsa": "0bb29352a332",
+    "n-step-sarsa": "31b27202b515",
+    "sarsa-lambda": "66afcbc8d572",
+    "dyna-q": "8098024df581",
+    "dyna-q-plus": "f36c1596aa32",
+    "prioritized-sweeping": "4bc31555c44b",
+    "r-max": "4429de9c25ea",
+    "posterior-sampling": "3d0d0585fbc2",
+    "linear-model": "4f1b0571cbcc",
+    "greedy": "41057ef4948b",
+    "two-step": "41057ef4948b",
+    "look-ahead": "41057ef4948b",
+    "beam": "41057ef4948b",
+    "informed": "41057ef4948b",
+    "mcts": "17c2779ccb8b",
+    "wave": "2d6371b3c103",
+    "random-walk": "b0c6c26019fd",
+    "robot stiff": "598de02e88a4",
+    "robot compliant": "06e1341104a1",
+    "robot slippery": "7a97fd3047de",
+    "robot ant": "7e95e53ff563",
+    "robot crab": "0fe3055e6adb",
+    "robot spider": "f273ee915fae",
+    "robot starfish": "4a74ed2d0329",
+    "robot dog": "e7e56bafaae0",
+    "robot centipede": "9ae916d4ea01",
+    "robot freenove": "c823495ac15b",
+    "robot phantomx": "c645a816b80b",
+    "robot chica": "7bf701ff1472",
+    "robot of a file": "2ed95bd11f32",
+}
+"""By the name of a result the beginning of its SHA-256, as Python 3.11 gave it first."""
+
+
+def test_all_results_have_the_same_bits_in_every_python() -> None:
+    is_recorded = sys.platform == "linux" and platform.machine() == "x86_64"
+    # Of another kind of processor a second time, in a process with other hashes of texts.
+    expected = DIGESTS if is_recorded else digests_of(PYTHONHASHSEED="1", **COMMON_INSTRUCTIONS)
+
+    assert digests_of(**COMMON_INSTRUCTIONS) == expected
+
+
+def test_a_digest_is_recorded_of_every_agent_and_robot() -> None:
+    assert list(DIGESTS) == [name for name, _ in results()]
 
 
 @pytest.mark.parametrize(

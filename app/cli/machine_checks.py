@@ -1,5 +1,7 @@
 """Checks of `hexapods doctor` on the machine, the installation and the settings."""
 
+import base64
+import hashlib
 import math
 import os
 import re
@@ -8,7 +10,8 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
-from importlib.metadata import PackageNotFoundError, distribution, version
+from importlib.metadata import Distribution, PackageNotFoundError, distribution, version
+from pathlib import Path
 
 from app.settings import PREFIX, Settings, is_loopback
 from hexapods import __version__, assets
@@ -19,6 +22,7 @@ _PHYSICS_TIMEOUT_S = 60.0
 INSTALL = "install it again as the README says"
 _NO_AVX = "it needs a processor with AVX, which some virtual machines hide"
 _ASSET = re.compile(r'"(?:\./)?static/([^"]+\.(?:js|css|svg))"')
+_CODE = {".py", ".so", ".dll", ".dylib", ".pyd"}
 _PIN = re.compile(r"([A-Za-z0-9-]+)==([\w.]+)$")
 
 
@@ -47,14 +51,54 @@ def _packages() -> str:
             raise CheckFailed(f"{name} is missing; {INSTALL}") from error
         if installed != pinned:
             raise CheckFailed(f"{name} is {installed}, and has to be {pinned}; {INSTALL}")
+    for name, _ in pins:
+        if (changed := changed_file(distribution(name))) is not None:
+            raise CheckFailed(
+                f"{changed} is not the one of {name}: another package, or somebody, has changed "
+                f"it; {INSTALL}"
+            )
     versions = ", ".join(f"{name} {pinned}" for name, pinned in pins)
     return f"Racing Hexapods {__version__} with {versions}, as they have to be"
 
 
+def changed_file(package: Distribution) -> str | None:
+    """Return a module or library of an installed package that is not as it was installed.
+
+    Packages can share files, as `mujoco` and `mujoco-core` do: the one installed last has its own.
+    """
+    for file in package.files or ():
+        if file.hash is None or _CODE.isdisjoint(file.suffixes):
+            continue
+        try:
+            with Path(file.locate()).open("rb") as opened:
+                digest = hashlib.file_digest(opened, file.hash.mode).digest()
+        except OSError:
+            return str(file)
+        if base64.urlsafe_b64encode(digest).rstrip(b"=").decode() != file.hash.value:
+            return str(file)
+    return None
+
+
+def _engine() -> str:
+    """Check what is loaded: metadata does not say what another package wrote over it."""
+    program = "from hexapods.physics.engine import mismatch; print(mismatch() or '')"
+    done = _run_apart(program, "-W", "ignore")
+    if done.strip():
+        raise CheckFailed(done.strip())
+    return "the MuJoCo that is loaded is the one with which results repeat"
+
+
 def _physics() -> str:
-    # In a process of its own, as MuJoCo dies of SIGILL on a processor without AVX.
-    program = "from app.cli.machine_checks import walk_in_mujoco; walk_in_mujoco()"
-    command = [sys.executable, "-Pc", program]
+    return _run_apart("from app.cli.machine_checks import walk_in_mujoco; walk_in_mujoco()")
+
+
+def _run_apart(program: str, *options: str) -> str:
+    """Return what a program prints in a process of its own; MuJoCo may end it (SIGILL, no AVX).
+
+    Raises:
+        CheckFailed: if it fails.
+    """
+    command = [sys.executable, *options, "-Pc", program]
     try:
         done = subprocess.run(
             command, capture_output=True, text=True, timeout=_PHYSICS_TIMEOUT_S, check=False
@@ -151,6 +195,7 @@ def check_settings(settings: Settings) -> str:
 CHECKS: Mapping[str, Callable[[], str]] = {
     "python": _python,
     "packages": _packages,
+    "engine": _engine,
     "physics": _physics,
     "browser": _browser,
     "cores": _cores,

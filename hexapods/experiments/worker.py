@@ -115,12 +115,18 @@ def _run(trial: Trial) -> Outcome:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of the product, Python, NumPy and MuJoCo in this process."""
+    """Return the versions of the product, Python, NumPy and MuJoCo in this process.
+
+    Of MuJoCo that of the engine that is loaded: another package may have written over the installed
+    one's files.
+    """
+    from hexapods.physics.engine import loaded_version  # noqa: PLC0415  # takes a fifth of a second
+
     return {
         "racing-hexapods": __version__,
         "python": platform.python_version(),
         "numpy": version("numpy"),
-        "mujoco": version("mujoco-core"),
+        "mujoco": loaded_version(),
     }
 
 

@@ -3,4 +3,9 @@
 - `mjcf`: builds a MuJoCo model from a `Robot`.
 - `conditions`: changes the model to what happens to the robot and the ground.
 - `mujoco_simulator`: the simulator on that model, for single steps and batches.
+- `engine`: which MuJoCo is loaded. Importing this package warns of another than the pinned one.
 """
+
+from hexapods.physics.engine import warn_of_mismatch
+
+warn_of_mismatch()

@@ -5,6 +5,7 @@ import socket
 import sqlite3
 from contextlib import closing
 from datetime import UTC, datetime
+from importlib.metadata import Distribution
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ def known_machine(monkeypatch: pytest.MonkeyPatch) -> None:
 
     `hexapods doctor` in a process of its own checks them.
     """
-    for name in ("physics", "browser"):
+    for name in ("engine", "physics", "browser"):
         monkeypatch.delitem(machine_checks.CHECKS, name)
 
 
@@ -54,11 +55,36 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     lines = done.stdout.splitlines()
     assert all(line.startswith("✓ ") for line in lines)
     names = [line[2:].partition(":")[0] for line in lines]
-    assert names[:5] == ["python", "packages", "physics", "browser", "cores"]
-    assert names[5:7] == ["exports", "settings"]
+    assert names[:5] == ["python", "packages", "engine", "physics", "browser"]
+    assert names[5:8] == ["cores", "exports", "settings"]
     checked = ["data folder", "room", "lock", "database", "rows", "robots", "visitors", "address"]
-    assert names[7:] == checked
+    assert names[8:] == checked
     assert list(tmp_path.iterdir()) == []
+
+
+def test_an_engine_that_another_package_has_written_over_is_told(tmp_path: Path) -> None:
+    (tmp_path / "sitecustomize.py").write_text("import mujoco\nmujoco.__version__ = '3.17.0'\n")
+    done = hexapods("doctor", folder=tmp_path, PYTHONPATH=str(tmp_path), **ANY_PORT)
+    assert done.returncode == 1
+    [told] = [line for line in done.stdout.splitlines() if line.startswith("✗ ")]
+    assert told.startswith("✗ engine: the MuJoCo that is loaded is 4.0.0 with the bindings of 3.17")
+    assert "install the right one alone: pip uninstall mujoco mujoco-core && " in told
+
+
+def test_a_changed_file_of_a_package_is_named(tmp_path: Path) -> None:
+    about, module = tmp_path / "engine-1.0.dist-info", tmp_path / "engine" / "__init__.py"
+    about.mkdir()
+    module.parent.mkdir()
+    module.write_text("")
+    digest = "47DEQpj8HBSa-_TImW-5JCeuQeRkm5NMpJWZG3hSuFU"
+    (about / "METADATA").write_text("Name: engine\nVersion: 1.0\n")
+    (about / "RECORD").write_text(f"engine/__init__.py,sha256={digest},0\n")
+    package = Distribution.at(about)
+    assert machine_checks.changed_file(package) is None
+    module.write_text("version = 2\n")
+    assert machine_checks.changed_file(package) == "engine/__init__.py"
+    module.unlink()
+    assert machine_checks.changed_file(package) == "engine/__init__.py"
 
 
 def test_quota_and_database_are_checked(tmp_path: Path) -> None:
