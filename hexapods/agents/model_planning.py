@@ -74,7 +74,8 @@ class ModelArrays:
         self.columns = np.array([pair.column for pair in pairs], np.int64)
         self.tries = np.array([pair.tries for pair in pairs], np.int64)
         self.rewards_m = np.array([pair.mean_reward_m for pair in pairs], float)
-        ways = np.array([len(one) for one in outcomes], np.int64)
+        # NumPy takes counts of its index type alone, which has 32 bits on some machines.
+        ways = np.array([len(one) for one in outcomes], np.intp)
         self.outcome_pairs = np.repeat(np.arange(len(pairs)), ways)
         self.outcome_places = np.searchsorted(self.states, after)
         counts = chain.from_iterable(one.values() for one in outcomes)

@@ -149,7 +149,9 @@ class TabularModel:
         numbers, afters, counts = outcomes.T
         _check_below(numbers, count)
         _check_below(np.concatenate([nexts, afters]), cells**groups)
-        if (counts < 1).any() or (np.bincount(numbers, counts, count) != tries).any():
+        if (counts < 1).any() or (
+            np.bincount(numbers.astype(np.intp), counts, count) != tries
+        ).any():
             raise ValueError("its model has tries that differ from its outcomes")
 
 

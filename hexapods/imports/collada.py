@@ -150,7 +150,7 @@ def _corners(polygons: Element) -> IntArray:
 def _fans(flat: IntArray, sizes: IntArray) -> IntArray:
     """Cut polygons, whose corners follow each other, into triangles that share the first corner."""
     starts = np.cumsum(sizes) - sizes
-    inner = np.maximum(sizes - 2, 0)
+    inner = np.maximum(sizes - 2, 0).astype(np.intp)
     first = np.repeat(starts, inner)
     number = np.arange(inner.sum()) - np.repeat(np.cumsum(inner) - inner, inner)
     places = np.stack([first, first + number + 1, first + number + 2], axis=1)

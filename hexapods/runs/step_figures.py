@@ -125,7 +125,9 @@ def rows_of(columns: StepColumns, before: Rows) -> Rows:
         rows["highest"] = np.fmax(high, np.fmax.accumulate(highest))
     ends = np.cumsum(columns.frames)
     rows["motion_s"] = columns.motion.time_s[ends - 1]
-    rows["furthest_m"] = np.maximum.reduceat(columns.motion.qpos[:, 1], ends - columns.frames)
+    rows["furthest_m"] = np.maximum.reduceat(
+        columns.motion.qpos[:, 1], (ends - columns.frames).astype(np.intp)
+    )
     rows["tilt"] = columns.motion.qpos[ends - 1][:, TILT]
     rows["frames"] = columns.frames
     rows["observation"], rows["action"] = columns.observation, columns.action
