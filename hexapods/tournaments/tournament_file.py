@@ -4,27 +4,40 @@ import hashlib
 import json
 from base64 import b64decode, b64encode
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.metadata import version
 from typing import Any, NoReturn
 
+from hexapods.assembly import build_walkers
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, TooLong
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.records import Record, from_json, to_json
 from hexapods.domain.robot import parse_document
 from hexapods.domain.text import check_name, visible
+from hexapods.domain.world import parse_world
 from hexapods.experiments.worker import versions
-from hexapods.machine import description
-from hexapods.tournaments.entry import EntryConfig
+from hexapods.machine import description, instructions
+from hexapods.runs.config import RACE_STEPS
+from hexapods.runs.lane import LaneConfig
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.racing import record_race
+from hexapods.tournaments.entry import EntryConfig, completed, training_of
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.ranking import RankedEntry, ranking
-from hexapods.tournaments.rules import MAX_ENTRIES, TournamentRules, commitment_of
+from hexapods.tournaments.rules import (
+    MAX_ENTRIES,
+    Draw,
+    TournamentRules,
+    commitment_of,
+    draws_of,
+)
 
 FORMAT = 1
 MEDIA_TYPE = "application/json"
 MAX_BYTES = 48 << 20
 """Size of a file; most have a few MB, and reading one takes up to ten times as much memory."""
+PROBE = "random_walk_m"
 _MAX_REASON = 1_000
 
 
@@ -65,8 +78,8 @@ class TournamentFile(Record):
         standings: best first.
         tables: by SHA-256 the trained tables, as base64 of their files.
         robots: by id the documents of stored robots that rules or entries name.
-        versions: of the packages on which the results depend.
-        machine: on which it was judged.
+        versions: of the packages on which the results depend, and the processor's kind.
+        machine: on which it was judged, and as `PROBE` what `probe_m` returns on it.
 
     Raises:
         InvalidInput: if the title is not valid, or the entries are not numbered ascending.
@@ -133,13 +146,30 @@ def tournament_file(
             if robot.id is not None
         },
         versions=own_versions(),
-        machine=description(),
+        machine={**description(), PROBE: probe_m(rules, draws_of(rules, secret)[0])},
     )
 
 
 def own_versions() -> dict[str, str]:
-    """Return the versions here of the packages on which the results of a tournament depend."""
-    return {**versions(), "scipy": version("scipy")}
+    """Return what results of a tournament depend on here: versions, and the processor's kind."""
+    return {**versions(), "scipy": version("scipy"), "processor": instructions()}
+
+
+def probe_m(rules: TournamentRules, draw: Draw) -> tuple[float, ...]:
+    """Return how far the random walk is after each of its steps on a draw [m].
+
+    Where a tournament does not repeat to the last bit it shows from which step on: that walk
+    decides nothing by what it measures.
+    """
+    training = replace(
+        training_of(completed(EntryConfig(agent="random-walk"), rules), rules),
+        seed=draw.seed,
+        world=parse_world(draw.world),
+    )
+    lanes = (LaneConfig(agent=training.agent, observation=training.observation),)
+    race = RaceConfig(**vars(training.walk()), lanes=lanes, steps=RACE_STEPS, seed=training.seed)
+    *_, [lane] = record_race(build_walkers(race, [None], threads=1), race, lambda: 0.0)
+    return tuple(lane.steps.figures["distance_m"].tolist())
 
 
 def standings_of(judgements: Mapping[int, Sequence[Judgement]]) -> list[RankedEntry]:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, Future, as_completed
 from dataclasses import fields
 from itertools import chain
+from typing import NamedTuple
 
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import HexapodError, InvalidInput
@@ -17,10 +18,12 @@ from hexapods.tournaments.judging import Judgement, judge
 from hexapods.tournaments.ranking import RankedEntry
 from hexapods.tournaments.rules import Draw, commitment_of, draws_of
 from hexapods.tournaments.tournament_file import (
+    PROBE,
     JudgedEntry,
     TournamentFile,
     documents_of,
     own_versions,
+    probe_m,
     standings_of,
 )
 
@@ -30,12 +33,40 @@ Repeated = Mapping[int, Sequence[Judgement | str]]
 """By number of an entry, for each draw its judgement, or why there is none."""
 
 
+LAST_DIGITS_M = 1e-9
+"""Distances that differ by no more differ by rounding: after 50 steps by less than a femtometre."""
+
+
+class Verification(NamedTuple):
+    """Outcome of repeating a tournament.
+
+    Attributes:
+        differences: what differs, a sentence each; none if it repeats to the last bit.
+        rounding: the same in a sentence, if nothing differs but the last digits of distances: from
+            which step on, by how much, and that the ranks hold. None else.
+        ranks_hold: whether each entry has the same ranks; None if they could not be compared.
+    """
+
+    differences: list[str]
+    rounding: str | None
+    ranks_hold: bool | None
+
+
 def verify(
     tournament: TournamentFile,
     workers: int | None = None,
     on_judged: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
 ) -> list[str]:
-    """Repeat a tournament, and return what differs, a sentence each; nothing if all is the same.
+    """Return what differs in a repeated tournament, a sentence each; see `verification`."""
+    return verification(tournament, workers, on_judged).differences
+
+
+def verification(
+    tournament: TournamentFile,
+    workers: int | None = None,
+    on_judged: Callable[[int, int], object] = lambda done, total: None,  # noqa: ARG005
+) -> Verification:
+    """Repeat a tournament, and return what differs.
 
     Its secret is compared with its commitment, the references with those of every tournament, each
     judgement and each standing with the repeated one, to the last bit. A file cannot show which
@@ -55,7 +86,7 @@ def verify(
     try:
         draws = draws_of(tournament.rules, tournament.secret)
     except InvalidInput as error:
-        return [f"The draws cannot be repeated: {error}."]
+        return Verification([f"The draws cannot be repeated: {error}."], None, None)
     differences = [*_secret_differences(tournament), *_reference_differences(tournament)]
     tables: dict[int, Checkpoint | None] = {}
     for one in tournament.entries:
@@ -77,14 +108,66 @@ def verify(
             for done, _ in enumerate(as_completed(chain(*futures.values())), start=1):
                 on_judged(done, pending)
     repeated = {number: [_result(one) for one in tasks] for number, tasks in futures.items()}
+    ranks_hold = _ranks_hold(tournament, repeated)
+    largest_m = None if differences or not ranks_hold else _largest_m(judged, repeated)
     for one in judged:
         differences += _judgement_differences(one, draws, repeated[one.number])
-    return differences + _standing_differences(tournament, repeated)
+    differences += _standing_differences(tournament, repeated)
+    rounding = None
+    if differences and largest_m is not None and largest_m <= LAST_DIGITS_M:
+        with robot_documents.lent(documents_of(tournament)):
+            rounding = _rounding(tournament, largest_m, draws[0])
+    return Verification(differences, rounding, ranks_hold)
+
+
+def _ranks_hold(tournament: TournamentFile, repeated: Repeated) -> bool | None:
+    """Whether order, ranks and failures are the same; None if some entry could not be judged."""
+    judgements = _complete(repeated)
+    if len(judgements) < len(tournament.entries):
+        return None
+    shown = [
+        [(one.number, one.best_rank, one.worst_rank, one.not_separable, one.failures) for one in s]
+        for s in (tournament.standings, standings_of(judgements))
+    ]
+    return shown[0] == shown[1]
+
+
+def _largest_m(judged: Sequence[JudgedEntry], repeated: Repeated) -> float | None:
+    """Return by how much distances differ at most [m]; None if failures differ."""
+    differences_m = [0.0]
+    for one in judged:
+        if len(one.judgements) != len(repeated[one.number]):
+            return None
+        for given, again in zip(one.judgements, repeated[one.number], strict=True):
+            if isinstance(again, str) or given.failure != again.failure:
+                return None
+            differences_m.append(abs(given.distance_m - again.distance_m))
+    return max(differences_m)
+
+
+def _rounding(tournament: TournamentFile, largest_m: float, draw: Draw) -> str:
+    """Say that last digits differ: by how much, and from which step of a walk on."""
+    in_file = tournament.machine.get(PROBE)
+    again = probe_m(tournament.rules, draw)
+    step = None
+    if isinstance(in_file, list | tuple) and len(in_file) == len(again):
+        pairs = enumerate(zip(in_file, again, strict=True), start=1)
+        step = next((number for number, (given, here) in pairs if given != here), 0)
+    begins = {
+        None: "the file does not tell from which step on",
+        0: "the random walk on draw 1 is the same, so that they begin in practice or planning",
+    }.get(step, f"the random walk on draw 1 differs from its step {step} on")
+    return (
+        f"Distances differ in their last digits alone, by at most {largest_m:.1g} m, and all "
+        f"ranks hold; {begins}."
+    )
 
 
 def version_note(tournament: TournamentFile) -> str | None:
     """Return how the versions here differ from those that judged; None if results must be equal."""
-    other = difference(tournament.versions, own_versions())
+    # Python is in the file, but results do not depend on it.
+    kept = {name: of for name, of in tournament.versions.items() if name != "python"}
+    other = difference(kept, own_versions())
     if other is None:
         return None
     return visible(f"This is {other}, by which results may differ in their last digits.")
@@ -162,11 +245,7 @@ def _judgement_differences(
 
 def _standing_differences(tournament: TournamentFile, repeated: Repeated) -> list[str]:
     """Compare the standings with those of the repeated judgements."""
-    judgements: dict[int, Sequence[Judgement]] = {}
-    for number, of_entry in repeated.items():
-        found = [one for one in of_entry if isinstance(one, Judgement)]
-        if len(found) == len(of_entry):
-            judgements[number] = found
+    judgements = _complete(repeated)
     if len(judgements) < len(tournament.entries):
         return ["The standings were not compared, as some entries could not be judged."]
     expected = {one.number: one for one in standings_of(judgements)}
@@ -188,6 +267,16 @@ def _standing_differences(tournament: TournamentFile, repeated: Repeated) -> lis
             "repeated."
         )
     return told
+
+
+def _complete(repeated: Repeated) -> dict[int, Sequence[Judgement]]:
+    """Return the judgements of the entries that could be judged on all draws."""
+    judgements: dict[int, Sequence[Judgement]] = {}
+    for number, of_entry in repeated.items():
+        done = [one for one in of_entry if isinstance(one, Judgement)]
+        if len(done) == len(of_entry):
+            judgements[number] = done
+    return judgements
 
 
 def _field_differences(name: str, given: RankedEntry, expected: RankedEntry) -> Iterator[str]:
