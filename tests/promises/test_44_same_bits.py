@@ -8,6 +8,7 @@ the ranks hold: here NumPy is denied all that newer processors have, in a proces
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -73,11 +74,17 @@ def test_what_was_changed_is_told_with_other_instructions_too(folder: Path) -> N
     assert any("9.0 m in the file" in one for one in shown["differences"])
 
 
+def _add_tools(folder: Path) -> None:
+    """Add to a folder, which is all of a PATH, what `.ci/find-python` needs."""
+    for tool in ("sh", "ls", "sed", "sort"):
+        path = shutil.which(tool)
+        assert path is not None
+        (folder / tool).symlink_to(path)
+
+
 def test_a_machine_with_one_python_says_that_nothing_was_compared(tmp_path: Path) -> None:
     (tmp_path / f"python3.{sys.version_info[1]}").symlink_to(sys.executable)
-    (tmp_path / "sh").symlink_to("/bin/sh")
-    for tool in ("ls", "sed", "sort"):
-        (tmp_path / tool).symlink_to(f"/bin/{tool}" if Path(f"/bin/{tool}").exists() else tool)
+    _add_tools(tmp_path)
     done = subprocess.run(
         [sys.executable, "-m", "tests.other_pythons"],
         cwd=ROOT,
@@ -92,12 +99,10 @@ def test_a_machine_with_one_python_says_that_nothing_was_compared(tmp_path: Path
 
 @pytest.mark.parametrize("minor", [13, 14, 23])
 def test_newer_pythons_are_found(minor: int, tmp_path: Path) -> None:
-    (tmp_path / f"python3.{minor}").write_text(
-        f'#!/bin/sh\n[ "$1" != --version ] || echo "Python 3.{minor}.0"\n'
-    )
+    says_its_version = f'[ "$1" != --version ] || echo "Python 3.{minor}.0"'
+    (tmp_path / f"python3.{minor}").write_text(f"#!/bin/sh\n{says_its_version}\n")
     (tmp_path / f"python3.{minor}").chmod(0o755)
-    for tool in ("ls", "sed", "sort"):
-        (tmp_path / tool).symlink_to(f"/bin/{tool}" if Path(f"/bin/{tool}").exists() else tool)
+    _add_tools(tmp_path)
     done = subprocess.run(
         ["/bin/sh", str(ROOT / ".ci" / "find-python")],
         env={"PATH": str(tmp_path), "HOME": str(tmp_path)},
