@@ -13,6 +13,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -32,8 +33,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _tournament() -> TournamentFile:
-    robot = at_length({"robot": HASTY, "steps": 10}, {"steps": 500})
-    return judged(rules_of(simulator="mujoco", gait="tripod", **robot), [])
+    given: dict[str, Any] = at_length({"robot": HASTY, "steps": 10}, {"steps": 500})
+    return judged(rules_of(simulator="mujoco", gait="tripod", **given), [])
 
 
 def _verify(file: Path, *options: str) -> subprocess.CompletedProcess[str]:
