@@ -52,6 +52,7 @@ from app.api.memory_limit import HeldBodies
 from app.api.middleware import SecurityHeaders
 from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit, what_if_limiter
+from app.api.request_headers import DeclaredHeaders
 from app.api.room_access import JOINS, JOINS_PER_S, RoomAccess
 from app.api.room_stages import RoomStages
 from app.api.stage_paths import StagePaths, stage_of
@@ -219,6 +220,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     app.add_middleware(ProblemPages)
     app.add_middleware(StagePaths, stages=app.state.services.stages)
     app.add_middleware(WellFormed)
+    app.add_middleware(DeclaredHeaders)
     app.add_middleware(SecurityHeaders)
     return app
 

@@ -67,11 +67,11 @@ class TokenGuard:
             return
         headers, roles = Headers(scope=scope), stage_of(scope).roles
         if _has_token_parameter(scope):
-            response = await self._open_session(scope, headers, roles)
+            response = await self._open_session(scope, roles)
             await response(scope, receive, send)
             return
-        cookie, bearer = self._cookie(scope, headers), _bearer(headers)
-        role, seats = self._identify(scope, headers, roles.of(bearer, cookie.value))
+        cookie, bearer = self._cookie(scope), _bearer(headers)
+        role, seats = self._identify(scope, roles.of(bearer, cookie.value))
         if role == "spectator" and roles.needs_token:
             wrong = [credential for credential in (bearer, cookie.value) if credential]
             wait_s = max((self._wrong_guesses.take(client_of(scope)) for _ in wrong), default=0.0)
@@ -91,9 +91,7 @@ class TokenGuard:
         else:
             await refusal(scope, receive, send)
 
-    def _identify(
-        self, scope: Scope, headers: Headers, role: Role
-    ) -> tuple[Role, tuple[Seat, ...]]:
+    def _identify(self, scope: Scope, role: Role) -> tuple[Role, tuple[Seat, ...]]:
         """Return the role of a client and its seats in rooms; store these and a visitor's cookie.
 
         Where nobody needs a token, a participant is who has a room's cookie.
@@ -101,12 +99,12 @@ class TokenGuard:
         seats: tuple[Seat, ...] = ()
         is_secure = self._is_secure(scope)
         if role == "spectator" or not stage_of(scope).roles.needs_token:
-            seats = self._rooms.seats(headers, is_secure=is_secure)
+            seats = self._rooms.seats(scope, is_secure=is_secure)
         role = "spectator" if seats else role
         is_visitor = self._visitors is not None and role == "spectator" and not seats
         scope["state"]["seats"] = seats
         scope["state"]["visitor"] = (
-            visitor_cookie(headers, is_secure=is_secure) if is_visitor else None
+            visitor_cookie(scope, is_secure=is_secure) if is_visitor else None
         )
         return role, seats
 
@@ -124,10 +122,10 @@ class TokenGuard:
     def _is_secure(self, scope: Scope) -> bool:
         return is_secure(scope, self._settings)
 
-    def _cookie(self, scope: Scope, headers: Headers) -> SessionCookie:
-        return SessionCookie(headers, self._is_secure(scope), stage_of(scope).session_path)
+    def _cookie(self, scope: Scope) -> SessionCookie:
+        return SessionCookie(scope, self._is_secure(scope), stage_of(scope).session_path)
 
-    async def _open_session(self, scope: Scope, headers: Headers, roles: Roles) -> Response:
+    async def _open_session(self, scope: Scope, roles: Roles) -> Response:
         """Open a session for the token of `/?token=…`, and redirect to the address without it."""
         items = _query(scope)
         rest = urlencode([(name, value) for name, value in items if name != "token"])
@@ -146,7 +144,7 @@ class TokenGuard:
             session_id = await asyncio.to_thread(roles.open_session)
         except HexapodError as error:
             return problem(503, f"No session can be kept: {error}.", headers={"Retry-After": "10"})
-        response.headers.append("Set-Cookie", self._cookie(scope, headers).set_header(session_id))
+        response.headers.append("Set-Cookie", self._cookie(scope).set_header(session_id))
         return response
 
 

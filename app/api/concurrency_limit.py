@@ -75,7 +75,11 @@ _RETRY_S = 5
 _EVENT_STREAM = "text/event-stream"
 _READ_METHODS = ("GET", "HEAD")
 _OF_A_RUN = re.compile(r"/api/v1/(runs|trainings|races|experiments)/[^/]+/.+")
-_DOWNLOAD = re.compile(r"/api/v1/(.*/(export|recording|files/.*)|tournaments/[^/]+/file)")
+_DOWNLOAD = re.compile(
+    # A dot is any character: else each `files/` before a line break is tried to the line's end.
+    r"/api/v1/(.*/(export|recording|files/.*)|tournaments/[^/]+/file)",
+    re.DOTALL,
+)
 T = TypeVar("T")
 
 

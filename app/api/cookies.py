@@ -1,7 +1,8 @@
 """Session cookies: of operators, of participants of rooms, and of visitors of a demo."""
 
+from collections.abc import Iterable, Mapping
+
 from starlette.datastructures import Headers
-from starlette.requests import cookie_parser
 from starlette.types import Scope
 
 from app.settings import Settings
@@ -10,11 +11,37 @@ from app.storage.sessions import SESSION_S
 NAME = "hexapods_operator"
 ROOM_NAME = "hexapods_room"
 VISITOR_NAME = "hexapods_visitor"
+NAMES = (NAME, ROOM_NAME, VISITOR_NAME)
+"""The beginnings of the names of all cookies that are read."""
 
 
 def is_secure(scope: Scope, settings: Settings) -> bool:
     """Whether browsers reach the server over HTTPS, by itself or by the proxy that offers it."""
     return scope["scheme"] in ("https", "wss") or (settings.public_url or "").startswith("https:")
+
+
+_BEGINNINGS = tuple(f"{prefix}{name}_" for name in NAMES for prefix in ("", "__Host-"))
+
+
+def kept_cookies(lines: Iterable[str]) -> Mapping[str, str]:
+    """Parse the `Cookie` headers of a request, and return those that may be ours, by name.
+
+    In linear time: values are taken as they are, without the quotes and escapes of Python's
+    `http.cookies`, which no cookie of ours has.
+    """
+    cookies: dict[str, str] = {}
+    for line in lines:
+        for pair in line.split(";"):
+            name, _, value = pair.strip().partition("=")
+            if name.startswith(_BEGINNINGS):
+                cookies[name] = value
+    return cookies
+
+
+def cookies_of(scope: Scope) -> Mapping[str, str]:
+    """Return the cookies of a request that may be ours, by name; inside `DeclaredHeaders`."""
+    cookies: Mapping[str, str] = scope["state"]["cookies"]
+    return cookies
 
 
 class SessionCookie:
@@ -28,25 +55,20 @@ class SessionCookie:
     Attributes:
         name: of the cookie.
         value: session id that the client sent; "" without a cookie.
-        others: all cookies of the request, by name.
     """
 
-    def __init__(self, headers: Headers, is_secure: bool, path: str, name: str = NAME) -> None:
-        """Parse it from the headers of a request.
+    def __init__(self, scope: Scope, is_secure: bool, path: str, name: str = NAME) -> None:
+        """Find it among the cookies of a request.
 
         Args:
-            headers: of the request.
+            scope: of the request, or of a websocket.
             is_secure: whether browsers use HTTPS.
             path: of the stage, or the code of a room.
             name: beginning of its name.
         """
-        port = headers.get("host", "").rpartition("]")[2].rpartition(":")[2]
-        if not (port.isascii() and port.isdigit()):
-            port = "443" if is_secure else "80"
         self._is_secure = is_secure
-        self.name = f"{'__Host-' if is_secure else ''}{name}_{port}{path.replace('/', '_')}"
-        self.others = cookie_parser("; ".join(headers.getlist("cookie")))
-        self.value = self.others.get(self.name, "")
+        self.name = f"{name_of_server(scope, is_secure, name)}{path.replace('/', '_')}"
+        self.value = cookies_of(scope).get(self.name, "")
 
     def set_header(self, session_id: str, age_s: int = SESSION_S) -> str:
         """Return the `Set-Cookie` value that stores a session id for a time [s]."""
@@ -59,3 +81,11 @@ class SessionCookie:
     def _header(self, value: str, age_s: int) -> str:
         secure = "; Secure" if self._is_secure else ""
         return f"{self.name}={value}; Max-Age={age_s}; Path=/; HttpOnly; SameSite=Strict{secure}"
+
+
+def name_of_server(scope: Scope, is_secure: bool, name: str) -> str:
+    """Return how the names of a server's cookies begin: with the port that the client called."""
+    port = Headers(scope=scope).get("host", "").rpartition("]")[2].rpartition(":")[2]
+    if not (port.isascii() and port.isdigit()):
+        port = "443" if is_secure else "80"
+    return f"{'__Host-' if is_secure else ''}{name}_{port}"

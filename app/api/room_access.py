@@ -11,11 +11,10 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from urllib.parse import parse_qsl
 
-from starlette.datastructures import Headers
 from starlette.responses import Response
 from starlette.types import Scope
 
-from app.api.cookies import ROOM_NAME, SessionCookie
+from app.api.cookies import ROOM_NAME, SessionCookie, cookies_of, name_of_server
 from app.api.problems import as_sentence, problem
 from app.api.rate_limit import is_question, too_many
 from app.api.stage_paths import path_of
@@ -37,7 +36,7 @@ READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 _OF_ROOM = re.compile(r"/api/v1/rooms/(?P<code>[^/]+)(?P<rest>/.*)?")
 _PAGE_OF_ROOM = re.compile(r"/r/(?P<code>[^/]+)(?P<rest>/.*)?")
 _OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]+)(?:/.*)?")
-_COOKIE = re.compile(rf"(?:__Host-)?{ROOM_NAME}_\d+_(?P<code>[{ALPHABET}]{{{CODE_LENGTH}}})")
+_CODE = re.compile(rf"[{ALPHABET}]{{{CODE_LENGTH}}}")
 _OF_TOURNAMENT = re.compile(r"(?:/api/v1/tournaments|/t)/(?P<id>[^/]+)(?P<rest>/.*)?")
 _ENTER = "/entries"
 _DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
@@ -81,11 +80,11 @@ class RoomAccess:
         self._rooms, self._room_of_tournament = rooms, room_of_tournament
         self._wrong_codes = RateLimiter(WRONG_CODES, WRONG_CODES_PER_S)
 
-    def seats(self, headers: Headers, *, is_secure: bool) -> tuple[Seat, ...]:
+    def seats(self, scope: Scope, *, is_secure: bool) -> tuple[Seat, ...]:
         """Return which participants of open rooms a client is, by its cookies."""
         found = []
-        for code, cookie in _room_cookies(headers, is_secure):
-            participant = self._rooms.seat(code, cookie.value)
+        for code, key in _room_keys(scope, is_secure):
+            participant = self._rooms.seat(code, key)
             with suppress(NotFound):  # deleted meanwhile
                 if participant is not None and self._rooms.get(code).is_open:
                     found.append((code, participant.seed))
@@ -191,20 +190,18 @@ class RoomAccess:
         return True
 
 
-def room_cookie(headers: Headers, code: str, *, is_secure: bool) -> SessionCookie:
+def room_cookie(scope: Scope, code: str, *, is_secure: bool) -> SessionCookie:
     """Return the cookie of a participant of a room."""
-    return SessionCookie(headers, is_secure, f"/{code}", ROOM_NAME)
+    return SessionCookie(scope, is_secure, f"/{code}", ROOM_NAME)
 
 
-def _room_cookies(headers: Headers, is_secure: bool) -> Iterator[tuple[str, SessionCookie]]:
-    if ROOM_NAME not in (headers.get("cookie") or ""):
-        return
-    for name in SessionCookie(headers, is_secure, "", ROOM_NAME).others:
-        found = _COOKIE.fullmatch(name)
-        if found is not None:
-            cookie = room_cookie(headers, found["code"], is_secure=is_secure)
-            if cookie.name == name:
-                yield found["code"], cookie
+def _room_keys(scope: Scope, is_secure: bool) -> Iterator[tuple[str, str]]:
+    """Yield the codes of the rooms whose cookies a request has, each with the participant's key."""
+    beginning = f"{name_of_server(scope, is_secure, ROOM_NAME)}_"
+    for name, key in cookies_of(scope).items():
+        code = name.removeprefix(beginning)
+        if code != name and _CODE.fullmatch(code) is not None:
+            yield code, key
 
 
 def _codes_in(scope: Scope) -> set[str]:

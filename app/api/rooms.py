@@ -194,7 +194,7 @@ def leave_room(
 
 def _cookie(services: Services, request: Request, code: str) -> SessionCookie:
     secure = is_secure(request.scope, services.settings)
-    return room_cookie(request.headers, normalized(code), is_secure=secure)
+    return room_cookie(request.scope, normalized(code), is_secure=secure)
 
 
 @router.patch(

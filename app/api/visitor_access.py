@@ -9,7 +9,6 @@ import re
 from collections.abc import Iterator, Mapping
 from urllib.parse import parse_qsl
 
-from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Scope
 
 from app.api.cookies import VISITOR_NAME, SessionCookie
@@ -69,9 +68,9 @@ class VisitorAccess:
         return problem(403, _OF_OTHERS)
 
 
-def visitor_cookie(headers: Headers, *, is_secure: bool) -> SessionCookie:
+def visitor_cookie(scope: Scope, *, is_secure: bool) -> SessionCookie:
     """Return the cookie of a visitor."""
-    return SessionCookie(headers, is_secure, "", VISITOR_NAME)
+    return SessionCookie(scope, is_secure, "", VISITOR_NAME)
 
 
 def _found(operations: frozenset[tuple[str, str]], scope: Scope) -> Mapping[str, str] | None:

@@ -1,11 +1,16 @@
 """HTTP/1.1 protocol of uvicorn (h11) with timeouts against slow clients ("slowloris")."""
 
 import time
-from asyncio import Transport
+from asyncio import AbstractEventLoop, Transport
+from http import HTTPStatus
+from typing import Any
 
 import h11
+from uvicorn.config import Config
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.server import ServerState
 
+from app.limits.bounded_connection import READ_BYTES, BoundedConnection
 from app.limits.connections import (
     BODY_BYTES_PER_S,
     BODY_S,
@@ -31,9 +36,22 @@ class LimitedHttpProtocol(H11Protocol):
     table: ConnectionTable
     """Set by a subclass for each server: see `limited_http`."""
 
+    def __init__(
+        self,
+        config: Config,
+        server_state: ServerState,
+        app_state: dict[str, Any],
+        _loop: AbstractEventLoop | None = None,
+    ) -> None:
+        """Create it as uvicorn does, with a parser that bounds the cost of a head."""
+        super().__init__(config, server_state, app_state, _loop)
+        self.conn: BoundedConnection = BoundedConnection()
+
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override] # as uvicorn
         """Look the connection up in the table, and attach this protocol to it."""
         super().connection_made(transport)
+        # Of asyncio's transports, and kept when the connection becomes a websocket's.
+        transport.max_size = READ_BYTES  # type: ignore[attr-defined]
         file = transport.get_extra_info("socket").fileno()
         self._connection: Connection | None = self.table.of_file(file)
         self._upgraded = False
@@ -68,6 +86,23 @@ class LimitedHttpProtocol(H11Protocol):
         self._upgraded = True
         self._set_busy(True)
         super().handle_websocket_upgrade(event)
+
+    def send_400_response(self, msg: str) -> None:
+        """Refuse a request that cannot be parsed, with what is wrong, and close the connection.
+
+        What has begun to be answered is cut off.
+        """
+        if self.conn.our_state not in (h11.IDLE, h11.SEND_RESPONSE):
+            self.transport.abort()
+            return
+        refusal = self.conn.refusal
+        status = HTTPStatus(400 if refusal is None else refusal.error_status_hint)
+        detail = msg if status == HTTPStatus.BAD_REQUEST else str(refusal)
+        headers = [("Content-Type", "text/plain; charset=utf-8"), ("Connection", "close")]
+        head = h11.Response(status_code=status, headers=headers, reason=status.phrase)
+        for event in (head, h11.Data(data=detail.encode()), h11.EndOfMessage()):
+            self.transport.write(self.conn.send(event) or b"")
+        self.transport.close()
 
     def on_response_complete(self) -> None:
         """Mark the connection as idle, and start the timeout for the next request's head."""
