@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import gc
 import logging
 import os
 import socket
@@ -106,6 +107,9 @@ _logger = logging.getLogger(__name__)
 GRACE_S = 3
 SWITCH_S = 0.001
 """Python's switch interval [s]: shorter than its 5 ms, for the event loop's latency."""
+GC_OBJECTS = 10_000
+"""New objects after which Python looks for garbage, rather than 700: a body of 1 MB may have
+300,000 lists, and would be looked through hundreds of times."""
 _TICKS_PER_S = 10
 """Frequency of uvicorn's main loop [1/s]."""
 _PRELOADED = [
@@ -345,6 +349,7 @@ def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> 
     start_fork_server(_PRELOADED)
     return_freed_memory()
     sys.setswitchinterval(SWITCH_S)
+    gc.set_threshold(GC_OBJECTS, *gc.get_threshold()[1:])
     connections = connection_table(settings, raise_file_limit())
     listener = listen(settings, connections)
     logs.install(settings.log_level)
@@ -399,6 +404,8 @@ class _Server(uvicorn.Server):
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
         if self.started:
+            # What is there now stays, and need not be looked through for garbage.
+            gc.freeze()
             self._listener.listen(BACKLOG)
             write_address_file(self._settings.data, _local_address(self._listener))
             address = self._settings.public_url or _local_address(self._listener, "localhost")

@@ -17,6 +17,8 @@ from app.api.auth import PUBLIC_PATHS
 from app.api.middleware import HttpMiddleware
 from app.api.problems import problem
 from app.api.rate_limit import (
+    PREVIEW,
+    ROBOTS,
     export_load,
     is_encoding,
     is_reading_robot,
@@ -38,7 +40,8 @@ Work = Literal["probe", "what-if", "encoding", "download", "analysis", "other"]
 - `encoding`: files of long runs that take up to minutes before their first byte, and robots' files
   that are read.
 - `download`: files that are computed chunk by chunk while a client reads them.
-- `analysis`: any other view of what a run recorded, which takes seconds if that is long.
+- `analysis`: any other view of what a run recorded, which takes seconds if that is long, and what
+  is told of a robot before it walks, if it is large.
 - `other`: listings, commands and files of the page, in milliseconds.
 """
 
@@ -75,12 +78,17 @@ _RETRY_S = 5
 _EVENT_STREAM = "text/event-stream"
 _READ_METHODS = ("GET", "HEAD")
 _OF_A_RUN = re.compile(r"/api/v1/(runs|trainings|races|experiments)/[^/]+/.+")
+_OF_A_ROBOT = re.compile(rf"{ROBOTS}/[^/]+(/.*)?")
 _DOWNLOAD = re.compile(
     # A dot is any character: else each `files/` before a line break is tried to the line's end.
     r"/api/v1/(.*/(export|recording|files/.*)|tournaments/[^/]+/file)",
     re.DOTALL,
 )
 T = TypeVar("T")
+
+
+class _ClientLeft(Busy):
+    """A client has left while its request waited for a slot."""
 
 
 class WorkSlots:
@@ -114,11 +122,13 @@ def work_of(scope: Scope) -> Work:
         return "what-if"
     if is_encoding(scope) or is_reading_robot(scope):
         return "encoding"
+    path = path_of(scope)
     if scope["method"] not in _READ_METHODS:
-        return "other"
-    if export_load(scope) == "stream" or _DOWNLOAD.fullmatch(path_of(scope)) is not None:
+        return "analysis" if path == PREVIEW and scope["method"] == "POST" else "other"
+    if export_load(scope) == "stream" or _DOWNLOAD.fullmatch(path) is not None:
         return "download"
-    return "other" if _OF_A_RUN.fullmatch(path_of(scope)) is None else "analysis"
+    is_analysis = any(of.fullmatch(path) is not None for of in (_OF_A_RUN, _OF_A_ROBOT))
+    return "analysis" if is_analysis else "other"
 
 
 class ConcurrencyLimit(HttpMiddleware):
@@ -177,12 +187,18 @@ class _Slot:
         self._release()
 
     def wrap_receive(self, receive: Receive) -> Receive:
-        """Wrap `receive`: release the slot until the body is complete, not during later calls."""
+        """Wrap `receive`: release the slot until the body is complete, not during later calls.
+
+        Of a client that has left it receives the disconnect, as of one that leaves later.
+        """
         has_all = False
 
         async def call_without_slot() -> Message:
             nonlocal has_all
-            message = await (receive() if has_all else self._without_slot(receive))
+            try:
+                message = await (receive() if has_all else self._without_slot(receive))
+            except _ClientLeft:
+                message = {"type": "http.disconnect"}
             has_all = has_all or not message.get("more_body", False)
             return message
 
@@ -214,7 +230,7 @@ class _Slot:
             await self.acquire()
         except NotAdmitted as refused:
             if refused.reason != "closed":
-                raise Busy("the client has closed its connection", 1) from refused
+                raise _ClientLeft("the client has closed its connection", 1) from refused
             # The server stops: what is nearly complete is completed, and what takes long asks
             # `Stopping` by itself.
             self.close()

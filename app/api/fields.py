@@ -211,10 +211,12 @@ class Body(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _reject_unknown_fields(cls, value: Any) -> Any:
-        unknown = [n for n in value if n not in cls.model_fields] if isinstance(value, dict) else []
+        # Looked up once: a body may have a hundred thousand names, and Pydantic's lookup is slow.
+        valid = cls.model_fields
+        unknown = [name for name in value if name not in valid] if isinstance(value, dict) else []
         if unknown:
             message = _nested_form(cls, {name: value[name] for name in unknown}) or str(
-                UnknownName("field", unknown[0][:MAX_NAME], cls.model_fields)
+                UnknownName("field", unknown[0][:MAX_NAME], valid)
             )
             # Passed as a value, as a name with braces is no valid template.
             raise PydanticCustomError("unknown_field", "{message}", {"message": message})
@@ -236,7 +238,8 @@ def _nested_form(body: type[Body], unknown: Mapping[str, Any]) -> str | None:
     kind = None if settings is None else settings.annotation
     if not (isinstance(kind, type) and issubclass(kind, SettingsBody)):
         return None
-    flat = {name: value for name, value in unknown.items() if name in kind.model_fields}
+    valid = kind.model_fields
+    flat = {name: value for name, value in unknown.items() if name in valid}
     nested = json.dumps({"settings": flat})[1:-1][:500]
     return f"settings are a member of their own since 0.2: {nested}" if flat else None
 

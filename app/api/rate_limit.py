@@ -25,7 +25,8 @@ _STARTS_NOTHING = re.compile(
 _RECORDING = re.compile(r"/api/v1/races/[^/]+/recording")
 _OF_RUN = re.compile(r"/api/v1/runs/[^/]+/([^/]+)")
 WHAT_IF, ROBOTS = "/api/v1/what-if", "/api/v1/robots"
-QUESTIONS = frozenset({WHAT_IF, "/api/v1/robots/preview"})
+PREVIEW = f"{ROBOTS}/preview"
+QUESTIONS = frozenset({WHAT_IF, PREVIEW})
 """Paths whose POST changes nothing, so that spectators may use it, too."""
 
 

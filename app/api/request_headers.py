@@ -74,7 +74,9 @@ class DeclaredHeaders:
                 sizes[name] = sizes.get(name, 0) + len(value)
         too_long = sorted(name for name, size in sizes.items() if size > MAX_BYTES)
         if not too_long:
-            lines = [value.decode("latin-1") for name, value in headers if name.lower() == b"cookie"]
+            lines = [
+                value.decode("latin-1") for name, value in headers if name.lower() == b"cookie"
+            ]
             # That there are cookies is all that the header tells from here on: FastAPI would parse
             # it for each request, in quadratic time before Python 3.11.10.
             headers = [(n, b"" if n.lower() == b"cookie" else value) for n, value in headers]

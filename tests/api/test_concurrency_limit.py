@@ -13,7 +13,7 @@ from app.api.concurrency_limit import (
     WorkSlots,
     work_of,
 )
-from app.api.rate_limit import WHAT_IF
+from app.api.rate_limit import PREVIEW, WHAT_IF
 from app.limits.connections import ConnectionTable
 from app.stage.roles import Role
 
@@ -210,10 +210,14 @@ def test_each_kind_of_work_has_slots_of_its_own() -> None:
         "/api/v1/experiments/x/files/trials.csv": "download",
         "/api/v1/races/x/timeline": "analysis",
         "/api/v1/runs/x/replay/segments/0/1": "analysis",
+        "/api/v1/robots": "other",
+        "/api/v1/robots/0123456789ab": "analysis",
+        "/api/v1/robots/0123456789ab/file": "analysis",
     }
     asked = {path: {**scope("spectator", "a", path=path), "query_string": b""} for path in kinds}
     assert {path: work_of(one) for path, one in asked.items()} == kinds
     assert work_of(scope("operator", "a", "POST", STOP)) == "other"
+    assert work_of(scope("spectator", "a", "POST", PREVIEW)) == "analysis"
     assert work_of(scope("spectator", "a", "POST", WHAT_IF)) == "what-if"
 
 

@@ -1,7 +1,6 @@
 """The largest and worst that a stranger can send, and what it costs the server's processor."""
 
 import itertools
-import json
 import re
 import socket
 import time
@@ -97,8 +96,9 @@ def addresses(path: str, parameters: tuple[str, ...]) -> Iterator[tuple[str, str
         worst = quote(value(ADMITTED_BYTES), safe="/:@,;=")[: ADMITTED_BYTES - len(path)]
         if len(pieces) > 1:
             filled = "".join(worst if n % 2 else piece for n, piece in enumerate(pieces[:2]))
-            yield f"{what} in the path", filled + "".join(
-                "x" if n % 2 else piece for n, piece in enumerate(pieces[2:])
+            yield (
+                f"{what} in the path",
+                filled + "".join("x" if n % 2 else piece for n, piece in enumerate(pieces[2:])),
             )
         for name in parameters:
             yield f"{what} as {name}", f"{path}?{name}={worst}".replace("{", "").replace("}", "")
@@ -253,7 +253,7 @@ def fields_of(document: Mapping[str, Any], method: str, path: str) -> tuple[str,
     """Return the names of the members of a route's JSON body, by the server's description."""
     operation = document["paths"].get(path, {}).get(method.lower(), {})
     content = operation.get("requestBody", {}).get("content", {}).get("application/json", {})
-    return tuple(sorted(_members(document, content.get("schema", {}))))
+    return tuple(sorted(set(_members(document, content.get("schema", {})))))
 
 
 def _members(document: Mapping[str, Any], schema: Mapping[str, Any]) -> Iterator[str]:
@@ -263,14 +263,3 @@ def _members(document: Mapping[str, Any], schema: Mapping[str, Any]) -> Iterator
     yield from schema.get("properties", {})
     for option in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ())):
         yield from _members(document, option)
-
-
-def json_head(port: int, method: str, path: str, body: bytes, cookie: str = "") -> bytes:
-    """Return a request with a body that says that it is JSON."""
-    lines = {"content-type": "application/json"} | ({"cookie": cookie} if cookie else {})
-    return request(method, path, port, lines, body)
-
-
-def dumped(value: object) -> bytes:
-    """Return a value as JSON."""
-    return json.dumps(value).encode()
