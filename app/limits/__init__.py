@@ -2,6 +2,7 @@
 
 `connections` limits open connections in total and per address, and evicts to admit newcomers.
 `listener` applies that at `accept`; `http_protocol` adds timeouts against slow clients.
+`bounded_connection` limits heads and chunks of requests while they are parsed.
 `open_files` raises the limit of file descriptors and divides them.
 `client_slots` limits concurrent streams and viewers; `memory_budget` bytes buffered for clients.
 `token_bucket` limits the rate of requests per client; `log_limit` that of log records.

@@ -12,10 +12,12 @@ import json
 import logging
 import socket
 import statistics
+import struct
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from typing import Any
 
 import psutil
@@ -191,6 +193,24 @@ def test_little_is_computed_for_the_departed(launch: Callable[..., Served]) -> N
     logging.getLogger(__name__).info("abandoned %.2f s, read %.2f s", abandoned_s, answered_s)
     assert abandoned_s < answered_s / 2
     assert server.end() == 0
+
+
+def test_event_streams_that_their_clients_leave_are_no_errors(
+    launch: Callable[..., Served], tmp_path: Path
+) -> None:
+    """Some leave at once, some after the snapshot, some by a reset: nothing of it is logged."""
+    with (tmp_path / "log").open("w") as log:
+        server = launch(log=log)
+        for number in range(30):
+            with requests(server, ["/api/v1/events"], 1) as (client,):
+                if number % 3:
+                    client.recv(100)
+                if number % 2:
+                    client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            # What is sent to those that have left.
+            assert server.client.put("/api/v1/stage", json={"speed": 1 + number % 2}).is_success
+        assert server.end() == 0
+    assert (tmp_path / "log").read_text() == ""
 
 
 def read_all(clients: Sequence[socket.socket]) -> None:
