@@ -8,5 +8,5 @@ common), `gait`, `replays`, `exports`, `stage`, `spectators`, `events`, `options
 (RFC 9457), `templates` (web pages), `compression`. `contract` completes the OpenAPI document.
 Middleware: `middleware` (its base, security headers), `stage_paths` (which stage), `auth` (roles),
 `request_headers`, `cookies`, `host_check`, `wellformed`, `problem_pages`, `unfinished`,
-`memory_limit`, `concurrency_limit`, `rate_limit`. `deps` injects services and stage into the routes.
+`memory_limit`, `concurrency_limit`, `rate_limit`. `deps` injects services and the stage.
 """
