@@ -47,6 +47,7 @@ from app.api.auth import TokenGuard
 from app.api.card_starts import CardStarts
 from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
 from app.api.deps import Services
+from app.api.events import close_streams, listeners_of
 from app.api.guide import guide_routes
 from app.api.host_check import HostGuard
 from app.api.memory_limit import HeldBodies
@@ -54,7 +55,7 @@ from app.api.middleware import SecurityHeaders
 from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import RateLimit, what_if_limiter
 from app.api.request_headers import DeclaredHeaders
-from app.api.room_access import JOINS, JOINS_PER_S, RoomAccess
+from app.api.room_access import RoomAccess
 from app.api.room_stages import RoomStages
 from app.api.stage_paths import StagePaths, stage_of
 from app.api.starts import start_routes
@@ -79,7 +80,6 @@ from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
-from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.stage.playback import Replays
 from app.stage.roles import Roles
@@ -198,10 +198,12 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         card_starts=CardStarts(usable_agents()),
         tournaments=contests,
         judge=Judge(contests, max(1, cores() // 2), _judges_niceness(settings)),
-        joins=RateLimiter(JOINS, JOINS_PER_S),
         visitors=of_visitors,
         expiry=Expiry(store, jobs, of_visitors, rooms if settings.demo else None, contests),
     )
+    rooms.is_here = lambda seat: any(listeners_of(app.state.services, seat))
+    rooms.on_seat_taken = lambda seat: close_streams(app.state.services, seat)
+    rooms.has_entered = contests.has_entered
     app.state.work_slots = WorkSlots()
     app.state.metrics = monitoring.registry_of(app.state.services)
     _add_routes(app, app.state.services.agents, is_demo=settings.demo)

@@ -27,11 +27,14 @@ class LessonView(Lesson):
     Attributes:
         id: of the lesson.
         is_built_in: whether it comes with the server.
+        is_taught: whether an open room teaches it and who asks is no operator, so that what is
+            revealed and the cards after the one that is shown are left out.
         html: the texts of each card as HTML that a page may show as it is.
     """
 
     id: str
     is_built_in: bool
+    is_taught: bool
     html: tuple[CardTexts, ...]
 
 
@@ -61,25 +64,25 @@ class NewLesson(Answer):
 
     Attributes:
         link: address of the page with it, for others if they can reach the server.
-        qr_code: of the link, an SVG image as a data URI.
+        qr_code: of the link, an SVG image as a data URI; null if others cannot reach the server.
     """
 
     id: str
     link: str
-    qr_code: str
+    qr_code: str | None
 
 
 class NewRoom(Answer):
     """A room that was opened.
 
     Attributes:
-        address: of its page, as this client reaches it.
-        qr_code: of the address, an SVG image as a data URI.
+        address: of its page, for others if they can reach the server.
+        qr_code: of the address, an SVG image as a data URI; null if phones cannot reach the server.
     """
 
     code: str
     address: str
-    qr_code: str
+    qr_code: str | None
 
 
 class RoomState(Answer):
@@ -165,8 +168,8 @@ class RoomView(RoomState):
         people: all participants, for a teacher alone.
         lesson: all of it, for a teacher alone.
         tournaments: of the room, oldest first.
-        address: of its page, as this client reaches it.
-        qr_code: of the address, an SVG image as a data URI.
+        address: of its page, for others if they can reach the server.
+        qr_code: of the address, an SVG image as a data URI; null if phones cannot reach the server.
     """
 
     role: Literal["teacher", "participant", "spectator"]
@@ -177,7 +180,7 @@ class RoomView(RoomState):
     lesson: LessonView | None
     tournaments: list[RoomTournament]
     address: str
-    qr_code: str
+    qr_code: str | None
 
 
 class ListedRoom(Answer):
@@ -191,9 +194,14 @@ class ListedRoom(Answer):
 
 
 class RoomList(Answer):
-    """The rooms that who asks may know: for a teacher all, for a participant their own."""
+    """The rooms that who asks may know: for a teacher all, for a participant their own.
+
+    Attributes:
+        is_reachable: whether phones can reach the server, so that a room can be opened for a class.
+    """
 
     items: list[ListedRoom]
+    is_reachable: bool
 
 
 class JoinedView(Answer):

@@ -63,7 +63,6 @@ class Services:
         room_stages: the stages of the rooms that are open.
         card_starts: makes what cards of lessons run.
         tournaments, judge: of entries on secret seeds and worlds.
-        joins: limits how often one address joins rooms.
         visitors, expiry: of a demo, and of what is left of one; the latter cleans it up.
         stream_lock: held while a race is encoded as a recorded stream for viser.
         exports: memory budget of exports that clients are still reading.
@@ -92,7 +91,6 @@ class Services:
     card_starts: CardStarts
     tournaments: Tournaments
     judge: Judge
-    joins: RateLimiter
     visitors: Visitors
     expiry: Expiry
     stream_lock: Lock = field(default_factory=Lock)

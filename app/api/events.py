@@ -1,6 +1,6 @@
 """Server-sent events: a snapshot, then the changes."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Query, Request
@@ -20,6 +20,7 @@ from app.api.deps import (
 from app.api.descriptions import VALID
 from app.limits.addresses import client_of
 from app.limits.client_slots import NoFreeSlot, Refusal
+from app.storage.database.room_rows import Seat
 from app.storage.errors import Busy
 from app.storage.json_text import json_text
 from app.viewer.shared_stage import SharedStage
@@ -74,6 +75,17 @@ async def client_slot(
         yield listener
     finally:
         services.listeners.leave(listener)
+
+
+def listeners_of(services: Services, seat: Seat) -> Iterator[EventListener]:
+    """Yield the clients that follow events as a participant of a room; from any thread."""
+    return (one for one in services.listeners.holders() if seat in one.seats)
+
+
+def close_streams(services: Services, seat: Seat) -> None:
+    """End the event streams of a participant, who has lost the seat; from any thread."""
+    for listener in listeners_of(services, seat):
+        listener.close()
 
 
 @router.get(

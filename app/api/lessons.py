@@ -1,6 +1,7 @@
 """Routes of lessons: documents of cards, as JSON and as YAML files."""
 
 import json
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Path, Query, Request
@@ -8,9 +9,9 @@ from starlette.responses import JSONResponse, Response
 
 from app.api.classroom_answers import LessonList, LessonView, NewLesson
 from app.api.contract import GIVEN_LESSON, TEXT, answers
-from app.api.deps import BodyDep, ServicesDep
+from app.api.deps import BodyDep, ReaderDep, Services, ServicesDep
 from app.api.formats import attachment, negotiated
-from app.api.spectators import page_address, qr_image
+from app.api.spectators import link_of
 from app.classroom.lesson import Lesson, adapter, html_of
 from app.classroom.lesson_file import (
     MAX_BYTES,
@@ -73,8 +74,8 @@ def add_lesson(
     services.card_starts.check(lesson, services.store)
     found = services.lessons.add(lesson)
     path = request.url_for("get_lesson", lesson_id=found.id).path
-    link = page_address(request, services.settings, f"/l/{found.id}")
-    added = {"id": found.id, "link": link, "qr_code": qr_image(link)}
+    link = link_of(request, services.settings, f"/l/{found.id}")
+    added = {"id": found.id, "link": link["address"], "qr_code": link["qr_code"]}
     return JSONResponse(added, 201, {"Location": path})
 
 
@@ -105,14 +106,30 @@ def get_lesson(
     services: ServicesDep,
     request: Request,
     lesson_id: LessonPath,
+    reader: ReaderDep,
     format: Annotated[Literal["json", "yaml"] | None, Query()] = None,  # noqa: A002
 ) -> Response:
-    """Return a lesson; as YAML it is the file that `POST /lessons` takes, on any server."""
-    found = services.lessons.get(lesson_id)
+    """Return a lesson; as YAML it is the file that `POST /lessons` takes, on any server.
+
+    While an open room teaches it, it is for operators alone whole: for others it has neither what
+    is revealed nor the cards after the one that the room shows.
+    """
+    found, is_taught = services.lessons.get(lesson_id), False
+    if reader is not None:
+        found, is_taught = _while_taught(services, found)
     if negotiated(request, format, ("json", "yaml"), _TYPES) == "yaml":
         text = write_file(found.lesson).encode()
         return attachment(text, MEDIA_TYPE, f"lesson-{found.id}.yaml")
-    return JSONResponse(lesson_view(found))
+    return JSONResponse(lesson_view(found, is_taught=is_taught))
+
+
+def _while_taught(services: Services, found: FoundLesson) -> tuple[FoundLesson, bool]:
+    """Return what all may read of a lesson, and whether that is not all of it."""
+    shown = services.rooms.taught(found.lesson)
+    if shown is None:
+        return found, False
+    cards = tuple(replace(card, reveal=None) for card in found.lesson.cards[: shown + 1])
+    return replace(found, lesson=replace(found.lesson, cards=cards)), True
 
 
 @router.delete("/{lesson_id}", status_code=204, summary="Delete a stored lesson")
@@ -121,11 +138,12 @@ def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> None:
     services.lessons.delete(lesson_id)
 
 
-def lesson_view(found: FoundLesson) -> dict[str, Any]:
-    """Return a lesson as `GET /lessons/{lesson_id}` responds."""
+def lesson_view(found: FoundLesson, *, is_taught: bool = False) -> dict[str, Any]:
+    """Return a lesson as `GET /lessons/{lesson_id}` responds; `is_taught` if parts are left out."""
     return {
         **adapter().dump_python(found.lesson, mode="json"),
         "id": found.id,
         "is_built_in": found.is_built_in,
+        "is_taught": is_taught,
         "html": [html_of(card) for card in found.lesson.cards],
     }

@@ -16,27 +16,21 @@ from starlette.types import Scope
 
 from app.api.cookies import ROOM_NAME, SessionCookie, cookies_of, name_of_server
 from app.api.problems import as_sentence, problem
-from app.api.rate_limit import is_question, too_many
+from app.api.rate_limit import is_question
 from app.api.stage_paths import path_of
-from app.classroom.names import ALPHABET, CODE_LENGTH, normalized
+from app.classroom.names import CODE, normalized
 from app.classroom.room import Deed
 from app.classroom.rooms import Rooms
-from app.limits.addresses import client_of
-from app.limits.token_bucket import RateLimiter
 from app.storage.database.room_rows import Seat
 from app.storage.errors import NotFound
 
-WRONG_CODES, WRONG_CODES_PER_S = 60, 1.0
-"""Of an address, which a class may share."""
-JOINS, JOINS_PER_S = 48, 0.2
-"""Of an address, likewise, to one room, which has places for more."""
 ROOMS = "/api/v1/rooms"
 PAGES = "/r"
 READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 _OF_ROOM = re.compile(r"/api/v1/rooms/(?P<code>[^/]+)(?P<rest>/.*)?")
 _PAGE_OF_ROOM = re.compile(r"/r/(?P<code>[^/]+)(?P<rest>/.*)?")
 _OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]+)(?:/.*)?")
-_CODE = re.compile(rf"[{ALPHABET}]{{{CODE_LENGTH}}}")
+_CODE = re.compile(CODE)
 _OF_TOURNAMENT = re.compile(r"(?:/api/v1/tournaments|/t)/(?P<id>[^/]+)(?P<rest>/.*)?")
 _ENTER = "/entries"
 _DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
@@ -78,7 +72,6 @@ class RoomAccess:
                 None if it has none, or there is no such tournament.
         """
         self._rooms, self._room_of_tournament = rooms, room_of_tournament
-        self._wrong_codes = RateLimiter(WRONG_CODES, WRONG_CODES_PER_S)
 
     def seats(self, scope: Scope, *, is_secure: bool) -> tuple[Seat, ...]:
         """Return which participants of open rooms a client is, by its cookies."""
@@ -98,14 +91,6 @@ class RoomAccess:
             seats: which participants the client is.
             is_public: whether spectators may watch.
         """
-        codes = _codes_in(scope).difference(dict(seats))
-        if codes:
-            wait_s = self._wrong_codes.wait_s(client_of(scope))
-            if wait_s > 0:
-                detail = "Too many wrong codes of rooms came from this address; try again later."
-                return too_many(detail, wait_s)
-            if not all(map(self._is_room, codes)):
-                self._wrong_codes.take(client_of(scope))
         if any(self._rooms.is_hidden(one, seats) for one in _runs_in(scope)):
             return problem(403, "This run is a participant's; it is shown after the reveal.")
         return self._refuse_participant(scope, seats, is_public=is_public) if seats else None
@@ -182,13 +167,6 @@ class RoomAccess:
         shared = path in ("/api/v1/stage", "/api/v1/events") or path.startswith("/viewer")
         return _READ_IN_ROOM.fullmatch(path) is not None and (is_rooms_stage or not shared)
 
-    def _is_room(self, code: str) -> bool:
-        try:
-            self._rooms.get(code)
-        except NotFound:
-            return False
-        return True
-
 
 def room_cookie(scope: Scope, code: str, *, is_secure: bool) -> SessionCookie:
     """Return the cookie of a participant of a room."""
@@ -202,14 +180,6 @@ def _room_keys(scope: Scope, is_secure: bool) -> Iterator[tuple[str, str]]:
         code = name.removeprefix(beginning)
         if code != name and _CODE.fullmatch(code) is not None:
             yield code, key
-
-
-def _codes_in(scope: Scope) -> set[str]:
-    """Return the codes of rooms that a request names, but for that of the stage it is below."""
-    # Below the path of a stage is what is there, with a room or without one.
-    page = None if scope["root_path"] else _PAGE_OF_ROOM.fullmatch(scope["path"])
-    found = page, _OF_ROOM.fullmatch(path_of(scope))
-    return {normalized(one["code"]) for one in found if one is not None}
 
 
 def _runs_in(scope: Scope) -> Iterator[str]:

@@ -9,10 +9,11 @@ from fastapi import Request
 from app.api.deps import Services
 from app.api.lessons import lesson_view
 from app.api.room_stages import path_of_room
-from app.api.spectators import page_address, qr_image
+from app.api.spectators import link_of
 from app.api.tournament_views import tournaments_of_room
 from app.classroom.lesson import Card, html_of
 from app.classroom.lessons import FoundLesson
+from app.classroom.names import in_groups
 from app.classroom.results import CardResults, Entry, RunResult
 from app.classroom.room import Room
 from app.storage.database.store import RunStore
@@ -20,11 +21,6 @@ from app.storage.errors import NotFound
 from hexapods.domain.records import to_json
 
 RoomRole = Literal["teacher", "participant", "spectator"]
-
-
-def room_address(request: Request, services: Services, code: str) -> str:
-    """Return the address of a room's page: for others if they can reach the server."""
-    return page_address(request, services.settings, path_of_room(code))
 
 
 def room_view(request: Request, services: Services, room: Room, seed: int | None) -> dict[str, Any]:
@@ -36,12 +32,14 @@ def room_view(request: Request, services: Services, room: Room, seed: int | None
         room: the room.
         seed: of the participant who asks; None for others.
     """
+    room = room.snapshot()
     is_teacher = request.state.role == "operator"
+    if seed not in room.participants:
+        seed = None  # removed meanwhile
     role: RoomRole = "spectator" if seed is None else "participant"
     shown: Card = room.shown
     if not is_teacher and room.card not in room.revealed:
         shown = replace(shown, reveal=None)
-    address = room_address(request, services, room.code)
     lesson = FoundLesson(room.lesson_id or "", room.lesson, is_built_in=False)
     return {
         **room.state,
@@ -52,8 +50,7 @@ def room_view(request: Request, services: Services, room: Room, seed: int | None
         "people": _people(room, services.store) if is_teacher else [],
         "lesson": lesson_view(lesson) if is_teacher else None,
         "tournaments": tournaments_of_room(services, room),
-        "address": address,
-        "qr_code": qr_image(address),
+        **link_of(request, services.settings, path_of_room(in_groups(room.code))),
     }
 
 

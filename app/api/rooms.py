@@ -1,6 +1,7 @@
 """Routes of rooms, in which a class goes through a lesson together."""
 
 from collections.abc import AsyncIterator
+from contextlib import suppress
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request
@@ -22,7 +23,7 @@ from app.api.cookies import SessionCookie, is_secure
 from app.api.deps import EventListener, IdempotencyKeyHeader, ReaderDep, Services, ServicesDep
 from app.api.events import EVENT_STREAM, client_slot, stream_events
 from app.api.formats import attachment, negotiated
-from app.api.rate_limit import asker_of, whole_seconds
+from app.api.rate_limit import asker_of
 from app.api.room_access import room_cookie
 from app.api.room_bodies import (
     CardBody,
@@ -35,16 +36,16 @@ from app.api.room_bodies import (
     RunBody,
     SpotlightBody,
 )
-from app.api.room_views import results_view, room_address, room_view
+from app.api.room_stages import path_of_room
+from app.api.room_views import results_view, room_view
 from app.api.runs import delete_each, located
-from app.api.spectators import qr_image
+from app.api.spectators import address_for_others, link_of
 from app.api.starts import spectators_asker
 from app.classroom.lesson import CardNumber, read_lesson
-from app.classroom.names import normalized
+from app.classroom.names import in_groups, normalized
 from app.classroom.results import MEDIA_TYPE, Reader, as_csv, results_of
 from app.classroom.room import Room
-from app.limits.addresses import client_of
-from app.storage.errors import Busy, Forbidden, NotFound
+from app.storage.errors import Conflict, Forbidden, NotFound
 from app.storage.json_text import finite
 from app.viewer.shared_stage import SharedStage
 from hexapods.domain.errors import InvalidInput
@@ -55,7 +56,6 @@ SeedPath = Annotated[int, Path(description="seed of the participant", ge=0)]
 MIN_JOIN_KEY = 16
 """Characters of the Idempotency-Key of a request to join, which is a secret."""
 _SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
-_JOINS_USED_UP = "Too many have joined from this address within a short time; try again later."
 
 router = APIRouter(prefix="/rooms", tags=["rooms"])
 
@@ -109,14 +109,14 @@ async def open_room(
     for ended in services.rooms.all():
         if not ended.is_open:
             await services.room_stages.close(ended.code)
-    address = room_address(request, services, room.code)
-    shown = {"code": room.code, "address": address, "qr_code": qr_image(address)}
+    link = link_of(request, services.settings, path_of_room(in_groups(room.code)))
+    shown = {"code": room.code, **link}
     location = request.url_for("get_room", code=room.code).path
     return JSONResponse(shown, 201, {"Location": location})
 
 
 @router.get("", summary="List the rooms that who asks may know", response_model=RoomList)
-def list_rooms(services: ServicesDep, reader: ReaderDep) -> Response:
+def list_rooms(services: ServicesDep, request: Request, reader: ReaderDep) -> Response:
     """Return all rooms to operators, and to participants those in which they are."""
     codes = None if reader is None else set(dict(reader))
     items = [
@@ -130,7 +130,8 @@ def list_rooms(services: ServicesDep, reader: ReaderDep) -> Response:
         for room in services.rooms.all()
         if codes is None or room.code in codes
     ]
-    return JSONResponse({"items": items})
+    is_reachable = address_for_others(request, services.settings) is not None
+    return JSONResponse({"items": items, "is_reachable": is_reachable})
 
 
 @router.get("/{code}", summary="Get a room", response_model=RoomView)
@@ -171,10 +172,6 @@ def join_room(
             "is the participant"
         )
     rooms, cookie = services.rooms, _cookie(services, request, code)
-    if not rooms.is_seated(code, cookie.value, idempotency_key):
-        rooms.get(code).check_open()
-        if (wait_s := services.joins.take(f"{normalized(code)} {client_of(request.scope)}")) > 0:
-            raise Busy(_JOINS_USED_UP, whole_seconds(wait_s))
     joined = rooms.join(code, cookie.value, idempotency_key)
     shown = {"name": joined.participant.name, "seed": joined.participant.seed}
     response = JSONResponse(shown, 201 if joined.is_new else 200)
@@ -208,6 +205,23 @@ def change_participant(
     """Change what others see of a participant."""
     room = services.rooms.change_participant(code, seed, **dict(body))
     return JSONResponse(room_view(request, services, room, None))
+
+
+@router.delete(
+    "/{code}/participants/{seed}", summary="Remove a participant", response_model=RoomView
+)
+def remove_participant(
+    services: ServicesDep, request: Request, code: CodePath, seed: SeedPath
+) -> Response:
+    """Remove a participant: seat, name and answers; runs that wait or go on are stopped.
+
+    Runs that have ended are in no results any more, and stay for operators. Who was removed may
+    join again, as somebody else.
+    """
+    for run_id in services.rooms.remove_participant(code, seed):
+        with suppress(Conflict, NotFound):  # it has ended, or is being stopped
+            services.jobs.stop(run_id)
+    return JSONResponse(room_view(request, services, services.rooms.get(code), None))
 
 
 @router.put("/{code}/card", summary="Show a card", response_model=RoomView)
@@ -359,12 +373,17 @@ def get_results(
 ) -> Response:
     """Return by card what was predicted, what came of the runs, and how both compare.
 
-    A participant gets their own until the reveal; others get counts alone. CSV has no names.
+    A participant gets their own until the reveal; others get counts alone. But for a teacher, cards
+    that are still to come have no results. CSV has no names.
     """
     room = services.rooms.get(code)
     if card is not None:
         room.check_card(card)
     cards = range(len(room.lesson.cards)) if card is None else [card]
+    if reader is not None:
+        cards = [number for number in cards if room.has_shown(number)]
+        if card is not None and not cards:
+            raise Forbidden(f"card {card} was not shown yet; the class is at card {room.card}")
     own = dict(reader or ()).get(room.code)
     who = Reader(own, is_teacher=reader is None, is_projector=projector)
     results = results_of(room, services.store, cards, who)

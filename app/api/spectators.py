@@ -54,6 +54,16 @@ def page_address(request: Request, settings: Settings, path: str) -> str:
     return address.rstrip("/").removesuffix(root) + path
 
 
+def link_of(request: Request, settings: Settings, path: str) -> dict[str, str | None]:
+    """Return `address` and `qr_code` of a page; no code if phones cannot come to the address.
+
+    Args: as of `page_address`.
+    """
+    address = page_address(request, settings, path)
+    is_reachable = address_for_others(request, settings) is not None
+    return {"address": address, "qr_code": qr_image(address) if is_reachable else None}
+
+
 @lru_cache(maxsize=64)
 def qr_image(address: str) -> str:
     """Return the QR code of an address as a data URI."""

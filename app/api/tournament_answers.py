@@ -98,8 +98,8 @@ class TournamentView(Answer):
         state: `open` for entries; `ending` until those that wait are judged; or `ended`.
         commitment: SHA-256 of the secret, from which the draws follow.
         entries_per_hour: entries of a participant within an hour.
-        address: of its page, as this client reaches it.
-        qr_code: of the address, an SVG image as a data URI.
+        address: of its page, for others if they can reach the server.
+        qr_code: of the address, an SVG image as a data URI; null if phones cannot reach the server.
         entries: in the order of their numbers.
         standings: of the entries that are judged on all draws, best first.
         own: what the reader may enter.
@@ -119,7 +119,7 @@ class TournamentView(Answer):
     created_at: datetime
     ended_at: datetime | None
     address: str
-    qr_code: str
+    qr_code: str | None
     entries: list[EntryView]
     standings: list[RankedEntry]
     own: OwnEntries

@@ -8,7 +8,7 @@ from fastapi import Request
 from app.api.deps import Services
 from app.api.problems import as_sentence
 from app.api.room_stages import RoomStages
-from app.api.spectators import page_address, qr_image
+from app.api.spectators import link_of
 from app.classroom.room import Room
 from app.classroom.rooms import Rooms
 from app.storage.database.room_rows import Seat
@@ -89,7 +89,6 @@ def tournament_view(
 ) -> dict[str, Any]:
     """Return a tournament as a reader may see it."""
     has_ended = tournament.state == "ended"
-    address = page_address(request, services.settings, f"/t/{tournament.id}")
     file = request.url_for("get_tournament_file", tournament_id=tournament.id).path
     return {
         **listed_tournament(tournament),
@@ -97,8 +96,7 @@ def tournament_view(
         "commitment": tournament.commitment,
         "entries_per_hour": tournament.entries_per_hour,
         "ended_at": None if tournament.ended_at is None else tournament.ended_at.isoformat(),
-        "address": address,
-        "qr_code": qr_image(address),
+        **link_of(request, services.settings, f"/t/{tournament.id}"),
         "entries": [
             entry_view(services.rooms, tournament, one, reader) for one in tournament.listed
         ],
@@ -147,6 +145,7 @@ def _name(
     if seed is None:
         return name or "Operator"
     room = room_of(rooms, tournament)
+    room = None if room is None else room.snapshot()
     if room is None or seed not in room.participants:
         return None
     return room.participants[seed].name if sees_all else room.name_for_others(seed)

@@ -4,7 +4,13 @@ from collections.abc import Callable, Collection, Sequence
 
 ALPHABET = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
 """Without O and 0, I and 1, which look alike on a projector."""
-CODE_LENGTH = 6
+CODE_LENGTH = 8
+"""So many that nobody guesses a code, however many are tried: a limit would be used up by one pupil
+for all of a class that shares an address."""
+OLD_CODE_LENGTH = 6
+"""Of rooms that an earlier version opened; they stay as they are until they end."""
+CODE = f"[{ALPHABET}]{{{CODE_LENGTH}}}|[{ALPHABET}]{{{OLD_CODE_LENGTH}}}"
+"""Regular expression of all codes."""
 Choose = Callable[[Sequence[str]], str]
 """Chooses one of several at random."""
 _FIRST = (
@@ -32,8 +38,14 @@ def new_code(choose: Choose, taken: Collection[str]) -> str:
 
 
 def normalized(code: str) -> str:
-    """Return a code as it was given out, however it was typed: in lower case, with spaces."""
-    return "".join(one for one in code.upper() if one not in " -")
+    """Return a code as it is stored, however it was typed: with a gap, a hyphen, small letters."""
+    return "".join(letter for letter in code.upper() if letter.isalnum())
+
+
+def in_groups(code: str) -> str:
+    """Return a code in two groups with a hyphen between them, as it is in addresses."""
+    half = len(code) // 2
+    return f"{code[:half]}-{code[half:]}"
 
 
 def new_name(choose: Choose, taken: Collection[str]) -> str:

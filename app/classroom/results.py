@@ -131,6 +131,7 @@ def results_of(
         cards: numbers of the cards.
         reader: the reader.
     """
+    room = room.snapshot()
     return [_card_results(room, store, card, reader) for card in cards]
 
 

@@ -1,13 +1,13 @@
 """A room: a class that goes through a lesson together, and what its participants may do."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from datetime import datetime
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from typing import Any, Literal
 
 from app.classroom.lesson import Card, Lesson
 from app.storage.database.room_rows import ParticipantRow, RoomRun
-from app.storage.errors import Conflict, NotFound
+from app.storage.errors import Conflict, Forbidden, NotFound
 
 Phase = Literal["open", "frozen", "ended"]
 Deed = Literal["predict", "run"]
@@ -30,10 +30,11 @@ class Room:
         needs_approval: whether others see of a participant only what was approved.
         spotlight: id of the run on the room's stage; None for none.
         created_at, ended_at: in UTC; it is open while `ended_at` is None.
-        participants: by seed, those who left too.
+        participants: by seed, those too who left and had answered or started something.
         predictions: by seed and card.
         runs: by id, oldest first.
-        taken_seeds: of participants whose rows are there, also if they are damaged.
+        next_seed: of the next participant; no seed is given twice.
+        used_at: when something was last done in it, as far as that is known, in UTC.
         finished: of runs that have finished, what came of them, by id; it is filled as it is asked.
     """
 
@@ -50,7 +51,8 @@ class Room:
     participants: dict[int, ParticipantRow] = field(default_factory=dict)
     predictions: dict[tuple[int, int], Any] = field(default_factory=dict)
     runs: dict[str, RoomRun] = field(default_factory=dict)
-    taken_seeds: set[int] = field(default_factory=set, compare=False, repr=False)
+    next_seed: int = field(default=0, compare=False)
+    used_at: datetime = field(default=datetime.min.replace(tzinfo=UTC), compare=False)
     finished: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
 
     @property
@@ -97,6 +99,15 @@ class Room:
             "needs_approval": self.needs_approval,
         }
 
+    def snapshot(self) -> "Room":
+        """Return a copy whose participants, predictions and runs do not change meanwhile."""
+        return replace(
+            self,
+            participants={**self.participants},
+            predictions={**self.predictions},
+            runs={**self.runs},
+        )
+
     def refusal(self, deed: Deed) -> str | None:
         """Return why the card that is shown forbids a deed; None if it allows it."""
         card = self.shown
@@ -138,6 +149,20 @@ class Room:
                 f"the lesson has no card {number}; its cards are 0 to {len(self.lesson.cards) - 1}"
             )
 
+    def check_seated(self, seed: int) -> None:
+        """Check that a participant has a seat: was not removed, and has not left.
+
+        Raises:
+            Forbidden: if not.
+        """
+        if seed not in self.participants or self.participants[seed].left_at is not None:
+            raise Forbidden(f"you are not in the room {self.code} any more; join it again")
+
+    def has_acted(self, seed: int) -> bool:
+        """Whether a participant has answered or started anything, on any card."""
+        answered = any(one == seed for one, _ in list(self.predictions))
+        return answered or any(run.seed == seed for run in list(self.runs.values()))
+
     def participant(self, seed: int) -> ParticipantRow:
         """Return the participant with a seed.
 
@@ -155,6 +180,10 @@ class Room:
             for one in list(self.runs.values())
             if one.is_main and (one.seed, one.card) == (seed, card)
         ]
+
+    def has_shown(self, card: int) -> bool:
+        """Whether a card is shown, is before the one that is, or is revealed."""
+        return card <= self.card or card in self.revealed
 
     def shows(self, seed: int, card: int) -> bool:
         """Whether others see what a participant answered and ran on a card."""

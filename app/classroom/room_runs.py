@@ -6,6 +6,7 @@ from datetime import datetime
 from typing import Any
 
 from app.classroom.room import Room, given_key
+from app.classroom.seats import reserve_seed
 from app.jobs.linked_start import LinkedStart
 from app.jobs.submissions import Start
 from app.storage.database.room_rows import RoomRun, Seat
@@ -39,14 +40,36 @@ class RoomRuns:
         """Load the runs of the participants of rooms, by code; those of other rooms stay hidden."""
         for run in self._rows.runs(lambda run: _sound(run, rooms)):
             self._runs[run.run_id] = run
-            if run.room in rooms and run.seed in rooms[run.room].participants:
-                rooms[run.room].runs[run.run_id] = run
+            if run.room not in rooms:
+                continue
+            room = rooms[run.room]
+            # Those of who was removed stay, and stay hidden: no newcomer has their seed.
+            reserve_seed(room, run.seed)
+            room.used_at = max(room.used_at, run.created_at)
+            if run.seed in room.participants:
+                room.runs[run.run_id] = run
         self._unread = self._rows.run_ids() - self._runs.keys()
 
     def forget(self, room: Room) -> None:
         """Leave the runs of a room to all: they are ordinary ones from then on."""
-        for run_id in room.runs:
-            self._runs.pop(run_id, None)
+        self._runs = {k: run for k, run in self._runs.items() if run.room != room.code}
+
+    def ids_of(self, room: Room) -> list[str]:
+        """Return the ids of all runs of a room, also of who was removed, the oldest first."""
+        runs = [run for run in list(self._runs.values()) if run.room == room.code]
+        return [run.run_id for run in runs if run.answer is None]
+
+    def remove(self, room: Room, seed: int) -> list[str]:
+        """Leave the runs of a participant out of the room, and return the ids of those that go on.
+
+        They stay hidden from all but operators, but for those that were shown before. Races are
+        before their trainings.
+        """
+        runs = [run for run in room.runs.values() if run.seed == seed]
+        for run in runs:
+            del room.runs[run.run_id]
+        found = [self._find(run) for run in reversed(runs)]
+        return [run.id for run in found if run is not None and run.state in NOT_ENDED]
 
     def owner_of(self, run_id: str) -> str | None:
         """Return the participant who waits for a run, as a text; None if there is none."""

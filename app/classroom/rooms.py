@@ -18,9 +18,11 @@ from app.classroom.room_runs import RoomRuns
 from app.classroom.seats import (
     Joined,
     Seats,
+    free_seat,
     key_of,
     new_key,
     new_participant,
+    reserve_seed,
     sound_participant,
 )
 from app.jobs.submissions import Start
@@ -64,7 +66,14 @@ class Rooms:
         """
         self._store, self._rows = store, store.rooms
         self._choose, self._now = choose, now
+        self._started_at = now()
         self.on_changed = on_changed
+        self.is_here: Callable[[Seat], bool] = lambda seat: False  # noqa: ARG005
+        """Whether a participant's page is open."""
+        self.has_entered: Callable[[Seat], bool] = lambda seat: False  # noqa: ARG005
+        """Whether a participant has entered a tournament."""
+        self.on_seat_taken: Callable[[Seat], object] = lambda seat: None  # noqa: ARG005
+        """Called for each participant who has lost their seat, or has left."""
         self._lock = threading.RLock()
         self._rooms: dict[str, Room] = {}
         self._seats, self._runs = Seats(), RoomRuns(store)
@@ -74,13 +83,19 @@ class Rooms:
         self._rooms = {room.code: room for room in self._rows.rooms(_room)}
         for participant in self._rows.participants(sound_participant):
             if participant.room in self._rooms:
-                self._seats.add(self._rooms[participant.room], participant)
+                room = self._rooms[participant.room]
+                self._seats.add(room, participant)
+                room.used_at = max(
+                    room.used_at, participant.joined_at, participant.left_at or room.used_at
+                )
         for code, seed in self._rows.seeds():
             if code in self._rooms:
-                self._rooms[code].taken_seeds.add(seed)
-        for one in self._rows.predictions(self._sound_prediction):
-            if one.room in self._rooms:
-                self._rooms[one.room].predictions[one.seed, one.card] = one.value
+                reserve_seed(self._rooms[code], seed)
+        for prediction in self._rows.predictions(self._sound_prediction):
+            if prediction.room in self._rooms:
+                room = self._rooms[prediction.room]
+                room.predictions[prediction.seed, prediction.card] = prediction.value
+                room.used_at = max(room.used_at, prediction.made_at)
         self._runs.load(self._rooms)
 
     def _sound_prediction(self, row: PredictionRow) -> PredictionRow:
@@ -155,16 +170,17 @@ class Rooms:
     def idle_rooms(self) -> list[Room]:
         """Return the open rooms in which nothing has happened for long."""
         with self._lock:
-            return [room for room in self.open_rooms() if self._now() - _last_deed(room) > IDLE]
+            since = self._now() - IDLE
+            # When a card was shown is not stored: after a restart a room may have been used before.
+            return [r for r in self.open_rooms() if max(r.used_at, self._started_at) < since]
 
     def last_used_before(self, time: datetime) -> list[str]:
         """Return the codes of the rooms in which nothing has happened since."""
-        return [room.code for room in self.all() if _last_deed(room) <= time]
+        return [room.code for room in self.all() if room.used_at <= time]
 
     def runs_in(self, code: str) -> list[str]:
         """Return the ids of a room's runs, the newest first: races before their trainings."""
-        runs = reversed(list(self.get(code).runs.values()))
-        return [one.run_id for one in runs if one.answer is None]
+        return self._runs.ids_of(self.get(code))[::-1]
 
     def forget(self, code: str) -> None:
         """End a room, and delete all that is known of it but its runs.
@@ -207,7 +223,7 @@ class Rooms:
             )
             room.revealed |= {number}
             self._runs.note_shown(room, runs)
-        self.on_changed(room)
+        self._changed(room)
         return room
 
     def spotlight(self, code: str, run_id: str | None) -> Room:
@@ -231,7 +247,7 @@ class Rooms:
             self._rows.change_room(room.code, {"spotlight": run_id}, [one.run_id for one in runs])
             room.spotlight = run_id
             self._runs.note_shown(room, runs)
-        self.on_changed(room)
+        self._changed(room)
         return room
 
     def change_participant(
@@ -254,8 +270,36 @@ class Rooms:
             self._rows.change_participant(room.code, seed, changes, [one.run_id for one in runs])
             room.participants[seed] = participant
             self._runs.note_shown(room, runs)
-        self.on_changed(room)
+        self._changed(room)
         return room
+
+    def remove_participant(self, code: str, seed: int) -> list[str]:
+        """Remove a participant: the seat, the name and all answers; runs stay, and stay hidden.
+
+        Returns:
+            the ids of the runs that go on, which are to be stopped: races before their trainings.
+
+        Raises:
+            NotFound: if there is no such room or participant.
+            Conflict: if the room has ended.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            room.participant(seed)
+            lit = room.runs.get(room.spotlight or "")
+            if lit is not None and lit.seed == seed:
+                self._rows.change_room(room.code, {"spotlight": None})
+                room.spotlight = None
+            going_on = self._remove(room, seed)
+        self._changed(room)
+        return going_on
+
+    def _remove(self, room: Room, seed: int) -> list[str]:
+        self._rows.delete_participant(room.code, seed)
+        self._seats.remove(room, seed)
+        self.on_seat_taken((room.code, seed))
+        return self._runs.remove(room, seed)
 
     def end(self, code: str) -> Room:
         """End a room: from then on nobody joins, answers or starts; its results stay.
@@ -269,7 +313,7 @@ class Rooms:
                 now = self._now()
                 self._rows.change_room(room.code, {"ended_at": now})
                 room.ended_at = now
-        self.on_changed(room)
+        self._changed(room)
         return room
 
     def ended(self, code: str) -> Room:
@@ -303,8 +347,13 @@ class Rooms:
             self._rows.change_room(room.code, changes)
             for name, value in changes.items():
                 setattr(room, name, value)
-        self.on_changed(room)
+        self._changed(room)
         return room
+
+    def _changed(self, room: Room) -> None:
+        """Note that something was done in a room, and tell of it."""
+        room.used_at = self._now()
+        self.on_changed(room)
 
     # ---- of participants
 
@@ -331,19 +380,20 @@ class Rooms:
             requested = None if request_key is None else key_of(room.code, request_key)
             if requested is None or self._seats.has(requested):
                 requested = new_key()
+            unused = free_seat(room, lambda seed: self._is_in_use(room, seed))
+            if unused is not None:
+                self._remove(room, unused)
             joined = new_participant(room, self._choose, self._now(), requested)
             self._rows.add_participant(joined.participant)
             self._seats.add(room, joined.participant)
-        self.on_changed(room)
+        self._changed(room)
         return joined
 
-    def is_seated(self, code: str, key: str, request_key: str | None) -> bool:
-        """Whether a request to join would find a participant again; arguments as of `join`.
+    def _is_in_use(self, room: Room, seed: int) -> bool:
+        return self._has_acted(room, seed) or self.is_here((room.code, seed))
 
-        Raises:
-            NotFound: if there is no such room.
-        """
-        return self._seated(self.get(code), key, request_key) is not None
+    def _has_acted(self, room: Room, seed: int) -> bool:
+        return room.has_acted(seed) or self.has_entered((room.code, seed))
 
     def _seated(self, room: Room, key: str, request_key: str | None) -> Joined | None:
         requested = "" if request_key is None else key_of(room.code, request_key)
@@ -354,12 +404,22 @@ class Rooms:
         return None
 
     def leave(self, code: str, seed: int) -> None:
-        """Leave a room; what was answered and run stays."""
+        """Leave a room; what was answered and run stays.
+
+        Raises:
+            NotFound: if there is no such room.
+            Forbidden: if the participant was removed, or has left.
+        """
         with self._lock:
             room, now = self.get(code), self._now()
-            self._rows.change_participant(room.code, seed, {"left_at": now})
-            room.participants[seed] = room.participant(seed)._replace(left_at=now)
-        self.on_changed(room)
+            room.check_seated(seed)
+            if self._has_acted(room, seed):
+                self._rows.change_participant(room.code, seed, {"left_at": now})
+                room.participants[seed] = room.participants[seed]._replace(left_at=now)
+                self.on_seat_taken((room.code, seed))
+            else:
+                self._remove(room, seed)
+        self._changed(room)
 
     def seat(self, code: str, key: str) -> ParticipantRow | None:
         """Return the participant of a room by the key of the cookie; None if it is none's."""
@@ -371,12 +431,13 @@ class Rooms:
 
         Raises:
             NotFound: if there is no such card.
-            Forbidden: if the card is not shown, or asks nothing.
+            Forbidden: if the card is not shown, or asks nothing, or the participant was removed.
             Conflict: if it was answered or revealed before, or the room has ended or is frozen.
             InvalidInput: if the value is no answer to the question.
         """
         with self._lock:
             room = self.get(code)
+            room.check_seated(seed)
             _check_shown(room, card)
             _check_allowed(room, "predict")
             room.check_going_on()
@@ -390,7 +451,7 @@ class Rooms:
                 raise Conflict(f"card {card} is revealed; it takes no more answers", "revealed")
             self._rows.add_prediction(PredictionRow(room.code, seed, card, answer, self._now()))
             room.predictions[seed, card] = answer
-        self.on_changed(room)
+        self._changed(room)
         return answer
 
     def check_run(self, code: str, card: int | None = None) -> Room:
@@ -432,14 +493,15 @@ class Rooms:
             card: number of the card that is meant; None for the one that is shown.
 
         Raises:
-            NotFound, Forbidden, Conflict: as `check_run`; also if a run of the participant has not
-                ended.
+            NotFound, Forbidden, Conflict: as `check_run`; also if the participant was removed, or a
+                run of theirs has not ended.
             Busy: if there were too many.
         """
         with self._lock:
             room = self.check_run(code, card)
+            room.check_seated(seed)
             run = self._runs.start(room, seed, given, make, queue)
-        self.on_changed(room)
+        self._changed(room)
         return run
 
     def ask(
@@ -472,14 +534,22 @@ class Rooms:
         with self._lock:
             # It was asked while the card was shown, so it is kept whatever is shown now.
             room = self.get(code)
+            room.check_seated(seed)
             known = self._runs.answer_of(room, seed, card, given)
             if known is not None:
                 return known
             self._runs.keep_answer(room, seed, card, given, answer=answer, now=self._now())
-        self.on_changed(room)
+        self._changed(room)
         return answer
 
     # ---- who sees what
+
+    def taught(self, lesson: Lesson) -> int | None:
+        """Return the number of the card up to which all may read a lesson that open rooms teach.
+
+        None if none teaches it, whatever its id there. What is revealed is for nobody meanwhile.
+        """
+        return min((one.card for one in self.open_rooms() if one.lesson == lesson), default=None)
 
     def owner_of(self, run_id: str) -> str | None:
         """Return who waits for a run, as a text; None if it is no participant of a room."""
@@ -521,9 +591,4 @@ def _room(row: RoomRow) -> Room:
     lesson = read_lesson(row.lesson)
     card = min(max(row.card, 0), len(lesson.cards) - 1)
     fields = {**row._asdict(), "lesson": lesson, "card": card, "revealed": frozenset(row.revealed)}
-    return Room(**fields)
-
-
-def _last_deed(room: Room) -> datetime:
-    times = [one.joined_at for one in room.participants.values()]
-    return max([room.created_at, *times, *(one.created_at for one in room.runs.values())])
+    return Room(**fields, used_at=row.ended_at or row.created_at)

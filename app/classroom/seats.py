@@ -2,6 +2,7 @@
 
 import hashlib
 import secrets
+from collections.abc import Callable
 from datetime import datetime
 from typing import NamedTuple
 
@@ -15,6 +16,8 @@ MAX_PARTICIPANTS = 64
 """In a room, without those who have left."""
 MAX_SEED = 1_000_000
 """Above the seed of any participant."""
+MAX_KEPT = 1000
+"""With those who have left after they had answered or started something."""
 _RETRY_S = 60
 
 
@@ -42,12 +45,18 @@ class Seats:
     def add(self, room: Room, row: ParticipantRow) -> None:
         """Give a participant a seat in the room."""
         room.participants[row.seed] = row
+        reserve_seed(room, row.seed)
         self._seats[row.key_sha256] = (row.room, row.seed)
 
     def forget(self, room: Room) -> None:
         """Forget the seats of a room that is deleted."""
         for one in room.participants.values():
             self._seats.pop(one.key_sha256, None)
+
+    def remove(self, room: Room, seed: int) -> None:
+        """Take the seat of a participant, of whom nothing is left in the room but runs."""
+        del self._seats[room.participants.pop(seed).key_sha256]
+        room.predictions = {k: v for k, v in room.predictions.items() if k[0] != seed}
 
     def has(self, key: str) -> bool:
         """Whether a participant has, or had, this key."""
@@ -60,6 +69,22 @@ class Seats:
             return None
         participant = room.participants[seat[1]]
         return participant if participant.left_at is None else None
+
+
+def free_seat(room: Room, is_in_use: Callable[[int], bool]) -> int | None:
+    """Return the seed of who gives the seat to somebody else; None if nobody does, or need not.
+
+    It is who joined first of those who have done nothing, and whose page is not open: one person
+    can take any number of seats, but not keep them. Who has just joined is the last.
+
+    Args:
+        room: the room.
+        is_in_use: whether a participant, by the seed, has done anything or has the page open.
+    """
+    if len(room.present) < MAX_PARTICIPANTS:
+        return None
+    seeds = [participant.seed for participant in room.present]
+    return next((seed for seed in seeds if not is_in_use(seed)), None)
 
 
 def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Joined:
@@ -76,9 +101,11 @@ def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Join
     """
     if len(room.present) >= MAX_PARTICIPANTS:
         raise Busy(f"{MAX_PARTICIPANTS} are in the room {room.code}, which is the most", _RETRY_S)
+    if len(room.participants) >= MAX_KEPT:
+        raise Busy(f"the room {room.code} has had {MAX_KEPT} participants, the most", _RETRY_S)
     row = ParticipantRow(
         room=room.code,
-        seed=_free_seed(room),
+        seed=room.next_seed,
         name=new_name(choose, {one.name for one in room.participants.values()}),
         key_sha256=_sha256(key),
         is_name_hidden=False,
@@ -89,9 +116,10 @@ def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Join
     return Joined(row, key, is_new=True)
 
 
-def _free_seed(room: Room) -> int:
-    taken = {*room.participants, *room.taken_seeds}
-    return max((one for one in taken if 0 <= one < MAX_SEED), default=-1) + 1
+def reserve_seed(room: Room, seed: int) -> None:
+    """Give the seed of a stored row to no newcomer; the row may be damaged."""
+    if 0 <= seed < MAX_SEED:
+        room.next_seed = max(room.next_seed, seed + 1)
 
 
 def sound_participant(row: ParticipantRow) -> ParticipantRow:

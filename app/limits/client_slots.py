@@ -44,6 +44,10 @@ class ClientSlots(Generic[T]):
     def __contains__(self, holder: T) -> bool:
         return holder in self._holders
 
+    def holders(self) -> list[T]:
+        """Return the clients that hold a slot, in order of arrival; from any thread."""
+        return list(self._holders)
+
     def take(self, holder: T, address: str, is_operator: bool) -> T | None:
         """Give a client a slot, evicting another if needed.
 

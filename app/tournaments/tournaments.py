@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
+from app.storage.database.room_rows import Seat
 from app.storage.database.store import RunStore
 from app.storage.database.tournament_rows import EntryRow, JudgementRow, TournamentRow
 from app.storage.errors import Busy, Conflict, NotFound
@@ -113,6 +114,12 @@ class Tournaments:
     def of_room(self, code: str) -> list[Tournament]:
         """Return the tournaments of a room, oldest first."""
         return [one for one in self.all() if one.room == code]
+
+    def has_entered(self, seat: Seat) -> bool:
+        """Whether a participant of a room has entered a tournament of it."""
+        room, seed = seat
+        entries = (entry for one in self.of_room(room) for entry in {**one.entries}.values())
+        return any(not entry.is_reference and entry.entrant.seed == seed for entry in entries)
 
     def left_behind(self, time: datetime, codes: Collection[str]) -> list[str]:
         """Return the ids of those opened by then in rooms other than these."""

@@ -2769,6 +2769,10 @@ export interface LessonView {
    */
   is_built_in: boolean;
   /**
+   * whether an open room teaches it and who asks is no operator, so that what is revealed and the cards after the one that is shown are left out.
+   */
+  is_taught: boolean;
+  /**
    * the texts of each card as HTML that a page may show as it is.
    */
   html: CardTexts[];
@@ -2850,9 +2854,9 @@ export interface NewLesson {
    */
   link: string;
   /**
-   * of the link, an SVG image as a data URI.
+   * of the link, an SVG image as a data URI; null if others cannot reach the server.
    */
-  qr_code: string;
+  qr_code: string | null;
 }
 /**
  * A room that was opened.
@@ -2860,13 +2864,13 @@ export interface NewLesson {
 export interface NewRoom {
   code: string;
   /**
-   * of its page, as this client reaches it.
+   * of its page, for others if they can reach the server.
    */
   address: string;
   /**
-   * of the address, an SVG image as a data URI.
+   * of the address, an SVG image as a data URI; null if phones cannot reach the server.
    */
-  qr_code: string;
+  qr_code: string | null;
 }
 /**
  * Options, defaults, limits and help texts of all forms.
@@ -3555,6 +3559,10 @@ export interface ResultsView {
  */
 export interface RoomList {
   items: ListedRoom[];
+  /**
+   * whether phones can reach the server, so that a room can be opened for a class.
+   */
+  is_reachable: boolean;
 }
 /**
  * A tournament of a room.
@@ -3628,13 +3636,13 @@ export interface RoomView {
    */
   tournaments: RoomTournament[];
   /**
-   * of its page, as this client reaches it.
+   * of its page, for others if they can reach the server.
    */
   address: string;
   /**
-   * of the address, an SVG image as a data URI.
+   * of the address, an SVG image as a data URI; null if phones cannot reach the server.
    */
-  qr_code: string;
+  qr_code: string | null;
 }
 /**
  * Page of runs of every kind.
@@ -4273,13 +4281,13 @@ export interface TournamentView {
   created_at: string;
   ended_at: string | null;
   /**
-   * of its page, as this client reaches it.
+   * of its page, for others if they can reach the server.
    */
   address: string;
   /**
-   * of the address, an SVG image as a data URI.
+   * of the address, an SVG image as a data URI; null if phones cannot reach the server.
    */
-  qr_code: string;
+  qr_code: string | null;
   /**
    * in the order of their numbers.
    */

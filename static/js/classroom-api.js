@@ -68,3 +68,6 @@ export const spotlightRun = (code, run_id) => call("PUT", `${pathOf(code)}/spotl
 /** @type {(code: string, seed: number, changes: PersonChanges) => Promise<Classroom>} */
 export const changeParticipant = (code, seed, changes) =>
   call("PATCH", `${pathOf(code)}/participants/${seed}`, changes);
+/** Take seat, name and answers of a participant, and stop the run that goes on. */
+/** @type {(code: string, seed: number) => Promise<Classroom>} */
+export const removeParticipant = (code, seed) => call("DELETE", `${pathOf(code)}/participants/${seed}`);

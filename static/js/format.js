@@ -150,5 +150,9 @@ export const sentence = (text) => text.replace(/^\p{Script=Latin}/u, (first) => 
 export const listed = (items) =>
   items.length < 2 ? items.join("") : `${items.slice(0, -1).join(", ")} and ${items.at(-1)}`;
 
+/** A room's code in two groups, as it is read and typed: "ABCD EFGH". @param {string} code */
+export const codeInGroups = (code) =>
+  `${code.slice(0, code.length / 2)}${NO_BREAK}${code.slice(code.length / 2)}`;
+
 /** An address as a person types it. @param {string} address */
 export const shortAddress = (address) => address.replace(/^https?:\/\//, "");

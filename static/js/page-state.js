@@ -293,10 +293,11 @@ export function asTexts({ settings = {}, ...form }) {
   return new URLSearchParams(pairs);
 }
 
-/** The room of the page `/r/CODE`, and whether the page is for the projector. */
+/** The room of the page `/r/CODE`; whether the page is for the projector, or of a pupil whoever looks. */
 export const ofRoom = () => ({
   code: decodeURIComponent(location.pathname.split("/").at(-1) ?? ""),
   isProjector: new URLSearchParams(location.search).has("projector"),
+  isPupils: new URLSearchParams(location.search).has("join"),
 });
 
 /** The id of the tournament of this page's address, and whether the page is for the projector. */

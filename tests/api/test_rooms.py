@@ -11,9 +11,8 @@ from pydantic import TypeAdapter
 from starlette.testclient import TestClient
 
 from app.api.classroom_answers import LessonList, LessonView, ResultsView, RoomList, RoomView
-from app.api.deps import Services
+from app.api.deps import EventListener, Services
 from app.api.event_answers import RoomEvent
-from app.api.room_access import JOINS, WRONG_CODES
 from app.classroom.seats import MAX_PARTICIPANTS
 from app.server import create_app
 from app.settings import Settings
@@ -109,7 +108,7 @@ def started(answer: httpx2.Response) -> dict[str, Any]:
 
 def test_a_class_predicts_runs_and_sees_what_came_of_it(school: Class) -> None:
     code = school.room()
-    assert len(code) == 6
+    assert len(code) == 8
     assert not set(code) & set("0O1I")
     pupils = [school.joined(code) for _ in range(4)]
     views = [pupil.get(f"/rooms/{code}") for pupil in pupils]
@@ -163,8 +162,13 @@ def test_who_joins_again_has_the_same_name_and_seed(school: Class) -> None:
     assert "HttpOnly" in cookie
     assert "SameSite=Strict" in cookie
     assert "Path=/" in cookie
-    again = pupil.call("POST", f"/rooms/{code.lower()[:3]}-{code[3:]}/participants")
-    assert (again.status_code, again.json()) == (200, first.json())
+    for typed in (
+        f"{code.lower()[:4]}-{code[4:]}",
+        f"{code[:4]} {code[4:]}",
+        f" {code[:3]}·{code[3:]}",
+    ):
+        again = pupil.call("POST", f"/rooms/{typed}/participants")
+        assert (again.status_code, again.json()) == (200, first.json())
     assert pupil.call("DELETE", f"/rooms/{code}/me").status_code == 204
     refused(pupil.call("POST", f"/rooms/{code}/runs"), 401)
     other = pupil.call("POST", f"/rooms/{code}/participants")
@@ -471,7 +475,7 @@ def test_a_room_has_a_page_and_an_end(school: Class) -> None:
     refused(pupil.call("POST", f"/rooms/{code}/participants"), 409, "has ended")
     refused(school.pupil().call("POST", f"/rooms/{code}/participants"), 409, "has ended")
     assert client.get(f"/r/{code}/").status_code == 410
-    refused(client.get("/r/ZZZZZZ/"), 404, "look again at the code")
+    refused(client.get("/r/ZZZZZZZZ/"), 404, "look again at the code")
     assert school.teacher.get(f"/rooms/{code}/results")["code"] == code
 
 
@@ -499,41 +503,115 @@ def test_a_room_that_has_ended_can_be_deleted(school: Class, runs: bool) -> None
     assert status == (404 if runs else 200)
 
 
-def test_codes_cannot_be_guessed(serve: Callable[..., Api]) -> None:
-    api = serve(token=TOKEN)
-    statuses = [api.call("GET", f"/rooms/WRONG{n % 9}").status_code for n in range(WRONG_CODES)]
-    assert statuses == [404] * WRONG_CODES
-    answer = asked_until_refused(api, "/r/AAAAAA/static/favicon.svg")
-    assert int(answer.headers["retry-after"]) >= 1
+def test_a_full_room_gives_the_seats_of_those_who_never_did_anything(school: Class) -> None:
+    code = school.room()
+    school.show(code, 1)
+    path, busy = f"/rooms/{code}/participants", school.joined(code)
+    busy.call("POST", f"/rooms/{code}/predictions", json={"card": 1, "value": 0.5})
+    idle = [school.joined(code) for _ in range(MAX_PARTICIPANTS)]
+    assert busy.get(f"/rooms/{code}")["participants"] == MAX_PARTICIPANTS
+    assert busy.get(f"/rooms/{code}")["me"]["seed"] == 0
+    # Who has joined first has lost the seat, and comes in again as somebody else.
+    assert idle[0].get(f"/rooms/{code}")["role"] == "spectator"
+    refused(idle[0].call("POST", f"/rooms/{code}/predictions", json={"card": 1, "value": 1}), 401)
+    again = idle[0].call("POST", path)
+    assert (again.status_code, again.json()["seed"]) == (201, MAX_PARTICIPANTS + 1)
+    for number, pupil in enumerate(idle[2:]):
+        body = {"card": 1, "value": number / 100}
+        answer = pupil.call("POST", f"/rooms/{code}/predictions", json=body)
+        assert answer.status_code == 201, answer.text
+    last = {"card": 1, "value": 1}
+    assert idle[0].call("POST", f"/rooms/{code}/predictions", json=last).status_code == 201
+    refused(school.pupil().call("POST", path), 429, "the most")
+    # Who is in already is not disturbed, however often the page is loaded anew.
+    for _ in range(20):
+        assert busy.call("POST", path).status_code == 200
 
 
-def test_codes_cannot_be_guessed_from_inside_a_room(serve: Callable[..., Api]) -> None:
-    api, teacher = serve(token=TOKEN), {"Authorization": f"Bearer {TOKEN}"}
-    code = api.call("POST", "/rooms", json={}, headers=teacher).json()["code"]
-    inside = f"/r/{code}/api/v1/rooms"
-    statuses = [api.client.get(f"{inside}/WRONG{n % 9}").status_code for n in range(WRONG_CODES)]
-    assert statuses == [404] * WRONG_CODES
-    asked_until_refused(api, f"{inside}/WRONG1")
+def test_a_teacher_removes_a_participant(school: Class) -> None:
+    code = school.room()
+    pupil, other = school.joined(code), school.joined(code)
+    school.show(code, 1)
+    path = f"/rooms/{code}"
+    body = {"card": 1, "value": 0.5}
+    assert pupil.call("POST", f"{path}/predictions", json=body).status_code == 201
+    ended = school.finished(started(pupil.call("POST", f"{path}/runs")))
+    school.show(code, 2)
+    name = pupil.get(path)["me"]["name"]
+    steps = {"card": 2, "settings": {}}
+    waiting = started(pupil.call("POST", f"{path}/runs", json=steps))
+    refused(pupil.call("DELETE", f"{path}/participants/1"), 403)
+    refused(school.pupil().call("DELETE", f"{path}/participants/0"), 401)
+    refused(school.teacher.call("DELETE", f"{path}/participants/7"), 404, "no participant")
+    answer = school.teacher.call("DELETE", f"{path}/participants/0")
+    assert answer.status_code == 200, answer.text
+    assert [one["seed"] for one in answer.json()["people"]] == [1]
+    assert school.teacher.get(f"/races/{waiting['id']}")["state"] in ("stopped", "finished")
+    results = school.teacher.call("GET", f"{path}/results")
+    assert name not in results.text
+    assert ended["id"] not in results.text
+    assert [one["predicted"] for one in results.json()["cards"]] == [0] * 6
+    # Of the removed, a stranger is left, who may join again.
+    assert pupil.get(path)["role"] == "spectator"
+    refused(pupil.call("POST", f"{path}/predictions", json=body), 401)
+    assert pupil.call("POST", f"{path}/participants").json()["seed"] == 2
+    for reader in (pupil, other):
+        refused(reader.call("GET", f"/trainings/{ended['id']}"), 403)
+    assert school.teacher.get(f"/trainings/{ended['id']}")["state"] == "finished"
+    school.teacher.call("POST", f"{path}/end")
+    refused(school.teacher.call("DELETE", f"{path}/participants/1"), 409, "has ended")
+    # With the room, its runs go too.
+    deleted = school.teacher.call("DELETE", path, params={"runs": True}).json()["deleted"]
+    assert {ended["id"], waiting["id"]} <= set(deleted)
 
 
-def asked_until_refused(api: Api, path: str) -> httpx2.Response:
-    """Ask with wrong codes until there were too many; while one asks, some are forgotten."""
-    answers = [api.client.get(path)]
-    while answers[-1].status_code == 404 and len(answers) < WRONG_CODES:
-        answers.append(api.client.get(path))
-    refused(answers[-1], 429, "wrong codes")
-    return answers[-1]
-
-
-def test_one_address_cannot_fill_a_room(school: Class) -> None:
+def test_the_events_of_who_was_removed_end(school: Class) -> None:
     code = school.room()
     pupil = school.joined(code)
-    answers = [school.pupil().call("POST", f"/rooms/{code}/participants") for _ in range(JOINS + 1)]
-    refused(answers[-1], 429, "Too many have joined")
-    assert pupil.get(f"/rooms/{code}")["participants"] < MAX_PARTICIPANTS
-    # Who is in already is not disturbed, however often the page is loaded anew.
-    for _ in range(100):
-        assert pupil.call("POST", f"/rooms/{code}/participants").status_code == 200
+    services: Services = school.teacher.client.app.state.services  # type: ignore[attr-defined]
+    ended: list[str] = []
+    listener = EventListener("spectator", [(code, 0)])
+    listener.close = lambda: ended.append("closed")
+    services.listeners.take(listener, "192.0.2.1", is_operator=False)
+    assert services.rooms.is_here((code, 0))
+    school.teacher.call("DELETE", f"/rooms/{code}/participants/0")
+    services.listeners.leave(listener)
+    assert ended == ["closed"]
+    assert pupil.get(f"/rooms/{code}")["role"] == "spectator"
+
+
+def test_cards_that_are_to_come_have_no_results(school: Class) -> None:
+    code = school.room()
+    pupil = school.joined(code)
+    school.show(code, 2)
+    cards = pupil.get(f"/rooms/{code}/results")["cards"]
+    assert [one["card"] for one in cards] == [0, 1, 2]
+    refused(pupil.call("GET", f"/rooms/{code}/results?card=4"), 403, "was not shown yet")
+    assert len(school.teacher.get(f"/rooms/{code}/results")["cards"]) == 6
+
+
+def test_a_code_for_phones_is_there_where_phones_can_come(serve: Callable[..., Api]) -> None:
+    teacher = {"Authorization": f"Bearer {TOKEN}"}
+    for settings, is_reachable in (
+        ({}, False),
+        ({"public_url": "https://hexapods.example"}, True),
+        ({"host": "192.0.2.7"}, True),
+    ):
+        api = serve(token=TOKEN, **settings)
+        assert api.call("GET", "/rooms", headers=teacher).json()["is_reachable"] is is_reachable
+        room = api.call("POST", "/rooms", json={}, headers=teacher).json()
+        code = room["code"]
+        view = api.call("GET", f"/rooms/{code}", headers=teacher).json()
+        assert room["address"].endswith(f"/r/{code[:4]}-{code[4:]}")
+        assert view["address"] == room["address"]
+        lesson = {"title": "x", "cards": [{"text": "x"}]}
+        stored = api.call("POST", "/lessons", json=lesson, headers=teacher).json()
+        for answer in (room, view, stored):
+            assert (answer["qr_code"] is not None) is is_reachable
+    # By this name somebody has come from elsewhere.
+    named = serve(token=TOKEN, allowed_hosts=("lab.example",))
+    elsewhere = {**teacher, "Host": "lab.example"}
+    assert named.call("GET", "/rooms", headers=elsewhere).json()["is_reachable"] is True
 
 
 @pytest.mark.parametrize(

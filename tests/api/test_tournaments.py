@@ -434,7 +434,7 @@ def test_its_page_and_its_address(school: Contest) -> None:
     client = school.pupil().client
     address = f"/t/{tournament['id']}"
     assert tournament["address"].endswith(address)
-    assert tournament["qr_code"].startswith("data:image/svg+xml")
+    assert tournament["qr_code"] is None, "phones cannot come to a loopback address"
     page = client.get(address, headers={"Accept": "text/html"})
     assert (page.status_code, page.headers["content-type"]) == (200, "text/html; charset=utf-8")
     assert client.get("/t/none", headers={"Accept": "text/html"}).status_code == 404

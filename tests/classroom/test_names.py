@@ -1,8 +1,19 @@
 """Codes and names: drawn from an injected generator, distinct, and readable from far."""
 
 import random
+import re
 
-from app.classroom.names import ALPHABET, CODE_LENGTH, new_code, new_name, normalized
+import pytest
+
+from app.classroom.names import (
+    ALPHABET,
+    CODE,
+    CODE_LENGTH,
+    in_groups,
+    new_code,
+    new_name,
+    normalized,
+)
 
 
 def test_codes_have_no_letters_that_look_alike() -> None:
@@ -18,12 +29,8 @@ def test_codes_have_no_letters_that_look_alike() -> None:
 
 
 def test_a_code_that_is_taken_is_not_given_again() -> None:
-    letters = iter("AAAAAABBBBBB")
-    assert new_code(lambda words: next(letters), {"AAAAAA"}) == "BBBBBB"
-
-
-def test_a_code_may_be_typed_in_any_way() -> None:
-    assert normalized("km4-t7 q") == "KM4T7Q"
+    letters = iter("AAAAAAAABBBBBBBB")
+    assert new_code(lambda words: next(letters), {"AAAAAAAA"}) == "BBBBBBBB"
 
 
 def test_names_are_distinct() -> None:
@@ -33,3 +40,20 @@ def test_names_are_distinct() -> None:
         names.add(new_name(choose, names))
     assert len(names) == 1000
     assert all(one.replace(" ", "").isalpha() for one in names)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["abcd2345", "ABCD 2345", "abcd-2345", " ABCD  2345 ", "ABCD\u20112345", "ABCD\u00a02345"],
+)
+def test_a_code_is_the_same_however_it_is_typed(typed: str) -> None:
+    assert normalized(typed) == "ABCD2345"
+    assert normalized(in_groups("ABCD2345")) == "ABCD2345"
+
+
+def test_codes_of_earlier_versions_are_codes() -> None:
+    assert in_groups("KM4T7Q") == "KM4-T7Q"
+    for code in ("KM4T7Q", "ABCD2345"):
+        assert re.fullmatch(CODE, code)
+    for other in ("ABCDE23", "ABCD234", "ABCD23456", "ABCD0123"):
+        assert not re.fullmatch(CODE, other)

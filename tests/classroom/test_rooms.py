@@ -7,10 +7,12 @@ from typing import Any
 
 import pytest
 from sqlalchemy import text
+from starlette.datastructures import Headers
 
+from app.api.room_access import RoomAccess, room_cookie
 from app.classroom.lesson import read_lesson
 from app.classroom.rooms import IDLE, MAX_OPEN, Rooms
-from app.storage.database.room_rows import RoomRun
+from app.storage.database.room_rows import RoomRun, Seat
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, Forbidden, NotFound
 from tests.postgresql import PostgresServer
@@ -185,3 +187,93 @@ def test_an_idle_room_makes_place_for_another(store: RunStore) -> None:
     rooms.join(codes[0])
     now += timedelta(minutes=2)
     assert [room.code for room in rooms.idle_rooms()] == codes[1:]
+
+
+def test_answers_and_cards_keep_a_room_from_being_idle(store: RunStore) -> None:
+    now = datetime(2026, 11, 25, tzinfo=UTC)
+    rooms = Rooms(store, now=lambda: now)
+    codes = [rooms.create(LESSON).code for _ in range(6)]
+    for code in codes[:2]:
+        rooms.join(code)
+    now += IDLE - timedelta(minutes=1)
+    rooms.predict(codes[0], 0, 0, 0.5)
+    rooms.show_card(codes[2], 1)
+    rooms.freeze(codes[3], True)
+    rooms.leave(codes[1], 0)
+    now += timedelta(minutes=2)
+    assert [room.code for room in rooms.idle_rooms()] == codes[4:]
+    assert set(rooms.last_used_before(now - IDLE)) == set(codes[4:])
+    # What was shown is not stored with its time, so that a restart counts as use.
+    again = Rooms(store, now=lambda: now)
+    assert again.idle_rooms() == []
+    assert codes[0] not in again.last_used_before(now - IDLE)
+    now += IDLE + timedelta(minutes=1)
+    assert len(again.idle_rooms()) == 6
+
+
+def test_an_open_room_of_an_earlier_version_goes_on_until_it_ends(store: RunStore) -> None:
+    """Its code is shorter; the cookies of its participants hold, too."""
+    rooms = Rooms(store)
+    code = rooms.create(LESSON).code
+    old = "KM4T7Q"
+    for table in ("rooms", "participants"):
+        column = "code" if table == "rooms" else "room"
+        change = text(f"UPDATE {table} SET {column} = :old WHERE {column} = :code")
+        store.database.write(lambda c, change=change: c.execute(change, {"old": old, "code": code}))
+    rooms = Rooms(store)
+    joined = rooms.join("km4-t7q")
+    rooms.predict(old, 0, 0, 0.5)
+    again = Rooms(store)
+    assert again.seat(old, joined.key) is not None
+    assert again.get("KM4 T7Q").predictions == {(0, 0): 0.5}
+    host = {"host": "127.0.0.1:8000"}
+    name = room_cookie(Headers(host), old, is_secure=False).name
+    headers = Headers({**host, "cookie": f"{name}={joined.key}"})
+    access = RoomAccess(again, lambda tournament: None)
+    assert access.seats(headers, is_secure=False) == ((old, 0),)
+    again.end(old)
+    with pytest.raises(Conflict, match="has ended"):
+        again.join(old)
+
+
+def test_nothing_is_left_of_a_removed_participant_but_hidden_runs(store: RunStore) -> None:
+    rooms = Rooms(store)
+    code = rooms.create(LESSON).code
+    one, other = rooms.join(code), rooms.join(code)
+    rooms.predict(code, 0, 0, 0.25)
+    rooms.predict(code, 1, 0, 0.5)
+    linked = RoomRun("0run1of2other", code, 1, 0, {}, True, False, datetime.now(UTC))
+    store.create(training(linked.run_id))
+    store.rooms.add_runs([linked])
+    rooms = Rooms(store)
+    taken: list[Seat] = []
+    rooms.on_seat_taken = taken.append
+    assert rooms.remove_participant(code, 1) == [linked.run_id]
+    assert taken == [(code, 1)]
+    for after in (rooms, Rooms(store)):
+        room = after.get(code)
+        assert list(room.participants) == [0]
+        assert (room.predictions, room.runs, room.next_seed) == ({(0, 0): 0.25}, {}, 2)
+        assert (after.seat(code, one.key), after.seat(code, other.key)) == (
+            room.participants[0],
+            None,
+        )
+        assert after.is_hidden(linked.run_id, [(code, 0)])
+        assert after.runs_in(code) == [linked.run_id]
+        with pytest.raises(Forbidden, match="join it again"):
+            after.predict(code, 1, 0, 1.0)
+    assert rooms.join(code, other.key).participant.seed == 2
+    with pytest.raises(NotFound):
+        rooms.remove_participant(code, 1)
+
+
+def test_who_joins_and_leaves_all_day_uses_up_nothing(store: RunStore) -> None:
+    """Neither names, of which there are 2500, nor rows of the database."""
+    rooms = Rooms(store)
+    code = rooms.create(LESSON).code
+    for _ in range(5):
+        seed = rooms.join(code).participant.seed
+        rooms.leave(code, seed)
+    assert store.rooms.participants() == []
+    assert rooms.get(code).participants == {}
+    assert seed == 4

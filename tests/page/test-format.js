@@ -60,3 +60,9 @@ test("lists are joined as in a sentence", () => {
   assert.equal(format.sentence("feet measured"), "Feet measured");
   assert.equal(format.sentence("α 0.5"), "α 0.5", "a capital alpha is another symbol");
 });
+
+test("a room's code is in two groups", () => {
+  assert.equal(format.codeInGroups("ABCDEFGH"), "ABCD\u00a0EFGH");
+  // Of a room that an earlier version opened.
+  assert.equal(format.codeInGroups("KM4T7Q"), "KM4\u00a0T7Q");
+});

@@ -4,20 +4,26 @@ counted, and the Origin matrix of promise 19 has the same host on another port.
 Promised: 2,000 wrong guesses of each kind; here 200, in full by `make soak`. They are sent over raw
 sockets, each kind from an address of its own. An operator's browser stays signed in meanwhile,
 across a restart too, and until the token changes.
+
+Codes of rooms are not counted: they are too long to guess, and a class shares its address.
 """
 
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 from starlette.testclient import TestClient
 
+from app.classroom.names import ALPHABET, CODE_LENGTH
+from app.classroom.rooms import MAX_OPEN
+from app.classroom.seats import MAX_PARTICIPANTS
 from app.server import create_app
 from app.settings import Settings
 from tests.api.calls import ADDRESS
 from tests.browser.serving import Serving, serving
 from tests.promises.length import at_length
-from tests.promises.raw import send, status_of
+from tests.promises.raw import Route, every_route, request_lines, send, status_of
 from tests.storage.stores import opened
 
 TOKEN, OTHER = "a-token-for-tests", "another-token-for-tests"
@@ -25,6 +31,8 @@ GUESSES = at_length(200, 2000)
 ALLOWED = 30
 """The token bucket's 20 guesses, and its refill of one per 5 s on a slow machine."""
 LOCAL = "127.0.0.1"
+GUESSES_PER_S = 1600
+"""Wrong codes of rooms that a client was seen to try."""
 Guess = Callable[[int, int], tuple[str, ...]]
 
 KINDS: dict[str, Guess] = {
@@ -88,6 +96,58 @@ def test_wrong_guesses_of_every_credential_are_rate_limited(kind: str, server: S
         assert may_change(server, f"Authorization: Bearer {TOKEN}", source=source)
     sign_in(server, source)
     assert not may_change(server, source=source)
+
+
+def test_guessing_the_codes_of_rooms_costs_a_neighbour_nothing(server: Serving) -> None:
+    """Codes are too long to guess, so no limit is needed that others of the address could use up.
+
+    With one, right codes could be told from wrong ones by what is refused once it is used up.
+    """
+    a_day = GUESSES_PER_S * 86_400
+    assert MAX_OPEN * a_day / len(ALPHABET) ** CODE_LENGTH < 0.005
+    with server.api(TOKEN) as teacher:
+        code = teacher.post("rooms", json={}).raise_for_status().json()["code"]
+    of_rooms = [one for one in every_route() if "{code}" in one.path and one.method != "WS"]
+    assert len(of_rooms) > 15
+
+    def status(route: Route, code: str) -> int:
+        """Return the status of a route of rooms that a stranger asks with a code."""
+        path = route.path.replace("{code}", code).replace("{seed}", "0")
+        lines = request_lines(Route(route.method, path), f"127.0.0.1:{server.port}")
+        return status_of(send(server.port, *lines, "X-Requested-With: tests"))
+
+    def answers(code: str) -> list[int]:
+        return [status(route, code) for route in of_rooms]
+
+    wrong_before, right_before = answers("WRNGCQDE"), answers(code)
+    for number in range(GUESSES):
+        guess = f"{number:08d}".translate(str.maketrans("01", "AB"))
+        route = of_rooms[number % len(of_rooms)]
+        assert status(route, guess) != 429, route
+    assert answers("WRNGCQDE") == wrong_before
+    assert answers(code) == right_before
+    assert 429 not in right_before
+
+
+def test_joins_of_one_person_cost_a_neighbour_nothing(server: Serving) -> None:
+    with server.api(TOKEN) as teacher:
+        code = teacher.post("rooms", json={}).raise_for_status().json()["code"]
+    path = f"rooms/{code}/participants"
+    with server.api() as pupil:
+        assert pupil.post(path, json={}).status_code == 201
+        # Whose page is open has a seat, however many are needed.
+        with pupil.stream("GET", f"{server.address}api/v1/rooms/{code}/events") as events:
+            lines = events.iter_lines()
+            assert "snapshot" in next(lines)
+            for _ in range(2 * MAX_PARTICIPANTS):
+                with server.api() as flood:
+                    assert flood.post(path, json={}).status_code == 201
+            with ExitStack() as stack:
+                neighbours = [stack.enter_context(server.api()) for _ in range(28)]
+                assert [one.post(path, json={}).status_code for one in neighbours] == [201] * 28
+                seats = {one.get(f"rooms/{code}").json()["me"]["seed"] for one in neighbours}
+            assert len(seats) == 28
+            assert pupil.get(f"rooms/{code}").json()["me"]["seed"] == 0
 
 
 @pytest.mark.parametrize("kind", ["bearer", "link", "cookie"])

@@ -2,7 +2,8 @@
 
 The matrix is generated: routes from the app, cards from the built-in lessons. A participant changes
 nothing but by the routes of their own room that the card allows, and by entering its tournaments,
-reads no lesson, and sees nothing of another participant's run before the reveal.
+reads no lesson, and sees nothing of another participant's run before the reveal. What a lesson
+reveals, and its later cards, nobody reads while a room teaches it, with a cookie or without one.
 """
 
 import json
@@ -193,6 +194,64 @@ def test_a_participant_reads_no_lesson_and_no_run_of_others(desks: dict[str, Des
         for path in ("/api/v1/events", f"/r/{desk.code}/api/v1/events", of_room):
             assert desk.other_run not in desk.snapshot(path, desk.cookie)
             assert desk.other_run in desk.snapshot(path, OPERATOR)
+
+
+SECRET = "what-nobody-may-know-yet"
+TAUGHT: dict[str, Any] = {
+    "title": "A lesson that is taught",
+    "cards": [
+        {"text": "First", "reveal": {"text": f"{SECRET}-0"}},
+        {
+            "text": "Second",
+            "ask": {"kind": "choice", "text": "Which?", "choices": ["a", "b"]},
+            "reveal": {"text": f"{SECRET}-1", "answer": "b"},
+        },
+        {"title": f"{SECRET}-2", "text": "Third", "ask": {"kind": "number", "text": f"{SECRET}-2"}},
+    ],
+}
+
+
+def test_nobody_reads_reveals_and_later_cards_of_a_lesson_that_is_taught(server: Serving) -> None:
+    """By no route, without a cookie or with that of a room: operators alone, until it ends."""
+    desk = room_of(server, "one-run-proves-nothing")
+    lesson_id = desk.teach("POST", LESSONS, TAUGHT)["id"]
+    # One room teaches the stored lesson, another one the same document.
+    codes = [
+        desk.teach("POST", "/api/v1/rooms", {"lesson": one})["code"] for one in (lesson_id, TAUGHT)
+    ]
+    for code in codes:
+        desk.teach("PUT", f"/api/v1/rooms/{code}/card", {"card": 1})
+    taught = desk._replace(code=codes[0])
+    readers = {"stranger": (), "of another room": (desk.cookie,), "of the room": (taught.join(),)}
+    of_lesson = [f"/?lesson={lesson_id}", f"/api/v1/lessons/{lesson_id}?format=yaml"]
+    of_lesson += [f"/api/v1/rooms/{codes[0]}/results?card={n}" for n in range(3)]
+    for route in every_route():
+        if route.method == "GET":
+            of_lesson.append(
+                taught.own_path(
+                    route.path.replace("{lesson_id}", lesson_id).replace("{run_id}", "x")
+                )
+            )
+    assert any(lesson_id in path for path in of_lesson)
+
+    def leaks(*headers: str) -> list[str]:
+        prefixes = "", f"/r/{codes[0]}"
+        addresses = [f"{prefix}{path}" for path in of_lesson for prefix in prefixes]
+        return [one for one in addresses if SECRET.encode() in desk.call("GET", one, *headers)]
+
+    for who, headers in readers.items():
+        assert leaks(*headers) == [], who
+    address = f"{LESSONS}/{lesson_id}"
+    assert SECRET.encode() in desk.call("GET", address, OPERATOR)
+    if desk.status("GET", address) == 200:
+        shown = json.loads(desk.call("GET", address).partition(b"\r\n\r\n")[2])
+        assert [one["text"] for one in shown["cards"]] == ["First", "Second"]
+        assert (shown["is_taught"], len(shown["html"])) == (True, 2)
+        # While one room of two goes on.
+        desk.teach("POST", f"/api/v1/rooms/{codes[0]}/end", None)
+        assert SECRET.encode() not in desk.call("GET", address)
+        desk.teach("POST", f"/api/v1/rooms/{codes[1]}/end", None)
+        assert SECRET.encode() in desk.call("GET", address)
 
 
 def test_what_belongs_to_the_room_can_be_read(desks: dict[str, Desk]) -> None:

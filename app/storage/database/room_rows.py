@@ -201,6 +201,16 @@ class RoomRows:
 
         self._database.write(work)
 
+    def delete_participant(self, room: str, seed: int) -> None:
+        """Delete a participant and all answers; the links of runs stay, which keep them hidden."""
+
+        def work(connection: Connection) -> None:
+            for table in (PREDICTIONS, PARTICIPANTS):
+                is_this = and_(table.c.room == room, table.c.seed == seed)
+                connection.execute(delete(table).where(is_this))
+
+        self._database.write(work)
+
     def delete_room(self, code: str) -> None:
         """Delete a room, with its participants, predictions and links to runs."""
         statement = delete(ROOMS).where(ROOMS.c.code == code)

@@ -33,6 +33,7 @@ export function LessonReader() {
           <button class="secondary" onClick=${() => setRevealed(true)}>Reveal</button>
         `}
       </div>
+      <${Taught} />
       <p class="fine dim">
         Outside of a room the lesson presets the page and hides parts of it as a courtesy: nothing is locked, and your
         answer stays on this page.
@@ -40,3 +41,11 @@ export function LessonReader() {
     <//>
   `;
 }
+
+/** Told while parts of the lesson are left out. */
+const Taught = () => linked.value?.is_taught && html`
+  <p class="dim" role="status">
+    A class is taught this lesson at present: what it reveals, and the cards that are still to come, are here once the
+    room has ended.
+  </p>
+`;

@@ -12,6 +12,8 @@ import { begin, discard, documentOf, draft, toSend } from "./draft.js";
 export const lessons = signal(null);
 /** The rooms, those that have ended too, oldest first. @type {Signal<ListedRoom[]>} */
 export const rooms = signal([]);
+/** Whether phones can come to the server; true until it has answered. */
+export const isReachable = signal(true);
 /** Why the last request failed; empty while none has. */
 export const problem = signal("");
 /** Whether a request is under way. */
@@ -46,6 +48,7 @@ export const refresh = async () => {
     lessons.value = (await api.listLessons()).items;
     const all = await call("GET", "rooms");
     rooms.value = all.items;
+    isReachable.value = all.is_reachable;
   } catch (error) {
     problem.value = /** @type {RequestError} */ (error).message;
   }

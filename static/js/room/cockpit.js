@@ -4,7 +4,8 @@ import { DotStrip } from "../components/dot-strip.js";
 import { Dialog, html, Icon, Loaded, withStyle } from "../components/elements.js";
 import { Prose } from "../components/prose.js";
 import { resultsFile } from "../classroom-api.js";
-import { count, metres, shortAddress } from "../format.js";
+import { PupilsWindow, Sharing } from "../components/lessons/sharing.js";
+import { codeInGroups, count, metres, shortAddress } from "../format.js";
 import { copy, isPhone, nextTheme, theme, toastMessage } from "../page.js";
 import { options } from "../store.js";
 import { stateInWords, tournamentPage } from "../tournament/states.js";
@@ -49,7 +50,8 @@ const STATES = { open: "You teach", frozen: "All stand still", ended: "The room 
 const Header = ({ known }) => html`
   <header class="room-header cockpit-header">
     <button class="code-button" onClick=${() => (codeIsOpen.value = true)} title="Show it large">
-      <b class="code">${known.code}</b><img src=${known.qr_code} alt="" /><span class="sr-only">Code in large</span>
+      <b class="code">${codeInGroups(known.code)}</b>${known.qr_code && html`<img src=${known.qr_code} alt="" />`}
+      <span class="sr-only">Code in large</span>
     </button>
     <p><b>${known.title}</b><span class="dim">${STATES[known.state]}</span></p>
     <button class="quiet square" onClick=${nextTheme} aria-label=${`Theme: ${theme.value}`}
@@ -60,11 +62,17 @@ const Header = ({ known }) => html`
 /** The code in large, to be held up. @param {{ known: Classroom }} props */
 const Code = ({ known }) => html`
   <${Dialog} isOpen=${codeIsOpen} id="code-dialog" labelledBy="code-title" style="code-dialog">
-    <h2 id="code-title">Join at</h2>
-    <p class="join-address">${shortAddress(known.address)}</p>
-    <img class="large-qr" src=${known.qr_code} alt=${`QR code of ${known.address}`} />
-    <p class="code large-code">${known.code}</p>
-    <button class="secondary" onClick=${() => copy(known.address, "Link copied.")}>Copy the link</button>
+    ${known.qr_code ? html`
+      <h2 id="code-title">Join at</h2>
+      <p class="join-address">${shortAddress(known.address)}</p>
+      <img class="large-qr" src=${known.qr_code} alt=${`QR code of ${shortAddress(known.address)}`} />
+      <p class="code large-code">${codeInGroups(known.code)}</p>
+      <button class="secondary" onClick=${() => copy(known.address, "Link copied.")}>Copy the link</button>
+    ` : html`
+      <h2 id="code-title">On this computer alone</h2>
+      <${Sharing} />
+      <${PupilsWindow} address=${known.address} />
+    `}
     <button class="quiet" onClick=${() => (codeIsOpen.value = false)}>Close</button>
   <//>
 `;

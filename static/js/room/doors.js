@@ -2,7 +2,8 @@
 import { useState } from "preact/hooks";
 import { html } from "../components/elements.js";
 import { isAway } from "../store.js";
-import { busy, code, failures, join, refusal, room } from "./room.js";
+import { codeInGroups } from "../format.js";
+import { busy, code as typedCode, failures, isRemoved, join, refusal, room } from "./room.js";
 
 /** Why something failed, beside its button. @param {{ at: string }} props */
 export const Failure = ({ at }) => html`
@@ -16,14 +17,14 @@ export const Waiting = () => html`
 /** Where there is no room of this code: why, and a field for another one. */
 export function Closed() {
   const [typed, setTyped] = useState("");
-  const other = typed.replace(/[\s-]/g, "").toUpperCase();
+  const other = typed.replace(/[^\p{L}\p{N}]/gu, "").toUpperCase();
   return html`
     <main class="door">
       <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
-      <h1>No room ${code.length > 12 ? "of this code" : code}</h1>
+      <h1>No room ${typedCode.length > 16 ? "of this code" : typedCode}</h1>
       <p role="alert">${refusal}</p>
       <label for="other-code">Code on the projector</label>
-      <input id="other-code" class="code-field" type="text" maxlength="12" autocomplete="off"
+      <input id="other-code" class="code-field" type="text" maxlength="16" autocomplete="off"
         autocapitalize="characters" spellcheck=${false} value=${typed}
         onInput=${(/** @type {any} */ { target }) => setTyped(target.value)} />
       <a class="primary as-button" href=${other || undefined} aria-disabled=${other ? undefined : "true"}>
@@ -35,7 +36,7 @@ export function Closed() {
 
 /** A stranger sees the lesson's title, and joins with one press. */
 export function Door() {
-  const { title, state, participants } = /** @type {any} */ (room.value);
+  const { code, title, state, participants } = /** @type {any} */ (room.value);
   if (state === "ended") {
     return html`
       <main class="door">
@@ -48,7 +49,13 @@ export function Door() {
     <main class="door">
       <p class="brand"><img src="../static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</p>
       <h1>${title}</h1>
-      <p class="dim">Room <b class="code">${room.value?.code}</b>${participants > 0 && ` · ${participants} in it`}</p>
+      ${isRemoved.value && html`
+        <p class="strip-note warn" role="alert">
+          You are not in this room any more: your teacher has taken you out, or the seat was needed and you had done
+          nothing yet. You can join again, with another name and another robot.
+        </p>
+      `}
+      <p class="dim">Room <b class="code">${codeInGroups(code)}</b>${participants > 0 && ` · ${participants} in it`}</p>
       <button class="primary" disabled=${busy.value.join} onClick=${join}>Join</button>
       <${Failure} at="join" />
       <p class="dim">You get a name from a list and a robot of your own. No account is needed.</p>

@@ -1,20 +1,28 @@
 // Who is in the room and how far, for the teacher; and what others see of each.
-import { html, Icon } from "../components/elements.js";
+import { signal } from "@preact/signals";
+import { useRef } from "preact/hooks";
+import { Dialog, html, Icon } from "../components/elements.js";
 import { metres } from "../format.js";
+import { toast } from "../page.js";
 import { Failure } from "./doors.js";
 import { answerInWords } from "./questions.js";
-import { changeParticipant, goesOn, shownResults, spotlight } from "./room.js";
+import { busy, changeParticipant, goesOn, removeParticipant, shownResults, spotlight } from "./room.js";
 
 /** @import { Ask, Classroom, Person, ResultEntry } from "../types.js" */
+
+/** Who is to be removed, which is asked once more. @type {import("@preact/signals").Signal<Person | null>} */
+const chosen = signal(null);
+const removalIsOpen = signal(false);
 
 /** @param {{ known: Classroom }} props */
 export function People({ known }) {
   const people = known.people.filter(({ is_present, run_id, has_predicted }) =>
     is_present || run_id || has_predicted);
   const entries = new Map((shownResults.value?.entries ?? []).map((entry) => [entry.seed, entry]));
+  const head = useRef(/** @type {HTMLElement | null} */ (null));
   return html`
     <section class="panel people" aria-labelledby="people-title">
-      <h2 id="people-title">Who is in</h2>
+      <h2 id="people-title" ref=${head} tabindex="-1">Who is in</h2>
       ${people.length === 0 && html`
         <p class="dim">Nobody yet. They open the address, or scan the code, and press Join.</p>
       `}
@@ -24,7 +32,39 @@ export function People({ known }) {
         `)}
       </ul>
     </section>
+    <${Removal} onRemoved=${() => head.current?.focus()} />
   `;
+}
+
+/** Asks before a participant is removed. @param {{ onRemoved: () => void }} props */
+function Removal({ onRemoved }) {
+  const { seed = 0, name = "" } = chosen.value ?? {};
+  const remove = async () => {
+    const isDone = await removeParticipant(seed);
+    removalIsOpen.value = false;
+    // The button that has opened the dialog went with its row.
+    if (isDone) setTimeout(onRemoved);
+    if (isDone) toast(`${name} was removed.`);
+  };
+  return html`
+    <${Dialog} isOpen=${removalIsOpen} id="removal" labelledBy="removal-title" style="removal-dialog">
+      <h2 id="removal-title">Remove ${name}?</h2>
+      <p>
+        The seat and the name become free, the answers leave the results, and a run that waits or goes on is stopped.
+        The phone says so. Who holds it can join again, as somebody else.
+      </p>
+      <div class="row">
+        <button class="danger" disabled=${busy.value[`participant ${seed}`]} onClick=${remove}>Remove ${name}</button>
+        <button class="quiet" onClick=${() => (removalIsOpen.value = false)}>No, keep</button>
+      </div>
+    <//>
+  `;
+}
+
+/** @param {Person} person */
+function askToRemove(person) {
+  chosen.value = person;
+  removalIsOpen.value = true;
 }
 
 /** @param {{ person: Person, entry: ResultEntry | undefined, known: Classroom }} props */
@@ -51,6 +91,10 @@ function One({ person, entry, known }) {
         `}
         <button class="quiet compact" aria-label=${`${hideWords}: ${name}`}
           onClick=${() => changeParticipant(seed, { is_name_hidden: !is_name_hidden })}>${hideWords}</button>
+        ${known.state !== "ended" && html`
+          <button class="quiet square" title="Remove" aria-label=${`Remove ${name}…`}
+            onClick=${() => askToRemove(person)}>✕</button>
+        `}
       </span>
       <${Failure} at=${`participant ${seed}`} />
     </li>

@@ -4,7 +4,7 @@ import { getCurve } from "../api.js";
 import { DotStrip } from "../components/dot-strip.js";
 import { html } from "../components/elements.js";
 import { Prose } from "../components/prose.js";
-import { count, metres } from "../format.js";
+import { codeInGroups, count, metres } from "../format.js";
 import { Deeds, Next } from "./deeds.js";
 import { Away, Door } from "./doors.js";
 import { May } from "./may.js";
@@ -26,7 +26,7 @@ export function Phone() {
   return html`
     <header class="room-header">
       <p><b>${me.name}</b><span class="dim">seed ${me.seed}</span></p>
-      <p class="dim code">${known.code}</p>
+      <p class="dim code">${codeInGroups(known.code)}</p>
     </header>
     <${Away} words="Your name and your seed are kept." />
     ${known.state === "frozen" && html`

@@ -4,7 +4,7 @@ import { getCurves } from "../api.js";
 import { DotStrip } from "../components/dot-strip.js";
 import { html, Icon } from "../components/elements.js";
 import { Prose } from "../components/prose.js";
-import { count, metres, shortAddress } from "../format.js";
+import { codeInGroups, count, metres, shortAddress } from "../format.js";
 import { Away } from "./doors.js";
 import { stepsOf } from "./chart.js";
 import { Picture } from "./picture.js";
@@ -47,10 +47,12 @@ const Frozen = () => html`
 /** Where to join: large while the class gathers, small from then on. @param {{ known: Classroom }} props */
 const Door = ({ known }) => html`
   <section class="join-here" aria-label="How to join">
-    <img class="qr-code" src=${known.qr_code} alt=${`QR code of ${known.address}`} />
+    ${known.qr_code && html`
+      <img class="qr-code" src=${known.qr_code} alt=${`QR code of ${shortAddress(known.address)}`} />
+    `}
     <div>
-      <p class="code">${known.code}</p>
-      <p class="join-address">${shortAddress(known.address)}</p>
+      <p class="code">${codeInGroups(known.code)}</p>
+      <p class="join-address">${known.qr_code ? shortAddress(known.address) : "On this computer alone"}</p>
       <p class="joined" role="status">
         <b class="num">${known.participants}</b> ${known.participants === 1 ? "is" : "are"} in
       </p>

@@ -12,20 +12,23 @@ import { applyEvent, connection, eventNames, openEvents, options, runs, setEntry
 /** @import { RequestError } from "../api.js" */
 /** @import { CardResults, Classroom, RoomState, Run } from "../types.js" */
 
-/** The code of the address, as it was typed; and whether the page is for the projector. */
-export const { code, isProjector } = ofRoom();
+/** The code of the address, as it was typed; whether the page is for the projector, or of a pupil in any case. */
+export const { code, isProjector, isPupils } = ofRoom();
 
 /** Null until the server has answered. @type {Signal<Classroom | null>} */
 export const room = signal(null);
 /** Why there is no room; empty while there may be one. */
 export const refusal = signal("");
+/** Whether this page was in the room, and is not any more, though it has not left. */
+export const isRemoved = signal(false);
 /** Card → its results, as far as who asks may see them. @type {Signal<Record<string, CardResults>>} */
 export const results = signal({});
 const requests = makeRequests();
 export const { busy, failures } = requests;
 const { perform } = requests;
 
-export const isTeacher = computed(() => room.value?.role === "teacher");
+/** Whether who looks is the teacher, and wants to be: where everybody may be that, a window can be a pupil's. */
+export const isTeacher = computed(() => room.value?.role === "teacher" && !isPupils);
 /** Results of the card that is shown; null until they are known. */
 export const shownResults = computed(() => results.value[`${room.value?.card}`] ?? null);
 export const isRevealed = computed(() => room.value !== null && room.value.revealed.includes(room.value.card));
@@ -65,6 +68,7 @@ export async function refresh() {
     batch(() => {
       // The room forgets who was in it once it has ended; this page does not.
       const { role, me } = room.peek() ?? answer;
+      if (role === "participant" && answer.role !== "participant") isRemoved.value = answer.state !== "ended";
       room.value = answer.state === "ended" ? { ...answer, role, me } : answer;
       refusal.value = "";
     });
@@ -137,7 +141,7 @@ export async function followRoom() {
     }
     return openEvents(["room", "tournament", ...eventNames], onEvent, (now) => {
       connection.value = now;
-      // The stream does not say why it ended: the room may have.
+      // The stream does not say why it ended: the room may have, or the seat is gone.
       if (now === "reconnecting") untracked(refresh);
     }, api.eventsOf(code));
   });
@@ -190,12 +194,14 @@ export const join = () => perform("join", async () => {
   // Kept, so that it is the same for both tabs of a browser, and after a reload that came before the answer.
   const key = storedText(`join:${room.peek()?.code}`, randomKey());
   await api.joinRoom(code, key.peek());
+  isRemoved.value = false;
   await refresh();
 });
 
 export const leave = () => perform("join", async () => {
   await api.leaveRoom(code);
   await refresh();
+  isRemoved.value = false;
 });
 
 /** Lock the own answer to the card that is shown. @param {unknown} value */
@@ -243,3 +249,8 @@ export const spotlight = (run_id) => perform("spotlight", changed(() => api.spot
 /** @type {(seed: number, changes: { is_name_hidden?: boolean, is_approved?: boolean }) => Promise<boolean>} */
 export const changeParticipant = (seed, changes) =>
   perform(`participant ${seed}`, changed(() => api.changeParticipant(code, seed, changes)));
+/** Take seat, name and answers of a participant. @param {number} seed */
+export const removeParticipant = (seed) => perform(`participant ${seed}`, async () => {
+  room.value = await api.removeParticipant(code, seed);
+  await refreshResults();
+});

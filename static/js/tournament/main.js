@@ -2,6 +2,7 @@
 import { effect } from "@preact/signals";
 import { render } from "preact";
 import { html, Icon, Loaded } from "../components/elements.js";
+import { codeInGroups } from "../format.js";
 import { followTheme, nextTheme, theme, toastMessage } from "../page.js";
 import { isAway, options } from "../store.js";
 import { Enter } from "./enter.js";
@@ -67,7 +68,9 @@ function Header() {
         <img src="../static/favicon.svg" alt="" width="24" height="24" /><span>Racing Hexapods</span>
       </a>
       <span class="space"></span>
-      ${room && html`<a class="quiet as-button" href=${`../r/${room}`}>Room <b class="code">${room}</b></a>`}
+      ${room && html`
+        <a class="quiet as-button" href=${`../r/${room}`}>Room <b class="code">${codeInGroups(room)}</b></a>
+      `}
       <button class="quiet square" onClick=${nextTheme} aria-label=${`Theme: ${theme.value}`}
         title=${`Theme: ${theme.value}`}><${Icon} name=${theme.value} /></button>
     </header>

@@ -29,8 +29,10 @@ export function Projector() {
           </p>
         </div>
         <div class="join-here">
-          <img class="qr-code" src=${qr_code} alt=${`QR code of ${address}`} />
-          <p class="address">${shortAddress(address)}</p>
+          ${qr_code && html`
+            <img class="qr-code" src=${qr_code} alt=${`QR code of ${shortAddress(address)}`} />
+            <p class="address">${shortAddress(address)}</p>
+          `}
         </div>
       </header>
       ${shown.length > 0

@@ -1,9 +1,12 @@
 // The dialog that opens a room: which lesson, and then its code and the way to its cockpit.
 import { useEffect, useState } from "preact/hooks";
 import { addressOf } from "../../page-state.js";
-import { chosenLesson, isBusy, lessons, opened, openRoom, problem, roomIsOpen, rooms } from "../../lessons/list.js";
-import { count, shortAddress } from "../../format.js";
+import {
+  chosenLesson, isBusy, isReachable, lessons, opened, openRoom, problem, roomIsOpen, rooms,
+} from "../../lessons/list.js";
+import { codeInGroups, count, shortAddress } from "../../format.js";
 import { Dialog, html } from "../elements.js";
+import { PupilsWindow, Sharing } from "./sharing.js";
 
 /** @import { ListedRoom, NewRoom } from "../../types.js" */
 
@@ -20,15 +23,20 @@ export function OpenRoom() {
         <button class="quiet square" aria-label="Close" onClick=${() => (roomIsOpen.value = false)}>✕</button>
       </div>
       ${opened.value ? html`<${Opened} room=${opened.value} />` : html`
-        <p class="dim">A class joins by a code, without accounts. Each learner is one seed of one experiment.</p>
+        ${isReachable.value ? html`
+          <p class="dim">A class joins by a code, without accounts. Each learner is one seed of one experiment.</p>
+        ` : html`<${Sharing} />`}
         <${Choice} />
         <label class="check">
           <input type="checkbox" checked=${needsApproval} onChange=${() => setApproval(!needsApproval)} />
           Show names and results of participants only after I approve each
         </label>
         <div role="alert">${problem.value && html`<p class="problem">${problem}</p>`}</div>
-        <button class="primary" aria-disabled=${isBusy.value || !chosenLesson.value ? "true" : undefined}
-          onClick=${() => chosenLesson.value && openRoom(needsApproval)}>Open the room</button>
+        <button class=${isReachable.value ? "primary" : "secondary"}
+          aria-disabled=${isBusy.value || !chosenLesson.value ? "true" : undefined}
+          onClick=${() => chosenLesson.value && openRoom(needsApproval)}>
+          ${isReachable.value ? "Open the room" : "Try a room on this computer alone"}
+        </button>
         <${Rooms} title="Open rooms" found=${rooms.value.filter(({ state }) => state !== "ended")} />
         <${Rooms} title="Rooms that have ended"
           found=${rooms.value.filter(({ state }) => state === "ended").reverse()} />
@@ -59,13 +67,18 @@ function Choice() {
 
 /** @param {{ room: NewRoom }} props */
 const Opened = ({ room }) => html`
-  <div class="opened-room">
-    <img src=${room.qr_code} alt=${`QR code of ${room.address}`} />
-    <div>
-      <p class="room-code">${room.code}</p>
-      <p class="address">${shortAddress(room.address)}</p>
+  ${room.qr_code ? html`
+    <div class="opened-room">
+      <img src=${room.qr_code} alt=${`QR code of ${shortAddress(room.address)}`} />
+      <div>
+        <p class="room-code">${codeInGroups(room.code)}</p>
+        <p class="address">${shortAddress(room.address)}</p>
+      </div>
     </div>
-  </div>
+  ` : html`
+    <p>It is on this computer alone: phones cannot come to it.</p>
+    <${PupilsWindow} address=${room.address} />
+  `}
   <a class="primary button-link" href=${`r/${room.code}`}>Teach: open the cockpit</a>
   <a class="secondary button-link" href=${`r/${room.code}?projector`} target="_blank">Open the projector</a>
 `;
@@ -77,7 +90,8 @@ const Rooms = ({ title, found }) => found.length > 0 && html`
     <ul class="open-rooms">
       ${found.map(({ code, title: lesson, participants }) => html`
         <li key=${code}>
-          <a href=${`r/${code}`}><b>${code}</b> ${lesson}</a><span class="dim">${participants} in it</span>
+          <a href=${`r/${code}`}><b>${codeInGroups(code)}</b> ${lesson}</a>
+          <span class="dim">${participants} in it</span>
         </li>
       `)}
     </ul>

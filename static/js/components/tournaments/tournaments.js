@@ -1,6 +1,6 @@
 // The dialog of tournaments: their list, and for operators the form of a new one.
 import { html, Dialog, Icon } from "../elements.js";
-import { ago, shortAddress } from "../../format.js";
+import { ago, codeInGroups, shortAddress } from "../../format.js";
 import { copy } from "../../page.js";
 import { isOperator } from "../../selectors.js";
 import { failures, isNew, isOpen, opened, ownRoom, showForm, showList, tournaments } from "../../tournament/list.js";
@@ -49,7 +49,7 @@ const Row = ({ tournament: { id, title, room, state, entries, created_at } }) =>
   <li>
     <a href=${tournamentPage(id)}>${title}</a>
     <span class="dim">
-      ${[stateInWords(state), entriesInWords(entries), room ? `room ${room}` : "", ago(created_at)]
+      ${[stateInWords(state), entriesInWords(entries), room ? `room ${codeInGroups(room)}` : "", ago(created_at)]
         .filter(Boolean).join(" · ")}
     </span>
   </li>
@@ -58,7 +58,7 @@ const Row = ({ tournament: { id, title, room, state, entries, created_at } }) =>
 /** @param {{ tournament: Tournament }} props */
 const Opened = ({ tournament: { id, title, address, qr_code, room } }) => html`
   <div class="opened-tournament">
-    <img src=${qr_code} alt=${`QR code of ${address}`} />
+    ${qr_code && html`<img src=${qr_code} alt=${`QR code of ${shortAddress(address)}`} />`}
     <div>
       <p><b>${title}</b></p>
       <p class="address">${shortAddress(address)}</p>
