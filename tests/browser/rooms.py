@@ -12,6 +12,8 @@ from tests.browser.type_sizes import small_texts
 from tests.conftest import new_page
 
 TOKEN = "for-the-teacher-of-the-class"
+PUBLIC_URL = "http://class.example"
+"""Where phones reach a server, which thus shows them QR codes."""
 PHONE: ViewportSize = {"width": 390, "height": 844}
 SCREEN: ViewportSize = {"width": 1920, "height": 1080}
 LEAST_PX = 28

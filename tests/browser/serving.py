@@ -14,6 +14,7 @@ from urllib.parse import urlencode
 
 import httpx2
 
+from app.storage.server_lock import read_address_file
 from tests.forked import start_hexapods
 
 _ADDRESS = re.compile(r"is at (http://\S+)")
@@ -26,7 +27,7 @@ class Serving:
     """One server.
 
     Attributes:
-        address: where it is, with a slash at the end.
+        address: where it is on this machine, with a slash at the end.
         data: its folder.
     """
 
@@ -107,7 +108,8 @@ class Serving:
         for line in self._process.stdout:
             self._said.append(line)
             if found := _ADDRESS.search(line):
-                self.address = found[1]
+                # It says its public address, if it has one.
+                self.address = read_address_file(self.data) or found[1]
                 self._found.set()
         self._found.set()
 

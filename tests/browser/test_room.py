@@ -8,8 +8,10 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, expect
 
+from app.classroom.names import in_groups
 from tests.browser.rooms import (
     PHONE,
+    PUBLIC_URL,
     SCREEN,
     TOKEN,
     RoomPage,
@@ -72,7 +74,7 @@ LESSON: dict[str, Any] = {
 
 @pytest.fixture
 def school(tmp_path: Path) -> Iterator[Serving]:
-    with serving(tmp_path, token=TOKEN) as server:
+    with serving(tmp_path, token=TOKEN, public_url=PUBLIC_URL) as server:
         yield server
 
 
@@ -89,7 +91,7 @@ def test_a_lesson_from_the_code_to_the_reveal(flat_browser: Browser, school: Ser
         projector = RoomPage(screen, has_3d=False)
         screen.context.add_cookies(teacher.page.context.cookies())  # type: ignore[arg-type]
         projector.enter(school, code, "?projector")
-        projector.sees(f"/r/{code}")
+        projector.sees(f"{PUBLIC_URL.removeprefix('http://')}/r/{in_groups(code)}")
         is_read_from_afar(projector)
         is_accessible(projector, is_touched=False)
         with phone(flat_browser) as one, phone(flat_browser) as two:
@@ -276,7 +278,7 @@ def test_a_wrong_code_leads_to_a_field_for_the_right_one(
         stranger.enter(school, "WRONG2")
         stranger.sees("look again at the code on the projector")
         is_accessible(stranger)
-        page.get_by_label("Code on the projector").fill(code.lower())
+        page.get_by_label("Code on the projector").fill(f"{code[:4].lower()} {code[4:]}")
         page.get_by_role("link", name="Go to the room").click()
         stranger.sees(LESSON["title"])
         # By keys alone.

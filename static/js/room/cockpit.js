@@ -65,7 +65,7 @@ const Code = ({ known }) => html`
     ${known.qr_code ? html`
       <h2 id="code-title">Join at</h2>
       <p class="join-address">${shortAddress(known.address)}</p>
-      <img class="large-qr" src=${known.qr_code} alt=${`QR code of ${shortAddress(known.address)}`} />
+      <img class="large-qr" src=${known.qr_code} alt=${`QR code of ${known.address}`} />
       <p class="code large-code">${codeInGroups(known.code)}</p>
       <button class="secondary" onClick=${() => copy(known.address, "Link copied.")}>Copy the link</button>
     ` : html`

@@ -55,7 +55,7 @@ function Removal({ onRemoved }) {
       </p>
       <div class="row">
         <button class="danger" disabled=${busy.value[`participant ${seed}`]} onClick=${remove}>Remove ${name}</button>
-        <button class="quiet" onClick=${() => (removalIsOpen.value = false)}>No, keep</button>
+        <button class="quiet" autofocus onClick=${() => (removalIsOpen.value = false)}>No, keep</button>
       </div>
     <//>
   `;

@@ -48,7 +48,7 @@ const Frozen = () => html`
 const Door = ({ known }) => html`
   <section class="join-here" aria-label="How to join">
     ${known.qr_code && html`
-      <img class="qr-code" src=${known.qr_code} alt=${`QR code of ${shortAddress(known.address)}`} />
+      <img class="qr-code" src=${known.qr_code} alt=${`QR code of ${known.address}`} />
     `}
     <div>
       <p class="code">${codeInGroups(known.code)}</p>

@@ -37,7 +37,7 @@ function Way() {
   const { address, qr_code } = known();
   return html`
     <div class="way">
-      ${qr_code && html`<img src=${qr_code} alt=${`QR code of ${shortAddress(address)}`} />`}
+      ${qr_code && html`<img src=${qr_code} alt=${`QR code of ${address}`} />`}
       <div>
         <p class="address">${shortAddress(address)}</p>
         <button class="secondary compact" onClick=${() => copy(address, "Link copied.")}>

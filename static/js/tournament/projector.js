@@ -30,7 +30,7 @@ export function Projector() {
         </div>
         <div class="join-here">
           ${qr_code && html`
-            <img class="qr-code" src=${qr_code} alt=${`QR code of ${shortAddress(address)}`} />
+            <img class="qr-code" src=${qr_code} alt=${`QR code of ${address}`} />
             <p class="address">${shortAddress(address)}</p>
           `}
         </div>

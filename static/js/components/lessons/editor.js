@@ -65,7 +65,7 @@ const CardList = ({ lesson }) => html`
 /** What can be done with a lesson that is stored. @param {{ lesson: NewLesson }} props */
 const Saved = ({ lesson }) => html`
   <div class="saved-lesson" role="status">
-    ${lesson.qr_code && html`<img src=${lesson.qr_code} alt=${`QR code of ${shortAddress(lesson.link)}`} />`}
+    ${lesson.qr_code && html`<img src=${lesson.qr_code} alt=${`QR code of ${lesson.link}`} />`}
     <div>
       <p><b>Saved.</b> Its link opens it on this page, where nothing is locked.</p>
       <p class="address">${shortAddress(lesson.link)}</p>

@@ -69,7 +69,7 @@ function Choice() {
 const Opened = ({ room }) => html`
   ${room.qr_code ? html`
     <div class="opened-room">
-      <img src=${room.qr_code} alt=${`QR code of ${shortAddress(room.address)}`} />
+      <img src=${room.qr_code} alt=${`QR code of ${room.address}`} />
       <div>
         <p class="room-code">${codeInGroups(room.code)}</p>
         <p class="address">${shortAddress(room.address)}</p>

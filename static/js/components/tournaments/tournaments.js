@@ -58,7 +58,7 @@ const Row = ({ tournament: { id, title, room, state, entries, created_at } }) =>
 /** @param {{ tournament: Tournament }} props */
 const Opened = ({ tournament: { id, title, address, qr_code, room } }) => html`
   <div class="opened-tournament">
-    ${qr_code && html`<img src=${qr_code} alt=${`QR code of ${shortAddress(address)}`} />`}
+    ${qr_code && html`<img src=${qr_code} alt=${`QR code of ${address}`} />`}
     <div>
       <p><b>${title}</b></p>
       <p class="address">${shortAddress(address)}</p>
