@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, expect
 
-from app.classroom.names import normalized
+from app.classroom.names import in_groups, normalized
 from tests.browser.dashboard import Dashboard
 from tests.browser.rooms import PUBLIC_URL, TOKEN, RoomPage, phone
 from tests.browser.serving import Serving, serving
@@ -182,7 +182,8 @@ def imports_it(other: Dashboard, elsewhere: Serving, file: Path) -> str:
     other.button("Teach…").click()
     other.button("Open the room").click()
     code = normalized(page.locator(".room-code").inner_text())
-    expect(page.get_by_role("img", name=re.compile(f"^QR code of {PUBLIC_URL}"))).to_be_visible()
+    address = f"{PUBLIC_URL}/r/{in_groups(code)}"
+    expect(page.get_by_role("img", name=f"QR code of {address}")).to_be_visible()
     page.get_by_role("link", name="Teach: open the cockpit").click()
     expect(page).to_have_url(f"{elsewhere.address}r/{code}")
     expect(other.button("Freeze all")).to_be_visible()

@@ -2,11 +2,12 @@
 import { copy } from "../../page.js";
 import { html } from "../elements.js";
 
+const PROXY = "HEXAPODS_PUBLIC_URL=https://hexapods.example";
 /** What makes the server reachable for phones: for whom, and what to type. */
 const WAYS = [
   ["Phones in the same network", "hexapods serve --share"],
   ["The same, from a copy of the repository", "make run ARGS=--share"],
-  ["Behind a proxy, with its address", "HEXAPODS_PUBLIC_URL=https://hexapods.example hexapods serve"],
+  ["Behind a proxy, with its address and a secret", `${PROXY} HEXAPODS_TOKEN=YOUR-SECRET hexapods serve`],
 ];
 
 /** Told where phones cannot come: why, and what to start the server with. */
