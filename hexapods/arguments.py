@@ -142,7 +142,7 @@ def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
         DamagedFile: if it is no robot.
         NotRead: if no process can be started to read it.
     """
-    if name is not None and not (isinstance(name, str) and len(name) <= MAX_NAME):
+    if name is not None and len(name) > MAX_NAME:
         raise InvalidInput(f"a robot's name is a text of at most {MAX_NAME} characters")
     path = path_of(file, "a robot's file")
     try:

@@ -126,8 +126,8 @@ def read_plain(content: bytes, name: str, what: str) -> Any:
 def nodes_of(value: Any) -> int:
     """Return how many names and values plain values have, as `MAX_NODES` counts them."""
     if isinstance(value, dict):
-        return 1 + len(value) + sum(map(nodes_of, value.values()))
-    return 1 + (sum(map(nodes_of, value)) if isinstance(value, list) else 0)
+        return 1 + len(value) + sum(map(nodes_of, value.values()))  # whole numbers
+    return 1 + (sum(map(nodes_of, value)) if isinstance(value, list) else 0)  # whole numbers
 
 
 def write_plain(value: Any) -> str:

@@ -155,7 +155,7 @@ def own_versions() -> dict[str, str]:
     return {**versions(), "scipy": version("scipy"), "processor": instructions()}
 
 
-def probe_m(rules: TournamentRules, draw: Draw) -> tuple[float, ...]:
+def probe_m(rules: TournamentRules, draw: Draw) -> list[float]:
     """Return how far the random walk is after each of its steps on a draw [m].
 
     Where a tournament does not repeat to the last bit it shows from which step on: that walk
@@ -169,7 +169,8 @@ def probe_m(rules: TournamentRules, draw: Draw) -> tuple[float, ...]:
     lanes = (LaneConfig(agent=training.agent, observation=training.observation),)
     race = RaceConfig(**vars(training.walk()), lanes=lanes, steps=RACE_STEPS, seed=training.seed)
     *_, [lane] = record_race(build_walkers(race, [None], threads=1), race, lambda: 0.0)
-    return tuple(lane.steps.figures["distance_m"].tolist())
+    distances_m: list[float] = lane.steps.figures["distance_m"].tolist()
+    return distances_m
 
 
 def standings_of(judgements: Mapping[int, Sequence[Judgement]]) -> list[RankedEntry]:

@@ -150,7 +150,7 @@ def _rounding(tournament: TournamentFile, largest_m: float, draw: Draw) -> str:
     in_file = tournament.machine.get(PROBE)
     again = probe_m(tournament.rules, draw)
     step = None
-    if isinstance(in_file, list | tuple) and len(in_file) == len(again):
+    if isinstance(in_file, list) and len(in_file) == len(again):
         pairs = enumerate(zip(in_file, again, strict=True), start=1)
         step = next((number for number, (given, here) in pairs if given != here), 0)
     begins = {

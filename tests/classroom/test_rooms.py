@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
-from sqlalchemy import text
+from sqlalchemy import Connection, TextClause, text
 from starlette.datastructures import Headers
 
 from app.api.room_access import RoomAccess, room_cookie
@@ -211,6 +212,10 @@ def test_answers_and_cards_keep_a_room_from_being_idle(store: RunStore) -> None:
     assert len(again.idle_rooms()) == 6
 
 
+def _execute(change: TextClause, values: dict[str, str], connection: Connection) -> object:
+    return connection.execute(change, values)
+
+
 def test_an_open_room_of_an_earlier_version_goes_on_until_it_ends(store: RunStore) -> None:
     """Its code is shorter; the cookies of its participants hold, too."""
     rooms = Rooms(store)
@@ -219,18 +224,18 @@ def test_an_open_room_of_an_earlier_version_goes_on_until_it_ends(store: RunStor
     for table in ("rooms", "participants"):
         column = "code" if table == "rooms" else "room"
         change = text(f"UPDATE {table} SET {column} = :old WHERE {column} = :code")
-        store.database.write(lambda c, change=change: c.execute(change, {"old": old, "code": code}))
+        store.database.write(partial(_execute, change, {"old": old, "code": code}))
     rooms = Rooms(store)
     joined = rooms.join("km4-t7q")
     rooms.predict(old, 0, 0, 0.5)
     again = Rooms(store)
     assert again.seat(old, joined.key) is not None
     assert again.get("KM4 T7Q").predictions == {(0, 0): 0.5}
-    host = {"host": "127.0.0.1:8000"}
-    name = room_cookie(Headers(host), old, is_secure=False).name
-    headers = Headers({**host, "cookie": f"{name}={joined.key}"})
+    headers = Headers({"host": "127.0.0.1:8000"}).raw
+    name = room_cookie({"headers": headers, "state": {"cookies": {}}}, old, is_secure=False).name
+    scope = {"headers": headers, "state": {"cookies": {name: joined.key}}}
     access = RoomAccess(again, lambda tournament: None)
-    assert access.seats(headers, is_secure=False) == ((old, 0),)
+    assert access.seats(scope, is_secure=False) == ((old, 0),)
     again.end(old)
     with pytest.raises(Conflict, match="has ended"):
         again.join(old)
