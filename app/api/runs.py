@@ -299,7 +299,7 @@ def run_routes(kind: Kind) -> APIRouter:
 _VERBS = {
     "stop": "Stop {} and keep its result so far",
     "pause": "Pause {}",
-    "resume": "Resume {} that is paused, interrupted or failed",
+    "resume": "Resume {} that is paused, stopped, interrupted or failed",
 }
 VIEWS: Mapping[Kind, tuple[type[RunView], type[Page]]] = {
     "training": (TrainingView, TrainingPage),

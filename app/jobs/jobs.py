@@ -180,7 +180,10 @@ class Jobs:
         with self._changed:
             run = self._store.get(run_id)
             if run.state in RESUMABLE[run.kind]:
-                return self._enqueue(resumed_runs(run, self._store), resumed=True)
+                runs = resumed_runs(run, self._store)
+                for one in runs:
+                    self._check_needed_by_none(one)
+                return self._enqueue(runs, resumed=True)
             try:
                 resumed = self._resume_paused(run)
             except Conflict as conflict:
@@ -342,13 +345,16 @@ class Jobs:
         """
         self._await_process(run_id)
         with self._changed:
-            needing = self._queue.run_needing(run_id)
-            if needing is not None:
-                state = self._store.find(run_id).state or "damaged"
-                raise Conflict(f"{needing.kind} {needing.id} waits, and needs its table", state)
+            self._check_needed_by_none(self._store.find(run_id))
             self._store.delete(run_id)
         self._recordings.discard(run_id)
         self._bus.publish("run-deleted", {"id": run_id}, run_id)
+
+    def _check_needed_by_none(self, run: AnyRun) -> None:
+        needing = self._queue.run_needing(run.id)
+        if needing is not None:
+            state = run.state or "damaged"
+            raise Conflict(f"{needing.kind} {needing.id} waits, and needs its table", state)
 
     def _enqueue(
         self, runs: list[Run], key: IdempotencyKey | None = None, *, resumed: bool = False

@@ -2,8 +2,9 @@
 
 A training starts from its newest checkpoint; without one from the table that it continues, if any.
 Changes of rates and pace made since are replayed after the same steps, so that a resumed training
-has the same result. A race is repeated from its start: it is short and deterministic. An experiment
-runs the trials that are not done yet.
+has the same result. One that was stopped has a table, which others may have used since; then it
+stays as it is. A race is repeated from its start: it is short and deterministic. An experiment runs
+the trials that are not done yet.
 """
 
 import logging
@@ -104,6 +105,8 @@ def resumed_runs(run: Run, store: RunStore) -> list[Run]:
     if run.kind == "race":
         trainings, waiting_for = _unended_trainings(run, store)
     else:
+        if run.state == "stopped":
+            _check_unused(run, store)
         # Refuses what could not start later.
         task = task_for(run, store)
         if isinstance(task, ExperimentTask):
@@ -132,10 +135,23 @@ def _unended_trainings(race: Run, store: RunStore) -> tuple[list[Run], tuple[str
         except NotFound as error:
             reason = f"training {training_id}, whose table it needs, was deleted"
             raise Conflict(f"race {race.id} cannot go on: {reason}", race.state) from error
-        if training.state in RESUMABLE[training.kind]:
+        # Of one that was stopped a race has the table, unless it was to wait for its end.
+        is_kept = training.state == "stopped" and training_id not in race.waiting_for
+        if training.state in RESUMABLE[training.kind] and not is_kept:
             resumed += resumed_runs(training, store)
         elif training.state not in NOT_ENDED:
             load_table(store, training_id)
             continue
         waiting_for.append(training_id)
     return resumed, tuple(waiting_for)
+
+
+def _check_unused(training: Run, store: RunStore) -> None:
+    """Refuse to change a table from which something was made that could not be repeated then."""
+    users = [user for user in store.users_of_table(training.id) if user.done > 0]
+    if users:
+        raise Conflict(
+            f"the table of training {training.id} is used by {users[0].id}; continue it as a new "
+            f"training instead",
+            training.state,
+        )

@@ -37,8 +37,9 @@ ANNOTATIONS = ("name", "tags", "notes")
 """Fields of a run that users may change in any of its states."""
 RESUMABLE: Mapping[Kind, frozenset[State]] = {
     # Resumes from its newest checkpoint: most failures are caused by the machine, not the run.
-    "training": INTERRUPTED | {"failed"},
-    "race": INTERRUPTED | {"failed"},
+    "training": INTERRUPTED | {"stopped", "failed"},
+    # Is repeated from its start, with the same motions.
+    "race": INTERRUPTED | {"stopped", "failed"},
     # Each trial is stored as it ends, so resuming repeats none, whatever ended the experiment.
     "experiment": INTERRUPTED | {"stopped", "failed"},
 }

@@ -23,8 +23,8 @@ from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.runs.config import TrainingConfig, WalkingProblem, training_config
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.records import StepTaken
-from hexapods.runs.results import training_result
+from hexapods.runs.records import Evaluated, StepTaken
+from hexapods.runs.results import RaceResult, training_result
 from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
 from tests.jobs.test_jobs import WALK, pid_of
@@ -85,8 +85,108 @@ def test_training_resumes_from_its_checkpoint(
     assert recording is not None
     steps = [step.step for step in recording.steps]
     assert steps == sorted(set(steps)), "no step twice"
-    with pytest.raises(Conflict, match="failed or interrupted or paused"):
-        second.resume(run.id)
+
+
+def test_training_that_was_stopped_goes_on_to_the_last_bit(
+    store: RunStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    config = training_config(**vars(WALK), steps=400, pace=30, evaluate_every=20)
+    jobs = open_jobs()
+    run = jobs.start(TrainingStart(config))
+    wait_until(lambda: store.get(run.id).done > 30)
+    stopped = jobs.stop(run.id)
+    assert stopped.state == "stopped"
+    assert 30 < stopped.done < 400
+    resumed = jobs.resume(run.id)
+    assert (resumed.state, resumed.done, resumed.result) == ("queued", stopped.done, None)
+    wait_until(lambda: store.get(run.id).state == "running")
+    jobs.change(run.id, {"pace": "max"})
+    ended = wait_until_ended(store, run)
+
+    unbroken = build_learner(config)
+    distances = [
+        (record.step, record.distance_m)
+        for record in train(unbroken, config)
+        if isinstance(record, Evaluated)
+    ]
+    assert (ended.state, ended.done) == ("finished", 400)
+    assert ended.result == training_result(unbroken, config)
+    assert [(row["step"], row["distance_m"]) for row in store.curves.get(run.id)] == distances
+    log = Recordings(store).transitions(run.id)
+    assert log is not None
+    assert len(log) == 400
+    with pytest.raises(Conflict, match="it can be resumed while it is"):
+        jobs.resume(run.id)
+
+
+def test_race_that_was_stopped_is_repeated_to_its_end(
+    store: RunStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    jobs = open_jobs()
+    lanes = [LaneStart("greedy"), LaneStart("random-walk")]
+    unbroken = wait_until_ended(store, jobs.start(RaceStart(WALK, lanes, steps=400, seed=0)))
+    race = jobs.start(RaceStart(WALK, lanes, steps=400, seed=0))
+    wait_for_progress(store, race)
+    assert jobs.stop(race.id).state in ("stopped", "finished")
+    if store.get(race.id).state == "stopped":
+        jobs.resume(race.id)
+    ended = wait_until_ended(store, race)
+    assert ended.state == "finished"
+    results = [one.result for one in (ended, unbroken)]
+    assert all(isinstance(one, RaceResult) for one in results)
+    first, second = (one.recording_sha256 for one in results if isinstance(one, RaceResult))
+    assert first == second
+
+
+def test_race_whose_training_was_stopped_goes_on_with_it(
+    store: RunStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    """The race was queued behind the training, and was stopped with it before it ran."""
+    jobs = open_jobs()
+    lanes = [LaneStart("q-learning", training=TrainingStart(SLOW)), LaneStart("greedy")]
+    race = jobs.start(RaceStart(WALK, lanes, steps=5, seed=0))
+    (practice_id,) = race.waiting_for
+    wait_for_progress(store, store.get(practice_id))
+    jobs.stop(race.id)
+    assert wait_until_ended(store, store.get(practice_id)).state == "stopped"
+    assert store.get(race.id).state == "stopped"
+    resumed = jobs.resume(race.id)
+    assert (resumed.state, resumed.waiting_for) == ("queued", (practice_id,))
+    wait_until(lambda: store.get(practice_id).state == "running")
+    jobs.stop(race.id)
+    wait_until_ended(store, store.get(practice_id))
+
+
+def test_race_with_the_table_of_a_stopped_training_does_not_train_it_further(
+    store: RunStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    ended_training(store, "t")
+    store.change("t", {"finished"}, "stopped")
+    config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="q-learning"),), steps=5)
+    run = Run(id="r", kind="race", name="r", config=config, total=5, lane_training_ids=("t",))
+    create(store, replace(run, state="interrupted"))
+    assert open_jobs().resume("r").waiting_for == ()
+    assert wait_until_ended(store, run).state == "finished"
+    assert store.get("t").state == "stopped"
+
+
+def test_stopped_training_whose_table_was_used_does_not_go_on(
+    store: RunStore, open_jobs: Callable[[], Jobs]
+) -> None:
+    """Its table would be another one, from which what was made with it could not be repeated."""
+    ended_training(store, "t")
+    store.change("t", {"finished"}, "stopped")
+    config = RaceConfig(**vars(WALK), lanes=(LaneConfig(agent="q-learning"),), steps=5)
+    race = Run(id="r", kind="race", name="r", config=config, total=5, lane_training_ids=("t",))
+    create(store, replace(race, state="finished", done=5))
+    with pytest.raises(Conflict, match="table of training t is used by r; continue it"):
+        open_jobs().resume("t")
+    store.delete("r")
+    create(store, training("u", state="finished", continued_from="t", done=1))
+    with pytest.raises(Conflict, match="used by u"):
+        open_jobs().resume("t")
+    store.delete("u")
+    assert open_jobs().resume("t").state == "queued"
 
 
 def test_disturbed_training_that_was_killed_equals_the_unbroken_one(

@@ -7,12 +7,15 @@ from typing import Any
 
 from sqlalchemy import (
     Connection,
+    String,
     Update,
     case,
+    cast,
     delete,
     func,
     insert,
     literal,
+    or_,
     select,
     update,
 )
@@ -33,6 +36,7 @@ from app.storage.database.queries import (
     fetch_rows,
     fetch_run_row,
     has_public_id,
+    select_runs,
 )
 from app.storage.database.robots import RobotStore
 from app.storage.database.room_rows import RoomRows, Seat
@@ -258,6 +262,15 @@ class RunStore:
             [try_decode_run(_with_progress(row, progress.get(row["id"], {}))) for row in rows],
             cursor,
         )
+
+    def users_of_table(self, training_id: str) -> Sequence[Run]:
+        """Return the races and trainings that name a training's table; unreadable ones left out."""
+        named = cast(RUNS.c.lane_training_ids, String).contains(f'"{training_id}"', autoescape=True)
+        query = select_runs().where(or_(named, RUNS.c.continued_from == training_id))
+        rows = self.database.read(lambda connection: fetch_rows(connection, query))
+        progress = self._progress.snapshot()
+        runs = (try_decode_run(_with_progress(row, progress.get(row["id"], {}))) for row in rows)
+        return [run for run in runs if isinstance(run, Run)]
 
     def counts(self) -> Mapping[State, int]:
         """Return the number of runs by state, for states that have any."""
