@@ -37,6 +37,8 @@ class SceneLane(Answer):
     """A lane at the moment that the stage shows; `halted` if its run ended before it was done.
 
     Attributes:
+        step: the step that it takes, counted from 1; at its end the last.
+        steps_made: steps that have ended.
         done: whether it has used all its steps, or failed.
     """
 
@@ -47,6 +49,7 @@ class SceneLane(Answer):
     distance_m: float
     step: Count
     steps: Count
+    steps_made: Count
     thinking: bool
     futures: Count
     futures_total: Count

@@ -295,7 +295,7 @@ class Stage:
         if run is None:
             return False
         self._runs[run_id] = changed
-        self._state = self._state.change(StagedRun(run_id, changed.state))
+        self._state = self._state.change(_staged(changed))
         if run_id != self._run_id:
             return False
         self._world = world_of(changed)
@@ -361,7 +361,7 @@ class Stage:
         try:
             runs = [self._store.get(run_id) for run_id in run_ids]
             self._runs = {run.id: run for run in runs}
-            playlist = tuple(StagedRun(run.id, run.state) for run in runs)
+            playlist = tuple(map(_staged, runs))
             self._state = before[0].show(playlist, origin)
             if is_anew or before[0].run is None or before[0].run.id != playlist[0].id:
                 shown = before[0].run, self._show.time_s
@@ -424,6 +424,10 @@ class Stage:
 
     def _publish(self) -> None:
         self._channel.publish("stage", self.state())
+
+
+def _staged(run: Run) -> StagedRun:
+    return StagedRun(run.id, run.state, run.started_at is not None)
 
 
 def _last_activity(run: Run) -> datetime:

@@ -39,15 +39,21 @@ its picture. Another run is put on stage by `StageState.show`, and taken from it
 
 
 class StagedRun(NamedTuple):
-    """A run of the playlist, with its present state."""
+    """A run of the playlist, with its present state, and whether it has begun to be computed."""
 
     id: str
     state: State
+    has_begun: bool = True
 
     @property
     def is_computed(self) -> bool:
         """Whether it is queued, running or paused."""
         return self.state in NOT_ENDED
+
+    @property
+    def is_void(self) -> bool:
+        """Whether it ended before it began, as a race with the training that it waited for."""
+        return not self.has_begun and not self.is_computed and self.state != "finished"
 
 
 @dataclass(frozen=True)
@@ -57,7 +63,8 @@ class StageState:
     Attributes:
         phase: see the table of this module.
         origin: why the run is on stage.
-        playlist: the run on stage, and those to be shown after it: a race after its trainings.
+        playlist: the run on stage, and those to be shown after it: a race after its trainings. One
+            that ended before it began is not shown after another.
         announced: id of the run that the server will show next unless a person objects.
     """
 
@@ -91,7 +98,7 @@ class StageState:
 
     def show(self, playlist: tuple[StagedRun, ...], origin: Origin) -> "StageState":
         """Return the state with a playlist on stage; one that begins with the same run goes on."""
-        run = playlist[0]
+        run, playlist = playlist[0], _to_be_shown(playlist)
         if self.run is not None and self.run.id == run.id:
             changed = self.change(run)
             return replace(changed, origin=origin, playlist=playlist, announced=None)
@@ -104,7 +111,7 @@ class StageState:
 
     def change(self, run: StagedRun) -> "StageState":
         """Return the state after a run of the playlist has changed its own."""
-        changed = tuple(run if run.id == one.id else one for one in self.playlist)
+        changed = _to_be_shown(tuple(run if run.id == one.id else one for one in self.playlist))
         if changed == self.playlist:
             return self
         state = replace(self, playlist=changed)
@@ -132,3 +139,8 @@ class StageState:
     def stay(self) -> "StageState":
         """Return the state in which a person wants what is on stage to stay."""
         return replace(self, origin="chosen", announced=None)
+
+
+def _to_be_shown(playlist: tuple[StagedRun, ...]) -> tuple[StagedRun, ...]:
+    """Return a playlist without those after the first that there is nothing to see of."""
+    return playlist[:1] + tuple(run for run in playlist[1:] if not run.is_void)

@@ -18,7 +18,7 @@ from hexapods.domain.posture import has_fallen, yaw_rad
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import UNDISTURBED, World
-from hexapods.runs.clocks import Clock
+from hexapods.runs.clocks import SAME_MOMENT_S, Clock
 from hexapods.runs.recorded_walk import RecordedSteps
 from hexapods.runs.recording import PracticeRecording, pose_at
 from hexapods.runs.records import ActionValues, StepTaken
@@ -164,8 +164,16 @@ class PracticeShow:
         if not self._step_numbers:
             return
         low, high = self._step_numbers[0] - 1.0, float(self._step_numbers[-1])
-        self._done = self._skip_gap(min(max(time_s / self._step_s, low), high))
+        self._done = self._skip_gap(min(max(self._steps_in(time_s), low), high))
         self._played_s = bisect_left(self._step_numbers, self._done) * self._step_s
+
+    def _steps_in(self, time_s: float) -> float:
+        """Return the steps done at a time [s]: a whole number where it is the end of a step."""
+        done = time_s / self._step_s
+        if math.isinf(done):
+            return done
+        is_end = abs(done - round(done)) * self._step_s <= SAME_MOMENT_S
+        return float(round(done)) if is_end else done
 
     def seek_end(self) -> None:
         """Set the playback position to the last step that is recorded."""
@@ -283,6 +291,7 @@ class PracticeShow:
             step.step,
             self.steps,
             float(qpos[1]),
+            steps_made=math.floor(self._done),
             done=self.ended and not self._is_halted,
             halted=self._is_halted,
             marching=self._marching(index),

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from hexapods.domain.types import FloatArray
 from hexapods.domain.world import UNDISTURBED, World
-from hexapods.runs.clocks import Clock
+from hexapods.runs.clocks import SAME_MOMENT_S, Clock
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.results import time_out_s
 from hexapods.shows.race_lane import RaceLane
@@ -163,10 +163,17 @@ class RaceShow:
         return self._rate < full_rate / 4
 
     def seek(self, time_s: float) -> None:
-        """Set the playback position to a race time [s], at most to where all lanes are computed."""
+        """Set the playback position to a race time [s], at most to where all lanes are computed.
+
+        What is the moment of the time-out, or of the end, for pages that know milliseconds, is it.
+        """
         self._update_lanes()
         self._freeze_left_s = 0.0
         self.time_s = min(max(time_s, 0.0), self._horizon_s)
+        for moment_s in (self.first_finish_s, self._horizon_s):
+            if moment_s is not None and abs(self.time_s - moment_s) <= SAME_MOMENT_S:
+                self.time_s = moment_s
+                return
 
     def seek_branch(self, time_s: float) -> None:
         """Set the playback position to a race time of the original, at most to where both part."""
@@ -327,5 +334,6 @@ class RaceShow:
         distances = [lane.distance_m for lane in lanes]
         if first is not None and self.time_s >= first:
             distances = [lane.distance_at(first) for lane in self._lanes]
-        ranks = [1 + sum(other > own + 1e-9 for other in distances) for own in distances]
+        # As `lane_figures` does, to the last bit.
+        ranks = [1 + sum(other > own for other in distances) for own in distances]
         return tuple(replace(lane, rank=rank) for lane, rank in zip(lanes, ranks, strict=True))

@@ -85,6 +85,8 @@ class LaneFrame:
     steps: int
     distance_m: float
     """Distance along the track as drawn: since the start of the race, or of the episode."""
+    steps_made: int = 0
+    """Number of steps that have ended."""
     rank: int = 1
     thinking: bool = False
     """Whether it is computing a decision by look-ahead."""
@@ -178,7 +180,7 @@ class StageFrame:
 
     def _lane(self, number: int) -> dict[str, Any]:
         lane, lane_spec = self.lanes[number], self.spec.lane_specs[number]
-        plain = ("step", "steps", "thinking", "futures", "futures_total")
+        plain = ("step", "steps", "steps_made", "thinking", "futures", "futures_total")
         flags = ("done", "halted", "crossed", "rank", "marching", "failure")
         return {
             "lane": number,

@@ -1868,8 +1868,15 @@ export interface SceneLane {
   name: string;
   color: string;
   distance_m: number;
+  /**
+   * the step that it takes, counted from 1; at its end the last.
+   */
   step: number;
   steps: number;
+  /**
+   * steps that have ended.
+   */
+  steps_made: number;
   thinking: boolean;
   futures: number;
   futures_total: number;

@@ -17,7 +17,7 @@ import pytest
 from app.events.bus import Channel, EventBus
 from app.stage.stage import ANNOUNCE_AFTER_S, NEXT_AFTER_S, Stage
 from app.storage.recordings import Recordings
-from app.storage.run import NOT_ENDED, State
+from app.storage.run import NOT_ENDED, RESUMABLE, STATES, State
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
@@ -31,7 +31,7 @@ STEPS = 6
 AGENTS = ("greedy", "random-walk")
 FRAME_S = 0.25
 """Playback goes on by so much at most in a frame."""
-EARLY_ENDS: tuple[State, ...] = ("stopped", "failed", "interrupted")
+EARLY_ENDS: tuple[State, ...] = tuple(sorted({*STATES} - NOT_ENDED - {"finished"}))
 WEIGHTS = {
     "start": 4,
     "compute": 6,
@@ -130,7 +130,7 @@ class Audience:
 
     def resume(self) -> None:
         parts, expected = self._parts, self._expected
-        if run_id := self._any("failed", "interrupted"):
+        if run_id := self._any(*sorted(RESUMABLE["race"])):
             parts.set_state(parts.store.get(run_id), "queued")
             expected.states[run_id] = "queued"
             if expected.state not in NOT_ENDED or run_id == expected.on_stage:

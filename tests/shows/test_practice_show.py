@@ -215,3 +215,21 @@ def test_fall_that_is_no_longer_recorded_is_known_from_the_result(parts: StagePa
 
     assert {lane.fell_at_step for lane in lanes if lane.step <= 20} == {None}
     assert {lane.fell_at_step for lane in lanes if lane.step > 500} == {100}
+
+
+def test_end_of_a_step_that_a_page_names_by_milliseconds_is_that_of_the_step(
+    parts: StageParts,
+) -> None:
+    run = parts.finished_training(60, evaluate_every=6)
+    parts.stage.set(run_id=run.id, playing=False)
+    duration_s = parts.next_frame().duration_s
+    assert duration_s is not None
+    # As the page computes a moment on its bar.
+    step_s = round(duration_s, 3) / 60
+    for step in range(1, 61):
+        parts.stage.set(time_s=step * step_s)
+        frame = parts.next_frame()
+        assert frame.lanes[0].steps_made == step
+        assert [ghost.step for ghost in frame.ghosts][-1:] == [step - step % 6][: step // 6]
+        parts.stage.set(time_s=(step - 0.4) * step_s)
+        assert parts.next_frame().lanes[0].steps_made == step - 1

@@ -5,9 +5,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from hexapods.domain.creatures import CREATURES
 from hexapods.domain.disturbances import Limp, Lost, Push
-from hexapods.domain.robot import Robot
+from hexapods.domain.robot import PRESETS, Robot
 from hexapods.domain.world import World
+from hexapods.runs.clocks import Timetable
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.recording import LaneRecording
@@ -354,3 +356,31 @@ def test_fork_is_shown_without_its_original_if_that_is_deleted(parts: StageParts
     parts.stage.set(run_id=fork.id)
 
     assert {frame.ghost_lanes for frame in parts.watch_to_end()} == {()}
+
+
+@pytest.mark.parametrize("robot", ["stiff", "compliant", "dog", "centipede"])
+def test_moment_that_pages_know_by_milliseconds_is_that_of_a_step(
+    parts: StageParts, robot: str
+) -> None:
+    """Sums of odd durations of steps end a hair above or below what a page is told and names."""
+    walk = {"robot": PRESETS[robot], "gait": CREATURES[robot].gait}
+    race = parts.finished_race(("greedy", "random-walk"), **walk)
+    parts.stage.set(run_id=race.id, playing=False)
+    parts.next_frame()
+    recorded = parts.recordings.race(race.id)
+    assert recorded is not None
+    for number, lane in enumerate(recorded):
+        for step, end_s in enumerate(Timetable.of(lane.steps, "paper").ends.tolist(), 1):
+            for told_s in (round(end_s, 3), round(end_s, 5), end_s):
+                parts.stage.set(time_s=told_s)
+                assert parts.next_frame().lanes[number].steps_made == step
+            parts.stage.set(time_s=end_s - 0.01)
+            assert parts.next_frame().lanes[number].steps_made == step - 1
+    time_out_s = finish_s(recorded, 12, "paper")
+    assert time_out_s is not None
+    figures = lane_figures(recorded, 12, "paper")
+    parts.stage.set(time_s=round(time_out_s, 3))
+    frame = parts.next_frame()
+    assert frame.phase == "photo-finish"
+    assert [lane.rank for lane in frame.lanes] == [one.rank for one in figures]
+    assert [lane.distance_m for lane in frame.lanes] == [one.finished_distance_m for one in figures]

@@ -109,8 +109,8 @@ class StageParts:
             fields: of the config; its simulator is the kinematic one by default.
         """
         lanes = tuple(LaneConfig(agent=agent) for agent in agents)
-        fields = {"simulator": "kinematic", **fields}
-        config = RaceConfig(gait=GAIT, lanes=lanes, steps=steps, **fields)
+        fields = {"gait": GAIT, "simulator": "kinematic", **fields}
+        config = RaceConfig(lanes=lanes, steps=steps, **fields)
         run = self.create(config, state="running")
         walkers = build_walkers(config, [None] * len(lanes))
         poses = [w.simulator.pose(w.state).astype(np.float32) for w in walkers]

@@ -3,7 +3,7 @@
 import asyncio
 import json
 import struct
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
@@ -83,6 +83,25 @@ def test_race_is_shown_after_its_own_training(parts: StageParts) -> None:
 
     assert frames[-1].run_id == race.id
     assert max(frame.time_s for frame in frames if frame.run_id == training.id) > 18
+
+
+def test_training_that_was_stopped_stays_although_a_race_was_queued_behind_it(
+    parts: StageParts,
+) -> None:
+    training, advance = parts.running_training(60)
+    lanes = (LaneConfig(agent="q-learning"), LaneConfig(agent="greedy"))
+    config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=lanes, steps=5)
+    race = parts.create(config, waiting_for=(training.id,))
+    parts.stage.offer(race.id)
+    for _ in range(20):
+        advance()
+    parts.set_state(race, "stopped")
+    parts.set_state(training, "stopped")
+    frame = parts.watch_to_end()[-1]
+
+    assert (frame.run_id, parts.stage.state()["next_run_id"]) == (training.id, None)
+    assert frame.label.endswith(", stopped at step 20 of 60")
+    assert parts.watch(ANNOUNCE_AFTER_S + NEXT_AFTER_S + 5)[-1].run_id == training.id
 
 
 def test_replay_of_the_newest_race_is_announced_and_begins_ten_seconds_later(
@@ -249,7 +268,7 @@ def test_race_that_was_resumed_and_computed_between_two_frames_is_shown_anew(
 def test_pages_are_told_that_the_race_to_come_was_deleted(parts: StageParts) -> None:
     training, _ = parts.running_training(60)
     config = RaceConfig(gait=GAIT, simulator="kinematic", lanes=(LaneConfig(agent="greedy"),))
-    race = parts.create(config, waiting_for=(training.id,))
+    race = parts.create(config, waiting_for=(training.id,), started_at=datetime.now(UTC))
     parts.stage.offer(race.id)
     parts.set_state(race, "stopped")
     parts.next_frame()

@@ -94,8 +94,23 @@ def test_deleted_run_gives_way_to_the_next_of_the_playlist() -> None:
     assert staged("ended").announce("other").remove("other").announced is None
 
 
+@pytest.mark.parametrize("state", ["stopped", "failed", "interrupted"])
+def test_race_that_ended_before_it_began_is_not_shown_after_its_training(state: State) -> None:
+    practice, race = StagedRun("training", "running"), StagedRun("race", "queued", has_begun=False)
+    shown = StageState().show((practice, race), "started")
+    void = race._replace(state=state)
+
+    assert shown.change(void).playlist == (practice,)
+    assert not shown.change(void).change(practice._replace(state=state)).is_held
+    assert StageState().show((practice, void), "started").playlist == (practice,)
+    assert StageState().show((void,), "chosen").run == void, "but where a person chooses it"
+    assert shown.change(void._replace(has_begun=True)).playlist[1:] == (
+        void._replace(has_begun=True),
+    ), "what has begun has a picture, or a reason why not"
+
+
 IDS = st.sampled_from(["a", "b", "c"])
-RUNS = st.builds(StagedRun, IDS, st.sampled_from(STATES))
+RUNS = st.builds(StagedRun, IDS, st.sampled_from(STATES), st.booleans())
 COMMANDS = st.one_of(
     st.tuples(
         st.just("show"),
@@ -128,8 +143,11 @@ def test_any_sequence_keeps_the_rules(commands: list[tuple[str, ...]]) -> None:
             changed: StagedRun = arguments[0]  # type: ignore[assignment]
             states |= {changed.id: changed.state} if changed.id in states else {}
         assert all(states[run.id] == run.state for run in state.playlist)
+        assert not any(run.is_void for run in state.playlist[1:])
         if before.origin == "chosen" and verb not in ("show", "remove"):
-            assert [run.id for run in state.playlist] == [run.id for run in before.playlist]
+            kept = [run.id for run in state.playlist]
+            assert kept[:1] == [run.id for run in before.playlist][:1]
+            assert set(kept) <= {run.id for run in before.playlist}
             assert state.announced is None
         if state.announced is not None:
             assert state.may_announce
