@@ -2,7 +2,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "./api.js";
 import { form, mistakes, raceBody } from "./form.js";
-import { duration } from "./format.js";
+import { aboutDuration } from "./format.js";
 import { isOperator } from "./selectors.js";
 import { learns } from "./settings.js";
 import { connection } from "./store.js";
@@ -57,7 +57,7 @@ export function makeEstimate(start) {
   const answer = makeAnswer(start);
   return computed(() => {
     const seconds = answer.value?.seconds ?? 0;
-    return seconds > LONG_S ? `Takes about ${duration(seconds)} on this machine.` : "";
+    return seconds > LONG_S ? `Takes ${aboutDuration(seconds)} on this machine.` : "";
   });
 }
 

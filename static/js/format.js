@@ -58,20 +58,29 @@ export function decision(seconds) {
   return ms < 1000 ? `${Math.round(ms)} ms` : `${(ms / 1000).toFixed(1)} s`;
 }
 
+const UNDER_1_S = "under 1 s";
+
 /**
  * A duration: "4 s", "2 min", "1 h 5 min".
  * @param {number} seconds
  */
 export function duration(seconds) {
-  if (seconds < 1) return "under 1 s";
+  if (seconds < 1) return UNDER_1_S;
   if (seconds < 90) return `${Math.round(seconds)} s`;
   const minutes = Math.round(seconds / 60);
   if (minutes < 90) return `${minutes} min`;
   return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
-/** Sums of steps' durations miss a whole second by less. */
-const SAME_MOMENT_S = 0.0005;
+/**
+ * Times of a run that differ by no more are one moment, as on the server (hexapods/runs/clocks.py): it tells
+ * milliseconds, and sums of steps' durations differ in their last bits. A step lasts longer.
+ */
+export const SAME_MOMENT_S = 0.001;
+
+/** An estimated duration: "about 4 s", "under 1 s". @param {number} seconds */
+export const aboutDuration = (seconds) =>
+  (duration(seconds) === UNDER_1_S ? UNDER_1_S : `about ${duration(seconds)}`);
 
 /**
  * A moment of a race or practice, as on the time bar: "1:05".

@@ -13,7 +13,7 @@ import { followLesson } from "./lesson.js";
 import { followHistory, page, reload } from "./page-state.js";
 import { followPresenter, followTheme } from "./page.js";
 import { followPresentation } from "./presentation.js";
-import { announceOutcomes, headline, practiceTitle } from "./headline.js";
+import { announceOutcomes, headline } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
@@ -87,7 +87,7 @@ function reloadAfterUpgrade() {
 
 /** Keep the window's title: what is shown, in a list of tabs. */
 const followTitle = () => effect(() => {
-  document.title = windowTitle(page.view.value, headline.value ?? practiceTitle.value);
+  document.title = windowTitle(page.view.value, headline.value);
 });
 
 followHistory();

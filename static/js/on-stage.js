@@ -6,6 +6,7 @@ import { conditionsAt, conditionsInWords, disturbancesOf } from "./disturbances.
 import { form } from "./form.js";
 import { count, duration, sentence, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
+import { earlyEndOf } from "./said/moment.js";
 import {
   hasTable, isActive, isKnown, isOperator, isVisitor, myRuns, runOf, stageableRuns, trainingIds,
 } from "./selectors.js";
@@ -13,7 +14,7 @@ import { learns } from "./settings.js";
 import { commonStage, isAway, isLockedOut, ownStage, scene, stage } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { FormValues, Run, Scene, State } from "./types.js" */
+/** @import { FormValues, Run, Scene } from "./types.js" */
 
 // ---- what is on stage
 
@@ -31,14 +32,6 @@ export const isStale = computed(() => isAway.value && ownStage.value === null);
 
 /** The phase of the stage; "empty" before the first snapshot too. */
 export const phase = computed(() => stage.value?.phase ?? "empty");
-
-/** How a run ended that did not take all its steps, as a word that begins a sentence. */
-const EARLY_ENDS = /** @type {Partial<Record<State, string>>} */ ({
-  stopped: "Stopped", failed: "Failed", interrupted: "Interrupted",
-});
-
-/** "Stopped", "Failed" or "Interrupted"; null of a run that goes on or has finished. @param {Run | null} run */
-export const earlyEnd = (run) => (run ? EARLY_ENDS[run.state] ?? null : null);
 
 /** Whether the stage plays: one that shows the end of its run does not, nor one that is not heard. */
 export const isPlaying = computed(() =>
@@ -126,16 +119,26 @@ export const offStage = computed(() => {
 });
 
 /** Whether a run can be resumed that ended before its last step. @param {Run | null | undefined} run */
-const isResumable = (run) => (run?.state === "interrupted" || run?.state === "failed") && run.can_resume;
+const isResumable = (run) => Boolean(run && earlyEndOf(run) && run.can_resume);
 
 /**
- * The run on stage, if it can be resumed; of a training the interrupted race that needs it, which resumes both.
+ * Whether a race has to wait for a training: that of one that was stopped is used as it is, unless the race has not
+ * begun yet. @type {(race: Run, training: Run) => boolean}
+ */
+const waitsFor = (race, training) =>
+  trainingIds(race).includes(training.id) && (training.state !== "stopped" || race.waiting_for?.includes(training.id));
+
+/** Whether something was made of a training's table, which stays then as it is. @param {Run} training */
+const isUsed = (training) => training.state === "stopped" && stageableRuns.value.some((run) =>
+  run.progress.done > 0 && (run.config.continue_from === training.id || trainingIds(run).includes(training.id)));
+
+/**
+ * The run on stage, if it can be resumed; of a training the race that waited for it, which resumes both.
  */
 export const resumableOnStage = computed(() => {
   const shown = shownRun.value;
-  if (work.value || !shown || !isResumable(shown)) return null;
-  const needsIt = (/** @type {Run} */ run) => isResumable(run) && trainingIds(run).includes(shown.id);
-  return stageableRuns.value.find(needsIt) ?? shown;
+  if (work.value || !shown || !isResumable(shown) || isUsed(shown)) return null;
+  return stageableRuns.value.find((run) => isResumable(run) && waitsFor(run, shown)) ?? shown;
 });
 
 /** When a run was last at work. @param {Run} run */
@@ -334,7 +337,8 @@ function ofPlayback(now) {
 /** @param {Scene} now */
 function showing(now) {
   if (stage.value?.origin !== "started") return `Replaying the ${now.kind}`;
-  return `Showing the ${now.kind}, which is computed${earlyEnd(shownRun.value) ? " as far as it came" : " to its end"}`;
+  const how = earlyEndOf(shownRun.value) ? "as far as it came" : "to its end";
+  return `Showing the ${now.kind}, which is computed ${how}`;
 }
 
 // ---- the title of the window

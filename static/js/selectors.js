@@ -1,13 +1,12 @@
 // Values derived from the store: rights, and the runs that this tab started.
 import { computed, signal } from "@preact/signals";
 import { disturbancesOf } from "./disturbances.js";
+import { isActive } from "./said/moment.js";
 import { options, role, runs } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Allowance, GaitConfig, LaneConfig, Run, State } from "./types.js" */
 
-/** @type {Set<State>} */
-const ACTIVE = new Set(["queued", "running", "paused"]);
 /** @type {Set<State>} */
 const WITH_TABLE = new Set(["finished", "stopped"]);
 const MAX_OWN_RUNS = 50;
@@ -15,8 +14,7 @@ const MAX_OWN_RUNS = 50;
 /** @type {<T>(value: T | null | undefined) => value is T} */
 export const isKnown = (value) => value !== null && value !== undefined;
 
-/** @type {(run: Run | null | undefined) => boolean} */
-export const isActive = (run) => isKnown(run) && ACTIVE.has(run.state);
+export { isActive };
 /** @type {(run: Run | null | undefined) => boolean} */
 export const hasTable = (run) => run?.kind === "training" && WITH_TABLE.has(run.state);
 

@@ -3,14 +3,15 @@ import { computed } from "@preact/signals";
 import { setStage, togglePlaying } from "./actions.js";
 import { rateChanges, rateInWords } from "./changes.js";
 import { disturbancesOf, inWords } from "./disturbances.js";
-import { metres, sentence, whole } from "./format.js";
+import { metres, SAME_MOMENT_S, sentence, whole } from "./format.js";
 import { canPlay, clock, isStale, raceScene, shownRun } from "./on-stage.js";
 import { page } from "./page-state.js";
 import { timeline } from "./race.js";
 import { endTime, openReplay, plan, playReplay, replayTime } from "./replay.js";
+import { stepEnds } from "./said/moment.js";
 import { isActive } from "./selectors.js";
 import { agentOf, laneTitle } from "./settings.js";
-import { isAway, ownStage, scene, stage } from "./store.js";
+import { ownStage, scene, stage } from "./store.js";
 import { curve } from "./training.js";
 
 /** @import { ReadonlySignal } from "@preact/signals" */
@@ -59,7 +60,7 @@ function ofRace(isComputing) {
   const whole_s = duration_s ?? Math.max(AHEAD * computed_s, FIRST_VIEW_S);
   const isCut = ownStage.value ? plan.value !== null && endTime.value < whole_s : stage.value?.end_at_time_out;
   const picture = time_s();
-  const end = isCut && time_out_s !== null && picture <= time_out_s + 1e-3 ? time_out_s : whole_s;
+  const end = isCut && time_out_s !== null && picture <= time_out_s + SAME_MOMENT_S ? time_out_s : whole_s;
   return { unit: "s", unit_s: 1, end, picture, computed: Math.min(computed_s, end), isComputing };
 }
 
@@ -80,7 +81,7 @@ export const marks = computed(() => {
   const known = scale.value;
   if (!run || !known) return [];
   const all = run.kind === "training" ? marksOfPractice(run) : marksOfRace(run);
-  return all.filter(({ at }) => at <= known.computed + 1e-6 && at <= known.end + 1e-6).sort((a, b) => a.at - b.at);
+  return all.filter(({ at }) => at <= Math.min(known.computed, known.end) + SAME_MOMENT_S).sort((a, b) => a.at - b.at);
 });
 
 /** @param {Run} run @returns {Mark[]} */
@@ -97,16 +98,6 @@ function marksOfPractice(run) {
   const fell = run.result?.fell_at_step ?? null;
   const falls = fell === null ? [] : [{ kind: "fall", at: fell, text: "falls" }];
   return [...evaluations, ...changes, ...happened, ...falls];
-}
-
-/**
- * The times at the start and at the end of each step of a lane [s]; null where the timeline does not have each step.
- * @param {Pick<TimelineLane, "points" | "thinking" | "futures">} track
- */
-export function stepTimes({ points, thinking, futures }) {
-  if (points.length - 1 !== thinking.length + futures.length) return null;
-  const thoughtUntil = new Set(thinking.map(([, to]) => to));
-  return points.filter(([t], n) => n === 0 || !thoughtUntil.has(t)).map(([t]) => t);
 }
 
 /**
@@ -135,7 +126,7 @@ function marksOfRace(race) {
 /** @param {Run} race @param {TimelineLane} track @param {number} lane @param {number} finish_m @returns {Mark[]} */
 function marksOfLane(race, track, lane, finish_m) {
   const name = laneTitle(race.config.lanes[lane] ?? track);
-  const ends = stepTimes(track);
+  const ends = stepEnds(track)?.map(([t]) => t);
   const crossed = timeAtDistance(track, finish_m);
   const fell = race.result?.lanes[lane]?.fell_at_step ?? null;
   /** @type {Mark[]} */
@@ -229,9 +220,6 @@ export const laneRows = computed(() => {
     thinking: track.thinking, until: track.points.at(-1)?.[0] ?? 0,
   }));
 });
-
-/** Said of a replay of this page's own whose next picture is not there. */
-export const loadingInWords = () => (isAway.value ? "Your replay waits for the server." : "Loading your replay…");
 
 /** A mark's text as it begins a sentence. @param {Mark} one */
 export const markInWords = ({ text }) => sentence(text);

@@ -100,7 +100,7 @@ const movedBy = (one, from) => ({
  */
 const shownUpTo = ({ id }) => {
   const { run_id, kind, phase, lanes = [] } = scene.value ?? {};
-  return run_id === id && kind === "training" && phase !== "finished" ? lanes[0]?.step ?? 0 : Infinity;
+  return run_id === id && kind === "training" && phase !== "finished" ? lanes[0]?.steps_made ?? 0 : Infinity;
 };
 
 /** @param {Run} run */

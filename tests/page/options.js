@@ -268,10 +268,11 @@ export const makeStage = (changes = {}) => /** @type {Stage} */ ({
 });
 
 /**
- * A lane of the scene, at its start.
- * @param {object} [changes]
+ * A lane of the scene, at its start. Of the step that it takes less than the whole is shown.
+ * @param {any} [changes]
  */
 export const makeSceneLane = (changes = {}) => ({
   lane: 0, name: "Learner", color: "#111", rank: 1, distance_m: 0, step: 0, steps: 50, done: false, halted: false,
-  thinking: false, futures: 0, futures_total: 0, crossed: false, marching: false, ...changes,
+  steps_made: changes.done || changes.halted ? changes.step ?? 50 : Math.max(0, (changes.step ?? 0) - 1),
+  thinking: false, futures: 0, futures_total: 0, crossed: false, marching: false, failure: null, ...changes,
 });

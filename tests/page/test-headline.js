@@ -1,9 +1,10 @@
 // Why the leader is ahead, from recorded figures only.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import {
-  practiceReason, practiceTitle, reason, reasonOf, stepEnds, whyMarching, workOf,
-} from "../../static/js/headline.js";
+import { headline, told as saidNow, whyMarching } from "../../static/js/headline.js";
+import { madeAt, stepEnds } from "../../static/js/said/moment.js";
+import { chanceInWords } from "../../static/js/said/practice.js";
+import { reasonOf, workOf } from "../../static/js/said/reasons.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
@@ -23,19 +24,20 @@ function track(lengths, { thinking = 0, futures = 0 } = {}) {
     }
     lane.points.push([(time += 1), (distance += length)]);
   }
-  return { ...lane, total_s: time };
+  return { ...lane, total_s: time, steps: lengths.length, stride: 1 };
 }
 
 /** @type {(count: number, length: number) => number[]} */
 const steps = (count, length) => Array.from({ length: count }, () => length);
 
 /** @param {object} [changes] */
-const row = (lane = 0, title = "Greedy", changes = {}) =>
-  ({ lane, title, fell_at_step: null, isMarching: false, ...changes });
+const row = (lane = 0, title = "Greedy", changes = {}) => ({ lane, title, fell_at_step: null, ...changes });
 const [A, B] = [row(0, "Greedy"), row(1, "Q-learning")];
 
-/** @type {(rows: any[], tracks: any[], disturbances?: any[]) => string | null} */
-const told = (rows, tracks, disturbances = []) => reasonOf(rows, tracks, 1000, disturbances);
+/** At the end of all steps. @type {(rows: any[], tracks: any[], happened?: any[]) => string | null} */
+const told = (rows, tracks, happened = []) => reasonOf(rows.map((one) => ({
+  ...one, made: tracks[one.lane]?.steps ?? 0, distance_m: tracks[one.lane]?.points.at(-1)[1] ?? 0,
+})), tracks, { time_s: 1000, isPast: false }, happened);
 
 beforeEach(() => {
   options.value = OPTIONS;
@@ -43,9 +45,10 @@ beforeEach(() => {
 
 test("steps count once they have ended, with the distance that they made", () => {
   const slow = track([0.03, 0.03], { thinking: 1 });
-  assert.deepEqual(stepEnds(track([0.01, 0.01]), 1.9), [0, 0.01]);
-  assert.deepEqual([1.5, 3.5, 4].map((time) => stepEnds(slow, time)), [[0], [0, 0.03], [0, 0.03, 0.06]]);
-  assert.equal(stepEnds({ ...slow, points: [[0, 0], [2, 0.02]] }, 2), null);
+  assert.deepEqual(stepEnds(slow), [[0, 0], [2, 0.03], [4, 0.06]]);
+  assert.deepEqual([1.5, 3.5, 3.9995, 4].map((time) => madeAt(slow, time)), [0, 1, 2, 2]);
+  assert.equal(madeAt({ ...slow, stride: 3, steps: 5 }, 4), 5, "three together, and the last two");
+  assert.equal(stepEnds({ ...slow, points: [[0, 0], [2, 0.02]] }), null);
 });
 
 test("nothing is told without figures of both, nor of lanes that are level", () => {
@@ -64,12 +67,12 @@ test("1: the other has fallen, and the leader has not", () => {
 
 test("2: the other marches on the spot", () => {
   const tracks = [track(steps(12, 0.01)), track([0.02, 0.02, ...steps(10, 0.0004)])];
-  const words = told([A, row(1, "Q-learning", { isMarching: true })], tracks);
+  const words = told([A, B], tracks);
   assert.equal(words, "Q-learning marches on the spot: 0.4\u00a0cm in its last ten steps.");
 });
 
 test("3: a disturbance shortened the other's steps, and more than the leader's", () => {
-  const limp = { kind: "limp", at_step: 5, legs: [1] };
+  const limp = { at_step: 5, words: "Leg\u00a01 limp from step 6" };
   const tracks = [track(steps(10, 0.01)), track([...steps(5, 0.01), ...steps(5, 0.004)])];
   const words = "Leg\u00a01 limp from step 6: Q-learning went 10.0\u00a0mm a step before, 4.0\u00a0mm after.";
   assert.equal(told([A, B], tracks, [limp]), words);
@@ -100,7 +103,7 @@ test("6: both walk alike, and the lead is that of the first ten steps", () => {
 });
 
 test("a reason has at most 25 words", () => {
-  const long = row(1, "Posterior sampling (deep)", { isMarching: true, fell_at_step: 41 });
+  const long = row(1, "Posterior sampling (deep)", { fell_at_step: 41 });
   const tracks = [track(steps(50, 0.0123), { futures: 7800 }), track(steps(50, 0.001), { futures: 7 })];
   for (const other of [long, { ...long, fell_at_step: null }, row(1, long.title)]) {
     assert.ok((told([A, other], tracks) ?? "").split(" ").length <= 25);
@@ -109,15 +112,14 @@ test("a reason has at most 25 words", () => {
 
 test("at the end it is told how the winner spent its time", () => {
   const winner = track(steps(4, 0.01), { thinking: 1 });
-  assert.equal(workOf(A, [winner], 6, 50), "It thought for 50 % of the time, and made 3 steps of 50.");
-  assert.equal(workOf(undefined, [winner], 6, 50), null);
-  assert.equal(workOf(A, [], 6, 50), null);
+  assert.equal(workOf(winner, 6, 50), "It thought for 50 % of the time, and made 3 steps of 50.");
+  assert.equal(workOf(undefined, 6, 50), null);
 });
 
 test("practice says how many of its steps are random, while there are any", () => {
-  assert.equal(practiceReason(0.334), "33 of 100 steps are still random (ε\u00a00.33): it finds out which moves pay.");
-  assert.equal(practiceReason(0), null);
-  assert.equal(practiceReason(undefined), null);
+  assert.equal(chanceInWords(0.334), "33 of 100 steps are still random (ε\u00a00.33): it finds out which moves pay.");
+  assert.equal(chanceInWords(0), null);
+  assert.equal(chanceInWords(undefined), null);
 });
 
 test("practice is told by its newest test that is shown, and before the first by when that comes", () => {
@@ -129,40 +131,46 @@ test("practice is told by its newest test that is shown, and before the first by
   showStep(10);
   applyEvent("evaluation", { run_id: run.id, step: 50, distance_m: 0.12, epsilon: 0.9 });
   applyEvent("evaluation", { run_id: run.id, step: 100, distance_m: 0.31, epsilon: 0.8 });
-  assert.deepEqual([practiceTitle.value, reason.value], ["Learner practises", "Its first test is at step 50."]);
-  showStep(60);
-  assert.equal(practiceTitle.value, "Learner walks 0.12\u00a0m so far");
-  assert.match(reason.value ?? "", /^90 of 100 steps are still random/);
+  assert.deepEqual([headline.value, saidNow.value.reason], ["Learner practises", "Its first test is at step 50."]);
+  showStep(50);
+  assert.equal(headline.value, "Learner practises", "while it takes the step after which it is tested");
+  showStep(51);
+  assert.equal(headline.value, "Learner walks 0.12\u00a0m so far");
+  assert.match(saidNow.value.reason ?? "", /^90 of 100 steps are still random/);
   connection.value = "reconnecting";
-  assert.equal(reason.value, "This is the last that is known.");
+  assert.equal(saidNow.value.reason, "This is the last that is known.");
   connection.value = "live";
 });
 
 test("the last picture of a practice that has ended says how it ended, and nothing of what it still does", () => {
-  const run = makeRun({ state: "stopped", progress: { done: 120, total: 500 } });
+  const run = makeRun({ state: "stopped", progress: { done: 120, total: 500 }, can_resume: true });
   const end = (/** @type {object} */ changes, isEnded = true) => applyEvent("snapshot", {
-    runs: [{ ...run, ...changes }], stage: makeStage({ run_id: run.id }),
+    role: "operator", runs: [{ ...run, ...changes }], stage: makeStage({ run_id: run.id, ended: isEnded }),
     scene: {
       run_id: run.id, kind: "training", phase: "practice", ended: isEnded, lanes: [makeSceneLane({ step: 120 })],
     },
   });
   end({ progress: { done: 50, total: 500 } }, false);
-  assert.deepEqual([practiceTitle.value, reason.value], ["Learner practises", null]);
+  assert.deepEqual([headline.value, saidNow.value.reason, saidNow.value.note], ["Learner practises", null, null]);
   end({ progress: { done: 51, total: 500 } }, false);
-  assert.equal(reason.value, "Its first test is at step 50.");
+  assert.equal(saidNow.value.reason, "Its first test is at step 50.");
   end({});
+  assert.deepEqual([headline.value, saidNow.value.reason, saidNow.value.note?.what, saidNow.value.note?.action?.label],
+    ["Stopped at step 120 of 500", null, "The training was stopped at step 120 of 500.", "Go on"]);
   connection.value = "reconnecting";
-  assert.deepEqual([practiceTitle.value, reason.value],
-    ["Learner has practised", "The training was stopped at step 120 of 500."], "which stays so without the server");
+  assert.equal(headline.value, "Stopped at step 120 of 500", "which stays so without the server");
   connection.value = "live";
   applyEvent("evaluation", { run_id: run.id, step: 100, distance_m: 0.31, epsilon: 0.8 });
-  assert.deepEqual([practiceTitle.value, reason.value],
-    ["Learner walked 0.31\u00a0m in its last test", "The training was stopped at step 120 of 500."]);
+  assert.deepEqual([headline.value, saidNow.value.reason],
+    ["Stopped at step 120 of 500", "Learner walked 0.31\u00a0m in its last test, after 100 steps."]);
+  end({ state: "interrupted" });
+  assert.equal(headline.value, "Interrupted at step 120 of 500");
   end({ state: "finished", progress: { done: 500, total: 500 } });
-  assert.equal(reason.value, "It has practised 500 steps.");
+  assert.deepEqual([headline.value, saidNow.value.reason, saidNow.value.note],
+    ["Learner walked 0.31\u00a0m in its last test", "It has practised 500 steps.", null]);
   // Played again it is at an earlier moment.
   end({}, false);
-  assert.equal(practiceTitle.value, "Learner walks 0.31\u00a0m so far");
+  assert.equal(headline.value, "Learner walks 0.31\u00a0m so far");
 });
 
 test("why a robot marches on the spot is told of who learns or simulates, and of nobody else", () => {

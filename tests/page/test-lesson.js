@@ -22,7 +22,10 @@ const showAt = (time_s, race = RACE, role = "operator") => applyEvent("snapshot"
   role, runs: [race], stage: makeStage({ run_id: race.id, phase: "showing" }),
   scene: {
     run_id: race.id, kind: "race", phase: "race", time_s, duration_s: 20, computed_s: 20, time_out_s: 16, ended: false,
-    lanes: [makeSceneLane({ rank: 2 }), makeSceneLane({ lane: 1, name: "Greedy", rank: 1 })],
+    lanes: [
+      makeSceneLane({ rank: 2 }),
+      makeSceneLane({ lane: 1, name: "Greedy", rank: 1, ...(time_s < 16 ? {} : { step: 50, done: true }) }),
+    ],
   },
 });
 

@@ -99,7 +99,7 @@ test("by the end of the first race the code is small, once", async () => {
     role: "operator", runs: [race], stage: makeStage({ run_id: race.id, phase: "showing" }),
     scene: {
       run_id: race.id, kind: "race", phase: "race", time_s, duration_s: 20, computed_s: 20, time_out_s: 16,
-      ended: false, lanes: [makeSceneLane()],
+      ended: false, lanes: [makeSceneLane(time_s < 16 ? {} : { step: 50, done: true })],
     },
   });
   showAt(15);

@@ -1,13 +1,14 @@
 // The race at the moment that is shown: timeline, standings, headline.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { headline, ruleOf } from "../../static/js/headline.js";
-import { clipped, distanceAt, isTimedOut, shownTime, standings, timeSpent } from "../../static/js/race.js";
+import { headline, told } from "../../static/js/headline.js";
+import { clipped, isTimedOut, shownTime, standings } from "../../static/js/race.js";
 import { stageIds } from "../../static/js/runs.js";
+import { distanceAt, timeSpent } from "../../static/js/said/moment.js";
 import { heldRace, raceInView, stepShown } from "../../static/js/on-stage.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { flatParts, planningModelTitle } from "../../static/js/titles.js";
-import { makeRun, OPTIONS } from "./options.js";
+import { makeRun, makeSceneLane, OPTIONS } from "./options.js";
 
 /** @import { TimelinePoint } from "../../static/js/types.js" */
 
@@ -30,14 +31,9 @@ const RACE = makeRun({
   result: { lanes: [laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.3, 22)] },
 });
 
-const sceneLane = (/** @type {object} */ changes) => ({
-  lane: 0, name: "Learner", color: "#111", rank: 1, distance_m: 0, step: 0, steps: 50, done: false, halted: false,
-  thinking: false, futures: 0, futures_total: 0, crossed: false, marching: false, ...changes,
-});
-
 const SCENE = {
   kind: "race", clock: "paper", phase: "race", time_s: 1, duration_s: 9, computed_s: 9, time_out_s: null, ended: false,
-  action_values: null, lanes: [sceneLane({}), sceneLane({ lane: 1, name: "Greedy", rank: 2 })],
+  action_values: null, lanes: [makeSceneLane({}), makeSceneLane({ lane: 1, name: "Greedy", rank: 2 })],
 };
 
 /** Put a race on stage at a moment. */
@@ -51,7 +47,7 @@ const show = (/** @type {import("../../static/js/types.js").Run} */ race, /** @t
 const showScene = (scene) => show(RACE, scene);
 
 /** The rule by which the race on stage is ranked. */
-const ruleShown = () => ruleOf(standings.value ?? [], "paper clock");
+const ruleShown = () => told.value.rule ?? "";
 
 const AT_END = { phase: "finished", time_s: 22, duration_s: 22, computed_s: 22, time_out_s: 16, ended: true };
 
@@ -63,7 +59,7 @@ const showResult = (
   const config = { steps: 50, lanes: lanes.map((_, n) => ({ agent: agents[n] })) };
   const race = makeRun({ kind: "race", progress: { done: 99, total: 150 }, config, result: { lanes }, ...changes });
   const titles = ["Learner", "Greedy", "Planner"];
-  const shown = lanes.map(({ clocks, steps, failure }, lane) => sceneLane({
+  const shown = lanes.map(({ clocks, steps, failure }, lane) => makeSceneLane({
     lane, name: titles[lane], rank: clocks.paper.rank, distance_m: 0.5, step: steps, done: true, failure,
   }));
   show(race, { ...AT_END, lanes: shown, ...scene });
@@ -92,7 +88,7 @@ test("what a search knows is told if something happens in the race, or if it was
   const knownIn = (/** @type {object} */ config, /** @type {object} */ lane) => {
     const lanes = [{ agent: "greedy", plans_with: "world", plans_with_by_default: true, ...lane }];
     const race = makeRun({ ...RACE, id: "other", config: { steps: 50, lanes, ...config } });
-    show(race, { lanes: [sceneLane({})] });
+    show(race, { lanes: [makeSceneLane({})] });
     return standings.value?.[0].plans_with;
   };
   assert.equal(knownIn({}, {}), null);
@@ -157,8 +153,8 @@ test("a lane that failed does not time the race out, and no time-out is claimed 
 
 test("a race that was stopped says so at its last step, without ranks and without a time-out", () => {
   const lanes = [
-    sceneLane({ distance_m: 0.1, step: 26, rank: 2, halted: true }),
-    sceneLane({ lane: 1, name: "Greedy", distance_m: 0.31, step: 25, halted: true }),
+    makeSceneLane({ distance_m: 0.1, step: 26, rank: 2, halted: true }),
+    makeSceneLane({ lane: 1, name: "Greedy", distance_m: 0.31, step: 25, halted: true }),
   ];
   const result = { lanes: RACE.result?.lanes?.map((lane) => ({ ...lane, steps: 26, total_distance_m: null })) };
   const race = makeRun({ ...RACE, id: "stopped", state: "stopped", result });
@@ -173,12 +169,16 @@ test("a race that was stopped says so at its last step, without ranks and withou
   show(makeRun({ ...race, state: "interrupted" }), { ...AT_END, lanes, time_out_s: null });
   assert.match(headline.value ?? "", /^Interrupted at steps 25 to 26 of 50/);
   show(race, { lanes, time_s: 3 });
+  assert.equal(headline.value, "Stopped at steps 25 to 26 of 50", "nobody leads while robots stand still");
+  assert.deepEqual([told.value.reason, (standings.value ?? []).map(({ rank }) => rank)], [null, [null, null]]);
+  show(race, { lanes: lanes.map((lane) => ({ ...lane, halted: false })), time_s: 3 });
   assert.equal(headline.value, "Greedy leads by 21\u00a0cm", "on its way there");
 });
 
 test("at the photo finish lanes that walk on have their totals once the race has finished", () => {
   const lanes = [
-    sceneLane({ distance_m: 0.2, step: 50, rank: 2, done: true }), sceneLane({ lane: 1, distance_m: 0.3, step: 40 }),
+    makeSceneLane({ distance_m: 0.2, step: 50, rank: 2, done: true }),
+    makeSceneLane({ lane: 1, distance_m: 0.3, step: 40 }),
   ];
   show(RACE, { ...AT_END, phase: "photo-finish", time_s: 16, lanes });
   assert.deepEqual(standings.value?.map(({ finished_m, total_m }) => [finished_m, total_m]), [[0.3, 0.5], [0.2, 0.5]]);
@@ -200,7 +200,7 @@ test("before time-out the rule says how the race will be ranked", () => {
 test("during its show nothing later than the scene is told", () => {
   showScene({
     phase: "race", time_s: 1,
-    lanes: [sceneLane({ distance_m: 0.1, step: 5 }), sceneLane({ lane: 1, name: "Greedy", rank: 2 })],
+    lanes: [makeSceneLane({ distance_m: 0.1, step: 5 }), makeSceneLane({ lane: 1, name: "Greedy", rank: 2 })],
   });
   assert.ok(!isTimedOut.value);
   const [first] = standings.value ?? [];
@@ -209,10 +209,10 @@ test("during its show nothing later than the scene is told", () => {
 });
 
 test("before the first step everyone is on the start line, and equal ranks are level", () => {
-  showScene({ phase: "race", time_s: 0, lanes: [sceneLane({}), sceneLane({ lane: 1 })] });
+  showScene({ phase: "race", time_s: 0, lanes: [makeSceneLane({}), makeSceneLane({ lane: 1 })] });
   assert.equal(headline.value, "On the start line");
   showScene({
-    phase: "race", time_s: 1, lanes: [sceneLane({ distance_m: 0.1 }), sceneLane({ lane: 1, distance_m: 0.1 })],
+    phase: "race", time_s: 1, lanes: [makeSceneLane({ distance_m: 0.1 }), makeSceneLane({ lane: 1, distance_m: 0.1 })],
   });
   assert.equal(headline.value, "Learner and Learner are level");
 });
@@ -221,7 +221,7 @@ test("only long decisions are shown as thinking", () => {
   const thinking = { thinking: true, futures: 3 };
   showScene({
     phase: "race", time_s: 1,
-    lanes: [sceneLane({ ...thinking, futures_total: 12 }), sceneLane({ ...thinking, lane: 1, futures_total: 156 })],
+    lanes: [12, 156].map((futures_total, lane) => makeSceneLane({ ...thinking, lane, futures_total })),
   });
   assert.deepEqual((standings.value ?? []).map(({ isThinking }) => isThinking), [false, true]);
 });
@@ -231,7 +231,7 @@ test("a race that branches off has the original's distances beside its own", () 
   const disturbances = [{ kind: "limp", at_step: 20, legs: [1] }];
   const config = { ...RACE.config, branch_from, disturbances };
   const race = makeRun({ ...RACE, id: "branch", created_at: "2031-01-01T00:00:00Z", config });
-  show(race, { ...AT_END, lanes: [sceneLane({ rank: 2, done: true }), sceneLane({ lane: 1, done: true })] });
+  show(race, { ...AT_END, lanes: [makeSceneLane({ rank: 2, done: true }), makeSceneLane({ lane: 1, done: true })] });
   const originals = (standings.value ?? []).map(({ agent, original }) => [agent, original]);
   assert.deepEqual(originals, [
     ["greedy", { finished_m: 0.3, total_m: 0.5 }], ["learner", { finished_m: 0.2, total_m: 0.5 }],
@@ -245,15 +245,15 @@ test("a fall is told once it is shown, and the heading at the end", () => {
   const lane = { ...laneResult("learner"), fell_at_step: 7, heading_deg: 35 };
   const race = makeRun({ ...RACE, id: "fall", result: { lanes: [lane, laneResult("greedy", 2)] } });
   const postureAt = (/** @type {number} */ step) => {
-    show(race, { lanes: [sceneLane({ step, done: step === 50 }), sceneLane({ lane: 1, rank: 2 })] });
+    show(race, { lanes: [makeSceneLane({ step, done: step === 50 }), makeSceneLane({ lane: 1, rank: 2 })] });
     const [{ fell_at_step, heading_deg }] = standings.value ?? [];
     return [fell_at_step, heading_deg];
   };
-  assert.deepEqual([postureAt(7), postureAt(8), postureAt(50)], [[null, null], [7, null], [7, 35]]);
+  assert.deepEqual([postureAt(8), postureAt(9), postureAt(50)], [[null, null], [7, null], [7, 35]]);
 });
 
 test("a race can be raced on while its replay is held", () => {
-  const lanes = [sceneLane({ step: 50, done: true }), sceneLane({ lane: 1, step: 12 })];
+  const lanes = [makeSceneLane({ step: 50, done: true }), makeSceneLane({ lane: 1, step: 12 })];
   showScene({ phase: "race", time_s: 1, lanes });
   assert.deepEqual([heldRace.value, stepShown.value], [null, 12]);
   applyEvent("stage", { ...STAGE, run_id: RACE.id, phase: "showing", playing: false });

@@ -21,7 +21,8 @@ test("the learning curve joins the trainings that continue each other, up to the
   evaluate(first.id, 50);
   evaluate(second.id, 20);
   evaluate(second.id, 40);
-  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes: [{ step: 30 }] });
+  const lanes = [{ step: 30, steps_made: 29 }];
+  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes });
   assert.deepEqual(curve.value?.points.map(({ step }) => step), [0, 50, 120]);
   assert.deepEqual([curve.value?.blocks, curve.value?.to, curve.value?.greedy_m], [[100], 200, 0.5]);
   assert.equal(practisedSteps(second), 140);

@@ -4,14 +4,14 @@ import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { downloads } from "../files.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
-import { ruleOf, whyMarching } from "../headline.js";
-import { isOver, isTimedOut, shownEarlyEnd, standings } from "../race.js";
-import { canPlay, clock, earlyEnd, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
+import { told, whyMarching } from "../headline.js";
+import { isOver, isTimedOut, standings } from "../race.js";
+import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
-import { replayProblem } from "../replay.js";
+import { earlyEndOf } from "../said/moment.js";
 import { isActive, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
-import { runs, scene, served, stage } from "../store.js";
+import { runs, scene, served } from "../store.js";
 import { choicesOf, clockTitle, flatParts, planningModelTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { isAtLeast } from "../workspace.js";
@@ -20,7 +20,7 @@ import { LearningChart } from "./learning.js";
 import { RaceChart } from "./race-chart.js";
 
 /** @import { Standing } from "../race.js" */
-/** @import { Changed, Clock, LaneConfig, Run } from "../types.js" */
+/** @import { Changed, Clock, LaneConfig } from "../types.js" */
 
 export function Board() {
   const rows = standings.value;
@@ -34,7 +34,7 @@ export function Board() {
       ${rows && isTimedOut.value && html`<${ByEachClock} rows=${rows} />`}
       ${hasChart && (rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`)}
       ${rows && isToldAll() && html`
-        <p class="dim fine">${ruleOf(rows, clockTitle(clock.value))}${
+        <p class="dim fine">${told.value.rule}${
           isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>
       `}
       ${isAtLeast("study") && html`<${Files} />`}
@@ -92,7 +92,7 @@ function BranchWords() {
 
 function distanceTitle() {
   if (isTimedOut.value) return html`<span class="sr-only">Distance </span>At time-out`;
-  return shownEarlyEnd.value ? "Reached" : "Now";
+  return ["halting", "left off"].includes(told.value.state) ? "Reached" : "Now";
 }
 
 function BestKnown() {
@@ -226,7 +226,7 @@ function activityOf(row) {
     const steps = count(row.steps, "step");
     return row.elapsed_s ? `${steps} in ${clockTime(row.elapsed_s)}${crossed}` : steps;
   }
-  if (row.isHalted) return `${earlyEnd(raceInView.value) ?? "Stopped"} at step ${row.step}`;
+  if (row.isHalted) return `${earlyEndOf(raceInView.value)?.word ?? "Stopped"} at step ${row.step}`;
   const step = `Step ${row.step} of ${row.steps}`;
   if (isOver.value && row.step) return `${step} at time-out`;
   if (row.isThinking) return `${step}, thinking: ${whole(row.futures)} of ${whole(row.futuresTotal)} simulated`;
@@ -254,28 +254,16 @@ function agentSummary(agent, trainingId) {
 
 // ---- before the race
 
-/** @param {Run | null} race */
-function startSentence(race) {
-  if (!race) return "The lanes of the next race.";
-  if (shownRun.value === race) {
-    const end = earlyEnd(race);
-    if (end && !race.progress.done) return `${end} before it began.`;
-    return race.progress.done ? "Its figures come with the picture." : "The race is about to begin.";
-  }
-  return "The race starts when practice is over.";
-}
-
 /** The lanes before the race. */
 function StartList() {
   const race = raceInView.value;
-  if (!race && stage.value?.run_id && !shownRun.value) {
-    const words = replayProblem.value ? "No run is shown, so there are no figures." : "Loading the run on stage…";
-    return html`<p class="dim" role="status">${words}</p>`;
+  if (!race && ["loading", "lost"].includes(told.value.state)) {
+    return html`<p class="dim" role="status">${told.value.board}</p>`;
   }
   /** @type {LaneConfig[]} */
   const lanes = race?.config?.lanes ?? raceBody().lanes;
   return html`
-    <p class="dim">${startSentence(race)}</p>
+    <p class="dim">${told.value.board}</p>
     <ul class="start-list" aria-label="Lanes of the race">
       ${lanes.map((lane) => html`
         <li style=${{ "--agent": agentOf(lane.agent).color }}>
@@ -284,7 +272,7 @@ function StartList() {
         </li>
       `)}
     </ul>
-    ${raceScene.value && html`<p class="dim">On the start line.</p>`}
+    ${raceScene.value && isActive(race) && html`<p class="dim">On the start line.</p>`}
   `;
 }
 

@@ -1,14 +1,13 @@
 // The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { sentence } from "../format.js";
-import { headline, leaderColor, moveTold, practiceTitle, reason, ruleOf } from "../headline.js";
+import { moveTold, told } from "../headline.js";
 import { clock, isStale, phase, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
-import { isTimedOut, standings } from "../race.js";
-import { replayProblem } from "../replay.js";
+import { isTimedOut } from "../race.js";
 import { isOperator } from "../selectors.js";
-import { isAway, scene } from "../store.js";
+import { scene } from "../store.js";
 import { scale } from "../time.js";
 import { clockTitle } from "../titles.js";
 import {
@@ -67,23 +66,12 @@ function ofMove() {
 
 /** @returns {{ title: string, words: string | null, color: string }} */
 function ofRun() {
-  const title = headline.value ?? practiceTitle.value;
-  if (title) return { title, words: reason.value, color: leaderColor.value };
-  return { title: invitation(), words: about(), color: "transparent" };
+  const { headline: title, reason: words, color } = told.value;
+  return { title, words, color };
 }
 
 /** Who tries has a tab for it. */
 const canExplain = () => !isAtLeast("try") && Boolean(shownRun.value?.progress.done) && scale.value !== null;
-
-const isFirstVisit = () => page.run.value === null && !shownRun.value;
-const invitation = () => {
-  if (isFirstVisit()) return "A hexapod learns to walk";
-  if (shownRun.value) return "On the start line";
-  if (replayProblem.value) return "No run is shown";
-  return isAway.value ? "Waiting for the server" : "Loading…";
-};
-const about = () =>
-  (isFirstVisit() ? "It tries moves, keeps what each was worth, and races against two that think ahead." : "");
 
 // ---- the tabs
 
@@ -205,13 +193,13 @@ function useFade(host) {
 
 /** By what a race is ranked and timed, and how long it still takes. */
 function Facts() {
-  const rows = standings.value;
-  if (!rows) return null;
+  const { rule } = told.value;
+  if (rule === null) return null;
   const { time_s = 0, time_out_s = null } = scene.value ?? {};
   const left = time_out_s === null || isStale.value ? null : Math.max(0, time_out_s - time_s);
   return html`
     <dl class="facts-of-race">
-      <div><dt>Rule</dt><dd>${ruleOf(rows, clockTitle(clock.value))}</dd></div>
+      <div><dt>Rule</dt><dd>${rule}</dd></div>
       <div><dt>Clock</dt><dd>${sentence(clockTitle(clock.value))}. Solid: walking, hatched: thinking.</dd></div>
       ${left !== null && html`
         <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>

@@ -1,8 +1,9 @@
 // The chart of a race: distance against race time, up to the moment that is shown.
 import { seekIn } from "../actions.js";
-import { metres } from "../format.js";
+import { metres, SAME_MOMENT_S } from "../format.js";
 import { raceInView } from "../on-stage.js";
-import { clipped, distanceAt, shownTime, timeline, timelineProblem } from "../race.js";
+import { clipped, shownTime, timeline, timelineProblem } from "../race.js";
+import { distanceAt } from "../said/moment.js";
 import { agentOf, laneTitle } from "../settings.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { html } from "./elements.js";
@@ -117,7 +118,7 @@ function marksOf({ finish_line_m, first_finish_s }, until, best_m) {
     { x: until, color: "--ink", width: 1.5 },
   ];
   if (best_m !== null) marks.push(bestKnownMark(best_m));
-  if (first_finish_s && until >= first_finish_s) {
+  if (first_finish_s && until >= first_finish_s - SAME_MOMENT_S) {
     marks.push({ x: first_finish_s, color: "--dim", dash: [2, 3], text: "time-out" });
   }
   return marks;

@@ -3,23 +3,21 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
-import { metres, sentence, times, whole } from "../format.js";
+import { told } from "../headline.js";
 import { page } from "../page-state.js";
 import { closeLegs, legPoints, legsAreOpen, legsOf, picked } from "../legs.js";
 import { clickedCell, drawHere, shownTheme } from "../page.js";
 import { isTimedOut } from "../race.js";
 import { closeReplay, drawIn, isBuffering, plan, replayProblem } from "../replay.js";
-import { conditionsShown, isDecided, isStale, playbackName, resumableOnStage, shownRun } from "../on-stage.js";
-import { isOperator, visitorRuns } from "../selectors.js";
+import { isDecided, isStale } from "../on-stage.js";
+import { isOperator } from "../selectors.js";
 import { agentOf } from "../settings.js";
 import { isAway, runs, scene, stage } from "../store.js";
-import { loadingInWords, scale } from "../time.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, Loaded } from "./elements.js";
 import { Problem } from "./foot.js";
 
 /** @import { Message } from "../replay-frames.js" */
-/** @import { Run, Scene } from "../types.js" */
 
 /** A frame that has not reported its status for so long is shown as it is. */
 const STATUS_TIMEOUT_MS = 12_000;
@@ -146,29 +144,19 @@ const StageNotes = () => html`
   </div>
 `;
 
-/** A crash loses the steps since the last checkpoint, which count as done. @param {Run} run */
-function lastPicture({ kind, progress: { done } }) {
-  const recorded = kind === "training" && scale.value ? scale.value.computed : done;
-  if (recorded === done) return "This is its last picture.";
-  return `What came after step ${whole(recorded)} is lost: this is its last picture.`;
-}
-
-/** Of a run on stage that was interrupted or failed: where, and how to go on. */
+/** Of a run on stage that ended early: where, and how to go on. */
 function EarlyEndNote() {
-  const run = shownRun.value;
-  const resumable = resumableOnStage.value;
-  if (!run || !resumable || isAway.value || page.run.value !== null || (stage.value && !stage.value.ended)) return null;
-  const { done, total } = run.progress;
-  const where = run.kind === "training" ? ` at step ${whole(done)} of ${whole(total)}` : "";
-  const verb = run.state === "failed" ? "failed" : "was interrupted";
+  const { note } = told.value;
+  if (!note) return null;
+  const { what, words, action } = note;
   return html`
     <div class="stage-note" role="status">
-      <p><b>The ${run.kind} ${verb}${where}.</b> ${lastPicture(run)}</p>
-      ${isOperator.value && html`
-        <button class="primary compact" disabled=${pending.value[resumable.id]} onClick=${() => resumeRun(resumable)}>
-          <${Icon} name="play" />Resume ${resumable === run ? "" : `the ${resumable.kind}`}
+      <p><b>${what}</b> ${words}</p>
+      ${action && html`
+        <button class="primary compact" disabled=${pending.value[action.run.id]} onClick=${() => resumeRun(action.run)}>
+          <${Icon} name="play" />${action.label}
         </button>
-        <${Problem} at=${resumable.id} />
+        <${Problem} at=${action.run.id} />
       `}
     </div>
   `;
@@ -287,57 +275,13 @@ function measureChips(labels) {
   if (JSON.stringify(boxes) !== JSON.stringify(covered.peek())) covered.value = boxes;
 }
 
-/** What the page plays by itself: to a visitor of a demo perhaps the own robot, as it learns. */
-function replayInWords() {
-  // While the server is away the note below says so.
-  if (isBuffering.value && !isAway.value) return loadingInWords();
-  return visitorRuns.value.includes(page.run.value ?? "") ? "Your robot" : "Your own replay";
-}
+/** Titles of chips that have one. @type {Record<string, string>} */
+const CHIP_TITLES = { speed: "Times real time" };
 
-const nothingInWords = () => {
-  if (page.run.value === null) return "On the start line";
-  return replayProblem.value ? "No run is shown" : loadingInWords();
-};
-
-function SceneChips() {
-  const now = scene.value;
-  return html`
-    <div class="chips">
-      <p class="chip strong" role="group" aria-label="Shown run">${now?.label || nothingInWords()}</p>
-      ${now?.phase === "photo-finish" && html`<p class="chip accent">Time-out: photo finish</p>`}
-      ${now?.phase === "waiting" && html`<p class="chip">Waiting for a robot that is still deciding</p>`}
-      <${WorldChip} />
-      ${page.run.value !== null
-        ? !replayProblem.value && html`<p class="chip accent">${replayInWords()}</p>`
-        : now?.replay && html`<p class="chip">Replay</p>`}
-      ${page.ghost.value !== null && html`<${GhostChip} ghosts=${now?.ghost_lanes ?? []} />`}
-      <${SpeedChip} now=${now} />
-    </div>
-  `;
-}
-
-/** Key of the ghosts: the run they are of, and their distances. @param {{ ghosts: Scene["ghost_lanes"] }} props */
-function GhostChip({ ghosts }) {
-  const run = runs.value.get(page.ghost.value ?? "");
-  const title = run ? run.name || sentence(run.kind) : "another run";
-  const distances = ghosts.map(({ name, distance_m }) => `${name} ${metres(distance_m)}`).join(", ");
-  return html`
-    <p class="chip ghosts">Ghosts: ${title}${distances && html` <span class="num">(${distances})</span>`}</p>
-  `;
-}
-
-/** Conditions in the step that is shown, as on every page that watches. */
-function WorldChip() {
-  const words = conditionsShown.value;
-  return words.length > 0 && html`<p class="chip disturbance">${sentence(words.join(", "))}</p>`;
-}
-
-/** @param {{ now: Scene }} props */
-function SpeedChip({ now }) {
-  if (now && stage.value?.playing === false && !stage.value.ended && now.kind !== "idle") {
-    return html`<p class="chip">${sentence(playbackName.value)} paused</p>`;
-  }
-  const isStill = isStale.value || isBuffering.value || stage.value?.ended;
-  if (!now || now.kind === "idle" || isStill || !(now.shown_speed > 0)) return null;
-  return html`<p class="chip num" title="Times real time">${times(now.shown_speed)}</p>`;
-}
+const SceneChips = () => html`
+  <div class="chips">
+    ${told.value.chips.map(({ kind, words }) => (kind === "strong"
+      ? html`<p key="run" class="chip strong" role="group" aria-label="Shown run">${words}</p>`
+      : html`<p class=${`chip ${kind}`} title=${CHIP_TITLES[kind]}>${words}</p>`))}
+  </div>
+`;

@@ -1,16 +1,16 @@
 // The time bar below the stage: play, the moment in the picture, how far the run is computed, what happened, and how it
 // is shown. It is shared by every page, unless this one plays a replay of its own.
 import { endAtTimeOut, setStage, skipToEnd } from "../actions.js";
-import { canPlay, clock, isPlaying, isStale, playbackName, shownRun } from "../on-stage.js";
+import { told } from "../headline.js";
+import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
-import { closeReplay, openReplay, replayProblem, stepReplay } from "../replay.js";
+import { closeReplay, openReplay, stepReplay } from "../replay.js";
 import { percent, shareOf, ticks } from "../scale.js";
 import { isOperator, isVisitor } from "../selectors.js";
 import { isAway, scene, stage } from "../store.js";
 import {
-  laneRows, loadingInWords, markInWords, marks, positionInWords, pressSlider, scale, seekTo,
-  toggleTime,
+  laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, toggleTime,
 } from "../time.js";
 import { isAtLeast } from "../workspace.js";
 import { html, Icon, useWidth } from "./elements.js";
@@ -29,7 +29,7 @@ export function TimeBar() {
     <div class=${`time-bar ${isOwn ? "own" : ""}`} role="group" aria-label="Time">
       ${known && html`<${PlayButton} />`}
       ${isOwn && known && html`<${StepButtons} />`}
-      ${known ? html`<${Track} known=${known} />` : html`<p class="dim no-time">${nothingToSee()}</p>`}
+      ${known ? html`<${Track} known=${known} />` : html`<p class="dim no-time">${told.value.bar}</p>`}
       ${isOneLaneLeft(scene.value) && canPlay.value && !isStale.value && html`
         <button class="quiet square" onClick=${skipToEnd} aria-label="Skip to the end" title="Skip to the end">
           <${Icon} name="skip" />
@@ -42,20 +42,12 @@ export function TimeBar() {
   `;
 }
 
-const nothingToSee = () => {
-  if (page.run.value !== null) return replayProblem.value ? "No run is shown." : loadingInWords();
-  return stage.value?.run_id ? "Its first steps are being computed." : "The robots stand on the start line.";
-};
-
 function PlayButton() {
-  const verb = isPlaying.value ? "Pause" : "Play";
-  const isShared = canPlay.value && page.run.value === null;
-  const whose = isShared ? " for everyone" : "";
-  const label = stage.value?.ended ? `Play again${whose}` : `${verb} ${playbackName.value}${whose}`;
+  const { isPlaying, label } = told.value.play;
   return html`
     <button class="play" disabled=${!stage.value?.run_id} aria-disabled=${isStale.value ? "true" : undefined}
       onClick=${toggleTime} aria-label=${label} title=${label}>
-      <${Icon} name=${isPlaying.value ? "pause" : "play"} />
+      <${Icon} name=${isPlaying ? "pause" : "play"} />
     </button>
   `;
 }

@@ -9,7 +9,7 @@ import {
   sweptField,
 } from "../../experiments/presets.js";
 import { canStart, experimentEstimate, start, startLabel } from "../../experiments/runs.js";
-import { count, duration, listed, sentence } from "../../format.js";
+import { count, aboutDuration, listed, sentence } from "../../format.js";
 import { ignored, page } from "../../page-state.js";
 import { agentOf, learns, limitsOf, titleOf } from "../../settings.js";
 import { connection, options, served } from "../../store.js";
@@ -86,7 +86,7 @@ function costInWords() {
   const estimate = experimentEstimate.value;
   if (estimate) {
     const { seconds, workers } = estimate;
-    return html`${number}, <b>about ${duration(seconds)}</b> on ${count(workers ?? 1, "core")}.`;
+    return html`${number}, <b>${aboutDuration(seconds)}</b> on ${count(workers ?? 1, "core")}.`;
   }
   if (estimate === undefined) return html`${number}. Estimating how long…`;
   return html`${number}.${connection.value === "live" ? " How long they take is not known." : ""}`;
