@@ -314,7 +314,7 @@ class NamedWorld(NamedTuple):
 
 
 WORLDS: Mapping[str, NamedWorld] = {
-    "flat": NamedWorld("Flat ground", "Nothing happens to the robot.", World()),
+    "flat": NamedWorld("Flat ground", "Even ground, and the robot as it was built.", World()),
     "slope": NamedWorld(
         "Slope", "The track rises by 8°.", World((Slope(degrees=8.0),))
     ),

@@ -3,6 +3,7 @@ import { paceOf } from "./experiments/runs.js";
 import { count, distanceApart, metres, percentage, sentence, whole } from "./format.js";
 import { commonInWords, differenceInWords, fieldsOf, variedIn } from "./run-settings.js";
 import { distanceOf } from "./runs.js";
+import { earlyEndOf } from "./said/moment.js";
 import { isActive } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { references } from "./store.js";
@@ -68,6 +69,17 @@ export function winnerOf(run) {
   const [first] = ranked(run);
   const isTimedOut = run.result?.lanes?.some(({ steps }) => steps >= run.config.steps);
   return first?.rank === 1 && isTimedOut ? first.lane : null;
+}
+
+/** Why the lanes of a race have no ranks: "Stopped at step 26 of 50, before its time-out: not ranked." */
+/** @param {Run} run */
+export function unrankedInWords(run) {
+  const reached = (run.result?.lanes ?? []).map(({ steps }) => steps);
+  const end = earlyEndOf(run);
+  if (!end || !reached.length) return "Not ranked: no robot has used all its steps.";
+  const [first, last] = [Math.min(...reached), Math.max(...reached)];
+  const at = first === last ? `step ${whole(first)}` : `steps ${whole(first)} to ${whole(last)}`;
+  return `${end.word} at ${at} of ${whole(run.config.steps)}, before its time-out: not ranked.`;
 }
 
 /** The result of a run in short: "0.33 m", "Greedy 0.32 m"; empty without one. @param {AnyRun} run */

@@ -54,7 +54,8 @@ test("the curve marks changes at their steps of all practice, once they are on s
     config: { ...first.config, continue_from: first.id },
   });
   applyEvent("snapshot", { runs: [first, second], stage: { ...STAGE, run_id: second.id }, scene: null });
-  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes: [{ step: 100, steps_made: 99 }] });
+  const lanes = [{ step: 100, steps_made: 99 }];
+  applyEvent("scene", { run_id: second.id, kind: "training", phase: "practice", lanes });
   assert.deepEqual(curve.value?.changes.map(({ name, step }) => [name, step]),
     [["alpha", 136], ["epsilon", 200], ["gamma", 510]]);
 });

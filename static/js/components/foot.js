@@ -175,7 +175,7 @@ function OffStage() {
 /** @param {{ run: Run }} props */
 const ResumeButton = ({ run }) => html`
   <button class="secondary" disabled=${pending.value[run.id] || isAway.value} onClick=${() => resumeRun(run)}>
-    Resume
+    Go on
   </button>
   <${Problem} at=${run.id} />
 `;
@@ -187,7 +187,7 @@ function Failure() {
     <div class="notice bad">
       <p><b>The ${run.kind} failed.</b> ${inFormWords(run.error ?? "")}</p>
       <p>
-        Change what it names${isOperator.value && ", or resume it from its last checkpoint"}. Other runs are not
+        Change what it names${isOperator.value && ", or let it go on from its last checkpoint"}. Other runs are not
         affected.
       </p>
       ${isOperator.value && run.can_resume && html`<${ResumeButton} run=${run} />`}

@@ -338,7 +338,8 @@ export function LiveWorld() {
   const run = liveTraining.value;
   if (!run) return null;
   /** @param {string[]} now */
-  const words = (now) => (now.length ? html`<b>Now:</b> ${now.join(", ")}` : "Nothing has happened to this robot.");
+  const words = (now) =>
+    (now.length ? html`<b>Now:</b> ${now.join(", ")}` : "The robot is as it was built, on even ground.");
   return html`
     <section class="world-now" aria-label="Disturbances now">
       <${WorldControls} id="live" config=${run.config} conditions=${conditionsNow(run)} sentenceOf=${words}

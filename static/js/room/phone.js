@@ -167,7 +167,8 @@ function ClassDots() {
     <${DotStrip} label=${`${rank}, from ${metres(distances_m[0])} to ${metres(distances_m.at(-1))}`} size=${1.6}
       points=${distances_m} low=${low} high=${high} typical=${typical} axis=${metres} own=${own?.distance_m ?? null} />
     <p class="dim">
-      ${own && html`<span class="own-key">your robot</span>, `}typically ${metres(interval?.iqm_m)}
+      ${own && html`<span class="own-key">your robot</span> ${metres(own.distance_m)}, `}the class typically
+      ${" "}${metres(interval?.iqm_m)}
       ${interval && interval.low_m !== null && html` (95 %: ${metres(interval.low_m)} to ${metres(interval.high_m)})`}
     </p>
   `;

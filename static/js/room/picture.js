@@ -1,16 +1,18 @@
 // The 3D view of a room's page: a replay of the own run, drawn here, or the room's stage with the run in the spotlight.
-import { computed, effect } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { html, Icon } from "../components/elements.js";
 import { page } from "../page-state.js";
 import { shownTheme } from "../page.js";
-import { isAway } from "../store.js";
+import { isShownToEnd } from "../said/own-run.js";
+import { isAway, scene } from "../store.js";
 import {
   closeReplay, drawIn, endTime, followReplay, isBuffering, openReplay, playReplay, plan, replayProblem, replayTime,
   setReplaySpeed,
 } from "../replay.js";
 import { lastRunId, ownRun, ownRunId, room } from "./room.js";
 
+/** @import { Signal } from "@preact/signals" */
 /** @import { Message } from "../replay-frames.js" */
 
 /** A practice is long, and its steps are much alike. */
@@ -27,9 +29,18 @@ const wanted = computed(() => {
 /** Id of the run that the page replays; null for none. */
 export const replayed = computed(() => wanted.value?.id ?? null);
 
+/** Ids of the runs whose pictures have been where their distances can be told. @type {Signal<Set<string>>} */
+export const arrived = signal(new Set());
+
 /** Replay the own run as soon as it has a step, and that of the next card after it. */
 export function followOwnRun() {
   followReplay();
+  effect(() => {
+    const id = replayed.value;
+    if (id !== null && isShownToEnd(scene.value, id) && !arrived.peek().has(id)) {
+      arrived.value = new Set(arrived.peek()).add(id);
+    }
+  });
   effect(() => {
     const id = replayed.value;
     if (id === page.run.peek()) return;

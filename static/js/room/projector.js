@@ -9,7 +9,9 @@ import { Away } from "./doors.js";
 import { stepsOf } from "./chart.js";
 import { Picture } from "./picture.js";
 import { Axes, lineOf } from "./questions.js";
+import { isShownToEnd } from "../said/own-run.js";
 import { agentOf } from "../settings.js";
+import { scene } from "../store.js";
 import { presentTournaments, tournamentPage } from "../tournament/states.js";
 import { isRevealed, room, shownResults } from "./room.js";
 import { axisOf, predictedMetres, tally } from "./scores.js";
@@ -149,7 +151,8 @@ const Of = ({ number, all, word }) => html`
 /** The run of a participant that the teacher shows to all. @param {{ known: Classroom }} props */
 function Lit({ known }) {
   const entry = shownResults.value?.entries.find(({ run }) => run?.id === known.spotlight);
-  const distance_m = entry?.run?.distance_m ?? null;
+  // Not before its picture is there.
+  const distance_m = isShownToEnd(scene.value, known.spotlight) ? entry?.run?.distance_m ?? null : null;
   return html`
     <div class="lit">
       <${Picture} source="stage" key=${known.spotlight} />

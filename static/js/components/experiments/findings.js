@@ -36,12 +36,14 @@ export function AtAGlance({ known }) {
   const high = 1.03 * largest(points.flat(), 1);
   const varied = variedFields(pooled, ["agent", "observation", "robot", ...known.parameters]);
   const isRaced = pooled.some(({ relative_finished }) => relative_finished);
+  const isOfSeveral = pooled.some(({ gaits }) => gaits.length > 1);
+  const heading = isOfSeveral ? "All gaits together" : "All seeds together";
   const columns = POOLED_COLUMNS.filter(({ title }) => isRaced || title !== BEATS_GREEDY);
   return html`
     <section class="panel glance" aria-labelledby="glance">
-      <h2 id="glance">All gaits together</h2>
+      <h2 id="glance">${heading}</h2>
       <p class="dim">Total distance as a share of greedy’s in the same place; a robot that gets half as far walks.</p>
-      <div class="scroller" tabindex="0" role="region" aria-label="Table of all gaits together">
+      <div class="scroller" tabindex="0" role="region" aria-label=${`Table of ${heading.toLowerCase()}`}>
         <table class="facts-table stacking" role="table">
           <thead role="rowgroup"><tr role="row">
             ${columns.map(({ title, words, kind }) => html`
@@ -72,7 +74,7 @@ function PooledRow({ one, varied, points, high, isRaced }) {
           color=${agentOf(one.agent).color} height=${44} axis=${percentage} />
       </td>
       <td role="cell" data-label="Interquartile mean" class="num">
-        <b>${percentage(iqm)}</b>${interval && html`<br /><span class="dim">${interval}</span>`}
+        ${percentage(iqm)}${interval && html`<br /><span class="dim">${interval}</span>`}
       </td>
       <td role="cell" data-label="Share that walks" class="num">${percentage(one.walkers?.share ?? NaN)}</td>
       <td role="cell" data-label="Reach greedy" class="num">${percentage(one.reaches_greedy?.share ?? NaN)}</td>
@@ -154,7 +156,7 @@ function VersusRow({ one }) {
     <tr>
       <th scope="row">${gaitTitle(one.gait)}, <span class="dim">${place.join(", ")}</span></th>
       <td>${agentTitle(one.a)}</td><td>${agentTitle(one.b)}</td>
-      <td class="num"><b>${percentage(one.probability)}</b> <span class="dim">${interval}</span></td>
+      <td class="num">${percentage(one.probability)} <span class="dim">${interval}</span></td>
       <td>${VERSUS_VERDICTS[one.verdict] ?? one.verdict}</td>
     </tr>
   `;

@@ -156,7 +156,7 @@ function Strip({ row: { setting, points, typical, line, best }, high }) {
 
 /** @param {{ typical: Measured["typical"] }} props */
 const Typical = ({ typical }) => html`
-  <b>${shown(typical?.iqm)}</b>${typical && typical.low !== null && html`
+  ${shown(typical?.iqm)}${typical && typical.low !== null && html`
     <br /><span class="dim">${bare(typical.low)} – ${bare(typical.high)}</span>
   `}
 `;

@@ -165,6 +165,8 @@ function Overview({ entries, worlds, known }) {
   );
   const rows = names.map((name) => ({ name, shares: worlds.map((world) => meanIn(name, world)) }));
   const best = worlds.map((_, n) => largest(rows.map(({ shares }) => shares[n] ?? -Infinity), -Infinity));
+  // What reads the same is as good.
+  const isBest = (/** @type {number} */ share, /** @type {number} */ n) => percentage(share) === percentage(best[n]);
   /** @param {string} world */
   const ofGreedy = (world) => entries.some((one) => one.world === world && one.best_known_m === null);
   const title = "All worlds: share of the best known distance";
@@ -189,7 +191,7 @@ function Overview({ entries, worlds, known }) {
               <tr key=${name}>
                 <th scope="row">${name}</th>
                 ${shares.map((share, n) => html`
-                  <td class="num">${share === null ? "–" : share === best[n] ? html`<b>${percentage(share)}</b>`
+                  <td class="num">${share === null ? "–" : isBest(share, n) ? html`<b>${percentage(share)}</b>`
                     : percentage(share)}</td>
                 `)}
               </tr>
@@ -210,7 +212,7 @@ function Overview({ entries, worlds, known }) {
  * @param {(value: number) => string} bareWords
  */
 const valueOf = (one, words, bareWords) => one && one.iqm !== null && html`
-  <b>${words(one.iqm)}</b>${one.low !== null && html`
+  ${words(one.iqm)}${one.low !== null && html`
     <br /><span class="dim">${bareWords(one.low)} – ${bareWords(one.high ?? NaN)}</span>
   `}
 `;
@@ -228,7 +230,7 @@ const shareOf = (interval) => valueOf(interval, percentage, (share) => percentag
 
 /** @param {Until | null} until */
 const untilOf = (until) => until && html`
-  <b>${until.median_steps === null ? "not reached" : whole(until.median_steps)}</b>
+  ${until.median_steps === null ? "not reached" : whole(until.median_steps)}
   <br /><span class="dim">reached by ${percentage(until.reached)}</span>
 `;
 

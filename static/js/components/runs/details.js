@@ -95,7 +95,7 @@ function Foot({ run }) {
     <footer class="details-foot">
       <div class="row">
         ${canResume && html`
-          <button class="secondary" disabled=${isPending} onClick=${() => resumeRun(run)}>Resume</button>
+          <button class="secondary" disabled=${isPending} onClick=${() => resumeRun(run)}>Go on</button>
         `}
         ${isWalk && isOperator.value && html`
           <button class="secondary" disabled=${isPending || run.state === "queued"}

@@ -3,7 +3,7 @@ import { settingRows } from "../../compare.js";
 import { metres } from "../../format.js";
 import { bestPointOf } from "../../run-details.js";
 import { commonInWords, fieldsOf } from "../../run-settings.js";
-import { greedyOf, ranked, shareOf, winnerOf } from "../../run-words.js";
+import { greedyOf, ranked, shareOf, unrankedInWords, winnerOf } from "../../run-words.js";
 import { distanceOf } from "../../runs.js";
 import { agentOf, laneTitle } from "../../settings.js";
 import { bestKnown } from "../../store.js";
@@ -71,7 +71,7 @@ export function RaceResult({ run }) {
         `)}
       </tbody>
     </table>
-    <p class="dim fine">Ranked by the paper clock.</p>
+    <p class="dim fine">${winnerOf(run) ? "Ranked by the paper clock." : unrankedInWords(run)}</p>
   `;
 }
 
