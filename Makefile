@@ -89,6 +89,10 @@ write_page_types = mkdir -p build && \
 page-types: $(PAGE_STAMP) ## Write the page's types of the API's answers
 	@$(write_page_types) $(PAGE_TYPES)
 
+.PHONY: page-moments
+page-moments: $(DEV_STAMP) ## Compute the moments of runs with which the page's sentences are compared
+	$(BIN)/python -m tests.page.moments
+
 .PHONY: check-page-types
 check-page-types: $(PAGE_STAMP)
 	@$(write_page_types) build/api-types.d.ts

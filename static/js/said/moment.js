@@ -189,7 +189,7 @@ function postureOf({ seen, result }) {
 /** Distances now, at time-out and at the end; null before. @param {Lane} lane */
 function distancesOf({ seen, track, result, timed, scene, isTimedOut }) {
   const distance_m = seen?.distance_m ?? (track ? distanceAt(track.points, scene.time_s) : null);
-  const atTimeOut = timed?.finished_distance_m ??
+  const atTimeOut = timed?.finished_distance_m ?? seenAtTimeOut(scene, seen) ??
     (track && scene.time_out_s !== null ? distanceAt(track.points, scene.time_out_s) : null);
   const total_m = result?.total_distance_m ?? null;
   return {
@@ -199,6 +199,11 @@ function distancesOf({ seen, track, result, timed, scene, isTimedOut }) {
     total_m: seen?.done ? total_m ?? distance_m : scene.ended ? total_m : null,
   };
 }
+
+/** The distance in the picture, where that is the photo finish [m]. */
+/** @param {Scene} scene @param {SceneLane | null} seen */
+const seenAtTimeOut = ({ time_s, time_out_s }, seen) =>
+  (time_out_s !== null && Math.abs(time_s - time_out_s) <= SAME_MOMENT_S ? seen?.distance_m ?? null : null);
 
 /** @param {Lane} lane */
 const thinkingOf = ({ seen }) => ({
