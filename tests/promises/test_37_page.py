@@ -16,6 +16,7 @@ import httpx2
 import pytest
 from playwright.sync_api import expect
 
+from app.storage.run import NOT_ENDED, STATES
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
 from tests.promises.length import at_length
@@ -24,11 +25,23 @@ from tests.timeouts import LONG_S
 SEEDS = at_length(range(57, 58), range(200))
 """One for each sequence; the gate's has a race, which is shown, one that is stopped, and a kill."""
 EVENTS = at_length(5, 6)
-WEIGHTS = {"race": 4, "train": 2, "stop": 4, "show": 3, "end": 3, "delete": 1, "kill": 1}
+WEIGHTS = {
+    "race": 4,
+    "train": 2,
+    "both": 2,
+    "stop": 4,
+    "resume": 2,
+    "show": 3,
+    "end": 3,
+    "delete": 1,
+    "kill": 1,
+}
 BODY = {"gait": "left-right-origin", "simulator": "kinematic"}
 RACE = {**BODY, "lanes": [{"agent": "greedy"}, {"agent": "random-walk"}]}
-ACTIVE = {"queued", "running", "paused"}
-EARLY_ENDS = {"stopped": "Stopped", "failed": "Failed", "interrupted": "Interrupted"}
+ACTIVE: set[str] = {*NOT_ENDED}
+EARLY_ENDS: dict[str, str] = {
+    state: state.title() for state in {*STATES} - NOT_ENDED - {"finished"}
+}
 
 
 class Visit:
@@ -58,6 +71,18 @@ class Visit:
     def train(self) -> None:
         steps, pace = self._chance.choice([(20, "max"), (1000, 8)])
         self._send("POST", "/trainings", json={**BODY, "steps": steps, "pace": pace})
+
+    def both(self) -> None:
+        """Start a race that waits for a practice of its own."""
+        practice = {"steps": 1000, "pace": 8}
+        lanes = [{"agent": "q-learning", "training": practice}, {"agent": "greedy"}]
+        self._send("POST", "/races", json={**RACE, "lanes": lanes, "steps": 5})
+
+    def resume(self) -> None:
+        """Let a run go on that ended early."""
+        if ended := [run for run in self._runs() if run["state"] in EARLY_ENDS]:
+            run = self._chance.choice(ended)
+            self._send("POST", f"/{run['kind']}s/{run['id']}/resume")
 
     def stop(self) -> None:
         for run in self._runs():
@@ -157,10 +182,16 @@ class Words:
         is_early = stage["ended"] and run["state"] in EARLY_ENDS and run["progress"]["done"]
         if is_early and "at step" in self._label and run["state"] not in self._label:
             wrong.append(f"label of a run that is {run['state']}: {self._label}")
-        if (run["state"] in ("interrupted", "failed") and stage["ended"]) != (
-            "last picture" in self._notes
-        ) and not any(word in self._actions for word in ("Stop",)):
+        has_ended_early = stage["ended"] and run["state"] in EARLY_ENDS
+        if bool(has_ended_early and run["progress"]["done"]) != ("last picture" in self._notes):
             wrong.append(f"note of a run that is {run['state']}: {self._notes!r}")
+        is_busy = "Stop" in self._actions.split("\n")
+        if "Go on" in self._notes and not (has_ended_early and run["can_resume"] and not is_busy):
+            wrong.append(f"an offer to go on with a run that is {run['state']}")
+        if has_ended_early and run["kind"] == "training" and run["progress"]["done"]:
+            done, total = run["progress"]["done"], run["progress"]["total"]
+            if self._headline != f"{EARLY_ENDS[run['state']]} at step {done} of {total}":
+                wrong.append(f"headline of a practice that is {run['state']}: {self._headline}")
         told = self._headline or self._label
         if told not in self._title:
             wrong.append(f"title {self._title!r} beside {told!r}")
