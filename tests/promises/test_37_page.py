@@ -23,7 +23,7 @@ from tests.promises.length import at_length
 from tests.timeouts import LONG_S
 
 SEEDS = at_length((326,), range(200))
-"""One for each sequence; the gate's has a race, another with its practice, which is stopped, and a kill."""
+"""One for each sequence; the gate's has a race, another with its practice, a stop and a kill."""
 EVENTS = at_length(5, 6)
 WEIGHTS = {
     "race": 4,
