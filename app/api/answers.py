@@ -94,7 +94,12 @@ class ProgressView(Answer):
 
 
 class RunView(Answer):
-    """Members common to all kinds of runs. Times are ISO 8601 in UTC."""
+    """Members common to all kinds of runs. Times are ISO 8601 in UTC.
+
+    Attributes:
+        can_resume: whether its state allows it; what it needs may have been deleted, or a stopped
+            training's table used since.
+    """
 
     id: str
     name: str

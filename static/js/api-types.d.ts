@@ -1120,6 +1120,9 @@ export interface TrainingView {
    */
   is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
+  /**
+   * whether its state allows it; what it needs may have been deleted, or a stopped training's table used since.
+   */
   can_resume: boolean;
   queue_position: number | null;
   progress: ProgressView;
@@ -1326,6 +1329,9 @@ export interface RaceView {
    */
   is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
+  /**
+   * whether its state allows it; what it needs may have been deleted, or a stopped training's table used since.
+   */
   can_resume: boolean;
   queue_position: number | null;
   progress: ProgressView;
@@ -1582,6 +1588,9 @@ export interface ExperimentView {
    */
   is_named: boolean;
   state: "queued" | "running" | "paused" | "finished" | "stopped" | "failed" | "interrupted";
+  /**
+   * whether its state allows it; what it needs may have been deleted, or a stopped training's table used since.
+   */
   can_resume: boolean;
   queue_position: number | null;
   progress: ProgressView;

@@ -54,7 +54,7 @@ export const brokenOff = ({ training }) => {
 /** How far the learner had come where it was left; null where that was not measured. @param {KnownPractice} known */
 export const whyBrokenOff = ({ training, title, newest }) => {
   const then_m = training.result?.distance_m ?? null;
-  if (then_m !== null) return `${title} walked ${metres(then_m)} in its last test.`;
+  if (then_m !== null) return `Tested there, ${title} walked ${metres(then_m)} in 50 steps.`;
   if (!newest) return null;
   return `${title} walked ${metres(newest.distance_m)} in its last test, after ${count(newest.step, "step")}.`;
 };

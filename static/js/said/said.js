@@ -147,7 +147,7 @@ export function said(known) {
     bar: sayings.bar(facts),
     board: sayings.board(facts),
     isOfRun: sayings.isOfRun,
-    color: rows ? rows[0].color : colorOf(facts),
+    color: rows ? colorOfLanes(facts, rows) : colorOf(facts),
     note: noteOf(facts),
     chips: chipsOf(facts),
     play: playLabel(facts),
@@ -210,6 +210,10 @@ function whyWon({ rows, timeline, happened }) {
   const [first = null] = why?.split(/(?<=\.) /) ?? [];
   return [first, work].filter(Boolean).join(" ");
 }
+
+/** The colour of the first lane; of none while others are on their way to where they were left. */
+/** @param {Facts} facts @param {Row[]} rows */
+const colorOfLanes = ({ state }, [first]) => (state === "halting" ? "transparent" : first.color);
 
 /** The colour of the learner that practises. @param {Facts} facts */
 const colorOf = ({ run, agents }) =>
