@@ -2,6 +2,7 @@
 // The server gives frames (`replay-frames.js`); which run it is, and where it is held, is of the page's state.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { getReplay, getReplayFrames, isLasting } from "./api.js";
+import { SAME_MOMENT_S } from "./format.js";
 import { change, linkTo, page } from "./page-state.js";
 import { decode, endOf, Follower, inRecording, placeOf, SceneState, Segments } from "./replay-frames.js";
 import { connection, isGone, ownScene, ownStage } from "./store.js";
@@ -36,14 +37,14 @@ const { clock } = /** @type {{ clock: Signal<Clock> }} */ (page);
 /** Time-out of the race, if the replay is to end there [s]; null where it is to go on, or is later already. */
 const endAtTimeOut = computed(() => {
   const timeOut = plan.value?.marks.find(({ kind }) => kind === "time-out")?.time_s ?? null;
-  const isLater = timeOut !== null && replayTime.value > timeOut + SAME_S;
+  const isLater = timeOut !== null && replayTime.value > timeOut + SAME_MOMENT_S;
   return page.end.value === "time-out" && !isLater ? timeOut : null;
 });
 /** The last moment that can be shown [s]. */
 const wholeEnd = computed(() => (plan.value ? endOf(plan.value) : 0));
 /** The moment at which the replay ends [s]. */
 export const endTime = computed(() => endAtTimeOut.value ?? wholeEnd.value);
-const hasEnded = computed(() => plan.value?.complete === true && replayTime.value >= endTime.value - SAME_S);
+const hasEnded = computed(() => plan.value?.complete === true && replayTime.value >= endTime.value - SAME_MOMENT_S);
 
 // ---- what is loaded
 
@@ -199,7 +200,6 @@ export const setReplaySpeed = (times) => (speed.value = times);
 
 /** Counts the choices of a clock: only the newest is obeyed. */
 let clockChoice = 0;
-
 /**
  * Time the race by another clock, from the same step of the first lane on.
  * @param {Clock} name
@@ -222,15 +222,15 @@ export async function setReplayClock(name) {
 }
 
 /** @type {(ends: number[], time_s: number) => number} */
-const stepOf = (ends, time_s) => ends.filter((end) => end <= time_s + SAME_S).length;
+const stepOf = (ends, time_s) => ends.filter((end) => end <= time_s + SAME_MOMENT_S).length;
 
 /** Hold, and go to the end of the next robot step, or of the one before. @param {1 | -1} direction */
 export function stepReplay(direction) {
   const ends = stepEnds.peek();
   const now = replayTime.peek();
   const next = direction > 0
-    ? ends.find((end) => end > now + SAME_S) ?? endTime.peek()
-    : ends.findLast((end) => end < now - SAME_S) ?? 0;
+    ? ends.find((end) => end > now + SAME_MOMENT_S) ?? endTime.peek()
+    : ends.findLast((end) => end < now - SAME_MOMENT_S) ?? 0;
   hold(true);
   seekReplay(next);
 }

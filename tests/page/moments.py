@@ -149,7 +149,7 @@ def moments() -> list[dict[str, Any]]:
     with temporary_store() as store:
         races = Races(StageParts(store))
         for name in ("stiff", "compliant", "slippery", "dog", "centipede"):
-            walk = {"robot": PRESETS[name], "gait": CREATURES[name].gait}
+            walk: dict[str, Any] = {"robot": PRESETS[name], "gait": CREATURES[name].gait}
             agents = A_CLASS if name == "stiff" else DUEL
             clocks = CLOCKS if name == "stiff" else ("paper",)
             races.race(f"Race of {name}", agents, clocks=clocks, **walk)
