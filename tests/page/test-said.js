@@ -6,8 +6,9 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { gunzipSync } from "node:zlib";
 import { metres } from "../../static/js/format.js";
-import { isShownToEnd, ownRunSaid } from "../../static/js/said/own-run.js";
+import { ownRunSaid } from "../../static/js/said/own-run.js";
 import { said } from "../../static/js/said/said.js";
+import { isShownToEnd } from "../../static/js/said/states.js";
 import { OPTIONS } from "./options.js";
 
 /** @type {any[]} */

@@ -8,7 +8,7 @@ import { told, whyMarching } from "../headline.js";
 import { isOver, isTimedOut, standings } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
-import { earlyEndOf } from "../said/moment.js";
+import { earlyEndOf } from "../said/states.js";
 import { isActive, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, scene, served } from "../store.js";

@@ -2,13 +2,12 @@
 import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../api.js";
 import { DotStrip } from "../components/dot-strip.js";
-import { html } from "../components/elements.js";
+import { html, Loaded } from "../components/elements.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups, count, metres } from "../format.js";
 import { Deeds, Next } from "./deeds.js";
 import { Away, Door } from "./doors.js";
 import { May } from "./may.js";
-import { OwnRobot, OwnRun } from "./own-run.js";
 import { CLOSER, closerLink, replayed } from "./picture.js";
 import { Answer } from "./questions.js";
 import { axisOf, scoreInWords } from "./scores.js";
@@ -45,18 +44,22 @@ const Ended = () => html`
   </section>
 `;
 
+/** What who has not joined does not load. */
+const loadOwnRobot = () => import("./own-run.js").then(({ OwnRobot }) => OwnRobot);
+const loadOwnRun = () => import("./own-run.js").then(({ OwnRun }) => OwnRun);
+
 /** The card that is shown. @param {{ known: Classroom }} props */
 function Present({ known }) {
   const { shown, html: texts, card, cards, state } = known;
   const isOpen = state === "open";
   return html`
-    ${replayed.value && html`<${OwnRobot} />`}
+    ${replayed.value && html`<${Loaded} name="robot" load=${loadOwnRobot} />`}
     <article class="phone-part" aria-labelledby="card-title">
       <p class="dim">Card ${card + 1} of ${cards}</p>
       ${shown.title && html`<h1 id="card-title">${shown.title}</h1>`}
       <${Prose} text=${texts.text} />
     </article>
-    ${!replayed.value && html`<${OwnRun} />`}
+    ${!replayed.value && ownRun.value && html`<${Loaded} name="run" load=${loadOwnRun} />`}
     ${isRevealed.value && html`<${Revealed} known=${known} />`}
     ${shown.ask && html`<${Question} card=${shown} number=${card} text=${texts.ask} />`}
     ${shown.go && Object.keys(shown.may ?? {}).length > 0 && html`

@@ -1,9 +1,9 @@
 // What is said of a participant's own run, on the phone and on the projector: of how far it came nothing before the
 // picture has got there.
 import { metres, whole } from "../format.js";
-import { isActive, isTimedOutIn } from "./moment.js";
+import { isActive } from "./states.js";
 
-/** @import { Run, Scene } from "../types.js" */
+/** @import { Run } from "../types.js" */
 
 /**
  * A run and its picture. `distance_m`: what it came to, null before. `hasArrived`: whether its picture has been at its
@@ -51,11 +51,3 @@ export function ownRunSaid(known) {
   const state = stateOf(known);
   return { state, ...TABLE[state](known) };
 }
-
-/**
- * Whether the picture of a run is where its distance can be told: at the end of a practice, or a race's time-out.
- * @param {Scene | null} scene
- * @param {string | null} run_id
- */
-export const isShownToEnd = (scene, run_id) =>
-  scene !== null && scene.run_id === run_id && (scene.kind === "race" ? isTimedOutIn(scene) : scene.ended);

@@ -1,6 +1,6 @@
 // What a practice has come to, in sentences.
 import { count, metres, whole } from "../format.js";
-import { earlyEndOf, isActive } from "./moment.js";
+import { earlyEndOf, isActive } from "./states.js";
 
 /** @import { CurvePoint } from "../training.js" */
 /** @import { Run } from "../types.js" */

@@ -1,6 +1,7 @@
 // Who leads or has won a race, and by which rule, in sentences.
 import { count, distanceApart, listed, metres, SAME_MOMENT_S } from "../format.js";
-import { distanceOf, earlyEndOf, LEVEL_M } from "./moment.js";
+import { distanceOf, LEVEL_M } from "./moment.js";
+import { earlyEndOf } from "./states.js";
 
 /** @import { KnownRace, Row } from "./moment.js" */
 

@@ -1,7 +1,8 @@
 // Every sentence about the run on stage and the moment of it that is shown: one table of states × what is said, from
 // what the API tells. The page, the presenter's window, phones and projectors show what it returns, and say no more.
 import { sentence, times, whole } from "../format.js";
-import { earlyEndOf, isActive, isTimedOutIn, rowsOf } from "./moment.js";
+import { rowsOf } from "./moment.js";
+import { earlyEndOf, isActive, isTimedOutIn } from "./states.js";
 import {
   brokenOff, practised, practising, whyBrokenOff, whyPractised, whyPractising,
 } from "./practice.js";
