@@ -1787,7 +1787,7 @@ export interface ExperimentResult {
   finding?: string;
 }
 /**
- * Number of trials by outcome.
+ * Number of trials by outcome; `failed` are all without a distance, `set_aside` among them.
  */
 export interface TrialCounts {
   done: number;
@@ -3819,6 +3819,8 @@ export interface StoredRobotsView {
 }
 /**
  * Number of trials by outcome, with the reasons of those that failed or were set aside.
+ *
+ * `failed` counts both; `done` are all with a result, also those whose walk failed.
  */
 export interface SummaryCounts {
   done: number;
