@@ -1,7 +1,7 @@
 // The user's actions. Each keeps its own error, which is shown beside the control that caused it.
 import { computed, signal } from "@preact/signals";
 import * as api from "./api.js";
-import { configAtEnd } from "./changes.js";
+import { configAtEnd } from "./training.js";
 import { textOf } from "./disturbances.js";
 import {
   chooseLearner, form, mistakes, raceBody, setField, setFields, trainingBody, validSteps,

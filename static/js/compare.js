@@ -1,6 +1,6 @@
 // Runs that are compared: which, each one's letter, colour and dashes, their curves, settings and results.
 import { computed } from "@preact/signals";
-import { changesInWords, rateChanges } from "./changes.js";
+import { changesInWords, curveOf, followCurves, rateChanges } from "./training.js";
 import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, duration, listed, metres, percentage, sentence, whole } from "./format.js";
 import { page } from "./page-state.js";
@@ -11,7 +11,6 @@ import { isActive } from "./selectors.js";
 import { agentOf, choiceTitle, fullTitle, laneTitle, settingsOf } from "./settings.js";
 import { damagedRuns, isGone, runs, served } from "./store.js";
 import { agentTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "./titles.js";
-import { curveOf, followCurves } from "./training.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { LaneResult, Run } from "./types.js" */

@@ -1,16 +1,18 @@
 // The lesson of this page, the first one or that of the address: its cards, and how far this page is. A card of the
 // first one may ask for a prediction, which is revealed at time-out.
 import { computed, effect, signal } from "@preact/signals";
+import { setShared } from "./actions.js";
 import { asTexts, change, page } from "./page-state.js";
 import { storedText } from "./page.js";
 import { isTimedOut, standings } from "./race.js";
-import { mayStart } from "./selectors.js";
+import { isOperator, mayStart } from "./selectors.js";
 import { raceInView } from "./on-stage.js";
+import { commonStage } from "./store.js";
 import { agentOf, cardMay, isFreed, laneTitle } from "./settings.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { PageState } from "./page-state.js" */
-/** @import { LessonCard, LessonView } from "./types.js" */
+/** @import { LessonCard, LessonView, Presentation } from "./types.js" */
 
 /**
  * `state`: what of the page the card opens. `ask`: a question whose answer is one of the lanes. `isForOperators`:
@@ -167,3 +169,55 @@ export const predict = (lane) => {
 /** The winners of the race in view, once it is decided; null before. */
 export const outcome = computed(() =>
   (isTimedOut.value ? (standings.value ?? []).filter(({ rank }) => rank === 1) : null));
+
+// ---- the presentation on the stage that all share: which card is shown, and how; told by the presenter's own keys,
+// or by a remote on another device; every presenter's window of this stage follows it
+
+/** @type {Presentation} */
+const NOTHING = { card: null, shows_why: false, is_blank: false, code: "large" };
+/** Sizes of the QR code, in the order of its key. @type {Presentation["code"][]} */
+export const CODES = ["large", "small", "none"];
+
+export const presentation = computed(() => commonStage.value?.presentation ?? NOTHING);
+
+/** Change the presentation for every presenter's window. @param {Partial<Presentation>} changes */
+export const tell = (changes) => {
+  if (isOperator.peek()) setShared({ presentation: { ...presentation.peek(), ...changes } });
+};
+
+/** Go to the next card of the lesson, or to the one before. @param {1 | -1} direction */
+export function turnPage(direction) {
+  const next = (presentation.peek().card ?? 0) + direction;
+  if (next >= 1 && next <= cards.peek().length) tell({ card: next, shows_why: false });
+}
+
+export const turnCode = () =>
+  tell({ code: CODES[(CODES.indexOf(presentation.peek().code) + 1) % CODES.length] });
+export const toggleWhy = () => tell({ shows_why: !presentation.peek().shows_why });
+export const toggleBlank = () => tell({ is_blank: !presentation.peek().is_blank });
+
+/** Let this page, while it is presented, show what the presentation says; then it is as it was before. */
+export function followPresentation() {
+  /** @type {Partial<import("./page-state.js").PageState> | null} */
+  let before = null;
+  effect(() => {
+    if (page.isPresenting.value) before = { depth: page.depth.peek(), tab: page.tab.peek() };
+    else if (before !== null) {
+      change(before);
+      before = null;
+    }
+  });
+  effect(() => {
+    const { card: told, shows_why } = presentation.value;
+    if (!page.isPresenting.value) return;
+    if (told !== null && told !== cardNumber.peek()) openCard(told);
+    change({ tab: shows_why ? "why" : "board", depth: "watch" });
+  });
+  // Who wants to watch has the address by the end of the first race: the robots get its room.
+  let hasShrunk = false;
+  effect(() => {
+    if (hasShrunk || !page.isPresenting.value || !isTimedOut.value) return;
+    hasShrunk = true;
+    if (presentation.peek().code === "large") tell({ code: "small" });
+  });
+}

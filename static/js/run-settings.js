@@ -1,5 +1,5 @@
 // What trainings and races are made of, field by field: what some differ in, and what they have in common, in words.
-import { changesInWords, rateChanges } from "./changes.js";
+import { changesInWords, rateChanges } from "./training.js";
 import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { count, sentence, whole } from "./format.js";
 import { canonical, formRobot } from "./robots.js";

@@ -1,7 +1,7 @@
 // The moment that is shown on one scale: seconds of a race under its clock, steps of a practice. What happened on it.
 import { computed } from "@preact/signals";
 import { setStage, togglePlaying } from "./actions.js";
-import { rateChanges, rateInWords } from "./changes.js";
+import { curve, rateChanges, rateInWords } from "./training.js";
 import { disturbancesOf, inWords } from "./disturbances.js";
 import { metres, SAME_MOMENT_S, sentence, whole } from "./format.js";
 import { canPlay, clock, isStale, raceScene, shownRun } from "./on-stage.js";
@@ -12,7 +12,6 @@ import { stepEnds } from "./said/moment.js";
 import { isActive } from "./selectors.js";
 import { agentOf, laneTitle } from "./settings.js";
 import { ownStage, scene, stage } from "./store.js";
-import { curve } from "./training.js";
 
 /** @import { ReadonlySignal } from "@preact/signals" */
 /** @import { Run, TimelineLane } from "./types.js" */

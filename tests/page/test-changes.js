@@ -2,11 +2,10 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { copySettings, secondaryActions } from "../../static/js/actions.js";
-import { changesInWords, configAtEnd, presentRates, rateChanges } from "../../static/js/changes.js";
+import { changesInWords, configAtEnd, curve, presentRates, rateChanges } from "../../static/js/training.js";
 import { form, setFields } from "../../static/js/form.js";
 import { page } from "../../static/js/page-state.js";
 import { applyEvent, options, rates, runs } from "../../static/js/store.js";
-import { curve } from "../../static/js/training.js";
 import { makeRun, OPTIONS } from "./options.js";
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, ended: false, speed: 1, clock: "paper" };

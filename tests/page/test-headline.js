@@ -3,8 +3,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { headline, told as saidNow, whyMarching } from "../../static/js/headline.js";
 import { madeAt, stepEnds } from "../../static/js/said/moment.js";
-import { chanceInWords } from "../../static/js/said/practice.js";
-import { reasonOf, workOf } from "../../static/js/said/reasons.js";
+import { chanceInWords, reasonOf, workOf } from "../../static/js/said/sentences.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 

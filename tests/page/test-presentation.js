@@ -1,11 +1,10 @@
 // The presentation that all presenters' windows of a stage follow, and who may tell it.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { cards } from "../../static/js/lesson.js";
-import { change, page, read } from "../../static/js/page-state.js";
 import {
-  followPresentation, presentation, tell, toggleBlank, toggleWhy, turnCode, turnPage,
-} from "../../static/js/presentation.js";
+  cards, followPresentation, presentation, tell, toggleBlank, toggleWhy, turnCode, turnPage,
+} from "../../static/js/lesson.js";
+import { change, page, read } from "../../static/js/page-state.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 

@@ -1,7 +1,6 @@
 // The board: the lanes of the race with ranks, distances and times, the same race by each clock, and its curve.
 import { setStage } from "../actions.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
-import { downloads } from "../files.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
 import { told, whyMarching } from "../headline.js";
@@ -15,12 +14,14 @@ import { runs, scene, served } from "../store.js";
 import { choicesOf, clockTitle, flatParts, planningModelTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
 import { isAtLeast } from "../workspace.js";
-import { html, Icon } from "./elements.js";
+import { html, Icon, Loaded } from "./elements.js";
 import { LearningChart } from "./learning.js";
 import { RaceChart } from "./race-chart.js";
 
 /** @import { Standing } from "../race.js" */
 /** @import { Changed, Clock, LaneConfig } from "../types.js" */
+
+const loadFiles = () => import("./run-files.js").then(({ RunFiles }) => RunFiles);
 
 export function Board() {
   const rows = standings.value;
@@ -37,7 +38,7 @@ export function Board() {
         <p class="dim fine">${told.value.rule}${
           isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>
       `}
-      ${isAtLeast("study") && html`<${Files} />`}
+      ${isAtLeast("study") && html`<${Loaded} name="downloads" load=${loadFiles} />`}
     </section>
   `;
 }
@@ -351,20 +352,5 @@ function ByEachClock({ rows }) {
         `)}
       </tbody>
     </table>
-  `;
-}
-
-// ---- files of the run on stage
-
-function Files() {
-  const run = shownRun.value;
-  if (!run || isActive(run) || !run.progress.done) return null;
-  return html`
-    <details class="more">
-      <summary>Download this ${run.kind}</summary>
-      <div class="own-choices">
-        ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download>${label}</a>`)}
-      </div>
-    </details>
   `;
 }

@@ -1,6 +1,6 @@
 // Learning of the learner in view: its learning curve, and its action values in its present state.
 import { seekIn } from "../actions.js";
-import { changesInWords, rateInWords } from "../changes.js";
+import { bestMove, cellName, changesInWords, curve, rateInWords } from "../training.js";
 import { inTime, inWords } from "../disturbances.js";
 import { count, metres, millimetres, whole } from "../format.js";
 import { largest, valueColours } from "../scale.js";
@@ -8,7 +8,6 @@ import { shownRun } from "../on-stage.js";
 import { agentOf } from "../settings.js";
 import { options, scene, served } from "../store.js";
 import { scale } from "../time.js";
-import { bestMove, cellName, curve } from "../training.js";
 import { isAtLeast } from "../workspace.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { HexapodGlyph, html } from "./elements.js";

@@ -1,9 +1,8 @@
 // The presenter's remote, on a phone: it commands the stage that all share, and every presenter's window of it.
 import { canStart, endAtTimeOut, primaryAction, runPrimaryAction, togglePlaying } from "../actions.js";
-import { cards } from "../lesson.js";
+import { cards, CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "../lesson.js";
 import { isPlaying } from "../on-stage.js";
 import { page } from "../page-state.js";
-import { CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "../presentation.js";
 import { commonStage } from "../store.js";
 import { html, Icon, Segments } from "./elements.js";
 import { Problem } from "./foot.js";

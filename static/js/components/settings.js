@@ -1,6 +1,6 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
 import { tune } from "../live-changes.js";
-import { presentRates, rateInWords } from "../changes.js";
+import { presentRates, rateInWords } from "../training.js";
 import { chooseLearner, chooseRobot, enter, form, setField, wrong, isReadOnly } from "../form.js";
 import { count, listed } from "../format.js";
 import { liveTraining, trainingInView } from "../on-stage.js";

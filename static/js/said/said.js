@@ -4,15 +4,14 @@ import { sentence, times, whole } from "../format.js";
 import { rowsOf } from "./moment.js";
 import { earlyEndOf, isActive, isTimedOutIn } from "./states.js";
 import {
-  brokenOff, practised, practising, whyBrokenOff, whyPractised, whyPractising,
-} from "./practice.js";
-import { halting, lead, leftOff, ruleAfter, ruleBefore, ruleOfNone, verdict } from "./race.js";
-import { reasonOf, workOf } from "./reasons.js";
+  brokenOff, halting, lead, leftOff, practised, practising, reasonOf, ruleAfter, ruleBefore, ruleOfNone, verdict,
+  whyBrokenOff, whyPractised, whyPractising, workOf,
+} from "./sentences.js";
 
 /** @import { CurvePoint } from "../training.js" */
 /** @import { Run, Scene, Stage } from "../types.js" */
 /** @import { Happening, KnownRace, Row } from "./moment.js" */
-/** @import { KnownPractice } from "./practice.js" */
+/** @import { KnownPractice } from "./sentences.js" */
 
 /**
  * What is known of the run on stage and its moment, in plain data. `scene` is of that run.
