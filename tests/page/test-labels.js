@@ -1,21 +1,21 @@
 // Labels of a chart: near their lines, and never over each other.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { chooseCaptions, overlap, passes, placeCaptions, placeLabels } from "../../static/js/labels.js";
+import { chooseCaptions, overlap, passes, placeCaptions, placeLabels } from "../../static/js/components/line-labels.js";
 
 const BOUNDS = { left: 0, top: 0, width: 300, height: 160 };
 const box = (/** @type {number} */ left, /** @type {number} */ top, width = 60, height = 16) =>
   ({ left, top, width, height });
 
-/** @param {(import("../../static/js/labels.js").Box | null)[]} boxes */
+/** @param {(import("../../static/js/components/line-labels.js").Box | null)[]} boxes */
 function assertApart(boxes) {
   const shown = boxes.filter((one) => one !== null);
   shown.forEach((one, n) => shown.slice(n + 1).forEach((other) => assert.ok(!overlap(one, other))));
 }
 
 /**
- * @param {(import("../../static/js/labels.js").Box | null)[]} placed
- * @param {import("../../static/js/labels.js").Box[]} wanted
+ * @param {(import("../../static/js/components/line-labels.js").Box | null)[]} placed
+ * @param {import("../../static/js/components/line-labels.js").Box[]} wanted
  */
 function assertInOrder(placed, wanted) {
   const inOrder = placed.flatMap((one, n) => (one ? [{ ...one, line: wanted[n].top }] : []))

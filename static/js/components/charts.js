@@ -2,14 +2,13 @@
 import { useMemo, useRef, useState } from "preact/hooks";
 import { crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf } from "../chart.js";
 import { metres, sentence, whole as wholeNumber } from "../format.js";
-import { placeCaptions } from "../labels.js";
+import { cssColour, LineLabels, MarkLines, placeCaptions, roomFor, widthOf } from "./line-labels.js";
 import { page } from "../page-state.js";
 import { thinned, ticks } from "../scale.js";
 import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";
 import { Crosshair, readIndex, zoomBy } from "./crosshair.js";
 import { html, useWidth } from "./elements.js";
-import { cssColour, LineLabels, MarkLines, roomFor, widthOf } from "./line-labels.js";
 
 /** @import { ComponentChildren } from "preact" */
 /** @import { Line, Mark, Range } from "../chart.js" */

@@ -1,8 +1,7 @@
 // Every seed as a dot on one axis, with the interquartile mean and reference values.
-import { placeCaptions } from "../labels.js";
 import { largest, percent, shareOf, swarm, thinned, ticks } from "../scale.js";
 import { html, useWidth } from "./elements.js";
-import { widthOf } from "./line-labels.js";
+import { placeCaptions, widthOf } from "./line-labels.js";
 
 const DOT_PX = 3;
 const APART_PX = 5;
