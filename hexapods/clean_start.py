@@ -11,13 +11,24 @@ from contextlib import contextmanager
 from multiprocessing import spawn, util
 from typing import Any
 
-_LOCK = threading.Lock()
 _MAIN = ("init_main_from_name", "init_main_from_path")
 """What a process is told of the main module that it is to import."""
 _OPTIONS = "_args_from_interpreter_flags"
 """Function that returns the options of the interpreter for a process; no public one has them."""
 _SAFE_PATH = "-P"
 """Option of the interpreter: it does not look for modules in the working folder."""
+
+_usual_preparation, _usual_options = spawn.get_preparation_data, vars(util)[_OPTIONS]
+
+
+class _Start(threading.local):
+    """How processes start that this thread starts now."""
+
+    is_clean = False
+    imports_main = True
+
+
+_start = _Start()
 
 
 @contextmanager
@@ -27,26 +38,27 @@ def clean_start(*, imports_main: bool) -> Iterator[None]:
     Args:
         imports_main: whether they import the main module all the same.
     """
-    # `multiprocessing` has no options for it. Other threads may start processes of their own.
-    thread = threading.get_ident()
-    with _LOCK:
-        preparation, options = spawn.get_preparation_data, vars(util)[_OPTIONS]
+    before = _start.is_clean, _start.imports_main
+    _start.is_clean, _start.imports_main = True, imports_main
+    try:
+        yield
+    finally:
+        _start.is_clean, _start.imports_main = before
 
-        def get_preparation_data(name: str) -> dict[str, Any]:
-            data = preparation(name)
-            if threading.get_ident() == thread and not imports_main:
-                data = {key: value for key, value in data.items() if key not in _MAIN}
-            return data
 
-        def get_options() -> list[str]:
-            interpreter: list[str] = options()
-            is_added = threading.get_ident() == thread and _SAFE_PATH not in interpreter
-            return [*interpreter, _SAFE_PATH] if is_added else interpreter
+def _preparation_data(name: str) -> dict[str, Any]:
+    data = _usual_preparation(name)
+    if not _start.is_clean or _start.imports_main:
+        return data
+    return {key: value for key, value in data.items() if key not in _MAIN}
 
-        spawn.get_preparation_data = get_preparation_data
-        setattr(util, _OPTIONS, get_options)
-        try:
-            yield
-        finally:
-            spawn.get_preparation_data = preparation
-            setattr(util, _OPTIONS, options)
+
+def _options() -> list[str]:
+    options: list[str] = _usual_options()
+    return [*options, _SAFE_PATH] if _start.is_clean and _SAFE_PATH not in options else options
+
+
+# `multiprocessing` has no options for it. Other threads start processes as before; and there is no
+# lock, which a process that is forked meanwhile would find locked for ever.
+spawn.get_preparation_data = _preparation_data
+setattr(util, _OPTIONS, _options)

@@ -130,7 +130,7 @@ def test_signatures_have_all_fields_of_the_configs(
     signature = inspect.signature(function)
     named = {name for name, one in signature.parameters.items() if one.kind is one.KEYWORD_ONLY}
     own = {
-        *("table", "changes", "on_record", "record", "on_step"),
+        *("table", "changes", "checkpoint", "on_record", "record", "on_step"),
         *("folder", "workers", "on_trial"),
     }
     assert named - own == {one.name for one in fields(config)} - without

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import hexapods as hx
+from app.cli.exit_codes import FAILED
 from hexapods.assembly import build_learner
 from hexapods.runs.best_known import best_known_m
 from hexapods.runs.config import WalkingProblem, training_config
@@ -112,7 +113,7 @@ def test_a_race_prints_the_gait_of_each_lane(tmp_path: Path) -> None:
 def test_a_race_in_which_all_fail_has_no_ranking(tmp_path: Path) -> None:
     clumsy = ("--lane", "tests.own_agents:Clumsy")
     done = in_process("race", *QUICK, *clumsy, *clumsy, folder=tmp_path)
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == FAILED, done.stderr
     assert "No ranking: no lane used all its steps" in done.stdout
     assert done.stdout.count("tripped") == 2
     assert "None" not in done.stdout
