@@ -1,7 +1,7 @@
 """State machine of the stage: which run is shown and why, how far its picture is, what follows.
 
 It is pure: it knows no clock, no recording and no store. `Stage` reports events to it and shows
-what it says; what the page says of the stage follows from it (`static/js/said/said.js`).
+what it says; what the page says of the stage follows from it (`static/js/narrative/narrative.js`).
 
     phase     the run on stage     its picture
     empty     none                 robots on the start line

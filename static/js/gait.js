@@ -5,7 +5,7 @@ import { setStage } from "./actions.js";
 import { askForNewest, getGait, isLasting } from "./api.js";
 import { count } from "./format.js";
 import { shownTime, timeline } from "./race.js";
-import { timeSpent } from "./said/moment.js";
+import { timeSpent } from "./narrative/moment.js";
 import { canPlay, raceInView, shownRun } from "./on-stage.js";
 import { limitsOf } from "./settings.js";
 import { connection, options, scene, stage } from "./store.js";

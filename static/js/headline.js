@@ -1,5 +1,5 @@
 // What is said of the run on stage at the moment that is shown, kept up to date; and what is announced to screen
-// readers. The sentences are those of said/said.js.
+// readers. The sentences are those of narrative/narrative.js.
 import { computed, effect, signal } from "@preact/signals";
 import { disturbancesOf, inTime, joinedBySteps } from "./disturbances.js";
 import { metres, sentence } from "./format.js";
@@ -7,7 +7,7 @@ import { canPlay, conditionsShown, raceInView, resumableOnStage, shownRun } from
 import { page } from "./page-state.js";
 import { knownRace } from "./race.js";
 import { isBuffering, replayProblem } from "./replay.js";
-import { said } from "./said/said.js";
+import { narrativeOf } from "./narrative/narrative.js";
 import { isOperator, visitorRuns } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, isAway, runs, scene, stage } from "./store.js";
@@ -16,7 +16,7 @@ import { clockTitle } from "./titles.js";
 import { curve } from "./training.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
-/** @import { Known } from "./said/said.js" */
+/** @import { Known } from "./narrative/narrative.js" */
 /** @import { Run } from "./types.js" */
 
 // ---- what is known of the run on stage and its moment
@@ -59,11 +59,11 @@ const known = computed(() => {
   };
 });
 
-/** All that is said of it: see `said`. */
-export const told = computed(() => said(known.value));
+/** All that is said of it: see `narrativeOf`. */
+export const narrative = computed(() => narrativeOf(known.value));
 
 /** How it stands in one sentence, where it is one of the run on stage; else null. */
-export const headline = computed(() => (told.value.isOfRun ? told.value.headline : null));
+export const headline = computed(() => (narrative.value.isOfRun ? narrative.value.headline : null));
 
 /**
  * The move that the explanation is about, told by its tab while it is open; null without one.
@@ -87,7 +87,10 @@ const LOST = "Connection lost, reconnecting";
 export const announcement = signal("");
 
 export function announceOutcomes() {
-  const outcome = computed(() => (told.value.announcement ? `${shownRun.value?.id} ${told.value.announcement}` : ""));
+  const outcome = computed(() => {
+    const { announcement: words } = narrative.value;
+    return words ? `${shownRun.value?.id} ${words}` : "";
+  });
   effect(() => {
     const [, ...words] = outcome.value.split(" ");
     if (words.length) announcement.value = words.join(" ");

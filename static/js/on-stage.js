@@ -6,7 +6,7 @@ import { conditionsAt, conditionsInWords, disturbancesOf } from "./disturbances.
 import { form } from "./form.js";
 import { count, duration, sentence, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
-import { earlyEndOf } from "./said/states.js";
+import { earlyEndOf } from "./narrative/states.js";
 import {
   hasTable, isActive, isKnown, isOperator, isVisitor, myRuns, runOf, stageableRuns, trainingIds,
 } from "./selectors.js";

@@ -3,15 +3,15 @@ import { computed, signal } from "@preact/signals";
 import { askForNewest, getTimeline, isLasting } from "./api.js";
 import { SAME_MOMENT_S } from "./format.js";
 import { clock, originalRace, raceInView, raceScene } from "./on-stage.js";
-import { distanceAt, rowsOf } from "./said/moment.js";
-import { isTimedOutIn } from "./said/states.js";
+import { distanceAt, rowsOf } from "./narrative/moment.js";
+import { isTimedOutIn } from "./narrative/states.js";
 import { modelOfLane } from "./selectors.js";
 import { connection, options } from "./store.js";
 import { messageOf } from "./titles.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { RequestError } from "./api.js" */
-/** @import { Row } from "./said/moment.js" */
+/** @import { Row } from "./narrative/moment.js" */
 /** @import { Run, Timeline, TimelinePoint } from "./types.js" */
 
 // ---- the timeline under the chosen clock, which grows while the race is simulated

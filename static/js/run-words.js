@@ -3,7 +3,7 @@ import { paceOf } from "./experiments/runs.js";
 import { count, distanceApart, metres, percentage, sentence, whole } from "./format.js";
 import { commonInWords, differenceInWords, fieldsOf, variedIn } from "./run-settings.js";
 import { distanceOf } from "./runs.js";
-import { earlyEndOf } from "./said/states.js";
+import { earlyEndOf } from "./narrative/states.js";
 import { isActive } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { references } from "./store.js";

@@ -1,7 +1,7 @@
 // Values derived from the store: rights, and the runs that this tab started.
 import { computed, signal } from "@preact/signals";
 import { disturbancesOf } from "./disturbances.js";
-import { isActive } from "./said/states.js";
+import { isActive } from "./narrative/states.js";
 import { options, role, runs } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */

@@ -8,7 +8,7 @@ import { canPlay, clock, isStale, raceScene, shownRun } from "./on-stage.js";
 import { page } from "./page-state.js";
 import { timeline } from "./race.js";
 import { endTime, openReplay, plan, playReplay, replayTime } from "./replay.js";
-import { stepEnds } from "./said/moment.js";
+import { stepEnds } from "./narrative/moment.js";
 import { isActive } from "./selectors.js";
 import { agentOf, laneTitle } from "./settings.js";
 import { ownStage, scene, stage } from "./store.js";

@@ -3,7 +3,7 @@
 Of 15 races and 3 practices.
 
 `make page-moments` computes them anew with the real simulator, stage and timeline, and writes
-`moments.json.gz`. `tests/page/test-said.js` compares each sentence of the page with them.
+`moments.json.gz`. `tests/page/test-narrative.js` compares each sentence of the page with them.
 """
 
 import gzip

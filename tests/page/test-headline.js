@@ -1,9 +1,9 @@
 // Why the leader is ahead, from recorded figures only.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { headline, told as saidNow, whyMarching } from "../../static/js/headline.js";
-import { madeAt, stepEnds } from "../../static/js/said/moment.js";
-import { chanceInWords, reasonOf, workOf } from "../../static/js/said/sentences.js";
+import { headline, narrative as saidNow, whyMarching } from "../../static/js/headline.js";
+import { madeAt, stepEnds } from "../../static/js/narrative/moment.js";
+import { chanceInWords, reasonOf, workOf } from "../../static/js/narrative/sentences.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 

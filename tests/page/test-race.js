@@ -1,10 +1,10 @@
 // The race at the moment that is shown: timeline, standings, headline.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { headline, told } from "../../static/js/headline.js";
+import { headline, narrative } from "../../static/js/headline.js";
 import { clipped, isTimedOut, shownTime, standings } from "../../static/js/race.js";
 import { stageIds } from "../../static/js/runs.js";
-import { distanceAt, timeSpent } from "../../static/js/said/moment.js";
+import { distanceAt, timeSpent } from "../../static/js/narrative/moment.js";
 import { heldRace, raceInView, stepShown } from "../../static/js/on-stage.js";
 import { applyEvent, options } from "../../static/js/store.js";
 import { flatParts, planningModelTitle } from "../../static/js/titles.js";
@@ -47,7 +47,7 @@ const show = (/** @type {import("../../static/js/types.js").Run} */ race, /** @t
 const showScene = (scene) => show(RACE, scene);
 
 /** The rule by which the race on stage is ranked. */
-const ruleShown = () => told.value.rule ?? "";
+const ruleShown = () => narrative.value.rule ?? "";
 
 const AT_END = { phase: "finished", time_s: 22, duration_s: 22, computed_s: 22, time_out_s: 16, ended: true };
 
@@ -170,7 +170,7 @@ test("a race that was stopped says so at its last step, without ranks and withou
   assert.match(headline.value ?? "", /^Interrupted at steps 25 to 26 of 50/);
   show(race, { lanes, time_s: 3 });
   assert.equal(headline.value, "Stopped at steps 25 to 26 of 50", "nobody leads while robots stand still");
-  assert.deepEqual([told.value.reason, (standings.value ?? []).map(({ rank }) => rank)], [null, [null, null]]);
+  assert.deepEqual([narrative.value.reason, (standings.value ?? []).map(({ rank }) => rank)], [null, [null, null]]);
   show(race, { lanes: lanes.map((lane) => ({ ...lane, halted: false })), time_s: 3 });
   assert.equal(headline.value, "Greedy leads by 21\u00a0cm", "on its way there");
 });

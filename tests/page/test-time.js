@@ -4,7 +4,7 @@ import { afterEach, beforeEach, test } from "node:test";
 import { page } from "../../static/js/page-state.js";
 import { followTimeline } from "../../static/js/race.js";
 import { closeReplay } from "../../static/js/replay.js";
-import { stepEnds } from "../../static/js/said/moment.js";
+import { stepEnds } from "../../static/js/narrative/moment.js";
 import { applyEvent, commonStage, connection, options } from "../../static/js/store.js";
 import {
   laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, seekToMark, timeAtDistance, toggleTime,

@@ -3,11 +3,11 @@ import { setStage } from "../actions.js";
 import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
-import { told, whyMarching } from "../headline.js";
+import { narrative, whyMarching } from "../headline.js";
 import { isOver, isTimedOut, standings } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
-import { earlyEndOf } from "../said/states.js";
+import { earlyEndOf } from "../narrative/states.js";
 import { isActive, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, scene, served } from "../store.js";
@@ -35,7 +35,7 @@ export function Board() {
       ${rows && isTimedOut.value && html`<${ByEachClock} rows=${rows} />`}
       ${hasChart && (rows || !isPractice ? html`<${RaceChart} />` : html`<${LearningChart} />`)}
       ${rows && isToldAll() && html`
-        <p class="dim fine">${told.value.rule}${
+        <p class="dim fine">${narrative.value.rule}${
           isAtLeast("try") ? ` ${flatParts(clock.value)}` : ""}</p>
       `}
       ${isAtLeast("study") && html`<${Loaded} name="downloads" load=${loadFiles} />`}
@@ -93,7 +93,7 @@ function BranchWords() {
 
 function distanceTitle() {
   if (isTimedOut.value) return html`<span class="sr-only">Distance </span>At time-out`;
-  return ["halting", "left off"].includes(told.value.state) ? "Reached" : "Now";
+  return ["halting", "left off"].includes(narrative.value.state) ? "Reached" : "Now";
 }
 
 function BestKnown() {
@@ -258,13 +258,13 @@ function agentSummary(agent, trainingId) {
 /** The lanes before the race. */
 function StartList() {
   const race = raceInView.value;
-  if (!race && ["loading", "lost"].includes(told.value.state)) {
-    return html`<p class="dim" role="status">${told.value.board}</p>`;
+  if (!race && ["loading", "lost"].includes(narrative.value.state)) {
+    return html`<p class="dim" role="status">${narrative.value.board}</p>`;
   }
   /** @type {LaneConfig[]} */
   const lanes = race?.config?.lanes ?? raceBody().lanes;
   return html`
-    <p class="dim">${told.value.board}</p>
+    <p class="dim">${narrative.value.board}</p>
     <ul class="start-list" aria-label="Lanes of the race">
       ${lanes.map((lane) => html`
         <li style=${{ "--agent": agentOf(lane.agent).color }}>

@@ -2,7 +2,7 @@
 import { useEffect, useState } from "preact/hooks";
 import { getSpectators } from "../api.js";
 import { canStart, primaryAction, runPrimaryAction } from "../actions.js";
-import { told } from "../headline.js";
+import { narrative } from "../headline.js";
 import { card, cards, presentation, toggleBlank, turnCode, turnPage } from "../lesson.js";
 import { canPlay } from "../on-stage.js";
 import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
@@ -80,7 +80,7 @@ const Keys = () => html`
       </button>
       <button class="quiet" onClick=${turnCode}><kbd>Q</kbd> code</button>
     `}
-    ${canPlay.value && html`<p><kbd>Space</kbd> ${told.value.play.isPlaying ? "pause" : "play"}</p>`}
+    ${canPlay.value && html`<p><kbd>Space</kbd> ${narrative.value.play.isPlaying ? "pause" : "play"}</p>`}
     ${!isFullScreen.value && document.fullscreenEnabled && html`
       <button class="quiet" onClick=${enterFullScreen}>Full screen</button>
     `}

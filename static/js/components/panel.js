@@ -1,7 +1,7 @@
 // The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { sentence } from "../format.js";
-import { moveTold, told } from "../headline.js";
+import { moveTold, narrative } from "../headline.js";
 import { clock, isStale, phase, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
@@ -66,7 +66,7 @@ function ofMove() {
 
 /** @returns {{ title: string, words: string | null, color: string }} */
 function ofRun() {
-  const { headline: title, reason: words, color } = told.value;
+  const { headline: title, reason: words, color } = narrative.value;
   return { title, words, color };
 }
 
@@ -193,7 +193,7 @@ function useFade(host) {
 
 /** By what a race is ranked and timed, and how long it still takes. */
 function Facts() {
-  const { rule } = told.value;
+  const { rule } = narrative.value;
   if (rule === null) return null;
   const { time_s = 0, time_out_s = null } = scene.value ?? {};
   const left = time_out_s === null || isStale.value ? null : Math.max(0, time_out_s - time_s);

@@ -3,7 +3,7 @@ import { seekIn } from "../actions.js";
 import { metres, SAME_MOMENT_S } from "../format.js";
 import { raceInView } from "../on-stage.js";
 import { clipped, shownTime, timeline, timelineProblem } from "../race.js";
-import { distanceAt } from "../said/moment.js";
+import { distanceAt } from "../narrative/moment.js";
 import { agentOf, laneTitle } from "../settings.js";
 import { BestKnownKey, bestKnownMark, Chart, Empty } from "./charts.js";
 import { html } from "./elements.js";

@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { keepWatching, pending, resumeRun, stay } from "../actions.js";
 import { form } from "../form.js";
-import { told } from "../headline.js";
+import { narrative } from "../headline.js";
 import { page } from "../page-state.js";
 import { closeLegs, legPoints, legsAreOpen, legsOf, picked } from "../legs.js";
 import { clickedCell, drawHere, shownTheme } from "../page.js";
@@ -146,7 +146,7 @@ const StageNotes = () => html`
 
 /** Of a run on stage that ended early: where, and how to go on. */
 function EarlyEndNote() {
-  const { note } = told.value;
+  const { note } = narrative.value;
   if (!note) return null;
   const { what, words, action } = note;
   return html`
@@ -280,7 +280,7 @@ const CHIP_TITLES = { speed: "Times real time" };
 
 const SceneChips = () => html`
   <div class="chips">
-    ${told.value.chips.map(({ kind, words }) => (kind === "strong"
+    ${narrative.value.chips.map(({ kind, words }) => (kind === "strong"
       ? html`<p key="run" class="chip strong" role="group" aria-label="Shown run">${words}</p>`
       : html`<p class=${`chip ${kind}`} title=${CHIP_TITLES[kind]}>${words}</p>`))}
   </div>

@@ -1,7 +1,7 @@
 // The time bar below the stage: play, the moment in the picture, how far the run is computed, what happened, and how it
 // is shown. It is shared by every page, unless this one plays a replay of its own.
 import { endAtTimeOut, setStage, skipToEnd } from "../actions.js";
-import { told } from "../headline.js";
+import { narrative } from "../headline.js";
 import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
@@ -29,7 +29,7 @@ export function TimeBar() {
     <div class=${`time-bar ${isOwn ? "own" : ""}`} role="group" aria-label="Time">
       ${known && html`<${PlayButton} />`}
       ${isOwn && known && html`<${StepButtons} />`}
-      ${known ? html`<${Track} known=${known} />` : html`<p class="dim no-time">${told.value.bar}</p>`}
+      ${known ? html`<${Track} known=${known} />` : html`<p class="dim no-time">${narrative.value.bar}</p>`}
       ${isOneLaneLeft(scene.value) && canPlay.value && !isStale.value && html`
         <button class="quiet square" onClick=${skipToEnd} aria-label="Skip to the end" title="Skip to the end">
           <${Icon} name="skip" />
@@ -43,7 +43,7 @@ export function TimeBar() {
 }
 
 function PlayButton() {
-  const { isPlaying, label } = told.value.play;
+  const { isPlaying, label } = narrative.value.play;
   return html`
     <button class="play" disabled=${!stage.value?.run_id} aria-disabled=${isStale.value ? "true" : undefined}
       onClick=${toggleTime} aria-label=${label} title=${label}>

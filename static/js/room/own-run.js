@@ -1,7 +1,7 @@
 // The own robot of a participant: its picture, how far it is, and what came of it.
 import { html, ProgressBar } from "../components/elements.js";
 import { replayProblem } from "../replay.js";
-import { ownRunSaid } from "../said/own-run.js";
+import { participantRunNarrative } from "../narrative/participant-run.js";
 import { isAway } from "../store.js";
 import { givenInWords } from "./may.js";
 import { arrived, Picture, replayed, ReplayBar } from "./picture.js";
@@ -19,7 +19,7 @@ export const OwnRobot = () => html`
 export function OwnRun() {
   const run = ownRun.value;
   if (run === null) return null;
-  const said = ownRunSaid({
+  const said = participantRunNarrative({
     run, distance_m: ownEntry.value?.run?.distance_m ?? run.result?.distance_m ?? null, isAway: isAway.value,
     hasArrived: replayed.value !== run.id || replayProblem.value !== null || arrived.value.has(run.id),
   });

@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { html, Icon } from "../components/elements.js";
 import { page } from "../page-state.js";
 import { shownTheme } from "../page.js";
-import { isShownToEnd } from "../said/states.js";
+import { isShownToEnd } from "../narrative/states.js";
 import { isAway, scene } from "../store.js";
 import {
   closeReplay, drawIn, endTime, followReplay, isBuffering, openReplay, playReplay, plan, replayProblem, replayTime,

@@ -9,7 +9,7 @@ import { Away } from "./doors.js";
 import { stepsOf } from "./chart.js";
 import { Picture } from "./picture.js";
 import { Axes, lineOf } from "./questions.js";
-import { isShownToEnd } from "../said/states.js";
+import { isShownToEnd } from "../narrative/states.js";
 import { agentOf } from "../settings.js";
 import { scene } from "../store.js";
 import { presentTournaments, tournamentPage } from "../tournament/states.js";

@@ -1,6 +1,6 @@
 // The lanes of a race at a moment of it, from what the API tells. The modules of this folder hold no signals: they make
-// every sentence about a run and its moment from plain data, as `said.js` has it in a table. What is said is decided by
-// numbers of steps; where only times are known, those that differ by no more than SAME_MOMENT_S are the same.
+// every sentence about a run and its moment from plain data, as `narrative.js` has it in a table. What is said is
+// decided by numbers of steps; where only times are known, those that differ by at most SAME_MOMENT_S are the same.
 import { SAME_MOMENT_S } from "../format.js";
 import { earlyEndOf, isActive, isTimedOutIn } from "./states.js";
 

@@ -6,9 +6,9 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { gunzipSync } from "node:zlib";
 import { metres } from "../../static/js/format.js";
-import { ownRunSaid } from "../../static/js/said/own-run.js";
-import { said } from "../../static/js/said/said.js";
-import { isShownToEnd } from "../../static/js/said/states.js";
+import { participantRunNarrative } from "../../static/js/narrative/participant-run.js";
+import { narrativeOf } from "../../static/js/narrative/narrative.js";
+import { isShownToEnd } from "../../static/js/narrative/states.js";
 import { OPTIONS } from "./options.js";
 
 /** @type {any[]} */
@@ -234,7 +234,7 @@ function checkRule({ run, lanes, isTimedOut, stage, steps }, rule) {
 }
 
 /** What is said at a moment. @param {any} entry @param {any} moment @param {object} [changes] */
-const saidAt = (entry, { scene, stage }, changes = {}) => said({
+const saidAt = (entry, { scene, stage }, changes = {}) => narrativeOf({
   run: entry.run, race: entry.run.kind === "race" ? entry.run : null, scene, stage, timeline: entry.timeline,
   clock: scene.clock, clockTitle: "paper clock", agents: AGENTS, tests: entry.tests, conditions: [],
   happened: (entry.run.config.disturbances ?? []).map((/** @type {any} */ { kind, at_step }) =>
@@ -350,7 +350,7 @@ test("a run that never began, that waits, or that is not there says so", () => {
 
 test("on a phone nothing is said of how far a run came before its picture is there", () => {
   const practice = ENTRIES.find(({ run }) => run.kind === "training" && run.state === "finished");
-  const of = (/** @type {object} */ changes, hasArrived = false) => ownRunSaid({
+  const of = (/** @type {object} */ changes, hasArrived = false) => participantRunNarrative({
     run: { ...practice.run, ...changes }, distance_m: 0.123, isAway: false, hasArrived,
   });
   assert.deepEqual([of({}).state, of({}).distance], ["arriving", undefined]);

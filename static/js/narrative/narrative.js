@@ -38,7 +38,7 @@ import {
  * What is said in a state; what is left out is said by `SILENT`. `rule`: by which a race is ranked. `bar`: in place of
  * the time bar. `board`: above the lanes before there is a board. `isEnd`: the run goes on no more from here, which is
  * announced. `isOfRun`: it is about the run on stage. `isUnseen`: without the server it may have gone on.
- * @typedef {object} Sayings
+ * @typedef {object} Narration
  * @property {(facts: Facts) => string} headline
  * @property {(facts: Facts) => string | null} reason
  * @property {(facts: Facts) => string | null} rule
@@ -49,7 +49,7 @@ import {
  * @property {boolean} isUnseen
  */
 
-/** @type {Sayings} */
+/** @type {Narration} */
 const SILENT = {
   headline: () => "", reason: () => null, rule: () => null, bar: firstSteps, board: () => "",
   isEnd: false, isOfRun: false, isUnseen: false,
@@ -69,7 +69,7 @@ const ruleOfRanks = (facts) => ofRows((rows) => ruleAfter(facts.clockTitle, fact
 const whyNotRanked = (facts) => ruleOfNone(facts.clockTitle, facts);
 const ABOUT = "It tries moves, keeps what each was worth, and races against two that think ahead.";
 
-/** @type {Record<State, Partial<Sayings>>} */
+/** @type {Record<State, Partial<Narration>>} */
 const TABLE = {
   "nothing": {
     headline: () => "A hexapod learns to walk", reason: () => ABOUT,
@@ -133,25 +133,25 @@ function stateOfRace(run, scene) {
  * All that is said of a run and its moment.
  * @param {Known} known
  */
-export function said(known) {
+export function narrativeOf(known) {
   const rows = rowsOf(known);
   const facts = { ...known, rows, state: stateOf(known, rows) };
-  const sayings = { ...SILENT, ...TABLE[facts.state] };
-  const headline = sayings.headline(facts);
+  const entry = { ...SILENT, ...TABLE[facts.state] };
+  const headline = entry.headline(facts);
   return {
     state: facts.state,
     rows,
     headline,
-    reason: sayings.isUnseen && known.isAway && !known.isOwn ? STOOD : sayings.reason(facts),
-    rule: sayings.rule(facts),
-    bar: sayings.bar(facts),
-    board: sayings.board(facts),
-    isOfRun: sayings.isOfRun,
+    reason: entry.isUnseen && known.isAway && !known.isOwn ? STOOD : entry.reason(facts),
+    rule: entry.rule(facts),
+    bar: entry.bar(facts),
+    board: entry.board(facts),
+    isOfRun: entry.isOfRun,
     color: rows ? colorOfLanes(facts, rows) : colorOf(facts),
     note: noteOf(facts),
     chips: chipsOf(facts),
     play: playLabel(facts),
-    announcement: announced(facts, sayings.isEnd ? headline : ""),
+    announcement: announced(facts, entry.isEnd ? headline : ""),
   };
 }
 

@@ -47,7 +47,7 @@ function stateOf({ run, hasArrived }) {
 }
 
 /** @param {KnownOwn} known */
-export function ownRunSaid(known) {
+export function participantRunNarrative(known) {
   const state = stateOf(known);
   return { state, ...TABLE[state](known) };
 }
