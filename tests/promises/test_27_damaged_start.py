@@ -279,7 +279,8 @@ def test_the_row_of_the_database_itself_can_be_damaged(
     with closing(sqlite3.connect(data_folder / DATABASE_FILE, isolation_level=None)) as file:
         decode_leniently(file)
         damages = [damage(file, column, value, 1) for column in ABOUT.c]
-    check_named([one for one in damages if one is not None], doctor(data_folder))
+    # Its key is damaged too, of which what cannot be printed is left out; it is the only row.
+    check_named([one._replace(key={}) for one in damages if one is not None], doctor(data_folder))
     server = launch(HEXAPODS_TOKEN=TOKEN)
     path = f"/api/v1/races/{full_folder.RACE}/recording"
     assert server.client.get(path, headers=OPERATOR).status_code == 200
