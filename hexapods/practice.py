@@ -166,6 +166,8 @@ def _begun(
 def _restore(learner: Learner, interrupted: Training) -> None:
     try:
         restore(learner, interrupted.table)
+    except InvalidInput:
+        raise
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFile(f"the training has no state to go on from: {error}") from error
 

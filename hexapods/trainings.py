@@ -191,6 +191,8 @@ def training_from_bytes(data: bytes, name: str) -> Training:
         curve = tuple(CurvePoint(*point) for point in checkpoint.meta.get("curve", ()))
         fields = checkpoint.meta.get("result")
         result = None if fields is None else TrainingResult(**fields)
+    except InvalidInput:
+        raise
     except (KeyError, TypeError, ValueError) as error:
         raise DamagedFile(f"{name} does not say how it was learned: {error}") from error
     return Training(config, checkpoint, curve, result)

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -111,6 +112,15 @@ def test_a_practice_that_was_left_goes_on(tmp_path: Path) -> None:
     whole = hx.train(changes=CHANGES, **QUICK)
     assert_equal(hx.resume(practice.training), whole)
     assert_equal(hx.resume(saved), whole)
+
+
+def test_what_is_invalid_in_a_checkpoint_is_told_as_it_was_raised(tmp_path: Path) -> None:
+    practice = hx.iter_train(**QUICK)
+    next(practice)
+    training = practice.training
+    meta = {**training.table.meta, "disturbances": [{"kind": "flood"}]}
+    with pytest.raises(hx.UnknownName, match=r"^unknown kind of disturbance 'flood'"):
+        hx.resume(replace(training, table=replace(training.table, meta=meta)))
 
 
 def test_a_finished_training_is_returned_as_it_is(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from app.storage.database.store import RunStore
 from hexapods.agents.registry import find, learns
 from hexapods.domain.disturbance_documents import as_mapping, parse_disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
+from hexapods.domain.records import refusal_in
 from hexapods.runs.config import TrainingConfig, agent_settings
 from hexapods.runs.lane import LANE_FIELDS
 from hexapods.shows.scene_spec import PAPERS_LANES
@@ -98,7 +99,10 @@ class CardStarts:
         try:
             start: TrainingStart | RaceStart = _reader(self._agents, kind)(body).start()
         except ValidationError as error:
-            told = field_errors(error.errors())
+            errors = error.errors()
+            if (refusal := refusal_in(errors)) is not None:
+                raise refusal from refusal.__cause__
+            told = field_errors(errors)
             raise InvalidInput(" ".join(one["detail"] for one in told[:3])) from error
         return start
 

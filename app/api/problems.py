@@ -26,6 +26,7 @@ from app.storage.errors import (
     StorageFull,
 )
 from hexapods.domain.errors import HexapodError, ImpossibleLegs, InvalidInput
+from hexapods.domain.records import refusal_in
 
 MEDIA_TYPE = "application/problem+json"
 MAX_DETAIL = 1000
@@ -116,8 +117,9 @@ async def hexapod_error(request: Request, error: Exception) -> Response:
 
 
 async def _validation_error(request: Request, error: Exception) -> Response:
-    del request
     raw = error.errors() if isinstance(error, RequestValidationError) else []
+    if (refusal := refusal_in(raw)) is not None:
+        return await hexapod_error(request, refusal)
     errors = field_errors(raw)
     return problem(422, " ".join(e["detail"] for e in errors[:3]), errors)
 

@@ -115,6 +115,8 @@ def unpack(data: bytes, label: str, is_allowed: Callable[[str], bool]) -> dict[s
             members = {member.filename: archive.read(member) for member in infos}
     except (zipfile.BadZipFile, EOFError, NotImplementedError, RuntimeError) as error:
         raise DamagedFile(f"{label} is damaged: it is no whole zip ({error})") from error
+    except InvalidInput:
+        raise
     except (ValueError, struct.error, OverflowError, OSError) as error:
         raise DamagedFile(f"{label} is damaged: it is no whole zip") from error
     _check_hashes(members, label)

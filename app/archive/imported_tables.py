@@ -101,7 +101,7 @@ def check_change(change: Mapping[str, Any], agent: str) -> None:
         agent: name of a registered agent.
 
     Raises:
-        KeyError, TypeError, ValueError, InvalidInput: if it is not.
+        KeyError, TypeError, ValueError: if it is not.
     """
     valid = dict(changeable_settings(agent))
     pace = valid.pop("pace")

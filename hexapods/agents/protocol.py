@@ -26,9 +26,9 @@ Attributes of the class state the rest:
 
 Optional methods: those of `Tunable`, `Valuing` and `Tabular`, of `Explaining` and
 `ExplainingSearch` in `hexapods.agents.explanation`, and two static methods:
-`check_state(state)` raises `ValueError` or `InvalidInput` for a state that `load` cannot restore,
-such as one in an untrusted file; `check_problem(problem, **settings)` raises `InvalidInput` for
-settings that are too much for a problem, before a run is queued.
+`check_state(state)` raises `ValueError`, which `InvalidInput` is, for a state that `load` cannot
+restore, such as one in an untrusted file; `check_problem(problem, **settings)` raises
+`InvalidInput` for settings that are too much for a problem, before a run is queued.
 """
 
 from collections.abc import Callable, Sequence

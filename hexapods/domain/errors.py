@@ -23,8 +23,8 @@ def _restored(
     return error
 
 
-class InvalidInput(HexapodError):
-    """The user's input is invalid; the message names the valid choices.
+class InvalidInput(HexapodError, ValueError):
+    """The user's input is invalid; the message names the valid choices. Also a `ValueError`.
 
     Attributes:
         field: of the input, which is invalid; "" if it is not said, as where several do not fit.

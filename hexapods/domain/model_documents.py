@@ -45,6 +45,8 @@ def read_model_content(content: Mapping[str, Any]) -> ModelRobot:
             raise ValueError("it holds more than a robot")
         numbers: dict[str, Any] = _numbers(given, NUMBERS)
         return ModelRobot(name="robot", legs=legs, model=model, **numbers)
+    except InvalidInput:
+        raise
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise DamagedFile(f"the document of a robot is damaged: {error}") from error
 

@@ -6,7 +6,7 @@ Pydantic. A type with a form of its own in JSON, such as a robot, says it by a `
 
 import inspect
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any, ClassVar, TypeVar
@@ -16,6 +16,19 @@ from hexapods.domain.json_lists import check_lists
 
 T = TypeVar("T")
 Schema = dict[str, Any]
+
+
+def refusal_in(errors: Iterable[Mapping[str, Any]]) -> InvalidInput | None:
+    """Return the first `InvalidInput` among Pydantic's errors, None if there is none.
+
+    Pydantic keeps every `ValueError` that a function raises for its own list of errors. To the user
+    an `InvalidInput` is told as it was raised.
+
+    Args:
+        errors: as Pydantic's `errors()` returns them, with their context.
+    """
+    causes = (error.get("ctx", {}).get("error") for error in errors)
+    return next((cause for cause in causes if isinstance(cause, InvalidInput)), None)
 
 
 class Record:
@@ -152,7 +165,10 @@ def from_json(kind: type[T], data: Any, **how: Any) -> T:
     try:
         record: T = read(data, **how)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+        errors = error.errors(include_url=False, include_input=False)
+        if (refusal := refusal_in(errors)) is not None:
+            raise refusal from refusal.__cause__
+        first = errors[0]
         raise ValueError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from None
     return record
 

@@ -137,7 +137,7 @@ class ResultsFolder(Progress):
             raise InvalidInput(f"{self.path} has results of {differs}; {_CHOOSE}")
         try:
             there = by_option(to_json(from_json(type(self.plan.config), head["config"])))
-        except (HexapodError, KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError) as error:
             raise DamagedFile(f"{self.path / TRIALS} has a damaged head ({error})") from error
         here = by_option(to_json(self.plan.config))
         # Each trial's seed depends on its number only, so that more seeds extend the results; and

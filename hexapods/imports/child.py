@@ -191,7 +191,7 @@ def _imported(answer: bytes) -> ImportedRobot:
         if error is None:
             return from_json(ImportedRobot, told["robot"])
         kind = DamagedFile if told.get("is_damaged") else InvalidInput
-    except (ValueError, KeyError, AttributeError, TypeError, HexapodError) as problem:
+    except (ValueError, KeyError, AttributeError, TypeError) as problem:
         _logger.warning("the process that reads robots gave no valid answer: %s", problem)
         raise DamagedFile(f"the file makes no valid robot: {_cut(str(problem))}") from problem
     raise kind(_cut(str(error)))

@@ -109,6 +109,8 @@ class _DocumentReader:
             raise DamagedFile(
                 f"{self._label} is no whole XML document: line {error.lineno}: {why}"
             ) from error
+        except DamagedFile:  # of a handler
+            raise
         except (ValueError, LookupError) as error:  # an encoding that does not exist
             raise DamagedFile(f"{self._label} is no XML document: {error}") from error
         if self._root is None:

@@ -14,7 +14,7 @@ from annotated_types import Ge, Le
 from hexapods.agents import registry
 from hexapods.agents.protocol import Problem
 from hexapods.domain import disturbances
-from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
+from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import AnyGait, Gait, resolve
 from hexapods.domain.grid import MAX_DIVISIONS, MAX_SIDE_M, MIN_DIVISIONS, MIN_SIDE_M, FootGrid
 from hexapods.domain.observation import Observation, check_observation
@@ -270,7 +270,7 @@ def usable_agents() -> tuple[str, ...]:
     for agent in registry.registered():
         try:
             agent_settings(agent), changeable_settings(agent)
-        except (HexapodError, TypeError, ValueError) as error:
+        except (TypeError, ValueError) as error:
             _log.warning("agent %s is left out: %s", agent, error)
         else:
             usable.append(agent)

@@ -19,7 +19,7 @@ from hexapods.agents.protocol import Agent, Tabular
 from hexapods.agents.q_table import check_arrays, check_size
 from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from hexapods.domain.disturbance_documents import as_mapping
-from hexapods.domain.errors import DamagedFile, TableMismatch
+from hexapods.domain.errors import DamagedFile, InvalidInput, TableMismatch
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.records import to_json
 from hexapods.domain.short_repr import short_repr
@@ -167,6 +167,8 @@ def _load(
 ) -> None:
     try:
         load(state)
+    except InvalidInput:
+        raise
     except (IndexError, KeyError, TypeError, ValueError) as error:
         raise TableMismatch(
             f"{type(agent).__name__} cannot load what {checkpoint.meta['agent']} has learned; "

@@ -25,8 +25,9 @@ LAUGHS = b'<!DOCTYPE a [<!ENTITY b "ha"><!ENTITY c "&b;&b;&b;">]><a name="&c;"/>
     ],
 )
 def test_what_exceeds_a_bound_is_refused(data: bytes, said: str) -> None:
-    with pytest.raises(DamagedFile, match=re.escape(said)):
+    with pytest.raises(DamagedFile, match=re.escape(said)) as raised:
         read_xml(data, "robot.xml")
+    assert str(raised.value).count("robot.xml") == 1
 
 
 def test_a_document_keeps_its_lines() -> None:
