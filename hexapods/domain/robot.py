@@ -141,10 +141,18 @@ def as_mapping(value: Robot) -> dict[str, Any]:
 
     One without an id whose name is no preset's, as `Robot(name="x")`, differs from `stiff`: it is
     read again without its name.
+
+    Raises:
+        InvalidInput: if it is a model's, and has no document.
     """
     name = value.name.removesuffix(_MODIFIED)
     if value.id is not None:
         return {"id": value.id, "name": name, **_differing(value, _by_id(value.id, name))}
+    if isinstance(value, ModelRobot):
+        raise InvalidInput(
+            f"the robot {value.name} is of no document, by which it could be found again: take "
+            "hexapods.load_robot"
+        )
     base = PRESETS.get(name, PRESETS["stiff"])
     if None in _differing(value, base).values():  # no override says that there is no box
         base = PRESETS["stiff"]

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-import hexapods.runs.results
+import hexapods as hx
 from app.api.run_code import MAX_CONTINUED, run_code
 from app.storage.run import Run
 from tests.api.calls import Api, refused
@@ -45,11 +45,14 @@ def results_of_commands(text: str, folder: Path) -> list[dict[str, Any]]:
 
 
 def results_of_program(text: str, folder: Path) -> list[dict[str, Any]]:
-    """Run the program, and return the results that it prints."""
+    """Run the program, and return its results, each of which it prints."""
     out = io.StringIO()
+    names: dict[str, Any] = {"__name__": "__main__"}
     with contextlib.chdir(folder), contextlib.redirect_stdout(out):
-        exec(compile(text, "the program", "exec"), {"__name__": "__main__"})
-    return [asdict(eval(line, vars(hexapods.runs.results))) for line in out.getvalue().splitlines()]
+        exec(compile(text, "the program", "exec"), names)
+    made = [made for made in names.values() if isinstance(made, hx.Training | hx.Race)]
+    assert out.getvalue().splitlines() == [repr(run.result) for run in made]
+    return [asdict(run.result) for run in made if run.result is not None]
 
 
 def distances(result: dict[str, Any]) -> list[float]:

@@ -1,6 +1,7 @@
 """Playback of a race: speed, photo finish, clocks, races that are still computed."""
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -363,7 +364,7 @@ def test_moment_that_pages_know_by_milliseconds_is_that_of_a_step(
     parts: StageParts, robot: str
 ) -> None:
     """Sums of odd durations of steps end a hair above or below what a page is told and names."""
-    walk = {"robot": PRESETS[robot], "gait": CREATURES[robot].gait}
+    walk: dict[str, Any] = {"robot": PRESETS[robot], "gait": CREATURES[robot].gait}
     race = parts.finished_race(("greedy", "random-walk"), **walk)
     parts.stage.set(run_id=race.id, playing=False)
     parts.next_frame()
