@@ -40,7 +40,7 @@ from hexapods.runs.records import LaneStep, StepTaken
 from hexapods.runs.results import training_result
 from hexapods.runs.tables import restore, snapshot, to_bytes
 from hexapods.runs.training import Learner, train
-from hexapods.runs.walker import Interrupted, Walker
+from hexapods.runs.walker import SearchInterrupted, Walker
 
 HEARTBEAT_EVERY_S = 1.0
 _logger = logging.getLogger(__name__)
@@ -137,7 +137,7 @@ def _interruptible(learner: Learner, control: JobControl) -> Learner:
 def _race(task: RaceTask, control: JobControl, stopping: threading.Event) -> None:
     def interrupt_if_stopping() -> None:
         if stopping.is_set():
-            raise Interrupted
+            raise SearchInterrupted
 
     walkers = build_walkers(task.config, task.tables)
     for walker in walkers:
@@ -150,7 +150,7 @@ def _race(task: RaceTask, control: JobControl, stopping: threading.Event) -> Non
             control.report(record, done)
             if not control.wait_for_turn(done):
                 break
-    except Interrupted:
+    except SearchInterrupted:
         control.wait_for_turn(done)  # executes the command that stops it
     control.flush()
     if not control.exiting:

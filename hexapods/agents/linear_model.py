@@ -62,7 +62,7 @@ _KEPT = 0.1
 """Share of the evidence that remains after a change."""
 
 
-class Policy(NamedTuple):
+class ExpertPolicy(NamedTuple):
     """One way of choosing: by an expert, and in which order the groups take turns."""
 
     expert: Expert
@@ -126,8 +126,8 @@ class LinearModel:
         forth = tuple((group + 1) % groups for group in range(groups))
         back = tuple((group - 1) % groups for group in range(groups))
         self._policies = (
-            *(Policy(planned, order, _UNTRIED) for order in dict.fromkeys((forth, back))),
-            Policy(measured, None, _UNTRIED_MEASURED),
+            *(ExpertPolicy(planned, order, _UNTRIED) for order in dict.fromkeys((forth, back))),
+            ExpertPolicy(measured, None, _UNTRIED_MEASURED),
         )
         sizes = [len(group) for group in problem.groups]
         legs = sum(sizes)  # whole numbers
@@ -253,7 +253,7 @@ class LinearModel:
                 self._deciding = self._best_policy(self._policies[:-1], optimistic=False)
         self._predicted = np.zeros_like(self._predicted)
 
-    def _best_policy(self, policies: Sequence[Policy], optimistic: bool) -> int:
+    def _best_policy(self, policies: Sequence[ExpertPolicy], optimistic: bool) -> int:
         """Return the index of the first policies that earned most per step.
 
         Each record is completed by one step with the reward expected before any, or with none.

@@ -24,7 +24,7 @@ _MAX_BATCH = 1024
 heeded meanwhile, for half a second or so in MuJoCo."""
 
 
-class Interrupted(BaseException):
+class SearchInterrupted(BaseException):
     """Raised to abandon a decision; no `Exception`, so that no agent takes it for a failure."""
 
 
@@ -125,7 +125,7 @@ class SimulatorExpand:
         transitions: number of transitions simulated so far.
         budget: most transitions that may be simulated; None for any number.
         here: root node, the current state of the robot.
-        interrupt: called before each batch; may raise `Interrupted`.
+        interrupt: called before each batch; may raise `SearchInterrupted`.
     """
 
     def __init__(self, simulator: Simulator[Any], observation: Observation) -> None:
@@ -237,7 +237,7 @@ class Walker:
         return self.expand.transitions if self.expand else 0
 
     def interrupt_by(self, interrupt: Callable[[], None]) -> None:
-        """Let a function interrupt the agent's search, by raising `Interrupted`."""
+        """Let a function interrupt the agent's search, by raising `SearchInterrupted`."""
         if self.expand:
             self.expand.interrupt = interrupt
 

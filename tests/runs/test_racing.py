@@ -24,7 +24,7 @@ from hexapods.runs.results import race_result
 from hexapods.runs.seeding import RACING, generator
 from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
-from hexapods.runs.walker import Interrupted
+from hexapods.runs.walker import SearchInterrupted
 from tests.own_agents import Restless
 
 
@@ -242,11 +242,11 @@ def test_decision_may_be_interrupted_and_is_no_failure() -> None:
     assert [next(records).lane, next(records).lane] == [0, 1]
 
     def interrupt() -> None:
-        raise Interrupted
+        raise SearchInterrupted
 
     for walker in walkers:
         walker.interrupt_by(interrupt)
-    with pytest.raises(Interrupted):
+    with pytest.raises(SearchInterrupted):
         next(records)
 
 

@@ -8,7 +8,7 @@ from sqlalchemy import Connection, delete, func, select
 
 from app.storage.database.engine import Database
 from app.storage.database.schema import LESSONS
-from app.storage.database.stored_rows import Rows, put_rows, read_rows
+from app.storage.database.stored_rows import DecodedRows, put_rows, read_rows
 
 
 class LessonRows:
@@ -30,7 +30,7 @@ class LessonRows:
 
         return self._database.write(work)
 
-    def read(self, decode: Callable[..., Any], lesson_id: str | None = None) -> Rows:
+    def read(self, decode: Callable[..., Any], lesson_id: str | None = None) -> DecodedRows:
         """Return lessons, newest first.
 
         Args:

@@ -14,7 +14,7 @@ from sqlalchemy import Connection, String, cast, delete, func, or_, select, upda
 from app.storage.database.engine import Database
 from app.storage.database.rows import forget_configs
 from app.storage.database.schema import ROBOTS, RUNS, TOURNAMENTS
-from app.storage.database.stored_rows import Rows, put_rows, read_rows, rows_in
+from app.storage.database.stored_rows import DecodedRows, put_rows, read_rows, rows_in
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import Conflict, NotFound, StorageFailed, StorageFull
 from app.storage.stored_robot import MAX_ROBOTS, StoredRobot, distinct_name
@@ -399,7 +399,7 @@ def _fetch(connection: Connection, robot_id: str) -> StoredRobot:
     return robot
 
 
-def _rows(connection: Connection, robot_id: str) -> Rows:
+def _rows(connection: Connection, robot_id: str) -> DecodedRows:
     return rows_in(connection, ROBOTS, _decode, where=ROBOTS.c.id == robot_id)
 
 

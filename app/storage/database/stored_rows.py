@@ -72,8 +72,8 @@ class DamagedRow(NamedTuple):
         return f"{self.table} {self.key}: {self.damaged}"
 
 
-class Rows(NamedTuple):
-    """Rows of a table.
+class DecodedRows(NamedTuple):
+    """Rows of a table, as far as they can be decoded.
 
     Attributes:
         sound: those that can be read, decoded.
@@ -90,7 +90,7 @@ def read_rows(
     decode: Callable[..., Any],
     *order: ColumnElement[Any],
     where: ColumnElement[bool] | None = None,
-) -> Rows:
+) -> DecodedRows:
     """Return the rows of a table, and log those that are damaged, each of them once.
 
     Args:
@@ -140,7 +140,7 @@ def rows_in(
     *order: ColumnElement[Any],
     where: ColumnElement[bool] | None = None,
     keeps_sound: bool = True,
-) -> Rows:
+) -> DecodedRows:
     """Return the rows of a table within a transaction; arguments as of `read_rows`.
 
     Of tables that may have very many rows only the damaged ones can be kept.
@@ -148,7 +148,7 @@ def rows_in(
     query = select(*map(_undecoded, table.c)).order_by(*order)
     if where is not None:
         query = query.where(where)
-    rows = Rows([], [])
+    rows = DecodedRows([], [])
     for row in connection.execute(query.execution_options(yield_per=_ROWS_AT_ONCE)).mappings():
         values, reasons = _decoded_columns(table, row)
         if not reasons:
