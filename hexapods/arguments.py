@@ -3,7 +3,7 @@
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
-from typing import Any, NoReturn, TypedDict
+from typing import Any, NoReturn, TypedDict, TypeVar
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from hexapods.domain.disturbance_documents import as_text, disturbance, parse_di
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import GaitSpec, read_gait
-from hexapods.domain.model_robot import model_robot
+from hexapods.domain.model_robot import ModelRobot, model_robot
+from hexapods.domain.records import check_kept
 from hexapods.domain.robot import PRESETS, Robot, document_of, read_document, robot
 from hexapods.domain.text import MAX_NAME, visible
 from hexapods.domain.world import WORLDS, World, parse_world
@@ -22,6 +23,7 @@ from hexapods.imports.child import read_robot_file
 from hexapods.imports.upload import MAX_UPLOAD_BYTES
 from hexapods.runs.config import WalkingProblem
 
+C = TypeVar("C", bound=WalkingProblem)
 GAIT = "left-right-origin"
 """The gait where none is given: the first of the paper's."""
 WALK = tuple(one.name for one in fields(WalkingProblem))
@@ -123,7 +125,20 @@ def read_robot(given: RobotLike) -> Robot:
         _refuse("robot", f"{' or '.join(PRESETS)}, a mapping or a Robot", given)
     made = robot(given)
     # No file, database or terminal takes each character that a text of Python may have.
-    return replace(made, name=visible(made.name)[:MAX_NAME])
+    named = replace(made, name=visible(made.name)[:MAX_NAME])
+    is_unstored = isinstance(named, ModelRobot) and named.id is None
+    return read_document(document_of(named), named.name) if is_unstored else named
+
+
+def check_savable(config: C) -> C:
+    """Return a config that can be saved and read again: to be called before what it decides.
+
+    A robot of a class of one's own has no form in a file: its results are in memory alone.
+
+    Raises:
+        InvalidInput: if it cannot be saved.
+    """
+    return check_kept(config) if type(config.robot) in (Robot, ModelRobot) else config
 
 
 def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:

@@ -19,6 +19,7 @@ from hexapods.arguments import (
     agent_name,
     check_callable,
     check_names,
+    check_savable,
     given_of,
     plain,
     read_walk,
@@ -27,7 +28,6 @@ from hexapods.assembly import build_learner
 from hexapods.changes import LATER, change_as_json, read_changes
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
-from hexapods.domain.records import check_kept
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
 from hexapods.interruption import Interrupted, stop_signals
@@ -158,7 +158,7 @@ def _begun(
         name = TrainingConfig.agent if trained is None else trained.config.agent
     else:
         name, trained = learned_by(agent_name(agent), table)
-    config = check_kept(_config(name, trained, given))
+    config = check_savable(_config(name, trained, given))
     check_ends(config.world.disturbances, config.steps)
     return Practice(config, None if trained is None else trained.table, changes, record)
 

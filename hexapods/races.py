@@ -27,6 +27,7 @@ from hexapods.arguments import (
     WorldLike,
     check_callable,
     check_names,
+    check_savable,
     given_of,
     plain,
     read_walk,
@@ -34,7 +35,7 @@ from hexapods.arguments import (
 from hexapods.assembly import build_walkers
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
-from hexapods.domain.records import check_kept, from_json, to_json
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
@@ -310,7 +311,7 @@ def race(
     numbers = plain({"steps": steps, "seed": seed})
     built = [one if isinstance(one, Lane) else lane(one) for one in lanes]
     like = next((one.training.config for one in built if one.training is not None), None)
-    config = check_kept(
+    config = check_savable(
         RaceConfig(
             **read_walk(plain(given), like),
             lanes=tuple(one.config for one in built),

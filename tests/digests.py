@@ -19,7 +19,7 @@ import numpy as np
 import hexapods as hx
 from hexapods.agents.registry import OURS, learns
 from hexapods.domain.model_robot import model_robot
-from hexapods.domain.robot import PRESETS, Robot, document_of, read_document
+from hexapods.domain.robot import PRESETS, Robot
 from hexapods.runs.config import SimulatorName, WalkingProblem
 from hexapods.runs.preview import preview
 from tests.model_robots import model_of
@@ -100,8 +100,7 @@ def _walk(robot: Robot) -> tuple[Any, ...]:
 
 
 def _walk_of_model() -> tuple[Any, ...]:
-    document = document_of(model_robot(model_of(PRESETS["stiff"]), "of a file"))
-    return _walk(read_document(document, "of a file"))
+    return _walk(model_robot(model_of(PRESETS["stiff"]), "of a file"))
 
 
 def _motions(lane: Any) -> list[Any]:

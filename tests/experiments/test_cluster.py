@@ -5,6 +5,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -120,8 +121,8 @@ def test_workers_end_when_the_process_that_started_them_is_killed(tmp_path: Path
         "        print(outcome.key, flush=True)\n",
         "utf-8",
     )
-    temporary = tmp_path / "temporary"
-    temporary.mkdir()
+    # A short path: it is part of the names of sockets, which have at most 107 bytes.
+    temporary = Path(tempfile.mkdtemp(prefix="trials-"))
     process = subprocess.Popen(
         [sys.executable, str(script)],
         env={**os.environ, "PYTHONPATH": str(Path.cwd()), "TMPDIR": str(temporary)},
@@ -137,6 +138,7 @@ def test_workers_end_when_the_process_that_started_them_is_killed(tmp_path: Path
     _, left = psutil.wait_procs(children, timeout=LONG_S)
     assert not left
     assert list(temporary.iterdir()) == []
+    temporary.rmdir()
 
 
 def test_an_existing_cluster_gives_the_same_results_until_its_scheduler_dies(

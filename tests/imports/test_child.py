@@ -128,14 +128,18 @@ def test_a_child_that_cannot_begin_says_nothing_of_the_file(temporary: Path) -> 
         "except NotRead as error:\n"
         "    print(error)\n"
     )
-    paths = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(Path(__file__).parents[2]),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
 
     done = subprocess.run(
         [sys.executable, "-"],
         check=False,
         input=script,
         cwd=temporary,
-        env=paths,
+        env=environment,
         capture_output=True,
         text=True,
     )

@@ -4,7 +4,6 @@ import pytest
 
 import hexapods as hx
 from hexapods.domain.model_robot import model_robot
-from hexapods.domain.robot import document_of, read_document
 from hexapods.domain.suggestions import usual_grid_side_m
 from tests.imports.robots import HOME, bug, dog, read
 
@@ -16,7 +15,7 @@ STEPS = 20
 )
 def test_greedy_walks_as_far_as_two_groups_do(text: str) -> None:
     imported = read(text)
-    robot = read_document(document_of(model_robot(imported.model, imported.name)), imported.name)
+    robot = model_robot(imported.model, imported.name)
     side_m = usual_grid_side_m(robot, imported.gait)
 
     race = hx.race(["greedy"], robot=robot, gait=imported.gait, grid_side_m=side_m, steps=STEPS)
