@@ -22,7 +22,7 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-from hexapods.agents.appearance import name_of
+from hexapods.agents.appearance import name_of, title_of
 from hexapods.races import Race
 from hexapods.runs.clocks import CLOCK_TITLES, Clock
 from hexapods.runs.lane import PLANNING_MODEL_TITLES, plans_with
@@ -142,20 +142,25 @@ def _narrowed(widths: Sequence[int], least: Sequence[int], room: int) -> list[in
 def show_lanes(race: Race, clock: Clock) -> None:
     """Print the result of a race as a table, ranked under a clock, and the best known distance.
 
-    A race that ended before its time-out has no ranking.
+    A race that ended before its time-out has no ranking. Why lanes failed is told below the table,
+    where a narrow terminal does not break it apart.
     """
-    rows = []
+    rows, failures = [], []
     for one in race.standings_under(clock):
         own, lane = race.config.lanes[one.lane], race.result.lanes[one.lane]
         name = name_of(own.agent, own.settings, own.keep_learning)
         known = plans_with(own, race.config)
         name += f"\n   plans with the {PLANNING_MODEL_TITLES[known]}" if known else ""
         finished_m, total_m = one.finished_distance_m, one.total_distance_m
+        if lane.failure is not None:
+            failures.append(f"{title_of(own.agent)} failed: {lane.failure}")
         rows.append(
             (
                 name if one.rank is None else f"{one.rank}. {name}",
                 "–" if finished_m is None else f"{finished_m:.2f} m",
-                (lane.failure or "–") if total_m is None else f"{total_m:.2f} m",
+                ("–" if lane.failure is None else "failed")
+                if total_m is None
+                else f"{total_m:.2f} m",
                 f"{one.elapsed_s:.1f} s",
                 f"{1000 * lane.decision_s / max(1, lane.steps):.1f} ms",
                 f"{lane.simulated_transitions:,}",
@@ -165,6 +170,8 @@ def show_lanes(race: Race, clock: Clock) -> None:
     title = "Ranked at time-out" if is_ranked else "No ranking: no lane used all its steps"
     head = ("lane", "at time-out", "total", "time", "a decision", "simulated transitions")
     show_table(f"{title}, {CLOCK_TITLES[clock]}", head, rows)
+    for sentence in failures:
+        print(sentence)
     print(f"SHA-256 of its recording: {race.recording_sha256}")
     if race.best_known_m is not None:
         print(f"Best known, total: {race.best_known_m:.2f} m")

@@ -149,11 +149,14 @@ function EarlyEndNote() {
   const { note } = narrative.value;
   if (!note) return null;
   const { what, words, action } = note;
+  // What a person has stopped is not what is to be pressed next; what a crash has ended is.
+  const style = action?.run.state === "stopped" ? "secondary" : "primary";
   return html`
     <div class="stage-note" role="status">
       <p><b>${what}</b> ${words}</p>
       ${action && html`
-        <button class="primary compact" disabled=${pending.value[action.run.id]} onClick=${() => resumeRun(action.run)}>
+        <button class=${`${style} compact`} disabled=${pending.value[action.run.id]}
+          onClick=${() => resumeRun(action.run)}>
           <${Icon} name="play" />${action.label}
         </button>
         <${Problem} at=${action.run.id} />
