@@ -77,11 +77,17 @@ function MenuAt({ at }) {
     setPlace({ left: within(left, own.width, picture.width), top: within(at.y - EDGE_PX, own.height, picture.height) });
   }, []);
   const isPlaced = !("visibility" in place);
+  // A race that is shown to its end meanwhile offers what there was not when the menu was opened.
+  const hasOffer = Boolean(liveTraining.value ?? heldRace.value);
+  const wasFocused = useRef(false);
   useEffect(() => {
+    const isElsewhere = wasFocused.current && !menu.current?.contains(document.activeElement);
+    if (!isPlaced || isElsewhere) return;
     /** @type {HTMLElement | null | undefined} */
     const first = menu.current?.querySelector(".kinds button") ?? menu.current?.querySelector("button");
-    if (isPlaced) first?.focus({ preventScroll: true });
-  }, [isPlaced]);
+    first?.focus({ preventScroll: true });
+    wasFocused.current = true;
+  }, [isPlaced, hasOffer]);
   const name = scene.value?.lanes[at.lane]?.name ?? "Robot";
   const title = { leg: `${name}, leg ${at.leg}`, body: `${name}, body`, ground: "Ground" }[at.what];
   return html`
