@@ -223,6 +223,23 @@ class Body(BaseModel):
         return value
 
 
+def known_members(record: Any) -> BeforeValidator:
+    """Return a validator of members of a body that are records: names the first unknown member.
+
+    Pydantic alone would tell of each, of which a body may have a hundred thousand.
+    """
+    valid = [one.name for one in fields(record)]
+
+    def check(value: Any) -> Any:
+        unknown = [name for name in value if name not in valid] if isinstance(value, dict) else []
+        if unknown:
+            message = str(UnknownName("field", unknown[0][:MAX_NAME], valid))
+            raise PydanticCustomError("unknown_field", "{message}", {"message": message})
+        return value
+
+    return BeforeValidator(check)
+
+
 class SettingsBody(Body):
     """Settings of an agent, by name; omitted ones take its defaults."""
 

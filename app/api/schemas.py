@@ -17,6 +17,7 @@ from app.api.fields import (
     SettingsBody,
     Tags,
     given_settings,
+    known_members,
     number,
 )
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
@@ -159,7 +160,7 @@ class BranchBody(Body):
     """A race that repeats another up to a step; all else that it does not say is from there."""
 
     name: Name | None = None
-    branch_from: Branch
+    branch_from: Annotated[Branch, known_members(Branch)]
     disturbances: Disturbances = Field(default_factory=list)
 
     @model_validator(mode="before")
@@ -258,5 +259,5 @@ class StageBody(Body):
         ]
         | None
     ) = None
-    presentation: Presentation | None = None
+    presentation: Annotated[Presentation, known_members(Presentation)] | None = None
     stay: Annotated[bool, Field(strict=True, description="keep the run that is on stage")] = False

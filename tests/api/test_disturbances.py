@@ -182,6 +182,20 @@ def test_a_branch_where_there_is_none_is_refused(
     refused(api.call("POST", "/races", json=body), *refusal)
 
 
+def test_members_that_a_branch_does_not_have_are_refused_as_one_error(
+    api: Api, original: dict[str, Any]
+) -> None:
+    """A body may have a hundred thousand of them."""
+    unknown = {f"unknown{number}": 0 for number in range(1000)}
+    branch = {"race_id": original["id"], "step": 1, **unknown}
+    answer = api.call("POST", "/races", json={"branch_from": branch, "disturbances": [LIMP]})
+    assert answer.status_code == 422
+    [error] = answer.json()["errors"]
+    assert error["field"] == "branch_from"
+    assert "unknown0" in error["detail"]
+    assert "race_id, step" in error["detail"]
+
+
 def test_only_races_branch(api: Api, trained: dict[str, Any]) -> None:
     body = {"branch_from": {"race_id": trained["id"], "step": 1}, "disturbances": [LIMP]}
     refused(api.call("POST", "/races", json=body), 422, "is not a race")

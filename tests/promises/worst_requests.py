@@ -185,18 +185,18 @@ class Strangers:
                 sock.sendall(request)
                 while len(answer) < 1 << 16 and (part := sock.recv(1 << 16)):
                     answer += part
-                    if _is_whole(answer):
+                    if _is_whole(answer, has_body=not request.startswith(b"HEAD ")):
                         break
         except (ConnectionResetError, BrokenPipeError):
             pass  # the server did not read it to its end
         return int(answer.split()[1]) if answer else 0
 
 
-def _is_whole(answer: bytes) -> bool:
+def _is_whole(answer: bytes, *, has_body: bool) -> bool:
     """Whether nothing follows that is to be waited for: an endless stream has no end."""
     head, separator, body = answer.partition(b"\r\n\r\n")
-    if not separator:
-        return False
+    if not separator or not has_body:
+        return bool(separator)
     length = re.search(rb"\r\ncontent-length: (\d+)", head.lower())
     if length is not None:
         return len(body) >= int(length[1])
