@@ -1,5 +1,6 @@
 """Race loop: every lane has its own simulation, independent of measured decision times."""
 
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import cast
@@ -14,6 +15,8 @@ from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
 from hexapods.runs.records import LaneFailed, LaneStep, RaceRecord
 from hexapods.runs.walker import Walker
+
+_logger = logging.getLogger(__name__)
 
 
 def race(
@@ -34,7 +37,8 @@ def race(
         timer: clock in seconds that measures decisions, such as `time.perf_counter`.
         prefix: for each lane the first steps of a race that is the same until then, whose motions
             are not used. A memoryless agent does not search for them again: its actions are
-            carried out, and what its decisions took is taken over.
+            carried out, and what its decisions took is taken over. From the step on that does not
+            repeat, which is logged, a lane decides by itself.
     """
     running: dict[int, tuple[Walker, LaneStep | None]] = {
         lane: (walker, None) for lane, walker in enumerate(walkers)
@@ -42,13 +46,19 @@ def race(
     repeated = {lane: list(recorded) for lane, recorded in enumerate(prefix)}
     for step in range(1, steps + 1):
         for lane, (walker, last) in list(running.items()):
-            recorded = repeated.get(lane, [])
+            shared = repeated.get(lane, [])[step - 1 : step]
             repetition = None
-            if step <= len(recorded) and is_memoryless(walker.agent):
-                repetition = _repeat_step(walker, recorded[step - 1])
-                if repetition is None:  # another processor or engine: the lane goes its own way
-                    del repeated[lane]
+            if shared and is_memoryless(walker.agent):
+                repetition = _repeat_step(walker, shared[0])
             record = repetition or _lane_step(lane, step, walker, last, timer)
+            if shared and _parts(record, shared[0]):
+                del repeated[lane]
+                _logger.warning(
+                    "lane %d differs from step %d on from the race that it repeats: another "
+                    "processor, NumPy or MuJoCo has computed that",
+                    lane + 1,
+                    step,
+                )
             yield record
             if isinstance(record, LaneFailed):
                 del running[lane]
@@ -73,6 +83,13 @@ def record_race(
         else:
             lanes[record.lane].steps.append(record)
         yield lanes
+
+
+def _parts(record: RaceRecord, recorded: LaneStep) -> bool:
+    """Whether a step differs from the recorded one that it repeats."""
+    if isinstance(record, LaneFailed):
+        return True
+    return (record.action, record.reward_m) != (recorded.action, recorded.reward_m)
 
 
 def _repeat_step(walker: Walker, recorded: LaneStep) -> LaneStep | None:

@@ -316,7 +316,9 @@ def test_a_branch_does_not_search_again_for_the_steps_it_shares() -> None:
         assert [step.futures for step in lane.steps[:3]] == [step.futures for step in shared]
 
 
-def test_a_lane_whose_steps_do_not_repeat_decides_by_itself() -> None:
+def test_a_lane_whose_steps_do_not_repeat_decides_by_itself_and_is_named(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     asked = config("greedy", steps=4)
     steps = [record for record in run(asked) if isinstance(record, LaneStep)]
     other_machine = [steps[0], replace(steps[1], reward_m=steps[1].reward_m + 1e-16), steps[2]]
@@ -328,6 +330,7 @@ def test_a_lane_whose_steps_do_not_repeat_decides_by_itself() -> None:
         step.action for step in steps
     ]
     assert walkers[0].transitions == 3 * 12, "the first step alone is taken over"
+    assert "lane 1 differs from step 2 on" in caplog.text
 
 
 class Unteachable(Restless):
