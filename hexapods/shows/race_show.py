@@ -178,8 +178,6 @@ class RaceShow:
     def seek_branch(self, time_s: float) -> None:
         """Set the playback position to a race time of the original, at most to where both part."""
         self._update_lanes()
-        for lane in self._original_lanes:
-            lane.update()
         ends = [lane.timetable.ends[: self._branch_step] for lane in self._original_lanes]
         self.seek(min([time_s, *(float(shared[-1]) if len(shared) else 0.0 for shared in ends)]))
 
