@@ -37,21 +37,21 @@ class DoubleQ(TabularLearner):
         best = self._highest(legal, learning.values_of(observation, legal))
         (value,) = valuing.values_of(observation, [best])
         target = transition.reward_m + self._gamma * value
-        values, means = learning.row(state)[0], self.table.row(state)[0]
-        own, other = values[column], valuing.row(state)[0][column]
-        values[column] = (1 - self._alpha) * own + self._alpha * target
-        mean = (values[column] + other) / 2
+        before, other = learning.value(state, column), valuing.value(state, column)
+        after = (1 - self._alpha) * before + self._alpha * target
+        learning.set_value(state, column, after)
+        mean = (after + other) / 2
         if self._explained is not None:
             terms = (
                 Term("α", self._alpha, "learning rate"),
-                Term("Q₁", float(own), f"value in table {chosen + 1}, which was drawn to learn"),
+                Term("Q₁", before, f"value in table {chosen + 1}, which was drawn to learn"),
                 *self._reward_terms(transition),
                 Term("Q₂′", value, "value in the other table of the best next action by the first"),
-                Term("Q₂", float(other), "value in the other table"),
+                Term("Q₂", other, "value in the other table"),
             )
             rule = "((1 − α) · Q₁ + α · (r + γ · Q₂′) + Q₂) / 2"
             self._explain((state, column), (rule, terms), mean)
-        means[column] = mean
+        self.table.set_value(state, column, mean)
 
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the values of both tables at `where`."""

@@ -180,7 +180,7 @@ class ModelAgent(TabularAgent):
         untried = np.where(arrays.untried > 0, 0.0, -np.inf)
         values = arrays.solve(arrays.rewards_m, shares, untried, self._gamma).pair_values.tolist()
         for pair, value in zip(self._model.pairs, values, strict=True):
-            self._table.row(pair.state)[0][pair.column] = value
+            self._table.set_value(pair.state, pair.column, value)
 
     def _arrays(self) -> ModelArrays:
         return ModelArrays(self._model, self._table.groups, self._table.cells)
@@ -190,7 +190,7 @@ class ModelAgent(TabularAgent):
         table = self._table
         state, column = table.index(transition.observation), table.column(transition.action)
         self._learn(state, column, transition.reward_m, table.index(transition.next_observation))
-        table.row(state)[1][column] += 1
+        table.count_visit(state, column)
         self._is_table_due = True
 
     @abstractmethod

@@ -113,7 +113,7 @@ class PrioritizedSweeping(PlanningLearner):
     def _enqueue(self, number: int) -> None:
         """Set the priority of a pair; it leaves the queue if its value would hardly change."""
         pair = self._model.pairs[number]
-        value = float(self.table.row(pair.state)[0][pair.column])
+        value = self.table.value(pair.state, pair.column)
         priority = abs(self._planned_target(pair, self._later(pair)) - value)
         if priority > self._threshold_m:
             self._priorities[number] = priority

@@ -21,7 +21,7 @@ class QLambda(TraceLearner):
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Credit δ = r + γ max Q(s′, ·) − Q(s, a); a step that was not greedy ends all traces."""
-        if self.table.row(state)[0][column] < self.table.best(state):
+        if self.table.value(state, column) < self.table.best(state):
             self._traces.clear()
         super()._update(transition, state, column)
 

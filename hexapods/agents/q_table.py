@@ -103,6 +103,19 @@ class QTable:
             self._used += 1
         return self._q[slot], self._n[slot]
 
+    def value(self, state: int, column: int) -> float:
+        """Return the value of an entry."""
+        slot = self._slots[state]
+        return 0.0 if slot == _NO_SLOT else float(self._q[slot, column])
+
+    def set_value(self, state: int, column: int, value: float) -> None:
+        """Replace the value of an entry."""
+        self.row(state)[0][column] = value
+
+    def count_visit(self, state: int, column: int) -> None:
+        """Count a visit of an entry."""
+        self.row(state)[1][column] += 1
+
     def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
         """Yield all states in order, with values and visits, (groups, cells), NaN illegal."""
         return TableRows(self.groups, self.cells, self._parts).rows()

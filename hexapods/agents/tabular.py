@@ -250,7 +250,7 @@ class TabularLearner(TabularAgent):
         table = self.table
         state, column = table.index(transition.observation), table.column(transition.action)
         self._update(transition, state, column)
-        table.row(state)[1][column] += 1
+        table.count_visit(state, column)
         self._learned += 1
 
     def explain_update(self, transition: Transition) -> UpdateExplanation:
@@ -269,7 +269,7 @@ class TabularLearner(TabularAgent):
         return f"r + γ · {rule}", (*self._reward_terms(transition), *terms)
 
     def _rate_terms(self, before: float) -> Sequence[Term]:
-        return Term("Q", float(before), "value before"), Term("α", self._alpha, "learning rate")
+        return Term("Q", before, "value before"), Term("α", self._alpha, "learning rate")
 
     def _reward_terms(self, transition: Transition) -> Sequence[Term]:
         return (
@@ -295,9 +295,9 @@ class TabularLearner(TabularAgent):
         assert self._explained is not None  # noqa: S101 - asked for by the caller
         state, column = entry
         table, (rule, terms) = self.table, explained
-        before = float(table.row(state)[0][column])
+        before = table.value(state, column)
         place = table.cells_at(state), table.action_at(column)
-        self._explained.append(ValueUpdate(*place, rule, tuple(terms), before, float(after)))
+        self._explained.append(ValueUpdate(*place, rule, tuple(terms), before, after))
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Apply the update rule for a transition from row `state` by the action in `column`.
@@ -318,15 +318,13 @@ class TabularLearner(TabularAgent):
         self, state: int, column: int, target: float, explain: Callable[[], Rule]
     ) -> None:
         """Q(s, a) ← (1 − α) Q(s, a) + α target; `explain` returns what that is computed from."""
-        values, _ = self.table.row(state)
-        after = (1 - self._alpha) * values[column] + self._alpha * target
+        before = self.table.value(state, column)
+        after = (1 - self._alpha) * before + self._alpha * target
         if self._explained is not None:
             rule, terms = explain()
             rule = f"(1 − α) · Q + α · ({rule})"
-            self._explain(
-                (state, column), (rule, (*self._rate_terms(values[column]), *terms)), after
-            )
-        values[column] = after
+            self._explain((state, column), (rule, (*self._rate_terms(before), *terms)), after)
+        self.table.set_value(state, column, after)
 
     def _best_next(self, transition: Transition) -> float:
         """Return max Q(s′, ·)."""

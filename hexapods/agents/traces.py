@@ -42,7 +42,7 @@ class TraceLearner(TabularLearner):
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
         """Credit the error δ = r + γ Q′ − Q(s, a) to every step with a trace."""
-        error = self._target(transition) - self.table.row(state)[0][column]
+        error = self._target(transition) - self.table.value(state, column)
         # Before any value changes, on which the target depends.
         target = None if self._explained is None else self._explain_target(transition)
         self._credit((state, column), error, target)
@@ -53,17 +53,17 @@ class TraceLearner(TabularLearner):
         self._traces[newest] = 1.0
         decay, kept = self._gamma * self._trace_decay, {}
         for place, trace in self._traces.items():
-            values, at = self.table.row(place[0])[0], place[1]
-            after = values[at] + self._alpha * error * trace
+            before = self.table.value(*place)
+            after = before + self._alpha * error * trace
             if target is not None:
-                difference: Rule = ("δ", (Term("δ", float(error), _ERROR),))
+                difference: Rule = ("δ", (Term("δ", error, _ERROR),))
                 if place == newest:
                     difference = f"({target[0]} − Q)", target[1]
                 rule, terms = difference
                 share = Term("e", trace, "trace: how much the step counts for it")
-                explained = f"Q + α · {rule} · e", (*self._rate_terms(values[at]), *terms, share)
+                explained = f"Q + α · {rule} · e", (*self._rate_terms(before), *terms, share)
                 self._explain(place, explained, after)
-            values[at] = after
+            self.table.set_value(*place, after)
             if trace * decay >= _MIN_TRACE:
                 kept[place] = trace * decay
         self._traces = kept
