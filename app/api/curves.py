@@ -3,24 +3,17 @@
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Protocol
+from itertools import islice
+from typing import Any
 
 import numpy as np
 
+from hexapods.agents.landing_table import LandingRows
+from hexapods.agents.table_rows import TableRows
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.types import Cells, FloatArray
 
 _VALUES_PER_CHUNK = 500
 """Action values per chunk, about 30 kB of text, which stay in memory while a client reads them."""
-
-
-class Rows(Protocol):
-    """A Q-table whose rows can be iterated, in memory or in its file."""
-
-    groups: int
-
-    def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Yield (state, values, visits) in order; arrays (groups, cells), NaN where illegal."""
 
 
 def as_csv(rows: Sequence[Mapping[str, Any]]) -> bytes:
@@ -35,8 +28,8 @@ def _cell(number: float) -> str:
     return str(number) if math.isfinite(number) else ""
 
 
-def table_as_json(table: Rows, meta: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the values of all legal actions as JSON, in chunks; large tables have millions."""
+def table_as_json(table: TableRows | LandingRows, meta: Mapping[str, Any]) -> Iterator[str]:
+    """Yield a table as JSON, in chunks; large tables have millions of values."""
     grid = FootGrid(meta["grid_side_m"], meta["divisions"])
     head = {
         "gait": meta["gait"],
@@ -46,41 +39,41 @@ def table_as_json(table: Rows, meta: Mapping[str, Any]) -> Iterator[str]:
     }
     yield json.dumps(head)[:-1] + ', "values": ['
     separator = ""
-    for rows in _chunks(table):
-        entries = (
-            json.dumps(
-                {"state": state, "action": [group, cell], "value": value, "visits": visits},
-                allow_nan=False,
-            )
-            for state, group, cell, value, visits in rows
-        )
-        yield separator + ",\n".join(entries)
+    for entries in _chunks(table):
+        yield separator + ",\n".join(json.dumps(entry, allow_nan=False) for entry in entries)
         separator = ",\n"
     yield "]}\n"
 
 
-def table_as_csv(table: Rows) -> Iterator[str]:
-    """Yield the values of all legal actions as CSV: state's cells, group, cell, value, visits."""
-    cells = [f"state_{group}" for group in range(table.groups)]
-    yield ",".join([*cells, "action_pair", "action_cell", "value", "visits"]) + "\r\n"
-    for rows in _chunks(table):
+def table_as_csv(table: TableRows | LandingRows) -> Iterator[str]:
+    """Yield a table as CSV: state's cells, group and cell of the action, or landing; then both."""
+    kind = "landing" if isinstance(table, LandingRows) else "state"
+    action = [] if kind == "landing" else ["action_pair", "action_cell"]
+    cells = [f"{kind}_{group}" for group in range(table.groups)]
+    yield ",".join([*cells, *action, "value", "visits"]) + "\r\n"
+    for entries in _chunks(table):
         yield "".join(
-            ",".join(map(str, (*state, group, cell, value, visits))) + "\r\n"
-            for state, group, cell, value, visits in rows
+            ",".join(
+                map(str, (*entry[kind], *entry.get("action", ()), entry["value"], entry["visits"]))
+            )
+            + "\r\n"
+            for entry in entries
         )
 
 
-_Row = tuple[tuple[int, ...], int, int, float, int]
-
-
-def _chunks(table: Rows) -> Iterator[list[_Row]]:
-    chunk: list[_Row] = []
-    for state, values, visits in table.rows():
-        for group, cell in np.argwhere(~np.isnan(values)).tolist():
-            value, count = float(values[group, cell]), int(visits[group, cell])
-            chunk.append((state, group, cell, value, count))
-        if len(chunk) >= _VALUES_PER_CHUNK:
-            yield chunk
-            chunk = []
-    if chunk:
+def _chunks(table: TableRows | LandingRows) -> Iterator[list[dict[str, Any]]]:
+    entries = _entries(table)
+    while chunk := list(islice(entries, _VALUES_PER_CHUNK)):
         yield chunk
+
+
+def _entries(table: TableRows | LandingRows) -> Iterator[dict[str, Any]]:
+    """Yield the values of all legal actions in all states, or those of all landings."""
+    if isinstance(table, LandingRows):
+        for landing, value, visits in table.rows():
+            yield {"landing": landing, "value": value, "visits": visits}
+        return
+    for state, values, counts in table.rows():
+        for group, cell in np.argwhere(~np.isnan(values)).tolist():
+            value, visits = float(values[group, cell]), int(counts[group, cell])
+            yield {"state": state, "action": [group, cell], "value": value, "visits": visits}

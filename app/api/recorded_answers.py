@@ -50,14 +50,26 @@ class ActionValue(Answer):
     visits: Count
 
 
+class LandingValue(Answer):
+    """Value of a landing, which is the cell of each pair when a step has ended."""
+
+    landing: list[int]
+    value: float
+    visits: Count
+
+
 class QTableView(Answer):
-    """Q-table: all legal actions in all states; `cells` are the (x, y) of each cell [m]."""
+    """Q-table; `cells` are the (x, y) of each cell [m].
+
+    `values` are those of all legal actions in all states, or of a learner over landings those of
+    all landings.
+    """
 
     gait: AnyGait
     divisions: int
     grid_side_m: float
     cells: list[tuple[float, float]]
-    values: list[ActionValue]
+    values: list[ActionValue] | list[LandingValue]
 
 
 class RecordedStep(Answer):

@@ -163,12 +163,12 @@ def get_table(
     if kind == "npz":
         return attachment(file, tables.MEDIA_TYPE, f"q-table-{run_id}.npz")
     try:
-        table = read_rows(file, run_id)
+        file_of_table = read_rows(file, run_id)
     except InvalidInput as error:
         file.close()
         raise Conflict(f"{error}; take it as ?format=npz", run.state) from error
     if kind == "csv":
-        rows = closing_after(file, curves.table_as_csv(table))
+        rows = closing_after(file, curves.table_as_csv(file_of_table.table))
         return attachment(rows, "text/csv; charset=utf-8", f"q-table-{run_id}.csv")
-    rows = closing_after(file, curves.table_as_json(table, table.meta))
+    rows = closing_after(file, curves.table_as_json(file_of_table.table, file_of_table.meta))
     return StreamingResponse(rows, media_type="application/json")

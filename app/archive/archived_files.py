@@ -138,7 +138,7 @@ def _check_table(run: Run, name: str, data: bytes, label: str) -> None:
             raise ValueError("another agent learned it")
         if meta.step > run.total:
             raise ValueError("it is of another step")
-        if "where" in tables.agent_state(checkpoint):
+        if tables.table_arrays(tables.agent_state(checkpoint)) is not None:
             digest = tables.table_of(checkpoint).sha256()
             result = run.result if name == TABLE else None
             if isinstance(result, TrainingResult) and result.q_table_sha256 != digest:

@@ -135,10 +135,10 @@ def _training(config_data: Any, label: str) -> TrainingConfig:
 
 def _check_state(checkpoint: Checkpoint, agent: str, label: str) -> None:
     state, agent_class = tables.agent_state(checkpoint), registry.find(agent)
-    if "where" in state:
+    if tables.table_arrays(state) is not None:
         tables.table_of(checkpoint)
     elif isinstance(agent_class, type) and issubclass(agent_class, TabularAgent):
-        raise DamagedFile(f"{label} lacks the Q-table that {agent} keeps")
+        raise DamagedFile(f"{label} lacks the table that {agent} keeps")
     check_state = getattr(agent_class, "check_state", None)
     if check_state is not None:
         check_state(state)

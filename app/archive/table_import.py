@@ -39,7 +39,7 @@ def import_table(
     checkpoint, meta, config = checked_table(data, "the file", agents)
     check_training(config)
     digest = None
-    if "where" in tables.agent_state(checkpoint):
+    if tables.table_arrays(tables.agent_state(checkpoint)) is not None:
         digest = tables.table_of(checkpoint).sha256()
     greedy, step = meta.greedy_distance_m, meta.step
     run = Run(

@@ -36,7 +36,7 @@ class DoubleQ(TabularLearner):
         observation, legal = transition.next_observation, transition.next_legal
         best = self._highest(legal, learning.values_of(observation, legal))
         (value,) = valuing.values_of(observation, [best])
-        target = transition.reward_m + self._gamma * value
+        target = self._return_m(transition.reward_m, value)
         before, other = learning.value(state, column), valuing.value(state, column)
         after = (1 - self._alpha) * before + self._alpha * target
         learning.set_value(state, column, after)
@@ -49,9 +49,10 @@ class DoubleQ(TabularLearner):
                 Term("Q₂′", value, "value in the other table of the best next action by the first"),
                 Term("Q₂", other, "value in the other table"),
             )
-            rule = "((1 − α) · Q₁ + α · (r + γ · Q₂′) + Q₂) / 2"
+            rule = f"((1 − α) · Q₁ + α · ({self._return_rule('r', 'Q₂′')}) + Q₂) / 2"
             self._explain((state, column), (rule, terms), mean)
         self.table.set_value(state, column, mean)
+        self._learn_average(target - before)
 
     def state(self) -> AgentState:
         """Return the state of `TabularLearner`, and the values of both tables at `where`."""

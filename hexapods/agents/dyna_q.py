@@ -37,14 +37,14 @@ class DynaQ(PlanningLearner):
         for number in self._rng.integers(len(pairs), size=self._planning_steps).tolist():
             pair = pairs[number]
             reward, best = self._imagined_reward_m(pair), self.table.best(pair.last_next)
-            target = reward + self._gamma * best
+            target = self._return_m(reward, best)
             explain = partial(self._explain_planned, reward, best)
             self._move_towards(pair.state, pair.column, target, explain)
 
     def _explain_planned(self, reward_m: float, best: float) -> Rule:
-        return "r̂ + γ · Q′", (
+        return self._return_rule("r̂", "Q′"), (
             Term("r̂", reward_m, "imagined reward [m]"),
-            Term("γ", self._gamma, "discount"),
+            self._return_term(),
             Term("Q′", best, "highest value in the state that followed last time"),
         )
 

@@ -7,8 +7,8 @@ from annotated_types import Ge, Le
 
 from hexapods.agents.dyna_q import DynaQ
 from hexapods.agents.protocol import Transition
-from hexapods.agents.q_table import legal_columns
 from hexapods.agents.tabular_model import TriedPair
+from hexapods.agents.value_table import legal_columns
 from hexapods.domain.settings import Setting
 
 Bonus = Annotated[

@@ -10,11 +10,11 @@ import numpy as np
 
 from hexapods.agents.explanation import Belief, Term, UpdateExplanation, ValueUpdate
 from hexapods.agents.protocol import AgentState, Problem, Transition
-from hexapods.agents.q_table import QTable
 from hexapods.agents.tabular import Gamma, TabularAgent
 from hexapods.agents.tabular_model import TabularModel, check_problem
+from hexapods.agents.value_table import ValueTable
 from hexapods.domain.settings import declare
-from hexapods.domain.types import Cells, FloatArray, IntArray
+from hexapods.domain.types import Action, Cells, FloatArray, IntArray
 
 TOLERANCE_M = 1e-6
 """Value iteration ends when no state's value changes by more [m]."""
@@ -86,6 +86,14 @@ class ModelArrays:
         self._order = np.argsort(self.places, kind="stable")
         self._with_pairs, self._starts = np.unique(self.places[self._order], return_index=True)
 
+    def best_of_states(self, values: FloatArray, untried_m: FloatArray) -> FloatArray:
+        """Return the value of the best action of each state, tried or not [m]."""
+        best = untried_m.copy()
+        if len(values):
+            tried = np.maximum.reduceat(values[self._order], self._starts)
+            best[self._with_pairs] = np.maximum(best[self._with_pairs], tried)
+        return best
+
     def solve(
         self,
         rewards_m: FloatArray,
@@ -116,11 +124,8 @@ class ModelArrays:
                 later = later + uniform.probabilities * mean
                 others = untried_m + gamma * mean
                 unseen = uniform.unseen_reward_m + gamma * mean
-            values, before, states = rewards_m + gamma * later, states, others.copy()
-            if pairs:
-                best = np.maximum.reduceat(values[self._order], self._starts)
-                at = self._with_pairs
-                states[at] = np.maximum(states[at], best)
+            values = rewards_m + gamma * later
+            before, states = states, self.best_of_states(values, others)
             if np.abs(states - before).max(initial=0.0) <= TOLERANCE_M:
                 break
         return ValueIterationResult(values, mean, later)
@@ -159,18 +164,19 @@ class ModelAgent(TabularAgent):
         gamma: Gamma = 0.9,
     ) -> None:
         self._is_table_due = False
+        self.check_problem(problem)
         super().__init__(rng, problem, explore=explore)
-        self._model, self._gamma = TabularModel(problem), gamma
+        self._model, self._gamma = TabularModel(), gamma
 
     @property
-    def table(self) -> QTable:
+    def table(self) -> ValueTable:
         """Visits, and the values of the best plan for the mean of what was seen."""
         if self._is_table_due:
             self._plan_for_mean()
         return self._table
 
     @table.setter
-    def table(self, table: QTable) -> None:
+    def table(self, table: ValueTable) -> None:
         self._table = table
 
     def _plan_for_mean(self) -> None:
@@ -183,15 +189,20 @@ class ModelAgent(TabularAgent):
             self._table.set_value(pair.state, pair.column, value)
 
     def _arrays(self) -> ModelArrays:
+        """Return the model as arrays, for planning."""
         return ModelArrays(self._model, self._table.groups, self._table.cells)
 
     def learn(self, transition: Transition) -> None:
         """Add the transition to the model, and count the visit."""
         table = self._table
-        state, column = table.index(transition.observation), table.column(transition.action)
+        state, column = self._entry_of(transition.observation, transition.action)
         self._learn(state, column, transition.reward_m, table.index(transition.next_observation))
         table.count_visit(state, column)
         self._is_table_due = True
+
+    def _entry_of(self, observation: Cells, action: Action) -> tuple[int, int]:
+        """Return the entry of the table, and so the pair of the model, of an action in a state."""
+        return self._table.entry(self._table.index(observation), self._table.column(action))
 
     @abstractmethod
     def _learn(self, state: int, column: int, reward_m: float, next_state: int) -> None:
@@ -200,8 +211,7 @@ class ModelAgent(TabularAgent):
     def explain_update(self, transition: Transition) -> UpdateExplanation:
         """Learn as `learn` does, and explain how model and values change."""
         observation, action = transition.observation, transition.action
-        table = self._table
-        state, column = table.index(observation), table.column(action)
+        state, column = self._entry_of(observation, action)
         before, model = float(self.values(observation)[action]), self._beliefs(state, column)
         self.learn(transition)
         after = float(self.values(observation)[action])

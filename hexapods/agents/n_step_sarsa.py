@@ -57,7 +57,7 @@ class NStepSarsa(TabularLearner):
         rewards = [reward for *_, reward in self._waiting]
         target = value = self._chosen_next(transition)
         for reward in reversed(rewards):
-            target = reward + self._gamma * target
+            target = self._return_m(reward, target)
         first_state, first_column, _ = self._waiting.pop(0)
         explain = partial(self._explain_return, rewards, value)
         self._move_towards(first_state, first_column, target, explain)
@@ -67,13 +67,13 @@ class NStepSarsa(TabularLearner):
         symbols = [f"r{number}" for number in range(1, len(rewards) + 1)]
         rule = "Q′"
         for symbol in reversed(symbols):
-            rule = f"{symbol} + γ · {rule if rule == 'Q′' else f'({rule})'}"
+            rule = self._return_rule(symbol, rule if rule == "Q′" else f"({rule})")
         return rule, (
             *(
                 Term(symbol, reward, f"reward {number} of these {len(rewards)} steps [m]")
                 for number, (symbol, reward) in enumerate(zip(symbols, rewards, strict=True), 1)
             ),
-            Term("γ", self._gamma, "discount"),
+            self._return_term(),
             Term("Q′", value, "value of the next action, which is chosen already"),
         )
 

@@ -47,9 +47,10 @@ class PlanningLearner(TabularLearner):
         planning_steps: PlanningSteps = 20,
         **settings: Any,
     ) -> None:
+        self.check_problem(problem)
         super().__init__(rng, problem, **settings)
         self._planning_steps = planning_steps
-        self._model = TabularModel(problem)
+        self._model = TabularModel()
 
     def _explanation(
         self, transition: Transition, updates: Sequence[ValueUpdate]

@@ -10,7 +10,7 @@ from annotated_types import Ge, Gt, Le
 from hexapods.agents.explanation import Belief, ChoiceExplanation, Term
 from hexapods.agents.model_planning import ModelAgent, UniformTransitions
 from hexapods.agents.protocol import AgentState
-from hexapods.agents.q_table import legal_columns
+from hexapods.agents.value_table import legal_columns
 from hexapods.domain.settings import Setting
 from hexapods.domain.types import Action, Cells, FloatArray
 

@@ -81,7 +81,7 @@ class PrioritizedSweeping(PlanningLearner):
                 self._enqueue(number)
 
     def _planned_target(self, pair: TriedPair, later: float) -> float:
-        return pair.mean_reward_m + self._gamma * later / pair.tries
+        return self._return_m(pair.mean_reward_m, later, pair.tries)
 
     def _later(self, pair: TriedPair) -> float:
         """Return the sum of the highest values in all states that followed a pair."""
@@ -89,9 +89,9 @@ class PrioritizedSweeping(PlanningLearner):
         return ordered_sum(count * best(state) for state, count in pair.outcomes.items())
 
     def _explain_sweep(self, pair: TriedPair, later: float) -> Rule:
-        return "r̄ + γ · Σ / N", (
+        return self._return_rule("r̄", "Σ / N"), (
             Term("r̄", pair.mean_reward_m, "mean reward of all tries [m]"),
-            Term("γ", self._gamma, "discount"),
+            self._return_term(),
             Term("Σ", later, "sum of the highest values in the states that followed"),
             Term("N", pair.tries, "number of tries"),
         )

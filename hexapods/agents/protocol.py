@@ -37,7 +37,7 @@ from typing import Any, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.agents.q_table import QTable
+from hexapods.agents.value_table import ValueTable
 from hexapods.domain.observation import Observation
 from hexapods.domain.types import Action, Cells, FloatArray
 
@@ -131,12 +131,12 @@ class Valuing(Protocol):
 
 @runtime_checkable
 class Tabular(Protocol):
-    """Agent whose greedy policy follows from a Q-table, beside which it may have learned more.
+    """Agent whose greedy policy follows from a table, beside which it may have learned more.
 
-    Its `state` includes the table as `QTable.dump` returns it.
+    Its `state` includes the table as its `dump` returns it.
     """
 
-    table: QTable
+    table: ValueTable
 
     def share_table(self, other: Any) -> None:
         """Share the table of another agent of this class, to evaluate it without a copy."""

@@ -1,13 +1,13 @@
 """Q-table, sparse by rows: one row per state, one column per action (group, cell)."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hexapods.agents.table_rows import NOT_RISING, Part, TableRows
+from hexapods.agents.value_table import ValueTable, legal_columns
 from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.types import Action, Cells, FloatArray
 
@@ -18,12 +18,11 @@ _VALUES_AT_ONCE = 100_000
 _NO_SLOT = -1
 
 
-class QTable:
+class QTable(ValueTable):
     """Values and visit counts of all states of `groups` groups of legs over `cells` cells.
 
-    The index of a state is the number whose base-`cells` digits are its cells, the first group the
-    most significant; the column of an action is group · cells + cell. Moving a group to its current
-    cell is illegal: those entries are never read, and are NaN in all output.
+    Moving a group to its current cell is illegal: those entries are never read, and are NaN in all
+    output.
 
     Sparse by rows: only states that were written to take memory, 12 bytes per value. Rows are
     stored in the order of their first write, in arrays of the full size, of which the operating
@@ -34,10 +33,8 @@ class QTable:
     """
 
     def __init__(self, groups: int, cells: int) -> None:
-        self.groups, self.cells = groups, cells
-        self.states: int = cells**groups
-        self.actions = groups * cells
         check_size(groups, cells)
+        super().__init__(groups, cells)
         self._clear()
 
     def _clear(self) -> None:
@@ -46,29 +43,6 @@ class QTable:
         self._slots = np.full(self.states, _NO_SLOT, np.int32)
         """Row of each state in the arrays; `_NO_SLOT` if it was never written to."""
         self._used = 0
-
-    def index(self, observation: Cells) -> int:
-        """Return the index of a state."""
-        row: int = 0
-        for cell in observation:
-            row = row * self.cells + cell
-        return row
-
-    def column(self, action: Action) -> int:
-        """Return the column of an action."""
-        return action.group * self.cells + action.cell
-
-    def cells_at(self, state: int) -> Cells:
-        """Return the observation of a state given by its index."""
-        cells = []
-        for _ in range(self.groups):
-            state, cell = divmod(state, self.cells)
-            cells.append(cell)
-        return tuple(reversed(cells))
-
-    def action_at(self, column: int) -> Action:
-        """Return the action of a column."""
-        return Action(*divmod(column, self.cells))
 
     def values_of(self, observation: Cells, actions: Sequence[Action]) -> list[float]:
         """Return the values of some actions in a state, as plain floats."""
@@ -103,6 +77,10 @@ class QTable:
             self._used += 1
         return self._q[slot], self._n[slot]
 
+    def entry(self, state: int, column: int) -> tuple[int, int]:
+        """Return the state and column as they are: each pair has an entry of its own."""
+        return state, column
+
     def value(self, state: int, column: int) -> float:
         """Return the value of an entry."""
         slot = self._slots[state]
@@ -129,7 +107,7 @@ class QTable:
         """Return the SHA-256 of the values as little-endian float64, row-major, NaN if illegal."""
         return TableRows(self.groups, self.cells, self._parts).sha256()
 
-    def dump(self) -> dict[str, NDArray[np.generic]]:
+    def dump(self) -> dict[str, NDArray[Any]]:
         """Return the entries that were visited or have a value, sparse (see `table_rows`)."""
         size, begin = sum(len(where) for where, _, _ in self._parts()), 0
         where, q, n = np.empty(size, np.int64), np.empty(size), np.empty(size, np.uint32)
@@ -157,7 +135,7 @@ class QTable:
         values: FloatArray = np.where(slots == _NO_SLOT, 0.0, self._q[slots, columns])
         return values
 
-    def load(self, arrays: dict[str, NDArray[np.generic]]) -> None:
+    def load(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Replace all values and visits by the output of `dump`.
 
         Raises:
@@ -185,16 +163,6 @@ class QTable:
         row = row.reshape(self.groups, self.cells)
         row[range(self.groups), observation] = np.nan
         return row
-
-
-@lru_cache(maxsize=1 << 12)
-def legal_columns(state: int, groups: int, cells: int) -> tuple[int, ...]:
-    """Return the columns of the legal actions in a state given by its index, in order."""
-    columns = []
-    for group in range(groups):
-        present = state // cells ** (groups - 1 - group) % cells
-        columns += [group * cells + cell for cell in range(cells) if cell != present]
-    return tuple(columns)
 
 
 def table_size(groups: int, cells: int) -> int:

@@ -10,7 +10,7 @@ from annotated_types import Ge, Gt, Le
 from hexapods.agents.explanation import ChoiceExplanation, Term
 from hexapods.agents.model_planning import ModelAgent
 from hexapods.agents.protocol import AgentState
-from hexapods.agents.q_table import legal_columns
+from hexapods.agents.value_table import legal_columns
 from hexapods.domain.settings import Setting
 from hexapods.domain.types import Action, Cells, FloatArray
 
@@ -80,20 +80,23 @@ class RMax(ModelAgent):
         """Return the best action of the optimistic plan; ties are broken at random."""
         if not self._explore:
             return super().act(observation, legal)
-        state, column = self._table.index(observation), self._table.column
-        unknown = [action for action in legal if not self._is_known(state, column(action))]
+        entries = [self._entry_of(observation, action) for action in legal]
+        unknown = [
+            action
+            for action, entry in zip(legal, entries, strict=True)
+            if not self._is_known(*entry)
+        ]
         # No value is higher than that of an unknown action, so that a plan is not needed.
         if unknown:
             return self._any(unknown)
-        return self._highest(legal, [self._value(state, column(action)) for action in legal])
+        return self._highest(legal, [self._value(*entry) for entry in entries])
 
     def explain_choice(self, observation: Cells, legal: Sequence[Action]) -> ChoiceExplanation:
         """Choose as `act` does, and explain the choice."""
         explained = super().explain_choice(observation, legal)
         if not self._explore:
             return explained
-        state, column = self._table.index(observation), self._table.column
-        is_known = self._is_known(state, column(explained.action))
+        is_known = self._is_known(*self._entry_of(observation, explained.action))
         return replace(
             explained,
             kind="exploited" if is_known else "unknown",
@@ -107,7 +110,7 @@ class RMax(ModelAgent):
         table, state = self._table, self._table.index(observation)
         values = np.full(table.actions, np.nan)
         for column in legal_columns(state, table.groups, table.cells):
-            values[column] = self._value(state, column)
+            values[column] = self._value(*table.entry(state, column))
         return values.reshape(table.groups, table.cells)
 
     def _learn(self, state: int, column: int, reward_m: float, next_state: int) -> None:

@@ -11,6 +11,8 @@ from functools import cache
 from importlib.metadata import entry_points
 from typing import Any
 
+from hexapods.agents.afterstate_q import AfterstateQ
+from hexapods.agents.afterstate_r_max import AfterstateRMax
 from hexapods.agents.beam import Beam
 from hexapods.agents.double_q import DoubleQ
 from hexapods.agents.dyna_q import DynaQ
@@ -57,6 +59,8 @@ OURS: Mapping[str, AgentClass] = {
     "prioritized-sweeping": PrioritizedSweeping,
     "r-max": RMax,
     "posterior-sampling": PosteriorSampling,
+    "afterstate-q": AfterstateQ,
+    "afterstate-r-max": AfterstateRMax,
     "linear-model": LinearModel,
     "greedy": Greedy,
     "two-step": TwoStep,

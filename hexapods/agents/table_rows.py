@@ -16,6 +16,8 @@ from hexapods.domain.errors import TableMismatch
 from hexapods.domain.types import Cells, FloatArray
 
 VALUES_AT_ONCE = 4096
+TABLE_ARRAYS = ("where", "q", "n")
+"""Names of the arrays of the sparse form beside `shape`."""
 Part = tuple[NDArray[Any], NDArray[Any], NDArray[Any]]
 """A chunk of `where`, `q` and `n`."""
 

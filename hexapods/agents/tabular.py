@@ -4,12 +4,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from annotated_types import Ge, Gt, Le, Lt
 
 from hexapods.agents.explanation import (
+    Belief,
     ChoiceExplanation,
     Rule,
     Term,
@@ -20,6 +21,7 @@ from hexapods.agents.explanation import (
 )
 from hexapods.agents.protocol import AgentState, Problem, Transition
 from hexapods.agents.q_table import QTable, check_size
+from hexapods.agents.value_table import ValueTable
 from hexapods.domain.settings import Setting, declare
 from hexapods.domain.types import Action, Cells, FloatArray
 
@@ -46,6 +48,26 @@ Gamma = Annotated[
         help="How much the steps to come count against the next one.",
         live=True,
         examples=(0.5, 0.9),
+    ),
+]
+Objective = Annotated[
+    Literal["discounted", "average"],
+    Setting(
+        title="Objective",
+        help="What a value adds up: all later rewards, discounted by γ; or what they are above the "
+        "average, since walking never ends.",
+    ),
+]
+AverageRate = Annotated[
+    float,
+    Gt(0),
+    Le(1),
+    Setting(
+        title="Rate of the average",
+        symbol="η",
+        help="How fast the average reward is learned, as a share of the learning rate; used by the "
+        "objective average alone.",
+        examples=(0.1, 0.3),
     ),
 ]
 Epsilon = Annotated[
@@ -108,9 +130,16 @@ class TabularAgent(ABC):
 
     needs_practice = True
 
+    table: ValueTable
+
     def __init__(self, rng: np.random.Generator, problem: Problem, *, explore: bool = True) -> None:
-        self.table = QTable(len(problem.groups), len(problem.cells_m))
+        self.table = self._new_table(len(problem.groups), len(problem.cells_m))
         self._rng, self._explore = rng, explore
+
+    @staticmethod
+    def _new_table(groups: int, cells: int) -> ValueTable:
+        """Return an empty table of the kind that this agent keeps."""
+        return QTable(groups, cells)
 
     @staticmethod
     def check_problem(problem: Problem, **_settings: Any) -> None:
@@ -185,7 +214,11 @@ class TabularLearner(TabularAgent):
         problem: determines the size of the table.
         explore: if False, the policy is greedy in the table (ε = 0).
         alpha: learning rate α.
-        gamma: discount factor γ.
+        gamma: discount factor γ; not used by the objective `average`.
+        objective: `discounted`: a value is a sum of discounted rewards. `average`: a value is what
+            the rewards exceed the average reward by, without end (differential Q-learning and
+            Sarsa: Wan, Naik and Sutton 2021; Sutton and Barto, 2nd edition, §10.3).
+        average_rate: η; the average reward moves by η · α times each error.
         epsilon_start, epsilon_end: ε of the first and the last episode.
         steps: planned number of steps, which gives the number of episodes.
         steps_per_episode: number of steps for which ε is constant.
@@ -199,6 +232,8 @@ class TabularLearner(TabularAgent):
         explore: bool = True,
         alpha: Alpha = 0.3,
         gamma: Gamma = 0.9,
+        objective: Objective = "discounted",
+        average_rate: AverageRate = 0.1,
         epsilon_start: EpsilonStart = 1.0,
         epsilon_end: EpsilonEnd = 0.0,
         steps: int = 500,
@@ -206,6 +241,9 @@ class TabularLearner(TabularAgent):
     ) -> None:
         super().__init__(rng, problem, explore=explore)
         self._alpha, self._gamma = alpha, gamma
+        self._is_average, self._average_rate = objective == "average", average_rate
+        self._average_m = 0.0
+        """Average reward of a step, as learned so far [m]; used by the objective `average`."""
         self._schedule = EpsilonSchedule(epsilon_start, epsilon_end, -(-steps // steps_per_episode))
         self._steps_per_episode = steps_per_episode
         self._learned = 0
@@ -256,26 +294,27 @@ class TabularLearner(TabularAgent):
     def explain_update(self, transition: Transition) -> UpdateExplanation:
         """Learn as `learn` does, and explain how the values change."""
         updates: list[ValueUpdate] = []
-        self._explained = updates
+        self._explained, average_m = updates, self._average_m
         try:
             self.learn(transition)
         finally:
             self._explained = None
-        return self._explanation(transition, updates)
+        explained = self._explanation(transition, updates)
+        if not self._is_average:
+            return explained
+        average = Belief("average reward of a step", average_m, self._average_m)
+        return replace(explained, beliefs=[*explained.beliefs, average])
 
     def _explain_target(self, transition: Transition) -> Rule:
         """Return what `_target` is computed from."""
         rule, terms = self._explain_next(transition)
-        return f"r + γ · {rule}", (*self._reward_terms(transition), *terms)
+        return self._return_rule("r", rule), (*self._reward_terms(transition), *terms)
 
     def _rate_terms(self, before: float) -> Sequence[Term]:
         return Term("Q", before, "value before"), Term("α", self._alpha, "learning rate")
 
     def _reward_terms(self, transition: Transition) -> Sequence[Term]:
-        return (
-            Term("r", transition.reward_m, "reward of this step [m]"),
-            Term("γ", self._gamma, "discount"),
-        )
+        return Term("r", transition.reward_m, "reward of this step [m]"), self._return_term()
 
     def _explain_next(self, transition: Transition) -> Rule:
         """Return what `_next_value` is computed from."""
@@ -308,7 +347,34 @@ class TabularLearner(TabularAgent):
         self._move_towards(state, column, self._target(transition), explain)
 
     def _target(self, transition: Transition) -> float:
-        return transition.reward_m + self._gamma * self._next_value(transition)
+        return self._return_m(transition.reward_m, self._next_value(transition))
+
+    def _return_m(self, reward_m: float, later: float, tries: int = 1) -> float:
+        """Return a reward and the value of what follows it, added up by the objective [m].
+
+        Args:
+            reward_m: the reward [m].
+            later: sum of the values of what followed in some tries [m].
+            tries: number of these.
+        """
+        if self._is_average:
+            return reward_m - self._average_m + later / tries
+        return reward_m + self._gamma * later / tries
+
+    def _return_rule(self, reward: str, later: str) -> str:
+        """Return the formula of `_return_m`, of these symbols."""
+        return f"{reward} − R̄ + {later}" if self._is_average else f"{reward} + γ · {later}"
+
+    def _return_term(self) -> Term:
+        """Return the term of `_return_rule` that is of the learner and not of the step."""
+        if self._is_average:
+            return Term("R̄", self._average_m, "average reward of a step, as learned so far [m]")
+        return Term("γ", self._gamma, "discount")
+
+    def _learn_average(self, error: float) -> None:
+        """R̄ ← R̄ + η α δ, for the error δ of a value, if the objective is `average`."""
+        if self._is_average:
+            self._average_m += self._average_rate * self._alpha * error
 
     def _next_value(self, transition: Transition) -> float:
         """Return the value of the next state, by the rule of this learner. No state is terminal."""
@@ -325,6 +391,7 @@ class TabularLearner(TabularAgent):
             rule = f"(1 − α) · Q + α · ({rule})"
             self._explain((state, column), (rule, (*self._rate_terms(before), *terms)), after)
         self.table.set_value(state, column, after)
+        self._learn_average(target - before)
 
     def _best_next(self, transition: Transition) -> float:
         """Return max Q(s′, ·)."""
@@ -347,12 +414,18 @@ class TabularLearner(TabularAgent):
         self._gamma = self._gamma if gamma is None else gamma
         self._fixed_epsilon = self._fixed_epsilon if epsilon is None else epsilon
 
+    def _load_learned(self, state: AgentState) -> None:
+        super()._load_learned(state)
+        # A table of the objective `discounted` has none.
+        (self._average_m,) = state.get("average", np.zeros(1)).tolist()
+
     def state(self) -> AgentState:
         """Return values, visits, rates and the position in the ε schedule."""
         fixed = np.nan if self._fixed_epsilon is None else self._fixed_epsilon
         progress = np.array([self._learned], np.int64)
         rates = np.array([self._alpha, self._gamma, fixed])
-        return {**self.table.dump(), "learned": progress, "rates": rates}
+        average = {"average": np.array([self._average_m])} if self._is_average else {}
+        return {**self.table.dump(), "learned": progress, "rates": rates, **average}
 
     def load(self, state: AgentState) -> None:
         """Restore a state that `state` returned; the caller restores the generator."""
@@ -372,6 +445,10 @@ class TabularLearner(TabularAgent):
         alpha, gamma, epsilon = state["rates"].tolist()
         declare("alpha", Alpha).check(alpha)
         declare("gamma", Gamma).check(gamma)
+        # Of the objective `average` only.
+        (average,) = state.get("average", np.zeros(1)).tolist()
+        if not isinstance(average, float) or not np.isfinite(average):
+            raise ValueError("its average reward is no finite number")
         # NaN while the schedule is in use.
         if not np.isnan(epsilon):
             declare("epsilon", Epsilon).check(epsilon)

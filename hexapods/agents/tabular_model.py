@@ -51,13 +51,9 @@ class TabularModel:
     Attributes:
         steps: number of steps it learned from.
         pairs: what followed each pair.
-
-    Raises:
-        InvalidInput: if there are more than `MAX_MODEL_VALUES` pairs.
     """
 
-    def __init__(self, problem: Problem) -> None:
-        check_problem(problem)
+    def __init__(self) -> None:
         self.steps = 0
         self.pairs: list[TriedPair] = []
         self._numbers: dict[tuple[int, int], int] = {}

@@ -41,17 +41,21 @@ class TraceLearner(TabularLearner):
         """Eligibility traces by (row, column) of the table, the newest last."""
 
     def _update(self, transition: Transition, state: int, column: int) -> None:
-        """Credit the error δ = r + γ Q′ − Q(s, a) to every step with a trace."""
+        """Credit the error δ, what came less Q(s, a), to every step with a trace."""
         error = self._target(transition) - self.table.value(state, column)
         # Before any value changes, on which the target depends.
         target = None if self._explained is None else self._explain_target(transition)
         self._credit((state, column), error, target)
 
     def _credit(self, newest: tuple[int, int], error: float, target: Rule | None) -> None:
-        """Q ← Q + α δ e for every trace e, that of this step being 1; then e ← γ λ e."""
+        """Q ← Q + α δ e for every trace e, that of this step being 1; then e ← γ λ e.
+
+        γ is 1 where the objective is `average`.
+        """
         self._traces.pop(newest, None)
         self._traces[newest] = 1.0
-        decay, kept = self._gamma * self._trace_decay, {}
+        discount = 1.0 if self._is_average else self._gamma
+        decay, kept = discount * self._trace_decay, {}
         for place, trace in self._traces.items():
             before = self.table.value(*place)
             after = before + self._alpha * error * trace
@@ -67,6 +71,7 @@ class TraceLearner(TabularLearner):
             if trace * decay >= _MIN_TRACE:
                 kept[place] = trace * decay
         self._traces = kept
+        self._learn_average(error)
 
     def _explanation(
         self,

@@ -3,15 +3,13 @@
 from collections.abc import Iterator, Mapping
 from typing import IO, Any
 
+from hexapods.agents.landing_table import LANDING_ARRAYS, LandingRows, check_landings
 from hexapods.agents.q_table import check_size
 from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.types import Cells, FloatArray
 from hexapods.runs.npz_slices import NpzSlices
-from hexapods.runs.tables import FORMAT, read_meta
-
-_COLUMNS = ("agent.where", "agent.q", "agent.n")
+from hexapods.runs.tables import FORMAT, read_meta, table_arrays
 
 
 class TableFile:
@@ -19,7 +17,7 @@ class TableFile:
 
     Attributes:
         meta: metadata as in `Checkpoint.meta`.
-        groups, cells: number of groups of legs and of cells of the foot grid.
+        table: its rows, of states or of landings.
     """
 
     def __init__(self, file: IO[bytes], label: str) -> None:
@@ -39,13 +37,15 @@ class TableFile:
             self.meta: Mapping[str, Any] = read_meta(str(self._slices.rows("meta")))
             if self.meta["format"] != FORMAT:
                 raise ValueError(f"it has format {self.meta['format']}, not {FORMAT}")
-            if "agent.where" not in self._slices:
+            names = table_arrays({name.removeprefix("agent.") for name in self._slices.arrays})
+            if names is None:
                 raise TableMismatch(f"the agent {self.meta['agent']} keeps no Q-table")
-            columns = [self._slices.arrays[name] for name in _COLUMNS]
+            self._columns = [f"agent.{name}" for name in names]
+            columns = [self._slices.arrays[name] for name in self._columns]
             if any(len(column.shape) != 1 for column in columns):
                 raise ValueError("its arrays are of another shape")
             grid = FootGrid(self.meta["grid_side_m"], self.meta["divisions"])
-            self.groups, self.cells = len(self.meta["pairs"]), len(grid)
+            shape = len(self.meta["pairs"]), len(grid)
         except TableMismatch:
             raise
         except Exception as error:  # zipfile and NumPy document no complete list of exceptions
@@ -53,15 +53,16 @@ class TableFile:
         kinds = "".join(column.dtype.kind for column in columns)
         if kinds != "ifu" or len({column.shape for column in columns}) > 1:
             raise TableMismatch("the table's values, visits and places do not fit together")
-
-        check_size(self.groups, self.cells)
-
-    def rows(self) -> Iterator[tuple[Cells, FloatArray, FloatArray]]:
-        """Yield all states in order, with values and visits, (groups, cells), NaN illegal."""
-        return TableRows(self.groups, self.cells, self._parts).rows()
+        self.table: TableRows | LandingRows
+        if names == LANDING_ARRAYS:
+            check_landings(*shape)
+            self.table = LandingRows(*shape, self._parts)
+        else:
+            check_size(*shape)
+            self.table = TableRows(*shape, self._parts)
 
     def _parts(self) -> Iterator[Part]:
-        for first in range(0, self._slices.length("agent.where"), VALUES_AT_ONCE):
+        for first in range(0, self._slices.length(self._columns[0]), VALUES_AT_ONCE):
             end = first + VALUES_AT_ONCE
-            where, q, n = (self._slices.rows(name, first, end) for name in _COLUMNS)
+            where, q, n = (self._slices.rows(name, first, end) for name in self._columns)
             yield where, q, n

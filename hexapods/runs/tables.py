@@ -9,15 +9,21 @@ import hashlib
 import io
 import json
 import zipfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from hexapods.agents.landing_table import (
+    LANDING_ARRAYS,
+    LandingRows,
+    check_landing_arrays,
+    check_landings,
+)
 from hexapods.agents.protocol import Agent, Tabular
 from hexapods.agents.q_table import check_arrays, check_size
-from hexapods.agents.table_rows import VALUES_AT_ONCE, Part, TableRows
+from hexapods.agents.table_rows import TABLE_ARRAYS, VALUES_AT_ONCE, Part, TableRows
 from hexapods.domain.disturbance_documents import as_mapping
 from hexapods.domain.errors import DamagedFile, InvalidInput, TableMismatch
 from hexapods.domain.grid import FootGrid
@@ -176,28 +182,36 @@ def _load(
         ) from error
 
 
-def table_of(checkpoint: Checkpoint) -> TableRows:
-    """Return the Q-table in a checkpoint.
+def table_arrays(names: Container[str]) -> tuple[str, str, str] | None:
+    """Return the names of the arrays of an agent's table in a state; None if it keeps no table."""
+    return next((arrays for arrays in (TABLE_ARRAYS, LANDING_ARRAYS) if arrays[0] in names), None)
+
+
+def table_of(checkpoint: Checkpoint) -> TableRows | LandingRows:
+    """Return the table in a checkpoint: of states and actions, or of landings.
 
     Raises:
-        TableMismatch: if its agent has no Q-table, or the arrays do not fit the metadata.
+        TableMismatch: if its agent has no table, or the arrays do not fit the metadata.
         InvalidInput: if it is too large.
     """
     state, meta = agent_state(checkpoint), checkpoint.meta
-    if "where" not in state:
+    names = table_arrays(state)
+    if names is None:
         raise TableMismatch(f"the agent {meta['agent']} keeps no Q-table")
-    groups, cells = len(meta["pairs"]), len(FootGrid(meta["grid_side_m"], meta["divisions"]))
-    check_size(groups, cells)
-    check_arrays(state, groups, cells)
+    shape = len(meta["pairs"]), len(FootGrid(meta["grid_side_m"], meta["divisions"]))
 
     def parts() -> Iterator[Part]:
-        for first in range(0, len(state["where"]), VALUES_AT_ONCE):
-            where, q, n = (
-                state[name][first : first + VALUES_AT_ONCE] for name in ("where", "q", "n")
-            )
+        for first in range(0, len(state[names[0]]), VALUES_AT_ONCE):
+            where, q, n = (state[name][first : first + VALUES_AT_ONCE] for name in names)
             yield where, q, n
 
-    return TableRows(groups, cells, parts)
+    if names == LANDING_ARRAYS:
+        check_landings(*shape)
+        check_landing_arrays(state, *shape)
+        return LandingRows(*shape, parts)
+    check_size(*shape)
+    check_arrays(state, *shape)
+    return TableRows(*shape, parts)
 
 
 def check_fits(

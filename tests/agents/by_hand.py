@@ -24,4 +24,4 @@ def value(agent: TabularAgent, observation: Cells, action: Action) -> float:
 
 def set_value(agent: TabularAgent, observation: Cells, action: Action, value: float) -> None:
     table = agent.table
-    table.row(table.index(observation))[0][table.column(action)] = value
+    table.set_value(table.index(observation), table.column(action), value)

@@ -17,22 +17,29 @@ from hexapods.agents.explanation import (
     copy_of,
     evaluate,
 )
+from hexapods.agents.landing_table import LandingTable
 from hexapods.agents.protocol import Tabular, Transition, Valuing
-from hexapods.agents.registry import OURS, find, learns
-from hexapods.agents.tabular import TabularLearner
+from hexapods.agents.q_table import QTable
+from hexapods.agents.registry import OURS, find, learns, settings_of
+from hexapods.agents.value_table import ValueTable
 from hexapods.assembly import build_learner
-from hexapods.domain.types import Action, FloatArray
+from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.runs.config import TrainingConfig, training_config
 from hexapods.runs.tables import snapshot
 from hexapods.runs.training import Learner, train
 
-LEARNERS = [name for name in OURS if learns(name)]
-TABLE_LEARNERS = [name for name in LEARNERS if issubclass(find(name), TabularLearner)]  # type: ignore[arg-type]
+AVERAGE = " by average"
+"""Mark of a learner whose objective is the average reward."""
+TEMPORAL = [name for name in OURS if "average_rate" in settings_of(find(name))]
+TABLE_LEARNERS = [*TEMPORAL, *(name + AVERAGE for name in TEMPORAL)]
+LEARNERS = [*(name for name in OURS if learns(name)), *(name + AVERAGE for name in TEMPORAL)]
 
 
 def config_of(agent: str, seed: int = 4, steps: int = 90) -> TrainingConfig:
+    average = {"objective": "average"} if agent.endswith(AVERAGE) else {}
     return training_config(
-        agent,
+        agent.removesuffix(AVERAGE),
+        settings=average,
         gait="left-right-origin",
         simulator="kinematic",
         steps=steps,
@@ -80,10 +87,19 @@ class ExplainedStep:
 
 
 def table_of(learner: Learner) -> FloatArray | None:
+    """Return the values of a learner's table, a row a state or a landing."""
     agent = learner.walker.agent
     if not isinstance(agent, Tabular):
         return None
+    assert isinstance(agent.table, QTable | LandingTable)
     return np.array([values for _, values, _ in agent.table.rows()])
+
+
+def entry_of(table: ValueTable, place: tuple[Cells, Action]) -> tuple[int, ...]:
+    """Return the index, in what `table_of` returns, of the value of an action in a state."""
+    observation, action = place
+    state, column = table.entry(table.index(observation), table.column(action))
+    return (state,) if isinstance(table, LandingTable) else (state, *table.action_at(column))
 
 
 @cache
@@ -140,12 +156,14 @@ def test_every_value_that_changed_is_explained(name: str) -> None:
     for step in explained(name):
         assert step.table_before is not None
         assert step.table_after is not None
-        known = {(one.observation, one.action): one.before for one in reversed(step.updates)}
-        rows = np.nan_to_num(step.table_after) != np.nan_to_num(step.table_before)
-        for row, pair, cell in np.argwhere(rows).tolist():
-            observation = tuple(row // 5**place % 5 for place in (2, 1, 0))
-            before = known[observation, Action(pair, cell)]
-            assert before == step.table_before[row, pair, cell]
+        assert isinstance(step.agent, Tabular)
+        before = {
+            entry_of(step.agent.table, (update.observation, update.action)): update.before
+            for update in reversed(step.updates)
+        }
+        is_changed = np.nan_to_num(step.table_after) != np.nan_to_num(step.table_before)
+        for entry in np.argwhere(is_changed).tolist():
+            assert before[tuple(entry)] == step.table_before[tuple(entry)]
             changed += 1
     assert changed > 20
 

@@ -1,7 +1,9 @@
 """All learners of the registry: exact values, resume to the last bit, files, evaluation, looks."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,13 +11,14 @@ import pytest
 from app.archive.imported_tables import checked_table
 from hexapods.agents.appearance import colors_of, description_of, title_of
 from hexapods.agents.protocol import Problem, Transition, Valuing
-from hexapods.agents.registry import OURS, build, find, learns
+from hexapods.agents.registry import OURS, build, find, learns, settings_of
 from hexapods.agents.tabular import TabularAgent, TabularLearner
 from hexapods.assembly import build_learner, build_walkers
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.feet import Feet
 from hexapods.domain.grid import FootGrid
 from hexapods.domain.observation import legal_actions
+from hexapods.domain.settings import SettingValues
 from hexapods.domain.types import Action, Cells
 from hexapods.domain.world import UNDISTURBED
 from hexapods.experiments.trial import TrialConfig, run_trial
@@ -111,7 +114,7 @@ def exact_values(*, of_random_policy: bool) -> Mapping[tuple[Cells, Action], flo
     return values
 
 
-def practised(name: str, rounds: list[tuple[int, float]], **settings: float) -> TabularAgent:
+def practised(name: str, rounds: list[tuple[int, float]], **settings: Any) -> TabularAgent:
     """Return a learner after rounds of random steps, each so many at a learning rate."""
     rng = np.random.default_rng(0)
     offered = {"rng": rng, "problem": PROBLEM, "gamma": GAMMA, "epsilon_end": 1.0, **settings}
@@ -140,7 +143,8 @@ def error(agent: TabularAgent, exact: Mapping[tuple[Cells, Action], float]) -> f
 
 @pytest.mark.parametrize("name", [name for name in TABULAR if name not in ON_POLICY])
 def test_values_converge_to_those_of_value_iteration(name: str) -> None:
-    agent = practised(name, [(12_000, 0.5)], planning_steps=5, plan_every=100, bonus_m=0.0)
+    settings = {"planning_steps": 5, "plan_every": 100, "bonus_m": 0.0, "objective": "discounted"}
+    agent = practised(name, [(12_000, 0.5)], **settings)
 
     assert error(agent, exact_values(of_random_policy=False)) < 0.01
 
@@ -152,6 +156,72 @@ def test_values_converge_to_those_of_the_policy(name: str) -> None:
 
     assert error(agent, exact_values(of_random_policy=True)) < 0.08
     assert error(agent, exact_values(of_random_policy=False)) > 0.2
+
+
+# ---- the average reward, in place of discounting
+
+TEMPORAL = [name for name in TABULAR if "average_rate" in settings_of(find(name))]
+
+
+def best_average_m() -> float:
+    """Return the highest average reward of a step, by value iteration without a discount [m].
+
+    The best sum of rewards of n steps less that of n − 1 tends to it, here with a period.
+    """
+    worth = dict.fromkeys((state for state, _ in outcomes()), 0.0)
+    sums = []
+    for _ in range(240):
+        best: dict[Cells, float] = {}
+        for (state, _), (after, reward) in outcomes().items():
+            best[state] = max(best.get(state, -np.inf), reward + worth[after])
+        worth = best
+        sums.append(worth[(0,) * PAIRS])
+    return (sums[239] - sums[119]) / 120
+
+
+@pytest.mark.parametrize("name", [name for name in TEMPORAL if name not in ON_POLICY])
+def test_the_average_reward_converges_to_the_best(name: str) -> None:
+    """Each value is then its reward, less the average, and the best value that follows it."""
+    rounds = [(12_000, 0.5), (12_000, 0.1)]
+    agent = practised(name, rounds, objective="average", planning_steps=5, bonus_m=0.0)
+    average_m = agent.state()["average"][0]
+    best_m = {
+        state: np.nanmax(agent.table.values(state)) for state in {state for state, _ in outcomes()}
+    }
+    errors_m = [
+        abs(agent.table.values(state)[action] - (reward - average_m + best_m[after]))
+        for (state, action), (after, reward) in outcomes().items()
+    ]
+
+    assert average_m == pytest.approx(best_average_m(), rel=0.01)
+    assert max(errors_m) < 0.02 * best_average_m()
+
+
+@pytest.mark.parametrize("name", ON_POLICY)
+def test_the_average_reward_converges_to_that_of_the_policy(name: str) -> None:
+    """It is that of random steps here, which lead nowhere."""
+    rounds = [(5000, 0.5), (8000, 0.05), (20_000, 0.02)]
+    average_m = practised(name, rounds, objective="average").state()["average"][0]
+
+    assert abs(average_m) < 0.05 * best_average_m()
+
+
+def test_a_table_of_the_discounted_objective_goes_on_with_the_average_one() -> None:
+    config = config_of("q-learning")
+    table = snapshot(trained(config), config)
+    averaging = replace(config, settings=SettingValues({"objective": "average"}))
+    learner = build_learner(averaging, table)
+
+    assert learner.walker.agent.state()["average"].tolist() == [0.0]
+    assert "average" not in table.part("agent.")
+
+
+def test_an_average_reward_that_is_no_number_is_refused() -> None:
+    state = build_learner(config_of("afterstate-q")).walker.agent.state()
+    TabularLearner.check_state(state)
+
+    with pytest.raises(ValueError, match="average reward is no finite number"):
+        TabularLearner.check_state({**state, "average": np.array([np.nan])})
 
 
 # ---- what every part of the product relies on

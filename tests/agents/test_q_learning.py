@@ -54,7 +54,7 @@ def test_update_equals_algorithm_1_by_hand() -> None:
 
 def test_illegal_next_actions_are_not_in_the_maximum() -> None:
     agent = learner(alpha=1, gamma=0.9)
-    agent.table.row(agent.table.index((0, 2, 0)))[0][agent.table.column(Action(1, 2))] = 9
+    agent.table.set_value(agent.table.index((0, 2, 0)), agent.table.column(Action(1, 2)), 9)
     agent.learn(transition())
 
     assert agent.values((0, 0, 0))[1, 2] == 0.01
@@ -62,7 +62,7 @@ def test_illegal_next_actions_are_not_in_the_maximum() -> None:
 
 def test_without_exploration_the_best_action_is_chosen() -> None:
     agent = learner(explore=False)
-    agent.table.row(0)[0][agent.table.column(Action(2, 3))] = 0.1
+    agent.table.set_value(0, agent.table.column(Action(2, 3)), 0.1)
     legal = legal_actions((0, 0, 0), 5)
 
     assert agent.epsilon == 0
@@ -73,7 +73,7 @@ def test_ties_are_broken_at_random() -> None:
     agent = learner(explore=False)
     best = [Action(0, 4), Action(1, 1), Action(2, 3)]
     for action in best:
-        agent.table.row(0)[0][agent.table.column(action)] = 0.1
+        agent.table.set_value(0, agent.table.column(action), 0.1)
     chosen = Counter(agent.act((0, 0, 0), legal_actions((0, 0, 0), 5)) for _ in range(3000))
 
     assert set(chosen) == set(best)
@@ -82,7 +82,7 @@ def test_ties_are_broken_at_random() -> None:
 
 def test_epsilon_is_the_share_of_random_actions() -> None:
     agent = learner(epsilon_start=0.24, epsilon_end=0.24)
-    agent.table.row(0)[0][agent.table.column(Action(2, 3))] = 0.1
+    agent.table.set_value(0, agent.table.column(Action(2, 3)), 0.1)
     legal = legal_actions((0, 0, 0), 5)
     chosen = Counter(agent.act((0, 0, 0), legal) for _ in range(12_000))
 

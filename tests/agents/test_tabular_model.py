@@ -22,7 +22,7 @@ WITH_A_MODEL = [name for name in OURS if learns(name) and is_modelling(name)]
 
 
 def remembered() -> TabularModel:
-    model = TabularModel(PROBLEM)
+    model = TabularModel()
     model.learn(0, 1, 0.5, 7)
     model.learn(0, 1, 0.1, 8)
     model.learn(7, 3, 0.2, 0)
@@ -50,7 +50,7 @@ def test_it_knows_what_led_to_a_state() -> None:
 
 
 def test_it_round_trips() -> None:
-    model, copy = remembered(), TabularModel(PROBLEM)
+    model, copy = remembered(), TabularModel()
     TabularModel.check(model.dump() | SHAPE)
     copy.load(model.dump())
 

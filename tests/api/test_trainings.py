@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hexapods.agents.table_rows import TableRows
 from hexapods.assembly import build_learner
 from hexapods.runs.config import training_config
 from hexapods.runs.results import training_result
@@ -85,6 +86,7 @@ def test_table_is_returned_as_json_npz_and_csv(api: Api, trained: dict[str, Any]
     assert shown["cells"][0] == [0, 0]
     assert len(shown["values"]) == 1500
     table = table_of(from_bytes(api.call("GET", path, params={"format": "npz"}).content, "it"))
+    assert isinstance(table, TableRows)
     assert table.sha256() == trained["result"]["q_table_sha256"]
     by_state = {state: (values, visits) for state, values, visits in table.rows()}
     for entry in shown["values"]:

@@ -10,6 +10,7 @@ import psutil
 import pytest
 
 from hexapods.agents.q_table import QTable
+from hexapods.agents.table_rows import TableRows
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.runs.config import TrainingConfig, training_config
@@ -47,9 +48,10 @@ def test_rows_equal_those_of_the_table(divisions: int, states: float) -> None:
     table, checkpoint = filled(divisions, states)
     read = opened(to_bytes(checkpoint))
 
-    assert (read.groups, read.cells) == (table.groups, table.cells)
+    assert (read.table.groups, read.table.cells) == (table.groups, table.cells)
     assert dict(read.meta) == dict(checkpoint.meta)
-    rows = list(read.rows())
+    assert isinstance(read.table, TableRows)
+    rows = list(read.table.rows())
     assert len(rows) == table.states
     for (state, values, visits), (again, expected, counts) in zip(rows, table.rows(), strict=True):
         assert state == again
@@ -60,7 +62,7 @@ def test_rows_equal_those_of_the_table(divisions: int, states: float) -> None:
 def test_reading_the_largest_table_takes_constant_memory() -> None:
     table, checkpoint = filled(8, 0.05)
     data = to_bytes(checkpoint)
-    rows = opened(data).rows()
+    rows = opened(data).table.rows()
     next(rows)
     before = psutil.Process().memory_info().rss
     for _ in range(20_000):
@@ -105,7 +107,7 @@ def test_values_out_of_order_are_refused() -> None:
     arrays = {**checkpoint.arrays, "agent.where": where}
 
     with pytest.raises(TableMismatch, match="rising order"):
-        list(opened(to_bytes(Checkpoint(checkpoint.meta, arrays))).rows())
+        list(opened(to_bytes(Checkpoint(checkpoint.meta, arrays))).table.rows())
 
 
 def test_another_format_version_is_refused() -> None:

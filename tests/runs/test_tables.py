@@ -15,6 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hexapods.agents.q_learning import QLearning
+from hexapods.agents.q_table import QTable
+from hexapods.agents.table_rows import TableRows
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import DamagedFile, TableMismatch
 from hexapods.domain.gait import GaitSpec
@@ -99,6 +101,8 @@ def test_table_of_a_checkpoint_has_the_learned_values() -> None:
     agent = learner.walker.agent
     assert isinstance(agent, QLearning)
     table = table_of(from_bytes(FILE, "q.npz"))
+    assert isinstance(table, TableRows)
+    assert isinstance(agent.table, QTable)
 
     assert table.sha256() == agent.table.sha256()
     for (_, values, visits), (_, expected, counts) in zip(
