@@ -2,10 +2,12 @@
 
 from typing import Any
 
+import numpy as np
+
 from hexapods.agents.landing_table import LandingTable, check_landings
-from hexapods.agents.protocol import Problem
+from hexapods.agents.protocol import AgentState, Problem
 from hexapods.agents.q_learning import QLearning
-from hexapods.agents.tabular import Objective
+from hexapods.agents.tabular import Objective, TabularLearner
 from hexapods.agents.value_table import ValueTable
 
 
@@ -41,3 +43,12 @@ class AfterstateQ(QLearning):
             InvalidInput: if it would not; the message names the number of landings.
         """
         check_landings(len(problem.groups), len(problem.cells_m))
+
+    def state(self) -> AgentState:
+        """Return the state of `TabularLearner`, with the average reward by any objective."""
+        return {**super().state(), "average": np.array([self._average_m])}
+
+    @staticmethod
+    def check_state(state: AgentState) -> None:
+        """Check what `load` relies on beyond the table, as in `TabularLearner`."""
+        TabularLearner.check_state({**state, "average": state["average"]})
