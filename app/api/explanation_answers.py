@@ -159,6 +159,13 @@ class ExplanationView(WalkedGrid):
     unexplained: str | None
 
 
+class LandingsView(Answer):
+    """Values [m] and visits of all landings, in the order of their cells."""
+
+    values: list[float]
+    visits: list[Count]
+
+
 class TableView(WalkedGrid):
     """Values, visits and best actions of states: a row a state, in the order of their cells.
 
@@ -166,6 +173,8 @@ class TableView(WalkedGrid):
         states: number of all states.
         values: action values [m], pair by pair; null where illegal.
         visits: how often each was tried; a value without a try is no estimate.
+        landings: of a learner that keeps one value for each landing, which all actions share that
+            end with the feet there; null for others, and where there are too many for an answer.
     """
 
     step: Count
@@ -174,3 +183,4 @@ class TableView(WalkedGrid):
     values: list[list[float | None]]
     visits: list[list[float | None]]
     best: list[Move]
+    landings: LandingsView | None

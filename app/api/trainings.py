@@ -17,7 +17,7 @@ from app.api.formats import attachment, negotiated
 from app.api.recorded_answers import CurveView, QTableView
 from app.api.runs import RunPath, find, located, run_routes
 from app.archive import table_import
-from app.explanations.service import MAX_VALUES_SHOWN
+from app.explanations.explanation_json import MAX_VALUES_SHOWN
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
 from app.storage.json_text import finite

@@ -14,7 +14,9 @@ from hexapods.agents.explanation import (
     ValueUpdate,
     in_millimetres,
 )
+from hexapods.agents.landing_table import LandingTable
 from hexapods.agents.protocol import Valuing
+from hexapods.agents.value_table import ValueTable
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.rebuilding import ExplainedStep
@@ -22,6 +24,8 @@ from hexapods.runs.transition_log import Logged
 
 MAX_OTHERS = 24
 """Further updates of values that are told one by one, those with the largest changes."""
+MAX_VALUES_SHOWN = 30_000
+"""Values in one answer."""
 
 
 class ActionNames:
@@ -244,6 +248,7 @@ def _term(term: Term) -> dict[str, Any]:
 def table_as_json(
     walk: WalkingProblem,
     agent: Valuing,
+    table: ValueTable,
     states: Sequence[Cells],
     *,
     step: int,
@@ -255,6 +260,7 @@ def table_as_json(
     Args:
         walk: the walking problem.
         agent: the learner.
+        table: its table.
         states: observations of the states.
         step: number of steps that it has learned.
         first: index of the first of them.
@@ -269,7 +275,16 @@ def table_as_json(
         "values": [_flat(row) for row in values],
         "visits": [_flat(agent.visits(state)) for state in states],
         "best": [_best(row) for row in values],
+        "landings": _landings_as_json(table),
     }
+
+
+def _landings_as_json(table: ValueTable) -> dict[str, Any] | None:
+    """Return values and visits of all landings; None for another table, or one too large."""
+    if not isinstance(table, LandingTable) or table.size > MAX_VALUES_SHOWN:
+        return None
+    _, values, visits = zip(*table.rows(), strict=True)
+    return {"values": values, "visits": visits}
 
 
 def _best(values: FloatArray) -> list[int]:

@@ -7,7 +7,12 @@ from typing import Any, TypeVar
 from cachetools import LRUCache
 
 from app.cache import BytesCache
-from app.explanations.explanation_json import SearchFindings, explanation_as_json, table_as_json
+from app.explanations.explanation_json import (
+    MAX_VALUES_SHOWN,
+    SearchFindings,
+    explanation_as_json,
+    table_as_json,
+)
 from app.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPractice
 from app.jobs.stopping import Stopping
 from app.jobs.turns import Turns
@@ -35,8 +40,6 @@ MAX_ANSWER_BYTES = 16_000_000
 MAX_WAITING = 8
 MAX_TABLE_VALUES = 16_000_000
 """Largest table of a learner that is built again, about 200 MB."""
-MAX_VALUES_SHOWN = 30_000
-"""Action values in one answer."""
 _BLOCK_STEPS = 1000
 T = TypeVar("T")
 
@@ -127,7 +130,7 @@ class Explanations:
             table = learner.agent.table
             states = [table.cells_at(n) for n in range(first, min(first + count, table.states))]
             shown = {"step": number, "first": first, "total": table.states}
-            return table_as_json(config, learner.agent, states, **shown)
+            return table_as_json(config, learner.agent, table, states, **shown)
 
         # After the last step settings may still be changed, which changes no value.
         return self._answer((_version(run, number, steps), "table", number, first, count), answer)

@@ -2689,6 +2689,21 @@ export interface JoinedView {
   seed: number;
 }
 /**
+ * Value of a landing, which is the cell of each pair when a step has ended.
+ */
+export interface LandingValue {
+  landing: number[];
+  value: number;
+  visits: number;
+}
+/**
+ * Values [m] and visits of all landings, in the order of their cells.
+ */
+export interface LandingsView {
+  values: number[];
+  visits: number[];
+}
+/**
  * A leg, with its foot in the robot frame.
  */
 export interface LegPreview {
@@ -3385,7 +3400,10 @@ export interface PublishedView {
   finished_quantile: number | null;
 }
 /**
- * Q-table: all legal actions in all states; `cells` are the (x, y) of each cell [m].
+ * Q-table; `cells` are the (x, y) of each cell [m].
+ *
+ * `values` are those of all legal actions in all states, or of a learner over landings those of
+ * all landings.
  */
 export interface QTableView {
   gait:
@@ -3411,7 +3429,7 @@ export interface QTableView {
   divisions: number;
   grid_side_m: number;
   cells: [number, number][];
-  values: ActionValue[];
+  values: ActionValue[] | LandingValue[];
 }
 /**
  * Page of races.
@@ -3991,6 +4009,10 @@ export interface TableView {
    */
   visits: (number | null)[][];
   best: [number, number][];
+  /**
+   * of a learner that keeps one value for each landing, which all actions share that end with the feet there; null for others, and where there are too many for an answer.
+   */
+  landings: LandingsView | null;
 }
 /**
  * A lane's distance over time: points are [s, m], decision intervals are [from s, to s].

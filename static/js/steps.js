@@ -158,7 +158,7 @@ export function stateCells(index, { pairs, cell_names }) {
 }
 
 /** @param {number[]} legs */
-const legsInWords = (legs) => `legs ${legs.join("+")}`;
+export const legsInWords = (legs) => `legs ${legs.join("+")}`;
 
 /**
  * Where the feet are: "legs 1+4 home, legs 2+5 front left".

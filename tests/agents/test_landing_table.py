@@ -67,7 +67,8 @@ def test_values_and_visits_of_a_state_are_those_of_its_landings() -> None:
         if landing == (1, 2):
             assert np.isnan([values[group, cell], visits[group, cell]]).all()
         else:
-            assert stored[landing] == (values[group, cell], visits[group, cell])
+            value, count = stored[landing]
+            assert (value, count) == (float(values[group, cell]), int(visits[group, cell]))
     assert table.best(table.index((1, 2))) == np.nanmax(values)
 
 

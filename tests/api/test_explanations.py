@@ -49,6 +49,23 @@ def test_the_newest_table_is_the_stored_one(api: Api, trained: dict[str, Any]) -
     assert sum(visits or 0 for row in table["visits"] for visits in row) == STEPS
 
 
+def test_a_learner_over_landings_shows_a_value_for_each(api: Api) -> None:
+    training = api.finished(api.train(agent="afterstate-q", steps=30))
+    table = table_at(api, training["id"])
+    stored = api.get(f"/trainings/{training['id']}/q-table")["values"]
+    lines = api.call("GET", f"/trainings/{training['id']}/q-table?format=csv").text.splitlines()
+
+    assert len(table["landings"]["values"]) == len(stored) == len(lines) - 1 == 125
+    assert sum(table["landings"]["visits"]) == 30
+    assert stored[7]["landing"] == [0, 1, 2]
+    assert [landing["value"] for landing in stored] == table["landings"]["values"]
+    assert lines[0] == "landing_0,landing_1,landing_2,value,visits"
+    update = explained(api, training["id"], step=30)["update"]
+    assert [belief["name"] for belief in update["beliefs"]] == ["average reward of a step"]
+    assert "R̄" in update["direct"]["rule"]
+    assert update["direct"]["is_exact"]
+
+
 def test_tables_of_earlier_moments_are_those_before(api: Api, trained: dict[str, Any]) -> None:
     rows = [table_at(api, trained["id"], step=step)["visits"] for step in (0, 40, 100, 7)]
     tried = [sum(visits or 0 for row in table for visits in row) for table in rows]

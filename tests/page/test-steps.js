@@ -158,6 +158,7 @@ const TABLE = {
   values: [[0.01, null, 0, -0.002, null, 0.5], [0, null, 0, 0, 0, null]],
   visits: [[2, null, 1, 1, null, 0], [0, null, 0, 0, 0, null]],
   best: [[0, 0], [0, 0]],
+  landings: null,
 };
 
 test("states and columns are numbers of their cells", () => {

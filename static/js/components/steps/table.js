@@ -7,6 +7,7 @@ import {
 } from "../../steps.js";
 import { html } from "../elements.js";
 import { Heatmap } from "./heatmap.js";
+import { Landings } from "./landings.js";
 import { Navigator, Trouble, useMoment, Waiting } from "./navigator.js";
 
 /** @import { Moment } from "../../steps.js" */
@@ -62,6 +63,10 @@ function TableOfStates({ at, shown }) {
   }, [index, shown.states]);
   return html`
     ${shown.states > rows && html`<${Parts} shown=${shown} />`}
+    ${shown.landings && html`
+      <${Landings} shown=${shown} seen=${seen} />
+      <h4>The same values by states and moves</h4>
+    `}
     <${Heatmap} shown=${shown} cells=${seen?.observation ?? null} move=${seen?.action ?? null}
       chosen=${chosen} onChoose=${chooseState} onGiveUp=${giveUpState} />
   `;
