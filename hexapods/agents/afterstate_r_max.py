@@ -34,11 +34,13 @@ class LandingArrays(ModelArrays):
         self._within_reach = numbers[np.array(landings, np.int64).reshape(-1, count)]
         """Number of the landing of each legal action of each state; −1 if it never came."""
         self.untried = (self._within_reach < 0).sum(1)
+        self._values = np.full(len(model.pairs) + 1, -np.inf)
+        """Value of each landing [m]; −∞ at the end, for those that never came."""
 
     def best_of_states(self, values: FloatArray, untried_m: FloatArray) -> FloatArray:
         """Return the value of the best action of each state, tried or not [m]."""
-        tried = np.append(values, -np.inf)[self._within_reach].max(1, initial=-np.inf)
-        return np.asarray(np.maximum(tried, untried_m))
+        self._values[:-1] = values
+        return np.asarray(np.maximum(self._values[self._within_reach].max(1), untried_m))
 
 
 class AfterstateRMax(RMax):

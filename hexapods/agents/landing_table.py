@@ -85,7 +85,7 @@ class LandingTable(ValueTable):
 
     def legal_landings(self, state: int) -> IntArray:
         """Return the indices of the landings of the legal actions in a state, in order."""
-        return self._landings(state)[[*legal_columns(state, self.groups, self.cells)]]
+        return _legal_landings(state, self.groups, self.cells)
 
     def values(self, observation: Cells) -> FloatArray:
         """Return the values of the landings of the actions, (groups, cells), NaN if illegal."""
@@ -188,6 +188,11 @@ def _landings(state: int, groups: int, cells: int) -> IntArray:
     present = state // places % cells
     landings: IntArray = state + (np.arange(cells) - present[:, None]) * places[:, None]
     return landings.ravel()
+
+
+@lru_cache(maxsize=1 << 12)
+def _legal_landings(state: int, groups: int, cells: int) -> IntArray:
+    return _landings(state, groups, cells)[[*legal_columns(state, groups, cells)]]
 
 
 def check_landings(groups: int, cells: int) -> None:
