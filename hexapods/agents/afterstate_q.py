@@ -24,7 +24,7 @@ class AfterstateQ(QLearning):
 
     title = "Afterstate Q"
     description = "Q-learning that values where the feet land, not how they came there."
-    color = "#332288"
+    color = "#6BBF23"
 
     next_meaning = "highest value of a landing within reach of the next state"
 

@@ -174,3 +174,18 @@ def test_lanes_of_a_race_are_explained(dashboard: Dashboard, shared_server: Serv
     expect(told).to_contain_text("It simulated 12 steps before it took this one")
     expect(told.get_by_role("table").last.get_by_role("row")).to_have_count(6)
     assert dashboard.violations() == []
+
+
+def test_a_learner_over_landings_has_a_row_for_each(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    page = dashboard.page
+    with shared_server.api() as api:
+        run = finished(api, "trainings", {**WALK, "steps": 60, "agent": "afterstate-q"})
+    dashboard.open(shared_server.link(depth="study", tab="table", run=run["id"]))
+    rows = page.get_by_role("region", name="Table of landings, the best first").get_by_role("row")
+
+    expect(rows).to_have_count(1 + 125)
+    expect(page.get_by_text(re.compile(r"\d+ of 125 came so far"))).to_be_visible()
+    expect(page.get_by_role("heading", name="The same values by states and moves")).to_be_visible()
+    assert dashboard.violations() == []

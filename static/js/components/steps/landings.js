@@ -1,5 +1,5 @@
 // The table of a learner that values landings: a row a landing, the best first.
-import { count, whole } from "../../format.js";
+import { whole } from "../../format.js";
 import { landingOf, landingRange, MAX_LANDINGS, pairsOfLanding, rankedLandings } from "../../landings.js";
 import { valueColours } from "../../scale.js";
 import { fineMillimetres, legsInWords } from "../../steps.js";
@@ -26,12 +26,12 @@ export function Landings({ shown, seen }) {
         <span class="dim"> A table of states and moves would store each ${pairsOfLanding(shown)} times.</span>
       </p>
       <div class="heat-scroll" tabindex="0" role="region" aria-label="Table of landings, the best first">
-        <table class="results landing-table">
+        <table class="landing-table">
           <thead>
             <tr>
               ${shown.pairs.map((legs) => html`<th scope="col">${legsInWords(legs)}</th>`)}
               <th scope="col" class="number">Value</th>
-              <th scope="col" class="number">Came</th>
+              <th scope="col" class="number">Times</th>
             </tr>
           </thead>
           <tbody>
@@ -63,6 +63,6 @@ const Row = ({ landing: { cells, value, visits }, range, names, isLanded }) => h
       ? html`<td class="number"><span class="landing-value" style=${valueColours(value, range.low, range.high)}>
           ${fineMillimetres(value)}</span></td>`
       : html`<td class="number dim">–</td>`}
-    <td class="number ${visits > 0 ? "" : "dim"}">${visits > 0 ? count(visits, "time") : "never"}</td>
+    <td class="number ${visits > 0 ? "" : "dim"}">${visits > 0 ? whole(visits) : "never"}</td>
   </tr>
 `;
