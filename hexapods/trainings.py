@@ -9,14 +9,16 @@ from typing import Any, NamedTuple, Union
 
 from hexapods.agents.protocol import Agent
 from hexapods.agents.registry import AgentClass
+from hexapods.agents.table_rows import flat_entry
 from hexapods.arguments import agent_name
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import DamagedFile, InvalidInput, TableMismatch
 from hexapods.domain.records import from_json
 from hexapods.files import path_of, write_atomically
+from hexapods.result_table import ResultTable
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.results import TrainingResult
-from hexapods.runs.tables import Checkpoint, from_bytes, load_agent, to_bytes
+from hexapods.runs.tables import Checkpoint, from_bytes, load_agent, table_of, to_bytes
 
 Table = Union["Training", str, os.PathLike[str]]
 """A trained agent: a training, or the path of its file."""
@@ -78,6 +80,19 @@ class Training:
     def q_table_sha256(self) -> str | None:
         """Hash of the Q-table; None for an agent without one, or if it is not known."""
         return None if self.result is None else self.result.q_table_sha256
+
+    def values(self) -> ResultTable:
+        """Return what its table holds: a row for each state and action, or for each landing.
+
+        `pandas.DataFrame(training.values())` is a data frame. `state_0`, `state_1` … are the cells
+        of the groups, `action_pair` and `action_cell` the group that moves and where to; of a
+        learner over landings `landing_0`, `landing_1` … are the cells in which the feet land.
+        `value` is in metres, `visits` a number of steps.
+
+        Raises:
+            TableMismatch: if the agent keeps no table.
+        """
+        return ResultTable.of(map(flat_entry, table_of(self.table).entries()))
 
     @cached_property
     def agent(self) -> Agent:

@@ -6,10 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-import numpy as np
-
 from hexapods.agents.landing_table import LandingRows
-from hexapods.agents.table_rows import TableRows
+from hexapods.agents.table_rows import TableRows, flat_entry
 from hexapods.domain.grid import FootGrid
 
 _VALUES_PER_CHUNK = 500
@@ -46,34 +44,19 @@ def table_as_json(table: TableRows | LandingRows, meta: Mapping[str, Any]) -> It
 
 
 def table_as_csv(table: TableRows | LandingRows) -> Iterator[str]:
-    """Yield a table as CSV: state's cells, group and cell of the action, or landing; then both."""
-    kind = "landing" if isinstance(table, LandingRows) else "state"
-    action = [] if kind == "landing" else ["action_pair", "action_cell"]
-    cells = [f"{kind}_{group}" for group in range(table.groups)]
-    yield ",".join([*cells, *action, "value", "visits"]) + "\r\n"
+    """Yield a table as CSV: cells of the state with pair and cell of the action, or of the landing.
+
+    Then come value and visits.
+    """
+    is_first = True
     for entries in _chunks(table):
-        yield "".join(
-            ",".join(
-                map(str, (*entry[kind], *entry.get("action", ()), entry["value"], entry["visits"]))
-            )
-            + "\r\n"
-            for entry in entries
-        )
+        rows = [flat_entry(entry) for entry in entries]
+        head = ",".join(rows[0]) + "\r\n" if is_first else ""
+        is_first = False
+        yield head + "".join(",".join(map(str, row.values())) + "\r\n" for row in rows)
 
 
-def _chunks(table: TableRows | LandingRows) -> Iterator[list[dict[str, Any]]]:
-    entries = _entries(table)
+def _chunks(table: TableRows | LandingRows) -> Iterator[list[Mapping[str, Any]]]:
+    entries = table.entries()
     while chunk := list(islice(entries, _VALUES_PER_CHUNK)):
         yield chunk
-
-
-def _entries(table: TableRows | LandingRows) -> Iterator[dict[str, Any]]:
-    """Yield the values of all legal actions in all states, or those of all landings."""
-    if isinstance(table, LandingRows):
-        for landing, value, visits in table.rows():
-            yield {"landing": landing, "value": value, "visits": visits}
-        return
-    for state, values, counts in table.rows():
-        for group, cell in np.argwhere(~np.isnan(values)).tolist():
-            value, visits = float(values[group, cell]), int(counts[group, cell])
-            yield {"state": state, "action": [group, cell], "value": value, "visits": visits}

@@ -162,6 +162,11 @@ class LandingRows:
             else:
                 yield cells, 0.0, 0
 
+    def entries(self) -> Iterator[Mapping[str, Any]]:
+        """Yield the values of all landings in order: landing, value [m], visits."""
+        for landing, value, visits in self.rows():
+            yield {"landing": landing, "value": value, "visits": visits}
+
     def _stored(self) -> Iterator[tuple[int, float, int]]:
         before = -1
         for part in self._parts():

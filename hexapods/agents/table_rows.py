@@ -5,7 +5,7 @@ column) of the visited entries in ascending order, and their values `q` and visi
 """
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import product
 from typing import Any
 
@@ -50,6 +50,13 @@ class TableRows:
                 values[groups, state] = visits[groups, state] = np.nan
                 yield state, values, visits
 
+    def entries(self) -> Iterator[Mapping[str, Any]]:
+        """Yield the values of all legal actions in order: state, action, value [m], visits."""
+        for state, values, counts in self.rows():
+            for group, cell in np.argwhere(~np.isnan(values)).tolist():
+                value, visits = float(values[group, cell]), int(counts[group, cell])
+                yield {"state": state, "action": (group, cell), "value": value, "visits": visits}
+
     def sha256(self) -> str:
         """Return the SHA-256 of the values as little-endian float64, row-major, NaN if illegal.
 
@@ -86,6 +93,19 @@ class TableRows:
                 where, q, n = next(parts, _EMPTY_PART)
             shape = (rows, self.groups, self.cells)
             yield values.reshape(shape), visits.reshape(shape)
+
+
+def flat_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an entry of a table with a column for each number, by the names of the files."""
+    columns: dict[str, Any] = {}
+    for name, value in entry.items():
+        if name == "action":
+            columns["action_pair"], columns["action_cell"] = value
+        elif isinstance(value, tuple):
+            columns |= {f"{name}_{group}": cell for group, cell in enumerate(value)}
+        else:
+            columns[name] = value
+    return columns
 
 
 NOT_RISING = "the table's values are not in rising order of their states"
