@@ -22,7 +22,7 @@ def test_values_have_a_row_for_each_state_and_action() -> None:
         *("state_0", "state_1", "state_2", "action_pair", "action_cell", "value", "visits")
     ]
     assert len(values.rows) == 1500
-    assert np.sum(values["visits"]) == 40
+    assert np.sum(np.array(values["visits"], float)) == 40
 
 
 def test_values_of_a_learner_over_landings_have_a_row_for_each_landing() -> None:
@@ -31,7 +31,7 @@ def test_values_of_a_learner_over_landings_have_a_row_for_each_landing() -> None
 
     assert list(values) == ["landing_0", "landing_1", "landing_2", "value", "visits"]
     assert len(values.rows) == 125
-    assert np.sum(values["visits"]) == 40
+    assert np.sum(np.array(values["visits"], float)) == 40
     best = max(values.rows, key=lambda row: float(row["value"] or 0))
     landing = tuple(int(best[f"landing_{group}"] or 0) for group in range(3))
     table = training.agent.table  # type: ignore[attr-defined]  # of a learner with one
