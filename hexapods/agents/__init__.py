@@ -12,7 +12,9 @@ derive from it: `q_learning` (paper, Algorithm 1), `double_q`, `sarsa`, `expecte
 update their Q-table from it as well: `dyna_q`, `dyna_q_plus` and `prioritized_sweeping`;
 `model_planning` that of learners that explore by value iteration in it: `r_max` and
 `posterior_sampling`.
-`q_table` is the table; `table_rows` iterates over the rows of its sparse stored form.
+`value_table` is what learners ask of a table: `q_table` has a value for each state and action, and
+`landing_table` one for each landing, in which `afterstate_q` and `afterstate_r_max` learn.
+`table_rows` iterates over the rows of a Q-table's sparse stored form.
 `search` is the base of agents that plan by simulation: `lookahead` is exhaustive (paper, Algorithms
 3 and 4), `beam` follows the best few sequences, `informed` simulates what the kinematic law ranks
 best, and `mcts` samples sequences at random.
