@@ -1,8 +1,13 @@
-"""`hexapods best-known`: find the farthest walks by a wide beam search, per world and gait."""
+"""`hexapods best-known`: find the farthest walks, per world and gait.
+
+Beam searches over the whole walk, searchers and learners walk 50 steps from rest on the robot as
+designed, in MuJoCo; the farthest of these walks is the best known.
+"""
 
 import argparse
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -10,22 +15,32 @@ from app.cli.files import check_writable, write_whole
 from app.cli.options import CommandParser, integer, split
 from app.cli.terminal import progress
 from hexapods import __version__
+from hexapods.agents import registry
 from hexapods.assembly import build_simulator
 from hexapods.domain.checks import check_whole
 from hexapods.domain.creatures import own_gait
 from hexapods.domain.disturbances import SensorNoise
-from hexapods.domain.errors import UnknownName
+from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import NAMED_GAITS, PAPER_GAITS
 from hexapods.domain.robot import robot
 from hexapods.domain.world import WORLDS, named_world
-from hexapods.runs import best_known
+from hexapods.experiments.report.walks import reported_walks
+from hexapods.practice import train
+from hexapods.races import lane, race
+from hexapods.runs import beam_search, best_known
 from hexapods.runs.config import WalkingProblem
 
 MAX_WIDTH = 4096
 OWN = "own"
 """In place of a gait: the one that suits each robot."""
+BEAM, BONUS_BEAM = "beam", "bonus-beam"
+DEFAULT_FINDERS = (BONUS_BEAM, BEAM, "greedy", "two-step", "informed", "linear-model")
+DEFAULT_WIDTHS = (16, 48)
+INFORMED_BUDGETS = (3, 40)
+PRACTICE_STEPS, EVALUATE_EVERY = 250, 50
+"""Practice of a learner; the farthest walk of all its evaluations counts."""
 _PHYSICAL = [name for name, one in WORLDS.items() if one.world.one_of(SensorNoise) is None]
-_COMPUTED_BY = "hexapods best-known: a beam search over the whole walk, in MuJoCo"
+_COMPUTED_BY = "hexapods best-known, in MuJoCo"
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
@@ -46,10 +61,20 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "(default the paper's four)",
     )
     parser.add_argument(
+        "--by",
+        default=",".join(DEFAULT_FINDERS),
+        metavar="LIST",
+        help=f"what walks: {BEAM}, which keeps the farthest walks, {BONUS_BEAM}, which also counts "
+        "what the next step is predicted to add, or names of agents; a learner practises "
+        f"{PRACTICE_STEPS} steps (default {','.join(DEFAULT_FINDERS)})",
+    )
+    parser.add_argument(
         "--width",
-        type=integer,
-        default=best_known.WIDTH,
-        help=f"walks that are kept after each step (default {best_known.WIDTH})",
+        type=lambda text: tuple(integer(part) for part in split(text)),
+        default=DEFAULT_WIDTHS,
+        metavar="LIST",
+        help="walks that beams keep after each step "
+        f"(default {','.join(map(str, DEFAULT_WIDTHS))})",
     )
     parser.add_argument(
         "--threads",
@@ -61,8 +86,14 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         "--out",
         type=Path,
         metavar="FILE",
-        help="JSON file to update with every distance that is farther than its own; searches that "
-        "it has for this width and version are not repeated",
+        help="JSON file to add every walk to; those that it has of this version are not repeated, "
+        "and one of another version is replaced if this one is farther",
+    )
+    parser.add_argument(
+        "--reports",
+        metavar="FOLDERS",
+        help="instead of searching, add the farthest walk of each agent in these reports of "
+        "experiments, by commas; robots with a build tolerance do not count",
     )
     parser.set_defaults(run=run)
 
@@ -73,22 +104,96 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HexapodError: if the options are not valid, or the table cannot be written.
     """
-    check_whole("width", options.width, 1, MAX_WIDTH)
-    problems = list(_problems(options))
+    if options.reports:
+        return _add_reports(options)
+    finders = list(_finders(options))
+    tasks = [(names, walk, finder) for names, walk in _problems(options) for finder in finders]
     rows = _read(options.out) if options.out else []
-    done = {_key(row) for row in rows}
+    done = {(*_key(row), row["version"]) for row in rows}
     with progress() as bar:
-        task = bar.add_task("searching", total=len(problems))
-        for names, walk in problems:
-            row = {**names, "width": options.width, "version": __version__}
-            if _key(row) not in done:
-                found = best_known.search(build_simulator(walk, options.threads), options.width)
-                print(f"{' '.join(names.values())}: {found:.3f} m", flush=True)
-                rows = _with({**row, "distance_m": round(found, 6)}, rows)
+        task = bar.add_task("searching", total=len(tasks))
+        for names, walk, finder in tasks:
+            row = {**names, **finder, "version": __version__}
+            if (*_key(row), row["version"]) not in done:
+                distance_m = _distance_m(walk, finder, options.threads)
+                label = " ".join(map(str, (*names.values(), *finder.values())))
+                print(f"{label}: {distance_m:.3f} m", flush=True)
+                rows = _with({**row, "distance_m": round(distance_m, 6)}, rows)
                 if options.out:
                     _write(options.out, rows)
             bar.update(task, advance=1)
     return 0
+
+
+def _add_reports(options: argparse.Namespace) -> int:
+    """Add the farthest walk of each agent in some reports, and print each that is added.
+
+    Raises:
+        InvalidInput: if a folder has no report, or there is no table to add to.
+    """
+    if options.out is None:
+        raise InvalidInput("--reports needs --out, the table to which it adds their walks")
+    farthest: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for walk in chain.from_iterable(map(reported_walks, map(Path, split(options.reports)))):
+        if walk.world not in _PHYSICAL or best_known.best_known_m(walk.problem) is None:
+            continue
+        row = {
+            "robot": walk.problem.robot.name,
+            "world": walk.world,
+            "gait": walk.problem.resolved_gait.name,
+            "found_by": walk.agent,
+            "version": walk.version,
+            "distance_m": round(walk.distance_m, 6),
+        }
+        same = farthest.setdefault(_key(row), row)
+        if row["distance_m"] > same["distance_m"]:
+            farthest[_key(row)] = row
+    rows = _read(options.out)
+    for row in farthest.values():
+        after = _with(row, rows)
+        if after != rows:
+            print(f"{' '.join(map(str, _key(row)[:-1]))}: {row['distance_m']:.3f} m", flush=True)
+        rows = after
+    _write(options.out, rows)
+    return 0
+
+
+def _finders(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """Return what searches: `found_by`, and of beams the `width`.
+
+    Raises:
+        UnknownName, InvalidInput: if a name or a width is not valid.
+    """
+    for width in options.width:
+        check_whole("width", width, 1, MAX_WIDTH)
+    for name in split(options.by):
+        if name in (BEAM, BONUS_BEAM):
+            yield from ({"found_by": name, "width": width} for width in options.width)
+            continue
+        try:
+            registry.find(name)
+        except UnknownName as error:
+            raise UnknownName(
+                "search or agent", name, [BEAM, BONUS_BEAM, *registry.registered()]
+            ) from error
+        yield {"found_by": name}
+
+
+def _distance_m(walk: WalkingProblem, finder: Mapping[str, Any], threads: int) -> float:
+    """Return the distance of the farthest walk of a search or agent [m]."""
+    name = finder["found_by"]
+    if "width" in finder:
+        simulator = build_simulator(walk, threads)
+        return beam_search.search(simulator, finder["width"], bonus=name == BONUS_BEAM)
+    problem: dict[str, Any] = {"gait": walk.gait, "robot": walk.robot, "world": walk.world}
+    if registry.learns(name):
+        practice = train(name, steps=PRACTICE_STEPS, evaluate_every=EVALUATE_EVERY, **problem)
+        return max(point.distance_m for point in practice.curve)
+    budgets: list[dict[str, Any]] = [{}]
+    if name == "informed":
+        budgets = [{"budget": budget} for budget in INFORMED_BUDGETS]
+    lanes = race([lane(name, **settings) for settings in budgets], **problem).result.lanes
+    return max(one.total_distance_m or 0.0 for one in lanes)
 
 
 def _problems(options: argparse.Namespace) -> Iterable[tuple[dict[str, str], WalkingProblem]]:
@@ -109,8 +214,8 @@ def _problems(options: argparse.Namespace) -> Iterable[tuple[dict[str, str], Wal
 
 
 def _with(row: dict[str, Any], rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return a table with one more row, or with that of the same walk that came farther."""
-    same = [_walk(one) == _walk(row) for one in rows]
+    """Return a table with one more row, or with that of the same key that came farther."""
+    same = [_key(one) == _key(row) for one in rows]
     if not any(same):
         return [*rows, row]
     return [
@@ -119,12 +224,8 @@ def _with(row: dict[str, Any], rows: list[dict[str, Any]]) -> list[dict[str, Any
     ]
 
 
-def _walk(row: Mapping[str, Any]) -> tuple[Any, ...]:
-    return tuple(row[name] for name in ("robot", "world", "gait"))
-
-
 def _key(row: Mapping[str, Any]) -> tuple[Any, ...]:
-    return (*_walk(row), row["width"], row["version"])
+    return tuple(row.get(name) for name in ("robot", "world", "gait", "found_by", "width"))
 
 
 def _read(path: Path) -> list[dict[str, Any]]:

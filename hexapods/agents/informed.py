@@ -163,11 +163,12 @@ class RewardModel:
 
     def best_rewards(self, offsets_m: FloatArray) -> FloatArray:
         """Return the highest predicted reward of a step from each of n offsets (n, groups, 2)."""
-        best = np.empty(len(offsets_m))
-        for number, offsets in enumerate(offsets_m):
-            rewards, _ = self.predict(offsets, self._actions)
-            stays = self._nearest(offsets)[self._actions[:, 0]] == self._actions[:, 1]
-            best[number] = np.where(stays, -np.inf, rewards).max()
+        count, actions = len(offsets_m), len(self._actions)
+        rewards, _ = self.predict(
+            np.repeat(offsets_m, actions, axis=0), np.tile(self._actions, (count, 1))
+        )
+        stays = self._nearest(offsets_m)[:, self._actions[:, 0]] == self._actions[:, 1]
+        best: FloatArray = np.where(stays, -np.inf, rewards.reshape(count, actions)).max(axis=1)
         return best
 
     def learn(self, offsets_m: FloatArray, actions: IntArray, rewards_m: FloatArray) -> None:

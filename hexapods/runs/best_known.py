@@ -1,7 +1,7 @@
-"""Best known distances: a wide beam search over the whole walk, computed once and kept.
+"""Best known distances: the farthest walks of several searches and learners, which are kept.
 
-`best_known.json` holds the distances of the preset robots in the named worlds, as far as they were
-computed; `hexapods best-known` computes them again.
+`best_known.json` holds the distances of the preset robots in the named worlds, one for each search
+or learner that has walked there; `hexapods best-known` computes them again.
 """
 
 import json
@@ -10,28 +10,16 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from hexapods.domain.disturbances import Push, SensorNoise, is_nothing
 from hexapods.domain.grid import FootGrid
-from hexapods.domain.observation import legal_in, observe
 from hexapods.domain.robot import PRESETS, Robot
-from hexapods.domain.simulator import Simulator
-from hexapods.domain.types import Cells
 from hexapods.domain.world import WORLDS, World
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
 from hexapods.runs.race_config import RaceConfig
 
-WIDTH = 48
-SAME_CELLS = 2
-"""Number of walks that the beam keeps among those whose feet are planned to be in the same cells.
-
-Without this limit it fills with copies of one walk: stuck-leg in left-right-vertical came to 0.05 m
-instead of 0.27 m.
-"""
 DEFINITION = (
-    "Best known is the farthest walk that a wide beam search found for the robot as designed; "
-    "nothing proves that none is farther."
+    "Best known is the farthest walk from rest of beam searches, searchers and learners, for the "
+    "robot as designed; nothing proves that none is farther."
 )
 """Definition of a best known distance, for readers of reports and of the page."""
 COVERAGE = (
@@ -42,48 +30,6 @@ COVERAGE = (
 PATH = Path(__file__).with_name("best_known.json")
 Key = tuple[str, str, str]
 """Names of robot, world and gait."""
-
-
-def search(simulator: Simulator[Any], width: int = WIDTH, steps: int = RACE_STEPS) -> float:
-    """Return the largest distance along the track that a beam search finds [m].
-
-    The beam keeps the walks that have come farthest, layer by layer over all steps; ties go to the
-    walk that was found first. It knows the simulator, and reads the state without errors. What it
-    finds is possible; that nothing is better is not proven.
-
-    Args:
-        simulator: of the walking problem.
-        width: number of walks that are kept after each step.
-        steps: number of steps.
-
-    Raises:
-        Diverged: if the physics diverges.
-    """
-    states = [simulator.rest()]
-    for _ in range(steps):
-        branches = [
-            (state, action)
-            for state in states
-            for action in legal_in(simulator, state, observe(simulator, state, "measured"))
-        ]
-        parents, actions = zip(*branches, strict=True)
-        states = _keep(simulator, simulator.expand(parents, actions).states, width)
-    distance: float = states[0].distance_m
-    return distance
-
-
-def _keep(simulator: Simulator[Any], ends: list[Any], width: int) -> list[Any]:
-    """Return the states that came farthest, of those with the same planned cells only a few."""
-    kept: list[Any] = []
-    taken: dict[Cells, int] = {}
-    for index in np.argsort([-end.distance_m for end in ends], kind="stable").tolist():
-        cells = tuple(simulator.grid.nearest(x, y) for x, y in ends[index].feet.offsets_m)
-        if taken.get(cells, 0) < SAME_CELLS:
-            taken[cells] = taken.get(cells, 0) + 1
-            kept.append(ends[index])
-        if len(kept) == width:
-            break
-    return kept
 
 
 def best_known_m(walk: WalkingProblem, conditions: World | None = None) -> float | None:
@@ -132,15 +78,19 @@ def _physical(conditions: World, robot: Robot) -> World:
 
 @lru_cache(maxsize=1)
 def kept() -> Mapping[Key, float]:
-    """Return all kept distances [m]."""
-    return {_key(row): float(row["distance_m"]) for row in read(PATH)}
+    """Return the farthest kept distance of each walking problem [m]."""
+    farthest: dict[Key, float] = {}
+    for row in read(PATH):
+        key, distance_m = (row["robot"], row["world"], row["gait"]), float(row["distance_m"])
+        farthest[key] = max(distance_m, farthest.get(key, distance_m))
+    return farthest
 
 
 def read(path: Path) -> list[dict[str, Any]]:
-    """Return the rows of a table: robot, world, gait, width, version and distance_m."""
+    """Return the rows of a table, one for each walking problem and what walked there.
+
+    Each has `robot`, `world` and `gait`; `found_by`, and of beams the `width`; the `version` that
+    computed it, and `distance_m`.
+    """
     rows: list[dict[str, Any]] = json.loads(path.read_text("utf-8"))["distances"]
     return rows
-
-
-def _key(row: Mapping[str, Any]) -> Key:
-    return row["robot"], row["world"], row["gait"]

@@ -1,56 +1,27 @@
-"""Best known distances: the beam search over a whole walk, and the table that is kept."""
+"""Best known distances: the table that is kept, and whose walks it bounds."""
 
 from dataclasses import replace
-from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
-from hexapods.assembly import build_simulator
+from hexapods.agents.registry import registered
 from hexapods.domain.creatures import CREATURES
 from hexapods.domain.disturbances import Friction, Payload, Push, Slope
 from hexapods.domain.gait import NAMED_GAITS, PAPER_GAITS, resolve
-from hexapods.domain.observation import legal_actions, observe
 from hexapods.domain.robot import PRESETS, Robot, robot
 from hexapods.domain.world import WORLDS, World, named_world
-from hexapods.runs.best_known import PATH, best_known_in_race_m, best_known_m, kept, read, search
+from hexapods.experiments.report.walks import reported_walks
+from hexapods.runs.best_known import PATH, best_known_in_race_m, best_known_m, kept, read
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
+from tests.cli.running import ROOT
 
 WALK = WalkingProblem(gait="left-right-origin")
+REPORTS = ROOT / "docs" / "reproduction"
+BEAMS = ("beam", "bonus-beam")
 IDEAL = WalkingProblem(gait="left-right-origin", simulator="kinematic")
-
-
-def test_wide_beam_is_an_exhaustive_search() -> None:
-    simulator = build_simulator(IDEAL)
-    ends = [simulator.rest()]
-    for _ in range(2):
-        ends = [
-            simulator.step(state, action).state
-            for state in ends
-            for action in legal_actions(observe(simulator, state, "measured"), 4)
-        ]
-
-    assert search(simulator, width=200, steps=2) == max(end.distance_m for end in ends)
-
-
-def test_beam_of_the_kinematic_problem_is_as_good_as_greedy() -> None:
-    # Nothing is better than greedy without slip: every look-ahead comes to 24.833 h (docs/figures).
-    assert search(build_simulator(IDEAL), width=8) == pytest.approx(24.833 * 0.02, abs=2e-5)
-
-
-def test_search_is_deterministic_at_any_number_of_threads() -> None:
-    walk = replace(WALK, world=named_world("limp-pair"))
-    found = {search(build_simulator(walk, threads), width=2, steps=3) for threads in (1, 2)}
-
-    assert len(found) == 1
-
-
-def test_longer_walks_come_farther() -> None:
-    simulator = build_simulator(IDEAL)
-    found = [search(simulator, width=4, steps=steps) for steps in (2, 6, 12)]
-
-    assert all(near < far for near, far in pairwise(found))
 
 
 def test_table_says_how_its_distances_were_computed() -> None:
@@ -59,9 +30,37 @@ def test_table_says_how_its_distances_were_computed() -> None:
         assert row["world"] in WORLDS
         own = resolve(CREATURES[row["robot"]].gait, PRESETS[row["robot"]].azimuths_deg).name
         assert row["gait"] in (*NAMED_GAITS, own)
-        assert row["width"] >= 48
-    assert len(kept()) == len(read(PATH))
+        assert row["found_by"] in (*BEAMS, *registered())
+        assert (row["found_by"] in BEAMS) == ("width" in row)
     assert all(("stiff", "flat", gait) in kept() for gait in PAPER_GAITS)
+
+
+def test_the_papers_gaits_and_the_body_of_each_robot_were_searched_with_the_bonus() -> None:
+    walked: dict[tuple[str, ...], set[str]] = {}
+    for row in read(PATH):
+        walked.setdefault((row["robot"], row["world"], row["gait"]), set()).add(row["found_by"])
+
+    searches = {"bonus-beam", "greedy", "informed"}
+    for gait in PAPER_GAITS:
+        assert walked["stiff", "flat", gait] >= {*searches, "two-step", "linear-model"}
+    for name, robot_of in PRESETS.items():
+        gait = resolve(CREATURES[name].gait, robot_of.azimuths_deg).name
+        assert (name, "flat", gait) in walked
+
+
+def test_the_farthest_of_all_walks_is_best_known() -> None:
+    for key, best_m in kept().items():
+        walks = [row for row in read(PATH) if (row["robot"], row["world"], row["gait"]) == key]
+        assert best_m == max(row["distance_m"] for row in walks)
+
+
+@pytest.mark.parametrize("report", sorted(REPORTS.glob("*/")), ids=lambda path: path.name)
+def test_no_agent_in_a_committed_report_walks_more_than_a_millimetre_farther(report: Path) -> None:
+    walks = [(walk, best_known_m(walk.problem)) for walk in reported_walks(report)]
+
+    assert len(walks) > 200
+    assert all(best_m is not None for _, best_m in walks)
+    assert [walk for walk, best_m in walks if walk.distance_m > (best_m or 0) + 0.001] == []
 
 
 def test_distance_is_known_of_preset_robots_in_named_worlds() -> None:
