@@ -48,7 +48,9 @@ def build_simulator(walk: WalkingProblem, threads: int = 1) -> Simulator[Any]:
     from hexapods.physics.mujoco_simulator import MujocoSimulator  # noqa: PLC0415
 
     built = walk.built_robot
-    return MujocoSimulator(walk.robot, gait, grid, threads, walk.world, built=built)
+    return MujocoSimulator(
+        walk.robot, gait, grid, threads, walk.world, built=built, reward=walk.reward
+    )
 
 
 def build_learner(

@@ -28,6 +28,7 @@ from hexapods.assembly import build_learner
 from hexapods.changes import LATER, change_as_json, read_changes
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
+from hexapods.domain.simulator import RewardKind
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
 from hexapods.interruption import Interrupted, stop_signals
@@ -68,6 +69,7 @@ def train(
     grid_side_m: float = NOT_GIVEN,
     world: WorldLike = NOT_GIVEN,
     tolerance: float = NOT_GIVEN,
+    reward: RewardKind = NOT_GIVEN,
     steps: int = NOT_GIVEN,
     seed: int = NOT_GIVEN,
     observation: Observation = NOT_GIVEN,
@@ -97,6 +99,8 @@ def train(
         grid_side_m: side of the foot grid, 0.04 [m].
         world: a name, such as `ice`, a list of disturbances, or a `World`; by default flat ground.
         tolerance: how far the robot that the seed draws differs from its design, as a share.
+        reward: displacement that a step's reward is: `forward` (default), along the robot's own
+            heading, or `track`, along the track.
         steps: number of steps of practice, 500.
         seed: of all random generators, 0.
         observation: how the state is read: `measured` (default), `commanded` or `planned`.
@@ -207,6 +211,7 @@ def iter_train(
     grid_side_m: float = NOT_GIVEN,
     world: WorldLike = NOT_GIVEN,
     tolerance: float = NOT_GIVEN,
+    reward: RewardKind = NOT_GIVEN,
     steps: int = NOT_GIVEN,
     seed: int = NOT_GIVEN,
     observation: Observation = NOT_GIVEN,
@@ -240,6 +245,7 @@ def evaluate(
     grid_side_m: float = NOT_GIVEN,
     world: WorldLike = NOT_GIVEN,
     tolerance: float = NOT_GIVEN,
+    reward: RewardKind = NOT_GIVEN,
     steps: int = NOT_GIVEN,
     seed: int = NOT_GIVEN,
     observation: Observation = NOT_GIVEN,
@@ -263,6 +269,7 @@ def evaluate(
         grid_side_m: side of the foot grid [m].
         world: what happens to the robot and the ground; by default undisturbed.
         tolerance: how far the robot that the seed draws differs from its design, as a share.
+        reward: displacement that a step's reward is.
         steps: number of steps of the practice.
         seed: of all random generators.
         observation: how the state is read.

@@ -38,6 +38,7 @@ def lane_table(
         "robot": config.robot.name,
         "simulator": config.simulator,
         "tolerance": config.tolerance,
+        "reward": config.reward,
     }
     rows = []
     for standing in standings:

@@ -37,6 +37,7 @@ from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.settings import declared_fields
+from hexapods.domain.simulator import RewardKind
 from hexapods.domain.world import check_ends
 from hexapods.files import path_of, write_atomically
 from hexapods.policies import Policy, PolicyAgent
@@ -279,6 +280,7 @@ def race(
     grid_side_m: float = NOT_GIVEN,
     world: WorldLike = NOT_GIVEN,
     tolerance: float = NOT_GIVEN,
+    reward: RewardKind = NOT_GIVEN,
     **unknown: Unpack[NoMore],
 ) -> Race:
     """Race one to six agents (paper §5), and record every step.
@@ -297,6 +299,7 @@ def race(
         world: what happens to the robot and the ground; never that of a training.
         tolerance: how far the robot that the seed draws differs from its design, as a share;
             never that of a training.
+        reward: displacement that a step's reward is, `forward` or `track`.
 
     Raises:
         UnknownName, InvalidInput: if an argument is not valid; the message names what is.

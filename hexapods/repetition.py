@@ -30,6 +30,7 @@ from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import read_gait
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import check_kept
+from hexapods.domain.simulator import RewardKind
 from hexapods.domain.text import counted
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import ExperimentConfig, ExperimentName, experiment_config
@@ -53,7 +54,7 @@ _FIELDS = tuple(
     for one in fields(ExperimentConfig)
     if one.name not in ("experiment", "settings", "blocks")
 )
-_SINGLE = ("seeds", "seed", "simulator", "tolerance")
+_SINGLE = ("seeds", "seed", "simulator", "tolerance", "reward")
 """Fields that have one value; all others, and settings of agents, have several, or one."""
 
 
@@ -179,6 +180,7 @@ def experiment(
     grid_side_m: OneOrMore[float] = NOT_GIVEN,
     worlds: OneOrMore[str] = NOT_GIVEN,
     tolerance: float = NOT_GIVEN,
+    reward: RewardKind = NOT_GIVEN,
     **settings: Any,
 ) -> Experiment:
     """Repeat trainings over many seeds, on all cores, and summarise them with intervals.
@@ -206,6 +208,7 @@ def experiment(
         worlds: names, or disturbances as on the command line, `limp:legs=1,4`; in a league or
             a recovery.
         tolerance: build tolerance of the robots, likewise.
+        reward: displacement that a step's reward is, also in a sweep.
         settings: of the agents, in a sweep: `alpha=[0.1, 0.3]`.
 
     What may have several values is a list, or one value as it is: `steps=500`.

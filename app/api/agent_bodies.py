@@ -152,7 +152,7 @@ def _experiment_body(agents: Sequence[str]) -> type[ExperimentBody]:
     }
     doc, settings = ExperimentBody.__doc__, _settings_body("SettingLists", fields)
     own = record_fields(
-        ExperimentConfig, {"experiment", "settings", "blocks"}, optional={"tolerance"}
+        ExperimentConfig, {"experiment", "settings", "blocks"}, optional={"tolerance", "reward"}
     )
     name = "ExperimentBody"
     model = create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)

@@ -32,7 +32,7 @@ from hexapods.runs.preview import Preview, preview
 FILE_TYPES = ("application/xml", "application/zip", "application/octet-stream")
 router = APIRouter(prefix="/robots", tags=["robots"])
 
-_OTHER = {"world", "simulator", "tolerance"}
+_OTHER = {"world", "simulator", "tolerance", "reward"}
 """Fields of the walking problem that a preview does not depend on."""
 _PreviewBody: Any = create_model(
     "PreviewBody", __base__=Body, **record_fields(WalkingProblem, _OTHER)

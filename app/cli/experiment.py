@@ -48,6 +48,11 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         help="build tolerance of the robots (league, recovery), as a fraction (default 0.03)",
     )
     parser.add_argument(
+        "--reward",
+        type=parser_of(settings["reward"]),
+        help=f"{settings['reward'].about.help} Of all but the paper's.",
+    )
+    parser.add_argument(
         "--steps",
         type=lambda text: tuple(parser_of(settings["steps"])(part) for part in split(text)),
         metavar="LIST",
@@ -81,9 +86,10 @@ def config_from(options: argparse.Namespace) -> ExperimentConfig:
         "worlds": _worlds_from(options.world),
         "tolerance": options.tolerance,
         "steps": options.steps,
+        "reward": options.reward,
     }
     if options.experiment not in DISTURBED:
-        for name in ("world", "tolerance", "steps"):
+        for name in ("world", "tolerance", "steps", "reward"):
             if getattr(options, name) is not None:
                 raise InvalidInput(f"--{name} is for {listed(DISTURBED)}, not {options.experiment}")
     return experiment_config(options.experiment, {**trial_grid_from(options), **given})

@@ -188,6 +188,7 @@ def walk_from(options: argparse.Namespace) -> dict[str, Any]:
         "divisions": options.divisions,
         "grid_side_m": options.grid_side_m,
         "tolerance": options.tolerance,
+        "reward": options.reward,
         "world": world_from(options.world, map(parse_disturbance, options.disturb)),
     }
 

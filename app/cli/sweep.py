@@ -3,7 +3,7 @@
 import argparse
 
 from app.cli.experiment import agents_from
-from app.cli.options import CommandParser, add_list, settings_from
+from app.cli.options import CommandParser, add_list, add_settings, settings_from
 from app.cli.trial_options import (
     add_machine_options,
     add_trial_options,
@@ -29,6 +29,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     settings = declared_fields(TrainingConfig)
     for name in GRID:
         add_list(parser, settings[name])
+    add_settings(parser, settings, ("reward",))
     add_machine_options(parser)
     parser.set_defaults(run=run)
 
@@ -39,7 +40,8 @@ def run(options: argparse.Namespace) -> int:
     Raises:
         HexapodError: if the options are not valid.
     """
-    given = {name: getattr(options, name) for name in GRID} | settings_from(options)
+    names = (*GRID, "reward")
+    given = {name: getattr(options, name) for name in names} | settings_from(options)
     agents = agents_from(options.agent)
     config = experiment_config("sweep", {**trial_grid_from(options), **given, "agents": agents})
     return run_experiment(config, cluster_from(options), options)

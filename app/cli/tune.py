@@ -195,6 +195,7 @@ def config_from(options: argparse.Namespace) -> TuningConfig:
         divisions=(options.divisions,),
         grid_side_m=(options.grid_side_m,),
         tolerance=options.tolerance,
+        reward=options.reward,
         steps=(options.steps,),
         candidates=options.candidates,
         search_seeds=options.seeds,

@@ -55,6 +55,10 @@ class Observe(Protocol):
     def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
         """Each group's offset (x, y) from home by dead reckoning: `planned` before rounding."""
 
+    @property
+    def heading_rad(self) -> float:
+        """Angle by which the torso has turned since the start, anticlockwise [rad]: 0 ahead."""
+
 
 class Problem(NamedTuple):
     """Size and geometry of the walking problem."""

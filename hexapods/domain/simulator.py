@@ -1,7 +1,7 @@
 """The simulator protocol: immutable states, single steps, and batches of steps."""
 
 from collections.abc import Sequence
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, Literal, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.domain.world import World
 
 RECORDING_HZ = 50
+RewardKind = Literal["forward", "track"]
+"""Displacement that a step's reward is: `forward`, along the robot's own forward direction at the
+start of the step; `track`, along the track. Both are the same for a robot that does not turn."""
 
 
 class WalkState(Protocol):
@@ -62,7 +65,7 @@ class Step(NamedTuple, Generic[S]):
 
     state: S
     reward_m: float
-    """Displacement along the robot's own forward direction at the start of the step."""
+    """Displacement of the torso's centre in the step, as the simulator's `RewardKind` says."""
     motion: Motion | None
     """The motion between the two states, if `record` was set."""
 

@@ -27,6 +27,7 @@ from hexapods.runs.config import (
     Divisions,
     GridSide,
     PracticeSteps,
+    Reward,
     Seed,
     SimulatorName,
     StepsPerEpisode,
@@ -82,6 +83,7 @@ class ExperimentConfig(Record):
             loaded.
         worlds: names of worlds, or disturbances as on the command line; every one is a setting.
         tolerance: build tolerance of the robots, of which each seed draws one.
+        reward: displacement that a step's reward is, in all trials.
 
     Raises:
         UnknownName, InvalidInput: if a value is invalid, empty or repeated.
@@ -124,6 +126,7 @@ class ExperimentConfig(Record):
     blocks: int = 1
     worlds: tuple[str, ...] = ("flat",)
     tolerance: Tolerance = 0.0
+    reward: Reward = TrainingConfig.reward
 
     def __post_init__(self) -> None:
         if self.experiment not in EXPERIMENTS:
@@ -199,17 +202,15 @@ _IDEAL_DEFAULTS: Mapping[str, Mapping[str, Any]] = {
 }
 """Defaults that differ in the kinematic simulator, which knows no tolerance and few worlds."""
 _COMMON_FIELDS = ("seeds", "seed", "gaits", "observations", "robots", "simulator")
+_DISTURBED_FIELDS = ("agents", "worlds", "tolerance", "steps", "reward")
 _ACCEPTED_FIELDS: Mapping[str, tuple[str, ...]] = {
     "table1": _COMMON_FIELDS,
     "figure4": (*_COMMON_FIELDS, "agents"),
-    "sweep": (*_COMMON_FIELDS, "agents", *GRID),
-    "league": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
-    "recovery": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
-    "groups": (*_COMMON_FIELDS, "agents", "worlds", "tolerance", "steps"),
-    "bodies": (
-        *(name for name in _COMMON_FIELDS if name != "gaits"),
-        *("agents", "worlds", "tolerance", "steps"),
-    ),
+    "sweep": (*_COMMON_FIELDS, "agents", *GRID, "reward"),
+    "league": (*_COMMON_FIELDS, *_DISTURBED_FIELDS),
+    "recovery": (*_COMMON_FIELDS, *_DISTURBED_FIELDS),
+    "groups": (*_COMMON_FIELDS, *_DISTURBED_FIELDS),
+    "bodies": (*(name for name in _COMMON_FIELDS if name != "gaits"), *_DISTURBED_FIELDS),
 }
 
 

@@ -251,6 +251,7 @@ def _scenarios(config: ExperimentConfig) -> Iterator[_Scenario]:
             grid_side_m=side_m,
             world=parse_world(world),
             tolerance=config.tolerance,
+            reward=config.reward,
         )
         check_reach(robot, walk.resolved_gait, walk.grid)
         yield _Scenario(walk, observation, label, world)

@@ -43,6 +43,7 @@ def _row(trial: Trial, result: TrialResult) -> dict[str, Any]:
         **{name: named.pop(name) for name in first},
         "simulator": training.simulator,
         "tolerance": training.tolerance,
+        "reward": training.reward,
         "plans_with": setting.trial.plans_with,
         **named,
         "seed_number": trial.seed_number,

@@ -18,7 +18,7 @@ from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.motion import StepMotion, StepPlan, recorded_substeps
 from hexapods.domain.robot import Robot
-from hexapods.domain.simulator import Expansion, Motion, Step
+from hexapods.domain.simulator import Expansion, Motion, RewardKind, Step
 from hexapods.domain.terrain import ROUGH_PERIOD_M
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.domain.world import UNDISTURBED, World
@@ -77,6 +77,7 @@ class MujocoSimulator:
         world: what happens to the robot and the ground, by step.
         built: the robot as it was built, which is simulated; commands and measured feet are by the
             kinematics of `robot`, as it was designed. None if both are the same.
+        reward: displacement that counts as reward.
 
     Raises:
         Unreachable: if a cell of the grid is out of a leg's reach.
@@ -92,12 +93,14 @@ class MujocoSimulator:
         world: World = UNDISTURBED,
         *,
         built: Robot | None = None,
+        reward: RewardKind = "forward",
     ) -> None:
         self.law = StepLaw(gait, grid, check_reach(robot, gait, grid))
         world.check(robot, "mujoco")
         _silence_mujoco_log()
         self.robot, self.gait, self.grid, self.world = robot, gait, grid, world
         self._built = robot if built is None else built
+        self._is_along_track = reward == "track"
         self.model = self._model(world.as_of(0))
         self._motion = StepMotion(robot, gait, self.law)
         self._legs = self._motion.kinematics.legs
@@ -344,12 +347,15 @@ class MujocoSimulator:
         return step > 0 and self.world.as_of(step - 1).one_of(Rough) != rough
 
     def _reward(self, before: FloatArray, after: FloatArray) -> float:
-        """Return the displacement along the robot's horizontal forward direction at the start [m].
+        """Return the displacement along the track (world +y) or the robot's forward direction [m].
 
-        In plain floats, which are much faster than arrays for a single row.
+        That is its horizontal forward direction at the start. In plain floats, which are much
+        faster than arrays for a single row.
         """
         from_x, from_y, _, w, x, y, z = before[1:8].tolist()
         to_x, to_y = after[1:3].tolist()
+        if self._is_along_track:
+            return float(to_y - from_y)
         cos, sin = self._forward
         ahead_x = (1 - 2 * (y * y + z * z)) * cos + 2 * (x * y - w * z) * sin
         ahead_y = 2 * (x * y + w * z) * cos + (1 - 2 * (x * x + z * z)) * sin

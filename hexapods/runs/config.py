@@ -29,6 +29,7 @@ from hexapods.domain.settings import (
     declared_fields,
 )
 from hexapods.domain.short_repr import short_repr
+from hexapods.domain.simulator import RewardKind
 from hexapods.domain.tolerance import MAX_TOLERANCE, build_tolerance
 from hexapods.domain.world import UNDISTURBED, AnyWorld
 from hexapods.runs.seeding import BUILDING, generator
@@ -72,6 +73,20 @@ Tolerance = Annotated[
         phrase="tolerance\u00a0{}",
         help="How far the robot that the seed draws differs from its design, as a share.",
         examples=(0.03,),
+    ),
+]
+REWARD_TITLES: Mapping[RewardKind, str] = {
+    "forward": "along its own heading",
+    "track": "along the track",
+}
+Reward = Annotated[
+    RewardKind,
+    Setting(
+        title="Reward",
+        phrase="reward\u00a0{}",
+        help="Displacement that a step's reward is: along the robot's own heading (default), or "
+        "along the track, so that a robot that turns earns no more than it advances.",
+        choice_titles=tuple(REWARD_TITLES.values()),
     ),
 ]
 Seed = Annotated[
@@ -136,6 +151,7 @@ class WalkingProblem(Record):
         grid_side_m: side of the foot grid [m].
         world: what happens to the robot and the ground, by step.
         tolerance: how far the robot that the run's seed draws differs from `robot`, as a share.
+        reward: displacement that a step's reward is, `forward` or `track`.
 
     Raises:
         UnknownName: if the gait or the simulator is unknown.
@@ -153,6 +169,7 @@ class WalkingProblem(Record):
     grid_side_m: GridSide = FootGrid.side_m
     world: AnyWorld = UNDISTURBED
     tolerance: Tolerance = 0.0
+    reward: Reward = "forward"
 
     def __post_init__(self) -> None:
         if self.simulator not in SIMULATORS:

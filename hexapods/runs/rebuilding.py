@@ -76,6 +76,15 @@ class LoggedSensors:
         """Each group's offset (x, y) from home by dead reckoning."""
         return self.feet.offsets_m
 
+    @property
+    def heading_rad(self) -> float:
+        """Not recorded in a log.
+
+        Raises:
+            NotRebuilt: always.
+        """
+        raise NotRebuilt("the robot's heading was not recorded, and its agent reads it")
+
 
 @dataclass(frozen=True)
 class LearnerSnapshot:

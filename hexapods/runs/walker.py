@@ -1,5 +1,6 @@
 """Walker: a simulator, its current state and an agent, as driven by both loops."""
 
+import math
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, cast
@@ -15,6 +16,7 @@ from hexapods.domain.observation import (
     measured_offsets,
     observe,
 )
+from hexapods.domain.posture import heading_deg
 from hexapods.domain.simulator import Simulator, Step, WalkState
 from hexapods.domain.types import Action, Cells, FloatArray
 from hexapods.runs.records import ActionValues
@@ -112,6 +114,12 @@ class Sensors:
     def planned_offsets_m(self) -> Sequence[tuple[float, float]]:
         """Each group's offset (x, y) from home by dead reckoning."""
         return self._state.feet.offsets_m
+
+    @property
+    def heading_rad(self) -> float:
+        """Angle by which the torso has turned since the start, anticlockwise, without errors."""
+        start, torso = self._simulator.torso(self._simulator.rest()), self._simulator.torso
+        return math.radians(heading_deg(torso(self._state), start))
 
 
 class SimulatorExpand:

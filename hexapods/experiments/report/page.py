@@ -50,6 +50,7 @@ _FIRST = (
     "simulator",
     "worlds",
     "tolerance",
+    "reward",
 )
 """Fields whose options come first in a command, in order."""
 

@@ -46,6 +46,7 @@ _FIELDS = (
     "divisions",
     "grid_side_m",
     "tolerance",
+    "reward",
     "steps",
     "candidates",
     "search_seeds",
