@@ -30,7 +30,7 @@ from hexapods.assembly import build_simulator, sensor_noise
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.observation import Observation, action_mask, legal_in
-from hexapods.domain.simulator import Simulator
+from hexapods.domain.simulator import RewardKind, Simulator
 from hexapods.domain.types import Action, IntArray
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.exports.video import robot_camera
@@ -52,8 +52,9 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
       MaskablePPO of sb3-contrib does. Sending a group to its observed cell is illegal in the
       walking problem: it is carried out as a no-op with reward 0, which counts as a step.
     - Reward: displacement of the torso's centre in the robot's forward direction [m], as the
-      simulator measures it.
+      simulator measures it, or along the track with `reward="track"`.
     - `info["distance_m"]`: displacement along the track since the start.
+    - `info["heading_rad"]`: angle by which the torso has turned since the start, anticlockwise.
     - An episode starts from rest and never terminates: `gymnasium.make` truncates it after 50
       steps, the length of a race, or after `max_episode_steps`.
     - Rendering: with `render_mode="rgb_array"`, `render()` returns a picture of the robot as videos
@@ -79,6 +80,7 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         world: WorldLike = UNDISTURBED,
         disturbances: Iterable[Disturbance | Mapping[str, Any] | str] = (),
         tolerance: float = 0.0,
+        reward: RewardKind = "forward",
         start_noise_m: float = 0.0,
         render_mode: str | None = None,
     ) -> None:
@@ -95,6 +97,8 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
                 `World`. What happens at a step happens at that step of each episode.
             disturbances: what is added to the world, such as `["limp:legs=1,4:at=10"]`.
             tolerance: how far the robot that the seed draws differs from its design, as a share.
+            reward: displacement that a step's reward is: `forward`, along the robot's own heading,
+                or `track`, along the track.
             start_noise_m: each group's feet start up to so far from home, sideways and forward,
                 every offset with the same probability; at most half of `grid_side_m` [m].
             render_mode: `rgb_array`, or None for no pictures.
@@ -113,6 +117,7 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
             "grid_side_m": grid_side_m,
             "world": _world_with(world, disturbances),
             "tolerance": tolerance,
+            "reward": reward,
         }
         self._config = TrainingConfig(**read_walk(plain(settings)), observation=observation)
         self._start_noise_m = _checked_noise_m(start_noise_m, self._config.grid_side_m)
@@ -206,6 +211,7 @@ class WalkEnv(gymnasium.Env[IntArray, SupportsInt]):
         info = {
             "action_mask": self.action_masks().astype(np.int8),
             "distance_m": self._state.distance_m,
+            "heading_rad": self._sensors.heading_rad,
         }
         return np.array(cells, np.int64), info
 

@@ -36,9 +36,18 @@ def make(**settings: Any) -> gymnasium.Env[Any, Any]:
         {"simulator": "kinematic", "divisions": 3, "grid_side_m": 0.03},
         {"simulator": "kinematic", "robot": {"n_legs": 8}},
         {"world": "ice", "disturbances": DISTURBED, "tolerance": 0.02, "start_noise_m": 0.005},
+        {"simulator": "kinematic", "reward": "track"},
         {"render_mode": "rgb_array"},
     ],
-    ids=["default", "gait and robot", "a finer grid", "eight legs", "disturbed", "rendered"],
+    ids=[
+        "default",
+        "gait and robot",
+        "a finer grid",
+        "eight legs",
+        "disturbed",
+        "track",
+        "rendered",
+    ],
 )
 def test_it_passes_gymnasiums_check_env_without_a_warning(settings: dict[str, Any]) -> None:
     check_env(make(**settings).unwrapped)  # which renders in every declared mode, too
@@ -123,6 +132,7 @@ def test_an_illegal_action_is_a_no_op_with_zero_reward_that_counts_as_a_step() -
         ({"grid_side_m": 0.5}, "leg 1"),
         ({"world": "swamp"}, "unknown"),
         ({"disturbances": "ice"}, "disturbances is a list"),
+        ({"reward": "sideways"}, "reward must be forward, or track"),
         ({"tolerance": 0.9}, "tolerance must be a number"),
         ({"start_noise_m": 0.03}, r"start_noise_m must be a number from 0 to 0\.02"),
     ],
@@ -164,6 +174,21 @@ def test_a_world_and_disturbances_are_those_of_a_training() -> None:
         expected_m.append(reward_m)
 
     assert rewards_m == expected_m
+
+
+def test_a_robot_that_turns_earns_along_the_track_what_it_advances() -> None:
+    turning = {"world": "stuck-leg", "disturbances": ["limp:legs=3"]}
+    forward, track = make(**turning).unwrapped, make(**turning, reward="track").unwrapped
+    for walk in (forward, track):
+        walk.reset(seed=0)
+    steps = [[walk.step(action) for action in (2, 8, 11, 1)] for walk in (forward, track)]
+    earned_m = [[step[1] for step in of_walk] for of_walk in steps]
+    info = steps[1][-1][4]
+
+    assert np.cumsum(earned_m[1])[-1] == pytest.approx(info["distance_m"], abs=1e-12)
+    assert info == steps[0][-1][4] | {"action_mask": info["action_mask"]}
+    assert abs(info["heading_rad"]) > 1e-4
+    assert earned_m[0] != earned_m[1]
 
 
 def starts(walk: gymnasium.Env[Any, Any], *seeds: int | None) -> list[tuple[Any, ...]]:

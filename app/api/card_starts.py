@@ -21,7 +21,7 @@ from hexapods.runs.config import TrainingConfig, agent_settings
 from hexapods.runs.lane import LANE_FIELDS
 from hexapods.shows.scene_spec import PAPERS_LANES
 
-_WALK = ("gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "world")
+_WALK = ("gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "reward", "world")
 _PRACTICE = ("steps", "observation", "steps_per_episode", "evaluate_every")
 _LEFT_OUT = ("seed", "name", "pace")
 """Fields of a page's form that are ignored: the room sets seed, name and the highest pace."""

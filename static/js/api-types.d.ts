@@ -1270,6 +1270,10 @@ export interface TrainingConfigView {
    */
   tolerance: number;
   /**
+   * Displacement that a step's reward is: along the robot's own heading (default), or along the track, so that a robot that turns earns no more than it advances.
+   */
+  reward: "forward" | "track";
+  /**
    * How many steps it practises; the paper uses 500 and 1000.
    */
   steps: number;
@@ -1471,6 +1475,10 @@ export interface RaceConfigView {
    * How far the robot that the seed draws differs from its design, as a share.
    */
   tolerance: number;
+  /**
+   * Displacement that a step's reward is: along the robot's own heading (default), or along the track, so that a robot that turns earns no more than it advances.
+   */
+  reward: "forward" | "track";
   /**
    * in order.
    */
@@ -1772,6 +1780,10 @@ export interface ExperimentConfig {
    * How far the robot that the seed draws differs from its design, as a share.
    */
   tolerance: number;
+  /**
+   * Displacement that a step's reward is: along the robot's own heading (default), or along the track, so that a robot that turns earns no more than it advances.
+   */
+  reward: "forward" | "track";
 }
 /**
  * Result of an experiment; `files` are those of its report.
@@ -4178,6 +4190,10 @@ export interface TournamentRules {
    * How far the robot that the seed draws differs from its design, as a share.
    */
   tolerance: number;
+  /**
+   * Displacement that a step's reward is: along the robot's own heading (default), or along the track, so that a robot that turns earns no more than it advances.
+   */
+  reward: "forward" | "track";
   /**
    * The most that an entry practises on each draw.
    */

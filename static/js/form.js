@@ -273,7 +273,7 @@ export const tryOwnSettings = () => {
 
 // ---- request bodies
 
-const WALK_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance"];
+const WALK_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "reward"];
 const RACE_FIELDS = ["race_steps", "lanes"];
 const WORLD_FIELDS = ["world", REPEATED];
 /** Fields on which what is learned does not depend. */
@@ -334,11 +334,11 @@ export const trainingBody = (continueFrom = null) => {
   return { agent, ...walkFields(), ...nameField(), ...practiceFields(agent), ...beginning(continueFrom) };
 };
 
-/** Request body of a what-if, which has ideal robots: the practice, without seed, pace, world and build tolerance. */
+/** Request body of a what-if, whose ideal robots never turn: the practice, without seed, pace, world and tolerance. */
 export function whatIfBody() {
   const { agent } = form.value;
   const body = { agent, ...walkFields(), ...practiceFields(agent) };
-  const others = ["simulator", "world", "disturbances", "tolerance", ...SHOW_FIELDS];
+  const others = ["simulator", "world", "disturbances", "tolerance", "reward", ...SHOW_FIELDS];
   return select(body, (field) => !others.includes(field));
 }
 

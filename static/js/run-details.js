@@ -123,8 +123,8 @@ const LISTS_BY_COMMA = ["agents", "gaits", "robots", "observations"];
 
 /** @param {Run} run */
 function isRepeatable(run) {
-  const { world, tolerance, before, changes } = fieldsOf(run);
+  const { world, tolerance, reward, before, changes } = fieldsOf(run);
   const { gait, robot } = run.config;
   const hasNames = typeof gait === "string" && customRobotInWords(robot) === null;
-  return hasNames && [world, tolerance, before, changes].every(({ key }) => key === "");
+  return hasNames && [world, tolerance, reward, before, changes].every(({ key }) => key === "");
 }

@@ -6,7 +6,7 @@ import { canonical, formRobot } from "./robots.js";
 import { runOf, trainingIds } from "./selectors.js";
 import { agentOf, laneTitle, settingInWords, shortTitle } from "./settings.js";
 import { served } from "./store.js";
-import { agentTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "./titles.js";
+import { agentTitle, gaitTitle, observationTitle, rewardInWords, robotTitle, simulatorTitle } from "./titles.js";
 
 /** @import { Disturbance, Run, SettingOption } from "./types.js" */
 
@@ -37,6 +37,7 @@ function ofWalk(run) {
     divisions: unlessDefault(config.divisions, training.divisions),
     grid_side_m: unlessDefault(config.grid_side_m, training.grid_side_m),
     tolerance: unlessDefault(config.tolerance ?? 0, 0),
+    reward: unlessDefault(config.reward ?? training.reward, training.reward),
   };
 }
 
@@ -90,7 +91,7 @@ export function fieldsOf(run) {
 /** The settings of agents come after the first of these. */
 const ORDER = [
   "lanes", "agent", "steps",
-  "gait", "seed", "world", "robot", "simulator", "observation", "divisions", "grid_side_m", "tolerance",
+  "gait", "seed", "world", "robot", "simulator", "observation", "divisions", "grid_side_m", "tolerance", "reward",
   "steps_per_episode", "race_steps", "practice_seed", "practices", "before", "changes", "branch",
 ];
 const FIRST = 3;
@@ -123,6 +124,7 @@ const WORDS = {
   robot: robotTitle,
   simulator: (name) => sentence(simulatorTitle(name)),
   observation: (name) => sentence(observationTitle(name)),
+  reward: rewardInWords,
   race_steps: (steps) => `${count(steps, "step")} raced`,
   practice_seed: (seed) => `practised with seed\u00a0${seed}`,
   practices: () => "other practice",

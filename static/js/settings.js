@@ -285,6 +285,7 @@ export function beginningOf(agent, name, values) {
 
 // ---- where the fields of the form are
 
+export const PRACTICE_FIELDS = ["steps_per_episode", "evaluate_every", "reward"];
 export const ROBOT_FIELDS = ["robot", "simulator", "divisions", "grid_side_m", "tolerance"];
 /** Fields beside the learner's main settings that those who try see. */
 const TRIED_FIELDS = ["agent", "steps", "gait", "world"];

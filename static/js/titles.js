@@ -36,6 +36,8 @@ const titleOfChoice = (field, choice) => {
 };
 /** @param {string} name */
 export const observationTitle = (name) => titleOfChoice("observation", name);
+/** What a step's reward is: "reward along the track". @param {string} name */
+export const rewardInWords = (name) => `reward ${titleOfChoice("reward", name)}`;
 /** Model that a search plans with: "nominal model". @param {string} name */
 export const planningModelTitle = (name) => titleOfChoice("plans_with", name);
 /** @param {string} name */
@@ -195,6 +197,7 @@ export const describeRun = ({ config }) => {
   return [
     ...(config.experiment === "sweep" ? sweptIn(config) : []), worldsIn(config).join(", "),
     count(config.seeds, "seed"), `from seed ${config.seed}`, observations.join(" and "), robots.join(" and "),
-    config.tolerance ? `${settingTitle("tolerance")} ${config.tolerance}` : "", simulatorTitle(config.simulator),
+    config.tolerance ? `${settingTitle("tolerance")} ${config.tolerance}` : "",
+    config.reward === "track" ? rewardInWords(config.reward) : "", simulatorTitle(config.simulator),
   ].filter(Boolean).join(" · ");
 };

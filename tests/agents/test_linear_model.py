@@ -33,6 +33,7 @@ class Plan:
     """A plan of the feet that a test sets."""
 
     planned_offsets_m: Sequence[tuple[float, float]] = ((0.0, 0.0),) * 3
+    heading_rad: float = 0.0
 
     def __call__(self, how: Observation) -> Cells:
         return tuple(GRID.nearest(x, y) for x, y in self.planned_offsets_m)

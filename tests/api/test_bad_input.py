@@ -33,6 +33,7 @@ WRONG_TRAININGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({"robot": 7}, ("robot", "stiff")),
     ({"grid_side_m": 0.4}, ("Leg 1", "cell", "0.4")),
     ({"tolerance": 0.3}, ("tolerance", "0.2")),
+    ({"reward": "sideways"}, ("reward", "forward, or track")),
     ({"tolerance": 0.03, "simulator": "kinematic"}, ("build tolerance", "mujoco")),
     ({"grid_side_m": 0.004}, ("grid_side_m", "0.005")),
     ({"steps": 0}, ("steps", "from 1 to 10,000,000")),

@@ -219,6 +219,8 @@ def test_table_of_a_league_has_the_shares_of_greedy_and_of_the_best_known(tmp_pa
             ("figure4", "--tolerance", "0.03"),
             "is for league, recovery, groups and bodies",
         ),
+        (("table1", "--reward", "track"), "--reward is for league, recovery, groups and bodies"),
+        (("league", "--reward", "sideways"), "forward, or track"),
         (("league", "--world", "moon"), "limp-pair"),
         (("league", "--tolerance", "0.5"), "from 0 to 0.2"),
         (("league", "--simulator", "kinematic", "--world", "ice"), "the kinematic simulator knows"),

@@ -91,7 +91,7 @@ const TRAINING = {
   agent: "learner", gait: "tripod", steps: 500, seed: 0, observation: "measured",
   settings: { alpha: 0.3, gamma: 0.9, epsilon_start: 1, epsilon_end: 0 }, steps_per_episode: 50, evaluate_every: 50,
   robot: "stiff", simulator: /** @type {const} */ ("mujoco"),
-  divisions: 2, grid_side_m: 0.04, tolerance: 0, disturbances: [],
+  divisions: 2, grid_side_m: 0.04, tolerance: 0, reward: "forward", disturbances: [],
 };
 
 const GRID = ["steps", "alpha", "gamma", "epsilon_start", "epsilon_end", "trace", "kind"];
@@ -101,7 +101,7 @@ const EXPERIMENT = {
 };
 const COMMON = ["seeds", "seed", "gaits", "observations", "robots", "simulator"];
 
-const IN_WORLDS = [...COMMON, "agents", "worlds", "tolerance", "steps"];
+const IN_WORLDS = [...COMMON, "agents", "worlds", "tolerance", "steps", "reward"];
 const EVERY_AGENT = ["learner", "tracer", "greedy", "planner"];
 
 const SEARCH = {
@@ -220,6 +220,10 @@ export const OPTIONS = {
       default: "measured",
     }),
     tolerance: setting("Build tolerance", { minimum: 0, maximum: 0.2, default: 0 }),
+    reward: setting("Reward", {
+      is_number: false, choices: ["forward", "track"], choice_titles: ["along its own heading", "along the track"],
+      default: "forward",
+    }),
     pace: setting("Pace", { choices: ["max"], minimum: 0.01, maximum: 1000, default: "max" }),
     ...TRACER, ...LEARNER,
   },

@@ -172,7 +172,7 @@ test("a training has the settings of its learner and no others", () => {
   setField("gamma", 0.5);
   assert.deepEqual(trainingBody(), {
     agent: "learner", gait: "tripod", robot: "stiff", simulator: "mujoco", divisions: 2, grid_side_m: 0.04,
-    tolerance: 0, steps: 500,
+    tolerance: 0, reward: "forward", steps: 500,
     seed: 0, observation: "measured", settings: { alpha: 0.3, gamma: 0.5, epsilon_start: 1, epsilon_end: 0 },
     steps_per_episode: 50, evaluate_every: 50, pace: "max",
   });
@@ -204,9 +204,9 @@ test("each learner of a race practises with its own settings, and a link has the
   assert.deepEqual(practices(), [learner, tracer]);
 });
 
-test("a what-if does not depend on seed, pace, name, simulator and build tolerance", () => {
+test("a what-if does not depend on seed, pace, name, simulator, build tolerance and reward", () => {
   const before = whatIfBody();
-  setFields({ seed: 9, pace: 8, name: "x", simulator: "kinematic", tolerance: 0.03, race_steps: 7 });
+  setFields({ seed: 9, pace: 8, name: "x", simulator: "kinematic", tolerance: 0.03, reward: "track", race_steps: 7 });
   assert.deepEqual(whatIfBody(), before);
   setField("alpha", 0.9);
   assert.notDeepEqual(whatIfBody(), before);

@@ -128,6 +128,7 @@ test("trainings are repeated with several seeds by the form of an experiment, wh
   const limping = trained({ disturbances: OPTIONS.worlds[1].disturbances });
   const others = [
     limping, trained({ gait: { right_leg: 1 } }), trained({ continue_from: one.id }), trained({ tolerance: 0.1 }),
+    trained({ reward: "track" }),
     makeRun({ kind: "race", name: "Final", config: { lanes: [] } }),
   ];
   for (const other of others) assert.equal(repeatAddress([one, other]), null);

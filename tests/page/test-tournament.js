@@ -91,6 +91,7 @@ test("the rules are two sentences", () => {
     "A search simulates at most 40\u202f000 transitions on each.");
   assert.match(walkInWords(RULES), / · foot grid 3 × 3 on 80\u00a0mm$/);
   assert.match(walkInWords({ ...RULES, tolerance: 0.1 }), / · build tolerance 0.1$/);
+  assert.match(walkInWords({ ...RULES, reward: "track" }), / · reward along the track$/);
 });
 
 test("what else may enter is told where anything else may", () => {

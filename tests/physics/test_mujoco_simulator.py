@@ -1,5 +1,6 @@
 """The MuJoCo simulator: standing, slipping, threads, and the error on divergence."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,16 +15,21 @@ from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.observation import legal_actions
 from hexapods.domain.robot import PRESETS, Robot, robot
+from hexapods.domain.simulator import RewardKind
 from hexapods.domain.types import Action, FloatArray
 from hexapods.physics.mjcf import compile_model
 from hexapods.physics.mujoco_simulator import MujocoSimulator, MujocoState
 
 
 def build(
-    gait: str = "left-right-origin", made: Robot | None = None, threads: int = 1
+    gait: str = "left-right-origin",
+    made: Robot | None = None,
+    threads: int = 1,
+    reward: RewardKind = "forward",
 ) -> MujocoSimulator:
     made = made or Robot()
-    return MujocoSimulator(made, resolve(gait, made.azimuths_deg), FootGrid(), threads)
+    gait_of_it = resolve(gait, made.azimuths_deg)
+    return MujocoSimulator(made, gait_of_it, FootGrid(), threads, reward=reward)
 
 
 def layer(simulator: MujocoSimulator) -> tuple[list[MujocoState], list[Action]]:
@@ -138,6 +144,30 @@ def test_reward_is_measured_not_commanded() -> None:
 
     assert firm == pytest.approx(0.02 / 3, rel=0.1)
     assert abs(loose - firm) > 2e-4
+
+
+def test_reward_is_along_the_robots_heading_or_along_the_track() -> None:
+    """A robot that stands across the track earns along its heading only."""
+    simulators = build(), build(reward="track")
+    forward, track = (s.step(s.rest(), Action(0, 1)) for s in simulators)
+    across = turned(simulators[0].rest(), 90)
+    earned_m = [s.step(across, Action(0, 1)) for s in simulators]
+
+    assert track.reward_m == track.state.distance_m == pytest.approx(forward.reward_m, rel=1e-3)
+    assert earned_m[0].reward_m == pytest.approx(forward.reward_m, rel=0.01)
+    assert abs(earned_m[1].reward_m) < 0.05 * forward.reward_m
+    assert [step.reward_m for step in earned_m] == [
+        s.expand([across], [Action(0, 1)]).rewards_m[0] for s in simulators
+    ]
+
+
+def turned(state: MujocoState, degrees: float) -> MujocoState:
+    """Turn a robot at rest about the vertical, anticlockwise."""
+    row, half = state.row.copy(), math.radians(degrees) / 2
+    w, z = row[4], row[7]
+    row[4] = math.cos(half) * w - math.sin(half) * z
+    row[7] = math.cos(half) * z + math.sin(half) * w
+    return replace(state, row=row)
 
 
 def corrupted(state: MujocoState, value: float) -> MujocoState:

@@ -9,9 +9,11 @@ from hexapods.agents import registry
 from hexapods.agents.q_learning import QLearning
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GaitSpec
+from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.domain.settings import Setting
 from hexapods.runs.config import (
+    TrainingConfig,
     WalkingProblem,
     agent_settings,
     changeable_settings,
@@ -47,6 +49,7 @@ def test_the_defaults_are_the_papers() -> None:
         ({"gait": "canter"}, "unknown gait 'canter'"),
         ({"simulator": "gazebo"}, "unknown simulator 'gazebo'; choose one of: mujoco, kinematic"),
         ({"observation": "guessed"}, "unknown observation"),
+        ({"reward": "sideways"}, "reward must be forward, or track, not 'sideways'"),
         ({"divisions": 1}, "divisions must be a whole number from 2 to 8"),
         ({"grid_side_m": 0.001}, "grid_side_m must be a number from"),
         ({"steps": 0}, r"steps must be a whole number from 1 to 10,000,000, not 0"),
@@ -75,6 +78,13 @@ def test_invalid_training_is_refused_with_the_valid_values(
 ) -> None:
     with pytest.raises(InvalidInput, match=message):
         training_config(**{"gait": GAIT, **asked})
+
+
+def test_a_config_of_an_earlier_version_has_the_reward_of_that_time() -> None:
+    stored = to_json(training_config(gait=GAIT, steps=7))
+    del stored["reward"]
+
+    assert from_json(TrainingConfig, stored).reward == "forward"
 
 
 def test_gait_with_legs_that_the_robot_lacks_is_refused() -> None:

@@ -1,16 +1,22 @@
-"""Walkers: from where a search plans if sensors are noisy."""
+"""Walkers: from where a search plans if sensors are noisy, and the heading that agents read."""
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
-from hexapods.assembly import build_walkers
+from hexapods.assembly import build_simulator, build_walkers
 from hexapods.domain.disturbances import SensorNoise
-from hexapods.domain.world import UNDISTURBED, World
+from hexapods.domain.posture import heading_deg
+from hexapods.domain.types import Action
+from hexapods.domain.world import UNDISTURBED, World, named_world
+from hexapods.runs.config import WalkingProblem
 from hexapods.runs.lane import lane_config
 from hexapods.runs.race_config import RaceConfig
-from hexapods.runs.walker import FutureNode, Walker
+from hexapods.runs.walker import FutureNode, Sensors, Walker
+
+STUCK = named_world("stuck-leg")
 
 
 def walkers(
@@ -62,3 +68,26 @@ def test_noise_makes_greedy_choose_other_steps() -> None:
     noisy = World((SensorNoise(sd_m=0.02),))
     assert distance_m(noisy) < 0.95 * distance_m(World())
     assert distance_m(noisy) == distance_m(noisy) != distance_m(noisy, seed=1)
+
+
+def test_the_heading_is_how_far_the_robot_has_turned_to_the_left() -> None:
+    """Leg 2 is in front on the left: stuck, it no longer pushes there, and the robot turns."""
+    simulator = build_simulator(WalkingProblem(gait="left-right-origin", world=STUCK))
+    sensors = Sensors(simulator)
+    at_rest_rad, state = sensors.heading_rad, simulator.rest()
+    for step in range(12):
+        state = simulator.step(state, Action(step % 3, 1 + step // 3 % 2)).state
+    sensors.at(state)
+
+    start, torso = (simulator.torso(one) for one in (simulator.rest(), state))
+    assert at_rest_rad == 0
+    assert abs(sensors.heading_rad) > 0.01
+    assert sensors.heading_rad == pytest.approx(math.radians(heading_deg(torso, start)))
+
+
+def test_in_the_kinematic_simulator_no_robot_turns() -> None:
+    walker = walkers()[0]
+    sensors = Sensors(walker.simulator)
+    sensors.at(walker.carry_out(walker.decide()).state)
+
+    assert sensors.heading_rad == 0

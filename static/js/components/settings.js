@@ -8,7 +8,7 @@ import { numberOfLegs } from "../robots.js";
 import { isOperator } from "../selectors.js";
 import {
   agentOf, beginningOf, fullTitle, furtherSettings, isAllowed, isClosed, kindOf, laneSettings, learners,
-  mainSettings, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
+  mainSettings, PRACTICE_FIELDS, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
 import {
@@ -263,9 +263,8 @@ const PACES = [
   ["max", "As fast as possible"], [0.5, "Half real time"], [1, "Real time"], [2, "×2"], [4, "×4"], [8, "×8"],
 ];
 
-const furtherFields = () => [
-  "pace", ...furtherSettings(form.value.agent).map(([name]) => name), "steps_per_episode", "evaluate_every", "name",
-];
+const furtherFields = () =>
+  ["pace", ...furtherSettings(form.value.agent).map(([name]) => name), ...PRACTICE_FIELDS, "name"];
 
 const MoreSettings = () => html`
   <div class="more-fields">
@@ -275,6 +274,7 @@ const MoreSettings = () => html`
     `)}
     <${Figure} field="steps_per_episode" />
     <${Figure} field="evaluate_every" />
+    <${SettingField} name="reward" setting=${settingOf("reward")} />
     <${Name} />
   </div>
 `;

@@ -1,7 +1,7 @@
 // The form of a new experiment. Only values that differ from the experiment's defaults are kept and sent.
 import { batch, computed } from "@preact/signals";
 import { isSimulated, parseWorld, splitWorlds } from "../disturbances.js";
-import { makeTexts, parseChoice, parseChoices, parseName, parseNumber, parseValues } from "../parse.js";
+import { makeTexts, parseChoice, parseChoices, parseName, parseNumber, parseSetting, parseValues } from "../parse.js";
 import { unknownTo } from "../form.js";
 import { ignored, page } from "../page-state.js";
 import { customRobotInWords, presetOf } from "../robots.js";
@@ -147,6 +147,7 @@ const READERS = /** @type {Record<string, (text: string) => Parsed<ExperimentVal
   agents: (/** @type {string} */ text) => parseChoices(text, offeredAgents(), SEVERAL),
   worlds: (/** @type {string} */ text) => parseWorlds(text),
   tolerance: (/** @type {string} */ text) => parseNumber(text, limitsOf("tolerance"), false),
+  reward: (/** @type {string} */ text) => parseSetting(text, served().settings.reward),
 });
 
 /** The agents that the chosen experiment can compare; all of them where it has its own. */

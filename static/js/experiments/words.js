@@ -2,7 +2,7 @@
 import { count, duration, listed, percentage, sentence, whole } from "../format.js";
 import { customRobotInWords, presetOf, storedName } from "../robots.js";
 import { served } from "../store.js";
-import { agentTitle, gaitTitle, observationTitle, simulatorTitle } from "../titles.js";
+import { agentTitle, gaitTitle, observationTitle, rewardInWords, simulatorTitle } from "../titles.js";
 
 /** @import { RobotConfig, Run, Summary } from "../types.js" */
 
@@ -37,7 +37,7 @@ function gaitsIn({ gaits = [] }) {
  * @param {Run["config"]} config
  */
 export function configInWords(config) {
-  const { agents = [], steps = [], observations = [], robots = [], seeds, seed, tolerance, simulator } = config;
+  const { agents = [], steps = [], observations = [], robots = [], seeds, seed, tolerance, reward, simulator } = config;
   const robotName = (/** @type {RobotConfig} */ one) =>
     customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own";
   return sentence([
@@ -45,7 +45,8 @@ export function configInWords(config) {
     config.experiment === "figure4" ? "" : `${[steps].flat().map(whole).join(", ")} steps of practice`,
     gaitsIn(config), listed(observations.map(observationTitle)), `${listed(robots.map(robotName))} robot`,
     `${count(seeds, "seed")}${seed ? ` from seed ${seed}` : ""}`,
-    tolerance ? `built to within ${percentage(tolerance)}` : "", simulatorTitle(simulator),
+    tolerance ? `built to within ${percentage(tolerance)}` : "", reward === "track" ? rewardInWords(reward) : "",
+    simulatorTitle(simulator),
   ].filter(Boolean).join(" · "));
 }
 

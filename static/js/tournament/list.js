@@ -105,7 +105,7 @@ export const inFormWords = (message) =>
 /** @type {(of: NewTournament, name: string) => Parsed<number>} */
 export const readNumber = (of, name) => parseNumber(of.numbers[name], served().tournament_fields[name], true);
 
-const WALK = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance"];
+const WALK = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "reward"];
 
 /** The walking problem of the page's form, which the tournament has, too. */
 export const walk = computed(() => Object.fromEntries(WALK.map((field) => [field, form.value[field]])));

@@ -3,7 +3,7 @@ import { worldTitle } from "../disturbances.js";
 import { count, listed, metres, shortTime, whole } from "../format.js";
 import { largest } from "../scale.js";
 import { agentOf, settingInWords } from "../settings.js";
-import { gaitTitle, observationTitle, robotTitle, simulatorTitle } from "../titles.js";
+import { gaitTitle, observationTitle, rewardInWords, robotTitle, simulatorTitle } from "../titles.js";
 
 /** @import { OwnEntries, Tournament, TournamentEntry, RankedEntry } from "../types.js" */
 
@@ -23,11 +23,12 @@ export function rulesInWords({ steps, draws, worlds, transitions }) {
 
 /** On which robot all walk, and how: "Stiff · Left-right, opposite · MuJoCo physics · foot grid 3 × 3". */
 /** @param {Omit<Tournament["rules"], "steps" | "draws" | "worlds" | "robots" | "tables" | "transitions">} walk */
-export function walkInWords({ gait, robot, simulator, divisions, grid_side_m, tolerance }) {
+export function walkInWords({ gait, robot, simulator, divisions, grid_side_m, tolerance, reward }) {
   const grid = `foot grid ${divisions} × ${divisions} on ${Math.round(1000 * grid_side_m)}\u00a0mm`;
   return [
     robotTitle(robot), gaitTitle(gait), simulatorTitle(simulator), grid,
     tolerance > 0 ? `build tolerance ${tolerance}` : "",
+    reward === "track" ? rewardInWords(reward) : "",
   ].filter(Boolean).join(" · ");
 }
 

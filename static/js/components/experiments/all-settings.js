@@ -5,7 +5,7 @@ import {
   agentSettings, chosenExperiment, enter, offeredAgents, setField, takesField, values, wrong,
 } from "../../experiments/form.js";
 import { listed, sentence, whole } from "../../format.js";
-import { fullTitle, settingOf, shortTitle } from "../../settings.js";
+import { choiceTitle, fullTitle, settingOf, shortTitle } from "../../settings.js";
 import { options, served } from "../../store.js";
 import {
   agentTitle, choicesOf, gaitTitle, observationTitle, robotChoices, robotTitle, simulatorTitle,
@@ -75,6 +75,7 @@ const More = () => html`
         choices=${choicesOf(options.value?.observations, observationTitle)} />
       <${Grid} fields=${gridOf(false)} />
       <${SimulatorField} />
+      ${takesField("reward") && html`<${RewardField} />`}
       <${NameField} />
     </div>
   </details>
@@ -218,6 +219,19 @@ function OtherWorlds({ named, others }) {
 const ToleranceField = () => html`
   <${Labelled} field="tolerance" label=${fullTitle(settingOf("tolerance"))}>
     <${TypedInput} field="tolerance" text=${String(values.value.tolerance)} inputmode="decimal" />
+  <//>
+`;
+
+const RewardField = () => html`
+  <${Labelled} field="reward" label=${fullTitle(settingOf("reward"))}>
+    <select ...${attributesOf("reward")}
+      onChange=${(/** @type {Changed} */ { target }) => setField("reward", target.value)}>
+      ${settingOf("reward").choices?.map((/** @type {string} */ name) => html`
+        <option value=${name} selected=${name === values.value.reward}>
+          ${sentence(choiceTitle(settingOf("reward"), name))}
+        </option>
+      `)}
+    </select>
   <//>
 `;
 

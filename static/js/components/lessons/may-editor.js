@@ -12,8 +12,10 @@ const NAMED = ["gait", "robot", "world", "simulator", "observation", "agent"];
 /** A participant's seed is the room's; a pace would hold a core that others wait for. */
 const NEVER = ["seed", "pace"];
 
-/** Numbers of the practice, of the race and of the robot. */
-const COMMON = ["steps", "steps_per_episode", "evaluate_every", "race_steps", "divisions", "grid_side_m", "tolerance"];
+/** Settings of the practice, of the race and of the robot. */
+const COMMON = [
+  "steps", "steps_per_episode", "evaluate_every", "race_steps", "divisions", "grid_side_m", "tolerance", "reward",
+];
 
 /** @param {LessonCard} card */
 const agentOfCard = (card) => String(card.state?.form?.agent ?? "q-learning");
