@@ -138,3 +138,19 @@ class PlannedExpert(Expert):
 
     def feature_name(self, index: int) -> str:  # noqa: D102
         return f"how far group {index} stands out" if index else "how far forward the feet stand"
+
+
+class ExpertPolicy(NamedTuple):
+    """One way of choosing: by an expert, and in which order the groups take turns."""
+
+    expert: Expert
+    successor: tuple[int, ...] | None
+    """The group that moves after each group; None if any may."""
+    untried: float
+    """Reward per step that it is expected to earn before it was tried, as a share of the law's."""
+
+    def allowed(self, legal: Sequence[Action], last_group: int) -> Sequence[Action]:
+        """Return the legal actions among which it chooses; all if the group in turn has none."""
+        if self.successor is None:
+            return legal
+        return [action for action in legal if action.group == self.successor[last_group]] or legal

@@ -8,7 +8,7 @@ choice between experts as a non-stationary bandit with discounted rewards (Gariv
 """
 
 from collections.abc import Sequence
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 import numpy as np
 from annotated_types import Ge, Le
@@ -17,6 +17,7 @@ from hexapods.agents.experts import (
     FORGETTING,
     NOISE,
     Expert,
+    ExpertPolicy,
     MeasuredExpert,
     PlannedExpert,
     Prior,
@@ -29,6 +30,7 @@ from hexapods.agents.explanation import (
     ValueUpdate,
     in_millimetres,
 )
+from hexapods.agents.group_cycles import CycleBandit, Order, cycles_of
 from hexapods.agents.protocol import AgentState, Observe, Problem, Transition
 from hexapods.domain.settings import Setting, declare
 from hexapods.domain.types import Action, Cells, FloatArray, IntArray
@@ -62,22 +64,6 @@ _KEPT = 0.1
 """Share of the evidence that remains after a change."""
 
 
-class ExpertPolicy(NamedTuple):
-    """One way of choosing: by an expert, and in which order the groups take turns."""
-
-    expert: Expert
-    successor: tuple[int, ...] | None
-    """The group that moves after each group; None if any may."""
-    untried: float
-    """Reward per step that it is expected to earn before it was tried, as a share of the law's."""
-
-    def allowed(self, legal: Sequence[Action], last_group: int) -> Sequence[Action]:
-        """Return the legal actions among which it chooses; all if the group in turn has none."""
-        if self.successor is None:
-            return legal
-        return [one for one in legal if one.group == self.successor[last_group]] or legal
-
-
 class LinearModel:
     """Bayesian linear models of the reward by two experts, one for each reading of the state.
 
@@ -95,6 +81,7 @@ class LinearModel:
         explore: if False, an action is chosen by the mean alone.
         prior: the prior mean of the reward: 0, or what the kinematic law predicts.
         optimism: β, the weight of the posterior's standard deviation.
+        order: `turns`, or `cycles`, by which `CycleBandit` chooses the policy.
     """
 
     title = "Linear model"
@@ -113,6 +100,7 @@ class LinearModel:
         explore: bool = True,
         prior: Prior = "none",
         optimism: Optimism = 0.5,
+        order: Order = "turns",
     ) -> None:
         self._observe, self._explore, self._optimism = observe, explore, optimism
         self._tuned_optimism = np.nan
@@ -125,8 +113,10 @@ class LinearModel:
         self._block_steps = _TURNS * groups
         forth = tuple((group + 1) % groups for group in range(groups))
         back = tuple((group - 1) % groups for group in range(groups))
+        cycles = cycles_of(groups) if order == "cycles" else []
+        turns: list[tuple[int, ...] | None] = [*dict.fromkeys((forth, back))]
         self._policies = (
-            *(ExpertPolicy(planned, order, _UNTRIED) for order in dict.fromkeys((forth, back))),
+            *(ExpertPolicy(planned, turn, _UNTRIED) for turn in [None for _ in cycles] or turns),
             ExpertPolicy(measured, None, _UNTRIED_MEASURED),
         )
         sizes = [len(group) for group in problem.groups]
@@ -134,6 +124,7 @@ class LinearModel:
         squares = sum(size * size for size in sizes) / (legs * legs)  # whole numbers
         self._law_m = 2 * self._half_side_m / (groups * (1 + squares))
         """Advance per step of the steady walk without slip."""
+        self._bandit = CycleBandit([*cycles, None], groups, self._law_m) if cycles else None
         self._deciding, self._decided, self._last_group = 0, 0, groups - 1
         self._earned: FloatArray = np.zeros((len(self._policies), 2))
         """Discounted steps that each policy decided, and the rewards [m] in them."""
@@ -163,6 +154,8 @@ class LinearModel:
             criterion += f", plus {beta:g} standard deviations"
         if policy.successor is not None:
             criterion += "; the groups take turns"
+        elif len(allowed) < len(legal):
+            criterion += "; the groups move in the cycle that it tries"
         return ChoiceExplanation(action, "exploited", criterion, scores)
 
     def _choose(self, legal: Sequence[Action]) -> tuple[Action, Sequence[Action], FloatArray]:
@@ -171,11 +164,18 @@ class LinearModel:
         The policy that decides is chosen first, if it is time to.
         """
         self._before = self._read()
-        if self._decided % self._block_steps == 0:
+        if self._bandit is not None and self._explore:
+            if self._bandit.is_over:
+                self._deciding = self._bandit.choose(self._deciding, self._last_group)
+        elif self._decided % self._block_steps == 0:
             self._choose_policy()
         self._decided += 1
         policy = self._policies[self._deciding]
-        allowed = policy.allowed(legal, self._last_group)
+        if self._bandit is None:
+            allowed = policy.allowed(legal, self._last_group)
+        else:
+            group = self._bandit.next_group(self._deciding)
+            allowed = [action for action in legal if action.group == group] or legal
         optimism = self._optimism if self._explore else 0.0
         bounds_m = policy.expert.upper_bound_m(self._before, allowed, optimism)
         best = allowed[int(bounds_m.argmax())]
@@ -193,6 +193,8 @@ class LinearModel:
         self._visits[action] += 1
         self._earned *= FORGETTING
         self._earned[self._deciding] += 1, reward
+        if self._bandit is not None:
+            self._bandit.earn(reward)
         self._errors[:, 0] += _FAST * (errors - self._errors[:, 0])
         self._errors[:, 1] += _SLOW * (errors - self._errors[:, 1])
         if self._has_changed():
@@ -273,6 +275,8 @@ class LinearModel:
             expert.model.discount(_KEPT)
         self._earned *= _KEPT
         self._errors[:, 1] = np.maximum(self._errors[:, 1], self._errors[:, 0])
+        if self._bandit is not None:
+            self._bandit.restart(self._deciding, self._last_group)
 
     def tune(self, *, optimism: Optimism | None = None) -> None:
         """Change the optimism from the next step on."""
@@ -301,6 +305,7 @@ class LinearModel:
             evidence[f"{expert.name}_products"] = expert.model.products.copy()
         return {
             **evidence,
+            **({} if self._bandit is None else self._bandit.dump()),
             "earned": self._earned.copy(),
             "errors": self._errors.copy(),
             "visits": self._visits.copy(),
@@ -323,6 +328,8 @@ class LinearModel:
             ValueError: if it is of another number of groups or cells.
         """
         own, state = self.state(), _without_twins(state)
+        if not own.keys() <= state.keys():
+            raise ValueError("it was learned with another order of the groups")
         for name, array in own.items():
             if state[name].shape != array.shape:
                 raise ValueError(f"{name} has the shape {state[name].shape}, not {array.shape}")
@@ -336,8 +343,12 @@ class LinearModel:
         (self._tuned_optimism,) = state["tuned_optimism"].tolist()
         if not np.isnan(self._tuned_optimism):
             self._optimism = self._tuned_optimism
+        if self._bandit is not None:
+            self._bandit.load(state)
         if not self._explore:  # a walk of its own, from rest
             self._deciding, self._decided = self._best_policy(self._policies, optimistic=False), 0
+            if self._bandit is not None:
+                self._deciding = self._bandit.walk_from_rest()
             self._last_group = len(self._visits) - 1
 
     @staticmethod
@@ -361,8 +372,9 @@ class LinearModel:
             if state[name].dtype.kind != "f" or not np.isfinite(state[name]).all():
                 raise ValueError(f"its {name} are no numbers")
         policies = len(state["earned"])
+        CycleBandit.check(state, policies)
         if (
-            policies not in (2, 3)
+            (policies not in (2, 3) and "cycle_rewards" not in state)
             or state["earned"].shape != (policies, 2)
             or state["errors"].shape != (2, 2)
         ):
