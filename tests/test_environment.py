@@ -185,7 +185,9 @@ def test_a_robot_that_turns_earns_along_the_track_what_it_advances() -> None:
     earned_m = [[step[1] for step in of_walk] for of_walk in steps]
     info = steps[1][-1][4]
 
-    assert np.cumsum(earned_m[1])[-1] == pytest.approx(info["distance_m"], abs=1e-12)
+    assert np.cumsum(np.array(earned_m[1], float))[-1] == pytest.approx(
+        info["distance_m"], abs=1e-12
+    )
     assert info == steps[0][-1][4] | {"action_mask": info["action_mask"]}
     assert abs(info["heading_rad"]) > 1e-4
     assert earned_m[0] != earned_m[1]
