@@ -13,7 +13,7 @@ from hexapods.experiments.local_workers import local_pool
 from hexapods.experiments.worker import difference
 from hexapods.machine import cores
 from hexapods.runs.tables import Checkpoint, from_bytes
-from hexapods.tournaments.entry import EntryConfig, check_table, references, training_of
+from hexapods.tournaments.entry import EntryConfig, check_table, completed, references, training_of
 from hexapods.tournaments.judging import Judgement, judge
 from hexapods.tournaments.ranking import RankedEntry
 from hexapods.tournaments.rules import Draw, commitment_of, draws_of
@@ -191,8 +191,16 @@ def _reference_differences(tournament: TournamentFile) -> Iterator[str]:
     for number, expected in enumerate(usual):
         if number not in by_number:
             yield f"Entry {number}, the reference {expected.agent}, is missing."
-        elif by_number[number] != expected:
+        elif not _is_entry(by_number[number], expected, tournament):
             yield f"Entry {number} is not the reference {expected.agent} with its usual settings."
+
+
+def _is_entry(entry: EntryConfig, expected: EntryConfig, tournament: TournamentFile) -> bool:
+    """Whether an entry is the expected one; what its version did not know has the default."""
+    try:
+        return completed(entry, tournament.rules) == expected
+    except HexapodError:  # the rules do not allow it, which is told with its judgements
+        return False
 
 
 def _checked_table(entry: EntryConfig, tournament: TournamentFile) -> Checkpoint | None:

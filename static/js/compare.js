@@ -137,8 +137,8 @@ const gaitInWords = (gait) => (typeof gait === "string" ? gaitTitle(gait) : `Cus
 
 /** Fields that are told as they are declared, and the kinds that have them. @type {[string, string][]} */
 const PLAIN = [
-  ["divisions", ""], ["grid_side_m", ""], ["seed", ""], ["steps", "training"], ["steps_per_episode", "training"],
-  ["evaluate_every", "training"], ["race_steps", "race"],
+  ["divisions", ""], ["grid_side_m", ""], ["reward", ""], ["seed", ""], ["steps", "training"],
+  ["steps_per_episode", "training"], ["evaluate_every", "training"], ["race_steps", "race"],
 ];
 
 const NOTHING = "nothing";

@@ -109,6 +109,13 @@ def test_a_file_of_before_the_limit_of_transitions_was_a_rule_has_that_of_then()
         read_file(json.dumps(content).encode(), "it")
 
 
+def test_a_file_of_before_an_agent_had_a_setting_repeats(kinematic: TournamentFile) -> None:
+    content = json.loads(write_file(kinematic))
+    del content["entries"][2]["entry"]["settings"]["order"], content["rules"]["reward"]
+
+    assert verify(read_file(json.dumps(content).encode(), "it"), workers=1) == []
+
+
 @only_whole
 def test_a_file_of_before_the_limit_of_transitions_was_a_rule_repeats_with_that_of_then() -> None:
     deep = EntryConfig(agent="look-ahead", settings=SettingValues({"depth": 3}))
