@@ -175,6 +175,18 @@ test("a simulator has its own defaults, and refuses the worlds that it does not 
   assert.deepEqual([mistakes.value, values.value.worlds], [{}, ["limp-pair"]]);
 });
 
+test("the reward along the track is asked for and told, and an experiment of the paper's has none", () => {
+  chooseExperiment("league");
+  enter("reward", "sideways");
+  assert.ok(mistakes.value.reward);
+  enter("reward", "track");
+  assert.deepEqual([mistakes.value, requestBody()], [{}, { experiment: "league", reward: "track" }]);
+  const config = { ...values.value, robots: [{ preset: "stiff" }] };
+  assert.match(describeRun(makeRun({ kind: "experiment", config })), /reward along the track/);
+  chooseExperiment("table1");
+  assert.equal("reward" in requestBody(), false);
+});
+
 test("robots that differ by seed are tried by all agents, and greedy twice", () => {
   chooseExperiment("league");
   setField("seeds", 4);
