@@ -36,7 +36,7 @@ DIGESTS = {
     "expected-sarsa": "0bb29352a332",
     "n-step-sarsa": "31b27202b515",
     "sarsa-lambda": "66afcbc8d572",
-    "afterstate-q": "9ea3b73ae279",
+    "afterstate-q": "45f5093ba3af",
     "afterstate-r-max": "6377e539c469",
     "dyna-q": "8098024df581",
     "dyna-q-plus": "f36c1596aa32",

@@ -233,7 +233,7 @@ class TabularLearner(TabularAgent):
         alpha: Alpha = 0.3,
         gamma: Gamma = 0.9,
         objective: Objective = "discounted",
-        average_rate: AverageRate = 0.1,
+        average_rate: AverageRate = 0.3,
         epsilon_start: EpsilonStart = 1.0,
         epsilon_end: EpsilonEnd = 0.0,
         steps: int = 500,

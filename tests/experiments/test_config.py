@@ -42,6 +42,8 @@ def test_a_sweep_can_vary_every_grid_parameter() -> None:
         "steps": (100, 200),
         "alpha": (0.1, 0.3),
         "gamma": (0.5,),
+        "objective": ("discounted", "average"),
+        "average_rate": (0.1, 0.3),
         "epsilon_start": (1.0, 0.5),
         "epsilon_end": (0.0, 0.1),
         "steps_per_episode": (25, 50),

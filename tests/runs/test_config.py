@@ -31,6 +31,8 @@ def test_the_defaults_are_the_papers() -> None:
     assert dict(config.settings) == {
         "alpha": 0.3,
         "gamma": 0.9,
+        "objective": "discounted",
+        "average_rate": 0.3,  # of the other objective
         "epsilon_start": 1,
         "epsilon_end": 0,
     }
