@@ -328,7 +328,13 @@ async def _end_long_requests(app: FastAPI) -> None:
     services: Services = app.state.services
     services.stopping.set()
     app.state.work_slots.close()
-    for user in (services.judge, services.what_if, services.estimates, services.renderer):
+    for user in (
+        services.judge,
+        services.what_if,
+        services.explanations,
+        services.estimates,
+        services.renderer,
+    ):
         await asyncio.to_thread(user.close)
 
 

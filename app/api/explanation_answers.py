@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from app.api.answers import Answer, Count
+from hexapods.runs.clocks import Clock
 
 Cell = Annotated[int, Field(ge=0, description="cell of the foot grid; 0 is home")]
 Move = Annotated[
@@ -164,6 +165,53 @@ class LandingsView(Answer):
 
     values: list[float]
     visits: list[Count]
+
+
+class LossView(Answer):
+    """Why a learner with a table loses a race: in numbers, and in three sentences.
+
+    Attributes:
+        is_ranked: whether the race has timed out; if not, lanes are compared as they are now.
+        ahead: lane that is ahead of all others.
+        behind_m: how far this lane is behind that one.
+        steps: of the lane so far, each of which was simulated with every other move.
+        practised_steps: before the race; null if a training of them was deleted.
+        tried: moves of the table that it had tried when it took its last step.
+        moves: in the table.
+        states: different ones that it walked through.
+        tried_there: moves of these states that it had tried.
+        moves_there: in these states.
+        reward_m: what a step brought, on average.
+        best_reward_m: what the best moves would have brought, one step ahead.
+        better_by_m: how much more the best move has to bring to count as better.
+        better: steps in which the best move was better; the next three tell why it was not made.
+        untried: it had never tried it.
+        undervalued: its table held it for worse than the move that it made.
+        not_chosen: its table held it for no worse, and it made another.
+    """
+
+    run_id: str
+    lane: Count
+    agent: str
+    clock: Clock
+    is_ranked: bool
+    ahead: Count
+    behind_m: float
+    steps: Count
+    practised_steps: Count | None
+    tried: Count
+    moves: Count
+    states: Count
+    tried_there: Count
+    moves_there: Count
+    reward_m: float
+    best_reward_m: float
+    better_by_m: float
+    better: Count
+    untried: Count
+    undervalued: Count
+    not_chosen: Count
+    sentences: Annotated[list[str], Field(min_length=3, max_length=3)]
 
 
 class TableView(WalkedGrid):

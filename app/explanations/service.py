@@ -13,11 +13,20 @@ from app.explanations.explanation_json import (
     explanation_as_json,
     table_as_json,
 )
+from app.explanations.loss import (
+    LIMIT_S,
+    ValuedTable,
+    WalkedLane,
+    loss_as_json,
+    simulate,
+    standing_of,
+)
 from app.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPractice
+from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.stopping import Stopping
 from app.jobs.turns import Turns
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Conflict
+from app.storage.errors import Busy, Conflict, NotFound
 from app.storage.recordings import Recordings
 from app.storage.run import RUNNING, Run
 from app.storage.stored_tables import load_table
@@ -26,6 +35,7 @@ from hexapods.agents.protocol import Tabular, Valuing
 from hexapods.assembly import rebuild_lane, rebuild_learner
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.types import Action
+from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.rebuilding import ExplainedStep, NotRebuilt, RebuiltLearner
@@ -55,6 +65,11 @@ class Explanations:
         self._practices: LRUCache[Hashable, RebuiltPractice] = LRUCache(MAX_PRACTICES)
         self._answers = BytesCache(MAX_ANSWER_BYTES)
         self._turns = Turns("explanations", MAX_WAITING)
+        self._pool = ProcessPool(count=1, name="move comparison")
+
+    def close(self) -> None:
+        """Shut down the process that simulates moves."""
+        self._pool.close()
 
     def explain(self, run_id: str, step: int | None, lane: int) -> bytes:
         """Explain a step of a training, or of a lane of a race.
@@ -135,6 +150,76 @@ class Explanations:
         # After the last step settings may still be changed, which changes no value.
         return self._answer((_version(run, number, steps), "table", number, first, count), answer)
 
+    def explain_loss(self, run_id: str, lane: int, clock: Clock) -> bytes:
+        """Explain why a learner with a table loses a race, by all steps that it has taken.
+
+        Args:
+            run_id: id of a race.
+            lane: counted from 0.
+            clock: under which the lanes are ranked.
+
+        Returns:
+            the numbers and three sentences as JSON.
+
+        Raises:
+            NotFound: if there is no such race.
+            InvalidInput: if there is no such lane.
+            Conflict: if the race has no steps (yet), or the lane does not lose, keeps no table,
+                or cannot be built or walked again.
+            Busy: if it takes longer than a request may.
+        """
+        run = self._store.get(run_id)
+        if not isinstance(run.config, RaceConfig):
+            raise InvalidInput(f"run {run_id} is a {run.kind}; only the lanes of a race can lose")
+        config, recording = run.config, self._lane(run, lane)
+        number = _checked_step(None, len(recording.steps), config.steps, run)
+        standing = standing_of(run, self._recordings.race(run.id) or [], lane, config.steps, clock)
+        steps = LoggedLane(recording, config.lanes[lane].observation == "measured")
+
+        def answer() -> dict[str, Any]:
+            practice = _in(run, lambda: self._lane_practice(run, config, lane, steps))
+
+            def learner_before(step: int) -> ValuedTable:
+                agent = practice.learner_at(step, steps, ()).agent
+                if not isinstance(agent, ValuedTable):
+                    raise Conflict(f"{recording.agent} keeps no table that can be read", run.state)
+                return agent
+
+            # First that it has a table, and can be built again: that takes no simulation.
+            _in(run, lambda: learner_before(number - 1))
+            walked = WalkedLane(config, lane, recording.steps.choices(number))
+            try:
+                (compared,) = self._pool.map(simulate, [walked], self._stopping.check, LIMIT_S)
+            except OutOfProcessorTime as error:
+                raise Conflict(f"its {number:,} steps are too many: {error}", run.state) from error
+            except InvalidInput as error:
+                raise Conflict(f"it cannot be walked again: {error}", run.state) from error
+            practised = self._practised_steps(run.lane_training_ids[lane])
+            numbers = _in(run, lambda: loss_as_json(compared, learner_before, practised))
+            return {"run_id": run_id, "lane": lane, "agent": recording.agent, **standing, **numbers}
+
+        key = (_version(run, number, steps), "loss", lane, number, json.dumps(standing))
+        return self._answer(key, answer)
+
+    def _practised_steps(self, training_id: str | None) -> int | None:
+        """Return the steps of a training and of those that it continues; None if one is gone."""
+        steps = 0
+        try:
+            while training_id is not None:
+                training = self._store.get(training_id)
+                steps, training_id = steps + training.done, training.continued_from
+        except NotFound:
+            return None
+        return steps
+
+    def _lane(self, run: Run, lane: int) -> LaneRecording:
+        lanes = self._recordings.race(run.id)
+        if lanes is None:
+            raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
+        if not 0 <= lane < len(lanes):
+            raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
+        return lanes[lane]
+
     def _answer(self, key: Hashable, answer: Callable[[], dict[str, Any]]) -> bytes:
         """Return a known answer, or a new one."""
         known = self._answers.get(key)
@@ -149,12 +234,7 @@ class Explanations:
             return known
 
     def _explain_lane(self, run: Run, config: RaceConfig, step: int | None, lane: int) -> bytes:
-        lanes = self._recordings.race(run.id)
-        if lanes is None:
-            raise Conflict(f"race {run.id} is {run.state} and has no recording (yet)", run.state)
-        if not 0 <= lane < len(lanes):
-            raise InvalidInput(f"lane must be from 0 to {len(lanes) - 1}, not {lane}")
-        recording, own = lanes[lane], config.lanes[lane]
+        recording, own = self._lane(run, lane), config.lanes[lane]
         number = _checked_step(step, len(recording.steps), config.steps, run)
         steps = LoggedLane(recording, own.observation == "measured")
 

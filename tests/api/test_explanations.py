@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from app.api.explanation_answers import ExplanationView, TableView
+from app.api.explanation_answers import ExplanationView, LossView, TableView
 from hexapods.agents.explanation import Term, evaluate
 from tests.api.calls import Api, refused
 
@@ -219,3 +219,37 @@ def test_a_training_without_a_log_says_so(api: Api, trained: dict[str, Any]) -> 
     run = api.call("POST", "/trainings/import", content=file).json()
 
     refused(api.call("GET", f"/runs/{run['id']}/explain"), 409, "has no log of its steps")
+
+
+def test_a_learner_that_loses_is_told_why(api: Api, trained: dict[str, Any]) -> None:
+    lanes = [{"agent": "q-learning", "training_id": trained["id"]}, {"agent": "greedy"}]
+    race = api.finished(api.race(lanes=[*lanes, {"agent": "linear-model"}]))
+    told = api.get(f"/races/{race['id']}/loss", params={"lane": 0})
+    LossView.model_validate(told)
+    total_m = [lane["total_distance_m"] for lane in race["result"]["lanes"]]
+
+    assert (told["steps"], told["practised_steps"], told["moves"]) == (50, STEPS, 1500)
+    assert 0 < told["tried"] <= STEPS
+    assert told["is_ranked"]
+    assert told["behind_m"] > 0
+    assert told["reward_m"] * 50 == pytest.approx(total_m[0])
+    assert told["best_reward_m"] > told["reward_m"]
+    assert told["better"] == told["untried"] + told["undervalued"] + told["not_chosen"] > 0
+    assert f"tried {told['tried']} of the 1500 moves" in told["sentences"][0]
+
+    path = f"/races/{race['id']}/loss?lane="
+    refused(api.call("GET", f"{path}2&clock=free"), 409, "keeps no table")
+    refused(api.call("GET", f"{path}1&clock=free"), 409, "Lane 1, greedy, is not behind")
+    refused(api.call("GET", f"{path}3"), 422, "Lane must be from 0 to 2, not 3.")
+    refused(api.call("GET", f"/races/{trained['id']}/loss?lane=0"), 404, "")
+    assert api.get(f"/races/{race['id']}/loss", params={"lane": 0}) == told
+
+
+def test_a_learner_that_practises_in_the_race_is_told_why_it_loses(api: Api) -> None:
+    lanes = [{"agent": "sarsa", "keep_learning": True}, {"agent": "greedy"}]
+    race = api.finished(api.race(steps=20, lanes=lanes))
+    told = api.get(f"/races/{race['id']}/loss", params={"lane": 0, "clock": "free"})
+
+    assert (told["practised_steps"], told["steps"]) == (0, 20)
+    assert 0 < told["tried"] < 20
+    assert told["sentences"][0].startswith("Before its last step it had tried")

@@ -1,0 +1,228 @@
+"""Why a learner with a table loses a race: what it had tried, and what it walked past.
+
+In each state of its walk all moves are simulated, one step ahead. The answer tells how much of its
+table the learner had tried, what the best moves there would have brought, and why it passed them.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+
+from app.storage.errors import Conflict
+from app.storage.run import Run
+from hexapods.agents.explanation import in_millimetres
+from hexapods.agents.protocol import Tabular, Valuing
+from hexapods.assembly import build_simulator, sensor_noise
+from hexapods.domain.sums import ordered_sum
+from hexapods.domain.text import counted, whole
+from hexapods.domain.types import Action, Cells
+from hexapods.runs.clocks import Clock
+from hexapods.runs.move_comparison import ComparedMove, compare_moves
+from hexapods.runs.race_config import RaceConfig
+from hexapods.runs.recording import LaneRecording
+from hexapods.runs.results import lane_figures
+from hexapods.runs.seeding import RACING
+from hexapods.runs.walker import Sensors
+
+BETTER_M = 0.001
+"""A move is better than the one that was made if it brings so much more in this step [m]."""
+LIMIT_S = 20.0
+"""Processor time that the simulation of a lane's moves may take [s]."""
+PassedOver = Literal["untried", "undervalued", "not chosen"]
+"""Why a learner did not make a better move: it had never tried it, its table held the move that it
+made for better, or it held the better one for as good and made another one."""
+
+
+@dataclass(frozen=True)
+class WalkedLane:
+    """The recorded walk of a lane; can be pickled.
+
+    Attributes:
+        config: the race.
+        number: of the lane, from 0 on.
+        walked: observation and move of each step.
+    """
+
+    config: RaceConfig
+    number: int
+    walked: Sequence[tuple[Cells, Action]]
+
+
+class Tried(NamedTuple):
+    """How much of a learner's table it had tried, when it took its last step.
+
+    Attributes:
+        tried, moves: moves of all states, and those that were tried.
+        states: number of different states in which it stood in the race.
+        tried_there, moves_there: moves of these states, and those that were tried.
+    """
+
+    tried: int
+    moves: int
+    states: int
+    tried_there: int
+    moves_there: int
+
+
+@runtime_checkable
+class ValuedTable(Tabular, Valuing, Protocol):
+    """Learner with a table that tells its values and visits."""
+
+
+def standing_of(
+    run: Run, lanes: Sequence[LaneRecording], lane: int, steps: int, clock: Clock
+) -> dict[str, Any]:
+    """Return by how much a lane is behind, and whom: at time-out, or before by its steps so far.
+
+    Raises:
+        Conflict: if it is not behind.
+    """
+    figures = lane_figures(lanes, steps, clock)
+    ranked = [one.finished_distance_m for one in figures]
+    distances_m = [
+        recording.distance_m if metres is None else metres
+        for recording, metres in zip(lanes, ranked, strict=True)
+    ]
+    first = distances_m.index(max(distances_m))
+    if distances_m[lane] == distances_m[first]:
+        raise Conflict(
+            f"lane {lane}, {lanes[lane].agent}, is not behind in this race ({clock} clock); only "
+            "what loses is asked why",
+            run.state,
+        )
+    return {
+        "clock": clock,
+        "is_ranked": ranked[lane] is not None,
+        "ahead": first,
+        "behind_m": distances_m[first] - distances_m[lane],
+    }
+
+
+def simulate(lane: WalkedLane) -> list[ComparedMove]:
+    """Simulate all moves in each state of a lane's walk; for a worker process.
+
+    Raises:
+        NotRepeated: if the walk cannot be repeated.
+        HexapodError: if the physics diverges.
+    """
+    config, number = lane.config, lane.number
+    simulator = build_simulator(config, threads=1)
+    sensors = Sensors(simulator, sensor_noise(config.seed, RACING, number))
+    return compare_moves(simulator, sensors, config.lanes[number].observation, lane.walked)
+
+
+def passed_over(agent: Valuing, move: ComparedMove) -> PassedOver | None:
+    """Return why the learner, as it was before the step, passed the best move; None if it did not.
+
+    Args:
+        agent: the learner.
+        move: the move that it made, beside the best one.
+    """
+    if move.best_reward_m - move.reward_m < BETTER_M:
+        return None
+    if not agent.visits(move.observation)[move.best]:
+        return "untried"
+    values = agent.values(move.observation)
+    return "undervalued" if values[move.best] < values[move.action] else "not chosen"
+
+
+def count_tried(agent: ValuedTable, walked: Iterable[Cells]) -> Tried:
+    """Count how much of its table a learner has tried.
+
+    Args:
+        agent: the learner.
+        walked: the states in which it stood in the race.
+    """
+    table, there = agent.table, list(dict.fromkeys(walked))
+    tried = sum(_tried(agent, cells)[0] for cells, _, _ in table.rows())  # whole numbers
+    tried_there, moves_there = (
+        sum(column)  # whole numbers
+        for column in zip(*(_tried(agent, cells) for cells in there), strict=True)
+    )
+    moves = table.states * table.groups * (table.cells - 1)
+    return Tried(tried, moves, len(there), tried_there, moves_there)
+
+
+def _tried(agent: Valuing, cells: Cells) -> tuple[int, int]:
+    """Return how many moves of a state were tried, and how many there are."""
+    legal = np.isfinite(agent.values(cells))
+    return int(np.count_nonzero(agent.visits(cells)[legal])), int(legal.sum())
+
+
+def loss_as_json(
+    compared: Sequence[ComparedMove],
+    learner_before: Callable[[int], ValuedTable],
+    practised_steps: int | None,
+) -> dict[str, Any]:
+    """Return why a lane lost, in numbers and in three sentences.
+
+    Args:
+        compared: each step of the lane beside the best move there.
+        learner_before: returns the learner as it was before a step, counted from 0; called in
+            order.
+        practised_steps: steps of practice before the race; None if they are not known.
+    """
+    reasons = [passed_over(learner_before(n), move) for n, move in enumerate(compared)]
+    tried = count_tried(learner_before(len(compared) - 1), (move.observation for move in compared))
+    made_m = ordered_sum(move.reward_m for move in compared) / len(compared)
+    best_m = ordered_sum(move.best_reward_m for move in compared) / len(compared)
+    counts = {kind: reasons.count(kind) for kind in ("untried", "undervalued", "not chosen")}
+    better = len(compared) - reasons.count(None)
+    return {
+        "steps": len(compared),
+        "practised_steps": practised_steps,
+        **tried._asdict(),
+        "reward_m": made_m,
+        "best_reward_m": best_m,
+        "better_by_m": BETTER_M,
+        "better": better,
+        "untried": counts["untried"],
+        "undervalued": counts["undervalued"],
+        "not_chosen": counts["not chosen"],
+        "sentences": [
+            _about_table(tried, practised_steps),
+            f"Its {counted(len(compared), 'step')} brought {in_millimetres(made_m)} each on "
+            f"average; the best move from where it stood, simulated, would have brought "
+            f"{in_millimetres(best_m)}.",
+            _about_better(len(compared), better, counts),
+        ],
+    }
+
+
+def _about_table(tried: Tried, practised_steps: int | None) -> str:
+    practice = (
+        f"In {counted(practised_steps, 'step')} of practice"
+        if practised_steps
+        else "Before its last step"
+    )
+    stood = "the state" if tried.states == 1 else f"the {whole(tried.states)} states"
+    return (
+        f"{practice} it had tried {whole(tried.tried)} of the {whole(tried.moves)} moves in its "
+        f"table ({100 * tried.tried / tried.moves:.0f} %), and {whole(tried.tried_there)} of the "
+        f"{whole(tried.moves_there)} in {stood} that it walked through here."
+    )
+
+
+def _about_better(steps: int, better: int, counts: Mapping[str, int]) -> str:
+    more = f"{1000 * BETTER_M:g} mm"
+    if not better:
+        return (
+            f"In none of its {counted(steps, 'step')} would another move have brought {more} more: "
+            "one step ahead it could do no better."
+        )
+    reasons = {
+        "untried": "it had never tried that move",
+        "undervalued": "its table held that move for worse",
+        "not chosen": "its table held that move for no worse",
+    }
+    parts = [
+        f"in {'each' if counts[kind] == better else counts[kind]} of them {words}"
+        for kind, words in reasons.items()
+        if counts[kind]
+    ]
+    return (
+        f"In {better} of its {counted(steps, 'step')} the best move would have brought at least "
+        f"{more} more than the one it made: {', '.join(parts)}."
+    )
