@@ -2851,6 +2851,87 @@ export interface ListedTournament {
   created_at: string;
 }
 /**
+ * Why a learner with a table loses a race: in numbers, and in three sentences.
+ */
+export interface LossView {
+  run_id: string;
+  lane: number;
+  agent: string;
+  clock: "paper" | "wall" | "free";
+  /**
+   * whether the race has timed out; if not, lanes are compared as they are now.
+   */
+  is_ranked: boolean;
+  /**
+   * lane that is ahead of all others.
+   */
+  ahead: number;
+  /**
+   * how far this lane is behind that one.
+   */
+  behind_m: number;
+  /**
+   * of the lane so far, each of which was simulated with every other move.
+   */
+  steps: number;
+  /**
+   * before the race; null if a training of them was deleted.
+   */
+  practised_steps: number | null;
+  /**
+   * moves of the table that it had tried when it took its last step.
+   */
+  tried: number;
+  /**
+   * in the table.
+   */
+  moves: number;
+  /**
+   * different ones that it walked through.
+   */
+  states: number;
+  /**
+   * moves of these states that it had tried.
+   */
+  tried_there: number;
+  /**
+   * in these states.
+   */
+  moves_there: number;
+  /**
+   * what a step brought, on average.
+   */
+  reward_m: number;
+  /**
+   * what the best moves would have brought, one step ahead.
+   */
+  best_reward_m: number;
+  /**
+   * how much more the best move has to bring to count as better.
+   */
+  better_by_m: number;
+  /**
+   * steps in which the best move was better; the next three tell why it was not made.
+   */
+  better: number;
+  /**
+   * it had never tried it.
+   */
+  untried: number;
+  /**
+   * its table held it for worse than the move that it made.
+   */
+  undervalued: number;
+  /**
+   * its table held it for no worse, and it made another.
+   */
+  not_chosen: number;
+  /**
+   * @minItems 3
+   */
+  sentences: [string, string, string, ...string[]];
+}
+/**
  * Machine on which the experiment ran; empty before its start.
  */
 export interface Machine {

@@ -2,7 +2,7 @@
 import { computed, effect, untracked } from "@preact/signals";
 
 /** @import { Allowance, Annotations, Curve, Curves, Disturbance, Explanation, GaitAnalysis } from "./types.js" */
-/** @import { Kind, Options } from "./types.js" */
+/** @import { Kind, Loss, Options } from "./types.js" */
 /** @import { Estimate, Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage, StateTable } from "./types.js" */
 /** @import { Summary, Timeline, Trial, Verb, WhatIfAnswer } from "./types.js" */
 
@@ -348,6 +348,12 @@ export const putStage = (changes) => call("PUT", "stage", changes);
 export const getExplanation = ({ run_id, lane, step }) => {
   const query = new URLSearchParams({ step: `${step}`, lane: `${lane}` });
   return call("GET", `runs/${encodeURIComponent(run_id)}/explain?${query}`);
+};
+
+/** Why a lane loses its race. @type {(of: { run_id: string, lane: number, clock: string }) => Promise<Loss>} */
+export const getLoss = ({ run_id, lane, clock }) => {
+  const query = new URLSearchParams({ lane: `${lane}`, clock });
+  return call("GET", `races/${encodeURIComponent(run_id)}/loss?${query}`);
 };
 
 /**

@@ -3,9 +3,10 @@ import { computed, signal } from "@preact/signals";
 import { askForNewest, getTimeline, isLasting } from "./api.js";
 import { SAME_MOMENT_S } from "./format.js";
 import { clock, originalRace, raceInView, raceScene } from "./on-stage.js";
-import { distanceAt, rowsOf } from "./narrative/moment.js";
+import { distanceAt, distanceOf, rowsOf } from "./narrative/moment.js";
 import { isTimedOutIn } from "./narrative/states.js";
 import { modelOfLane } from "./selectors.js";
+import { learns } from "./settings.js";
 import { connection, options } from "./store.js";
 import { messageOf } from "./titles.js";
 
@@ -107,4 +108,15 @@ function originalOf(number) {
   const result = originalRace.value?.result?.lanes?.[number];
   const timed = result?.clocks?.[clock.value];
   return result && timed ? { finished_m: timed.finished_distance_m, total_m: result.total_distance_m } : null;
+}
+
+/**
+ * Whether a lane is a learner that is behind another one, once the show has come to where they are compared.
+ * @param {number} number
+ */
+export function isLoser(number) {
+  const rows = standings.value ?? [];
+  const row = rows.find(({ lane }) => lane === number);
+  if (!row || !row.made || !learns(row.agent) || !(isTimedOut.value || isOver.value)) return false;
+  return rows.some((other) => distanceOf(other) > distanceOf(row));
 }

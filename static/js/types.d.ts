@@ -24,6 +24,7 @@ export type {
   EventBodies,
   ExportOption,
   ExplanationView as Explanation,
+  LossView as Loss,
   FieldOption,
   Finding,
   GaitAnalysis,

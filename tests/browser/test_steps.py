@@ -189,3 +189,44 @@ def test_a_learner_over_landings_has_a_row_for_each(
     expect(page.get_by_text(re.compile(r"\d+ of 125 came so far"))).to_be_visible()
     expect(page.get_by_role("heading", name="The same values by states and moves")).to_be_visible()
     assert dashboard.violations() == []
+
+
+def test_why_a_learner_loses_is_asked_on_the_board(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    practice = {"steps": 60, "seed": 3}
+    lanes = [{"agent": "q-learning", "training": practice}, {"agent": "greedy"}]
+    with shared_server.api() as api:
+        race = finished(api, "races", {**WALK, "steps": 20, "lanes": lanes})
+        hold(api, race, 1e3)
+    dashboard.open(shared_server.link())
+    ask = dashboard.panel.get_by_role("button", name="Why does it lose?")
+    expect(ask).to_have_count(1)  # not of greedy, which has won
+    ask.click()
+
+    told = explanation(dashboard.page)
+    answer = dashboard.get(f"/api/v1/races/{race['id']}/loss?lane=0")
+    for sentence in answer["sentences"]:
+        expect(told).to_contain_text(sentence)
+    expect(told.get_by_text("Why does it lose?")).to_be_focused()
+    assert dashboard.violations() == []
+    dashboard.page.set_viewport_size({"width": 360, "height": 780})
+    assert dashboard.scroll_width() == 360
+
+    # Where the server cannot tell it, it says so.
+    dashboard.page.route(
+        "**/loss?*",
+        lambda route: route.fulfill(
+            status=409,
+            json={
+                "type": "about:blank",
+                "title": "Conflict",
+                "status": 409,
+                "detail": "It keeps no table.",
+            },
+        ),
+    )
+    dashboard.page.reload()
+    told.get_by_text("Why does it lose?").click()
+    expect(told).to_contain_text("Not told here: It keeps no table.")
+    assert dashboard.complaints.pop().startswith("409")

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { headline, narrative } from "../../static/js/headline.js";
-import { clipped, isTimedOut, shownTime, standings } from "../../static/js/race.js";
+import { clipped, isLoser, isTimedOut, shownTime, standings } from "../../static/js/race.js";
 import { stageIds } from "../../static/js/runs.js";
 import { distanceAt, timeSpent } from "../../static/js/narrative/moment.js";
 import { heldRace, raceInView, stepShown } from "../../static/js/on-stage.js";
@@ -260,4 +260,13 @@ test("a race can be raced on while its replay is held", () => {
   assert.equal(heldRace.value?.id, RACE.id);
   showScene({ ...AT_END, lanes: lanes.map((lane) => ({ ...lane, done: true })) });
   assert.deepEqual([heldRace.value?.id, stepShown.value], [RACE.id, null]);
+});
+
+test("it is asked why a learner loses once the lanes are compared, and of no other", () => {
+  showScene({ time_s: 3, lanes: [makeSceneLane({ step: 3, distance_m: 0.1 }), SCENE.lanes[1]] });
+  assert.deepEqual([0, 1].map(isLoser), [false, false]);
+  showResult([laneResult("learner", 2, 0.2), laneResult("greedy", 1, 0.3)]);
+  assert.deepEqual([0, 1].map(isLoser), [true, false]);
+  showResult([laneResult("learner", 1, 0.3), laneResult("greedy", 2, 0.2)]);
+  assert.deepEqual([0, 1, 7].map(isLoser), [false, false, false]);
 });

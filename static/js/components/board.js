@@ -4,7 +4,7 @@ import { disturbancesOf, inTime, joinedBySteps } from "../disturbances.js";
 import { form, raceBody } from "../form.js";
 import { clockTime, count, decision, metres, sentence, whole } from "../format.js";
 import { narrative, whyMarching } from "../headline.js";
-import { isOver, isTimedOut, standings } from "../race.js";
+import { isLoser, isOver, isTimedOut, standings } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
 import { earlyEndOf } from "../narrative/states.js";
@@ -13,7 +13,7 @@ import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, scene, served } from "../store.js";
 import { choicesOf, clockTitle, flatParts, planningModelTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
-import { isAtLeast } from "../workspace.js";
+import { isAtLeast, openTab } from "../workspace.js";
 import { html, Icon, Loaded } from "./elements.js";
 import { LearningChart } from "./learning.js";
 import { RaceChart } from "./race-chart.js";
@@ -75,6 +75,13 @@ function Standings({ rows }) {
   `;
 }
 
+/** Open the explanation of the lane. @param {number} lane */
+async function explainLoss(lane) {
+  const [{ chosenLane }, { isSought }] = await Promise.all([import("../steps.js"), import("../loss.js")]);
+  [chosenLane.value, isSought.value] = [lane, true];
+  openTab("why");
+}
+
 /** Disturbances of the race, and the race of which it is a branch. */
 function BranchWords() {
   const race = raceInView.value;
@@ -134,6 +141,11 @@ function Lane({ row, longest }) {
         <td colspan="5">
           <${TimeStrip} spent=${row.spent} longest=${longest} />
           ${linesBelow(row).map(([kind, words]) => html`<p class=${kind}>${words}</p>`)}
+          ${isLoser(row.lane) && !page.isPresenting.value && html`
+            <button class="link" onClick=${() => explainLoss(row.lane)}>
+              Why does it lose?<span class="sr-only"> ${row.title}</span>
+            </button>
+          `}
         </td>
       </tr>
     </tbody>

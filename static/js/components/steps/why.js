@@ -8,6 +8,7 @@ import { isAtLeast } from "../../workspace.js";
 import { html } from "../elements.js";
 import { ActionValues } from "../learning.js";
 import { ExplainedStep } from "./explanation.js";
+import { WhyLost } from "./loss.js";
 import { Navigator, Trouble, useMoment, Waiting } from "./navigator.js";
 
 /** @import { Moment } from "../../steps.js" */
@@ -26,6 +27,7 @@ export function Why() {
   return html`
     <section class="why-tab" aria-label="Explanation" aria-busy=${told && told.step !== at.step ? "true" : "false"}>
       <${Navigator} at=${at} />
+      <${WhyLost} />
       <${Trouble} error=${error} again=${again} />
       ${at.step === 0 && html`<p class="dim">It stands on the start line. Its first step comes next.</p>`}
       ${isFollowing.value && isAtLeast("study") && html`<${ActionValues} />`}

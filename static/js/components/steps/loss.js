@@ -1,0 +1,62 @@
+// Why a learner with a table loses: what it had tried, what better moves would have brought, and why it passed them.
+import { useEffect, useRef } from "preact/hooks";
+import { distanceApart, sentence } from "../../format.js";
+import { followLoss, isAbout, isOpen, isSought, loss, lostLane } from "../../loss.js";
+import { standings } from "../../race.js";
+import { messageOf, clockTitle } from "../../titles.js";
+import { html } from "../elements.js";
+import { Trouble } from "./navigator.js";
+
+/** @import { RequestError } from "../../api.js" */
+/** @import { Loss } from "../../types.js" */
+
+/** A lane without a table, or that cannot be walked again: the server says which. */
+const NOT_AVAILABLE = 409;
+
+export function WhyLost() {
+  const fold = useRef(/** @type {HTMLDetailsElement | null} */ (null));
+  useEffect(followLoss, []);
+  const asked = lostLane.value;
+  useEffect(() => {
+    if (!isSought.value || !fold.current) return;
+    isOpen.value = true;
+    fold.current.scrollIntoView({ block: "start" });
+    fold.current.querySelector("summary")?.focus({ preventScroll: true });
+    // Without the answer the panel may be too short to be scrolled.
+    isSought.value = !loss.value.answer && !loss.value.error;
+  }, [isSought.value, asked === null, loss.value]);
+  if (!asked) return null;
+  return html`
+    <details class="fold why-lost" ref=${fold} open=${isOpen.value}
+      onToggle=${(/** @type {{ target: HTMLDetailsElement }} */ { target }) => (isOpen.value = target.open)}>
+      <summary>Why does it lose?</summary>
+      <${Answer} asked=${asked} />
+    </details>
+  `;
+}
+
+/** @param {{ asked: NonNullable<typeof lostLane.value> }} props */
+function Answer({ asked }) {
+  const { answer, error, again } = loss.value;
+  if (answer && isAbout(answer, asked)) return html`<${Told} told=${answer} />`;
+  if (error && /** @type {RequestError} */ (error).status === NOT_AVAILABLE) {
+    return html`<p class="dim">Not told here: ${messageOf(error)}</p>`;
+  }
+  if (error) return html`<${Trouble} error=${error} again=${again} />`;
+  return html`
+    <p class="dim" role="status">
+      <span class="spinner" aria-hidden="true"></span> Every move in each of its states is simulated…
+    </p>
+  `;
+}
+
+/** @param {{ told: Loss }} props */
+function Told({ told }) {
+  const ahead = standings.value?.find(({ lane }) => lane === told.ahead)?.title ?? `lane ${told.ahead + 1}`;
+  const when = told.is_ranked ? ` at time-out (${clockTitle(told.clock)})` : "";
+  return html`
+    <p class="dim">${sentence(`${distanceApart(told.behind_m)} behind ${ahead}${when}`)}.</p>
+    ${told.sentences.map((one) => html`<p>${one}</p>`)}
+    <p class="dim fine">One step ahead only: the best next step is not always the best walk.</p>
+  `;
+}
