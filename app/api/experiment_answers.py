@@ -189,7 +189,7 @@ class PooledView(Measured, Named):
 
 
 class CurveOfSetting(Named):
-    """Learning curve of a setting: distances after each block of practice [m]."""
+    """Learning curve of a setting: distances after each block, or on the way in one go [m]."""
 
     key: str
     gait: str
@@ -201,7 +201,7 @@ class CurveOfSetting(Named):
     mean_m: list[float]
     walkers: list[Share | None]
     points_m: list[list[float]]
-    steps: list[int]  # type: ignore[assignment] # cumulative steps after each block
+    steps: list[int]  # type: ignore[assignment] # steps before each distance
 
 
 class VersusView(Parameters):

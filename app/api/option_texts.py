@@ -9,7 +9,7 @@ EXPERIMENT_TEXTS = {
     ),
     "figure4": (
         "The paper’s Figure 4: practice in blocks of 250 steps up to 2000, the table saved and "
-        "loaded in between, and greedy as the line to reach."
+        "loaded in between, beside as many steps in one go, and greedy as the line to reach."
     ),
     "sweep": (
         "A grid of any values: every combination is tried over all seeds. The paper names tuning "

@@ -78,6 +78,12 @@ class TrialSetting:
         return self.trial.evaluations[0] if self.trial.earning_steps else self.training.steps
 
     @property
+    def walks_after(self) -> Sequence[int]:
+        """Steps of practice after which a learner walks: its evaluations, or the ends of blocks."""
+        blocks = (self.training.steps * (1 + number) for number in range(self.trial.blocks))
+        return self.trial.evaluations or tuple(blocks)
+
+    @property
     def gait(self) -> str:
         """Name of the gait."""
         return self.training.resolved_gait.name
@@ -188,7 +194,7 @@ def trial_seed(seed: int, setting: int, seed_number: int) -> int:
 
 
 def _settings(config: ExperimentConfig) -> list[TrialSetting]:
-    learners, references, timed = [], [], []
+    learners, references, in_one_go, timed = [], [], [], []
     # Earlier versions stored the settings of the default agent with every experiment.
     agents = (*config.agents, *RIVALS, TrainingConfig.agent)
     own = {agent: agent_settings(agent) for agent in agents}
@@ -214,9 +220,15 @@ def _settings(config: ExperimentConfig) -> list[TrialSetting]:
         if config.experiment in DISTURBED and (place.walk.world or place.walk.tolerance):
             references.append(_nominal(_setting(place, "greedy", 0, SettingValues())))
         learners += in_scenario
+        if config.experiment == "figure4":
+            in_one_go += [
+                _in_one_go(place, in_blocks.trial, values)
+                for (_, values), in_blocks in zip(practices, in_scenario, strict=True)
+            ]
         if config.experiment == "table1":
             timed.append(_timed(in_scenario[0]))
-    settings = [*references, *learners, *timed]
+    # After the blocks, whose seeds depend on their place in this list.
+    settings = [*references, *learners, *in_one_go, *timed]
     key, count = Counter(setting.key for setting in settings).most_common(1)[0]
     if count > 1:
         raise InvalidInput(f"the setting {key} is there twice; name each value once")
@@ -329,6 +341,23 @@ def _learner(
         )
         return replace(setting, trial=trial)
     return setting
+
+
+def _in_one_go(
+    place: _Scenario, in_blocks: TrialConfig, values: Mapping[str, Value]
+) -> TrialSetting:
+    """Return a setting that practises the steps of all blocks in one go, so that ε falls once.
+
+    Args:
+        place: where the agent walks.
+        in_blocks: trial of the setting in blocks, at whose ends this one is evaluated, too.
+        values: values of the setting in blocks.
+    """
+    block = in_blocks.training
+    steps = in_blocks.blocks * block.steps
+    setting = _setting(place, block.agent, 1, {**values, "steps": steps})
+    points = tuple(range(block.steps, steps + 1, block.steps))
+    return replace(setting, trial=replace(setting.trial, evaluations=points))
 
 
 def _nominal(greedy: TrialSetting) -> TrialSetting:

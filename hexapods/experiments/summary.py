@@ -56,10 +56,10 @@ def summarise(
     Returns:
         Plain types, fit for JSON: `trials` (counts; `failed` are all without a distance, also those
         that were set aside), `settings` (one entry per setting), `pooled`
-        (one per setting over its gaits), `curves` (settings with several blocks), `versus`
-        (pairs of learning agents), `timed` (races timed on this machine), `worlds` (agents in the
-        worlds of a league or recovery), and `claims`, `story` and `finding` as text. What cannot be
-        computed yet is None, or empty.
+        (one per setting over its gaits), `curves` (learners of Figure 4, in blocks and in one go),
+        `versus` (pairs of learning agents), `timed` (races timed on this machine), `worlds`
+        (agents in the worlds of a league or recovery), and `claims`, `story` and `finding` as
+        text. What cannot be computed yet is None, or empty.
     """
     plan = _plan(config)
     settings = group_by_setting(plan, results)
@@ -77,7 +77,11 @@ def summarise(
         "parameters": list(plan.settings[0].parameters),
         "settings": [_setting(one, config, aside[one.setting.key]) for one in walked],
         "pooled": _pooled(walked, config),
-        "curves": [_curve(one, config.seed) for one in walked if one.setting.trial.blocks > 1],
+        "curves": [
+            _curve(one, config.seed)
+            for one in walked
+            if one.setting.role == "learner" and config.experiment == "figure4"
+        ],
         "versus": [] if is_disturbed else _versus(walked, config.seed),
         "timed": [_timed(one) for one in settings if one.setting.role == "timed" and one.succeeded],
         "worlds": compare_in_worlds(walked, config.seed, config.experiment) if is_disturbed else [],
@@ -154,7 +158,7 @@ def _curve(one: SettingResults, seed: int) -> dict[str, Any]:
     return {
         "key": one.setting.key,
         **setting_fields(one),
-        "steps": [one.setting.training.steps * (1 + number) for number in range(len(blocks))],
+        "steps": list(one.setting.walks_after[: len(blocks)]),
         **curve_entry(blocks, seed),
         "walkers": [None if limit is None else share_at_least(p, limit).value for p in blocks],
         "points_m": [list(points) for points in blocks],

@@ -59,7 +59,4 @@ def _row(trial: Trial, result: TrialResult) -> dict[str, Any]:
 
 def practised_steps(trial: Trial, number: int) -> int:
     """Return the steps of practice before one of a trial's distances."""
-    if trial.setting.role == "reference":
-        return 0
-    points = trial.setting.trial.evaluations
-    return points[number] if points else trial.setting.training.steps * (1 + number)
+    return 0 if trial.setting.role == "reference" else trial.setting.walks_after[number]

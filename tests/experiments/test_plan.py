@@ -23,8 +23,8 @@ def plan(experiment: str, **given: Any) -> Plan:
     [
         # 4 gaits × 2 readings × 2 robots: greedy and two-step, two practices, one race by the wall
         ("table1", 30, {"reference": 32, "learner": 30 * 32, "timed": 16}),
-        # 4 gaits × 2 readings
-        ("figure4", 30, {"reference": 8, "learner": 30 * 8}),
+        # 4 gaits × 2 readings, in blocks and in one go
+        ("figure4", 30, {"reference": 8, "learner": 30 * 16}),
         ("sweep", 2, {"reference": 4, "learner": 2 * 4}),
     ],
 )
@@ -51,7 +51,20 @@ def test_a_key_names_everything_that_differs_from_the_paper() -> None:
     assert keys[-1] == "front-back-vertical/commanded/compliant/q-learning/500/timed"
     (*_, one) = plan("sweep", seeds=12, alpha=(0.1,), divisions=(3,), steps=(40,)).trials()
     assert one.key == "front-back-vertical/measured/stiff/divisions=3/q-learning/40/alpha=0.1#11"
-    assert plan("figure4").settings[-1].key.endswith("/q-learning/8x250")
+    assert plan("figure4").settings[15].key.endswith("/q-learning/8x250")
+    assert plan("figure4").settings[-1].key.endswith("/q-learning/2000")
+
+
+def test_figure4_practises_the_steps_of_its_blocks_in_one_go_too() -> None:
+    laid_out = plan("figure4", seeds=1, agents=("q-learning", "sarsa"), gaits=("tripod",))
+    learners = [one for one in laid_out.settings if one.role == "learner"]
+    in_blocks, in_one_go = learners[:4], learners[4:]
+
+    assert {one.trial.blocks for one in in_blocks} == {8}
+    assert [one.training.agent for one in in_one_go] == [one.training.agent for one in in_blocks]
+    for one, blocks in zip(in_one_go, in_blocks, strict=True):
+        assert (one.trial.blocks, one.training.steps) == (1, 2000)
+        assert list(one.walks_after) == list(blocks.walks_after) == list(range(250, 2001, 250))
 
 
 @pytest.mark.parametrize("experiment", ["table1", "league"])

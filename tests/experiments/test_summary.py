@@ -61,6 +61,14 @@ def test_figure4_has_learning_curves_over_its_blocks() -> None:
     for seed in range(5):
         of_seed = [block[seed] for block in curve["points_m"]]
         assert of_seed == list(results[f"{key}#{seed}"].distances_m)
+    in_one_go = summary["curves"][2]
+    assert (curve["blocks"], in_one_go["blocks"]) == (8, 1)
+    assert in_one_go["steps"] == curve["steps"]
+    one_go_key = f"{LRO}/measured/stiff/q-learning/2000"
+    assert [block[0] for block in in_one_go["points_m"]] == list(
+        results[f"{one_go_key}#0"].distances_m
+    )
+    assert in_one_go["points_m"] != curve["points_m"]
     found = setting(summary, key)
     assert found["total"]["points_m"] == curve["points_m"][-1]
     assert found["finished"] is None

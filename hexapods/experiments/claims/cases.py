@@ -23,7 +23,9 @@ class Case:
         seed: the experiment's seed, used for every resampling.
         simulator: the simulator of all trials.
         parameters: names of the parameters that a sweep varies.
-        settings, pooled, curves, timed: this case's entries of the summary's lists.
+        settings, pooled, curves, timed: this case's entries of the summary's lists; of the curves
+            those in blocks, as the paper's are.
+        in_one_go: its curves of practices in one go, in which ε falls once.
     """
 
     observation: str
@@ -36,6 +38,7 @@ class Case:
     pooled: Sequence[Mapping[str, Any]]
     curves: Sequence[Mapping[str, Any]]
     timed: Sequence[Mapping[str, Any]]
+    in_one_go: Sequence[Mapping[str, Any]] = ()
 
     def setting(self, gait: str, steps: int, agent: str = PAPERS_AGENT) -> Mapping[str, Any] | None:
         """Return a setting's entry, or None if it has no trials yet."""
@@ -55,6 +58,9 @@ def cases_of(summary: Mapping[str, Any]) -> list[Case]:
     """Return all cases of a summary, in the experiment's order."""
     pairs = dict.fromkeys((one["observation"], one["robot"]) for one in summary["settings"])
     several = len({robot for _, robot in pairs}) > 1
+    parts = {name: summary[name] for name in ("settings", "pooled", "curves", "timed")}
+    parts["curves"] = [one for one in summary["curves"] if one["blocks"] > 1]
+    parts["in_one_go"] = [one for one in summary["curves"] if one["blocks"] == 1]
     return [
         Case(
             observation=observation,
@@ -64,12 +70,12 @@ def cases_of(summary: Mapping[str, Any]) -> list[Case]:
             simulator=summary["config"]["simulator"],
             parameters=summary["parameters"],
             **{
-                part: [
+                name: [
                     one
-                    for one in summary[part]
+                    for one in entries
                     if (one["observation"], one["robot"]) == (observation, robot)
                 ]
-                for part in ("settings", "pooled", "curves", "timed")
+                for name, entries in parts.items()
             },
         )
         for observation, robot in pairs

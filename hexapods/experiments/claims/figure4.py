@@ -1,7 +1,7 @@
 """The paper's claims about its Figure 4, the learning curves."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,9 +15,13 @@ from hexapods.experiments.labels import gait_name_with_papers
 from hexapods.experiments.measures import WALKER_SHARE
 from hexapods.experiments.statistics import (
     Interval,
+    Points,
     Verdict,
     bootstrap_exceeds,
+    interval,
+    iqm_interval,
     paired_interval,
+    pooled_iqm,
     share_at_least,
 )
 
@@ -60,10 +64,77 @@ def _shares(curve: Mapping[str, Any]) -> FloatArray:
     return np.asarray(at, dtype=np.float64) / float(curve["greedy_m"])
 
 
-def _judge_curve(find: Callable[[_Curve], CaseFinding]) -> Callable[[Case], CaseFinding | None]:
+class OneGo(NamedTuple):
+    """Q-learning's distance after all its steps in one go, beside that in blocks.
+
+    Attributes:
+        in_blocks, in_one_go: shares of greedy's distance over all gaits.
+        gain: by how much the one in one go is larger.
+        verdict: whether it is.
+    """
+
+    in_blocks: Interval
+    in_one_go: Interval
+    gain: Interval
+    verdict: Verdict
+
+
+def one_go(case: Case) -> OneGo | None:
+    """Compare a practice in which ε falls once with as many steps in blocks; None without both."""
+    blocks, whole = (_last_shares(curves) for curves in (case.curves, case.in_one_go))
+    if not blocks or not whole:
+        return None
+
+    def gain(*strata: FloatArray, axis: int = -1) -> FloatArray:
+        in_blocks = pooled_iqm(*strata[: len(blocks)], axis=axis)
+        return np.asarray(pooled_iqm(*strata[len(blocks) :], axis=axis) - in_blocks)
+
+    gained = interval((*blocks, *whole), gain, case.seed)
+    fewest = min(map(len, (*blocks, *whole)))
+    return OneGo(
+        iqm_interval(blocks, case.seed),
+        iqm_interval(whole, case.seed),
+        gained,
+        bootstrap_exceeds(gained, 0, fewest),
+    )
+
+
+def _last_shares(curves: Sequence[Mapping[str, Any]]) -> tuple[Points, ...]:
+    """Return each seed's share of greedy's distance at the end of Q-learning's curves, by gait."""
+    return tuple(
+        tuple(distance_m / float(one["greedy_m"]) for distance_m in one["points_m"][-1])
+        for one in curves
+        if one["agent"] == PAPERS_AGENT and one["greedy_m"] and one["steps"][-1:] == [LAST]
+    )
+
+
+def _beside_one_go(case: Case) -> str:
+    """Return a sentence about the practice in one go; empty where there is none yet."""
+    compared = one_go(case)
+    if compared is None:
+        return ""
+    return (
+        f" So it is in blocks, in each of which ε begins again at 1: in one go 2,000 steps come to "
+        f"{shares(compared.in_one_go)} of greedy's distance."
+    )
+
+
+def _judge_curve(
+    find: Callable[[_Curve], CaseFinding], more: Callable[[Case], str] = lambda _: ""
+) -> Callable[[Case], CaseFinding | None]:
+    """Return the function that judges a claim by the curve in blocks.
+
+    Args:
+        find: judges it.
+        more: a further sentence of its evidence, with a space before it.
+    """
+
     def find_in(case: Case) -> CaseFinding | None:
         curve = _Curve(case)
-        return find(curve) if curve.fewest else None
+        if not curve.fewest:
+            return None
+        finding = find(curve)
+        return finding._replace(evidence=finding.evidence + more(case))
 
     return find_in
 
@@ -134,13 +205,13 @@ FIGURE4_CLAIMS: Sequence[Claim] = (
         "flattens",
         "“the improvement flattens out quickly before 1000 steps of learning” (§5.1)",
         "The second thousand steps add less than a quarter of what the first brought.",
-        _judge_curve(_flattens),
+        _judge_curve(_flattens, _beside_one_go),
     ),
     Claim(
         "inclines",
         "“the plateau in Figure 4 is really a small incline” (§6)",
         "From 1,000 to 2,000 steps the curve still rises.",
-        _judge_curve(_inclines),
+        _judge_curve(_inclines, _beside_one_go),
     ),
     Claim(
         "approaches",

@@ -7,7 +7,8 @@ from hexapods.agents.appearance import title_of
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.text import counted, metres
 from hexapods.experiments.claims.cases import PAPERS_AGENT, Case
-from hexapods.experiments.formatting import listed, percent
+from hexapods.experiments.claims.figure4 import one_go
+from hexapods.experiments.formatting import listed, percent, shares
 from hexapods.experiments.labels import gait_name
 from hexapods.experiments.narrative.gaits import ODD_GAIT_HEADING, explain_odd_gait
 
@@ -78,11 +79,35 @@ def _mean_share(curves: Sequence[Curve], block: int) -> float:
     return ordered_sum(float(one["iqm_m"][block] / one["greedy_m"]) for one in curves) / len(curves)
 
 
+def compare_with_one_go(cases: Sequence[Case]) -> str | None:
+    """Compare the blocks, in which ε restarts, with a practice of as many steps in one go."""
+    compared = [(case, comparison) for case in cases if (comparison := one_go(case)) is not None]
+    if not compared:
+        return None
+    verdicts = {
+        "yes": "So the plateau is that of the restarted ε, not of the learner.",
+        "no": "So there the restarted ε costs nothing.",
+        "not established": "Whether one go is better there is not established.",
+    }
+    sentences = [
+        f"With {case.label} the blocks come to {shares(beside.in_blocks)} of greedy's distance "
+        f"after 2,000 steps, a practice in one go to {shares(beside.in_one_go)}: "
+        f"{shares(beside.gain)} more. {verdicts[beside.verdict]}"
+        for case, beside in compared
+    ]
+    return (
+        "The paper saves the Q-values after every 250 steps and goes on from them. Each block is a "
+        "training of its own, so ε begins again at 1 and falls to 0: eight times, so that the last "
+        "block explores as much as the first. The dotted curve is the same Q-learning in one go, "
+        f"in which ε falls once, from 1 to 0 over all 2,000 steps. {' '.join(sentences)}"
+    )
+
+
 def compare_agents(cases: Sequence[Case]) -> str | None:
     """Compare the final distances of the learning agents; None if there is only one."""
     sentences = []
     for case in cases:
-        pools = [one for one in case.pooled if one["relative"]]
+        pools = [one for one in case.pooled if one["relative"] and one["blocks"] != 1]
         if len({one["agent"] for one in pools}) > 1:
             shares = [
                 f"{title_of(one['agent'])} {percent(one['relative']['iqm'])}" for one in pools
@@ -95,6 +120,7 @@ def compare_agents(cases: Sequence[Case]) -> str | None:
 
 FIGURE4_NARRATIVE: Sequence[tuple[str, Callable[[Sequence[Case]], str | None]]] = (
     ("One seed misleads", describe_seed_spread),
+    ("The plateau and the restarted ε", compare_with_one_go),
     ("Two readings of the same robot", compare_observations),
     ("The agents", compare_agents),
     (ODD_GAIT_HEADING, explain_odd_gait),

@@ -61,6 +61,10 @@ def sheet(cases: Sequence[Case]) -> Picture:
     return Picture("figure4", "Distance against practice", alt, one)
 
 
+IN_ONE_GO = (0, (1.5, 1.5))
+"""Dashes of a practice in one go, shorter than those of greedy's line."""
+
+
 def highest(cases: Sequence[Case]) -> float:
     """Return the common upper limit of the distance axes [m]."""
     references = [
@@ -73,7 +77,7 @@ def highest(cases: Sequence[Case]) -> float:
     points = [
         point
         for case in cases
-        for one in case.curves
+        for one in (*case.curves, *case.in_one_go)
         for block in one["points_m"]
         for point in block
     ]
@@ -86,6 +90,9 @@ def draw(ax: Axes, case: Case, gait: str, highest_m: float) -> None:
     colour = agent_colours([one["agent"] for one in curves])
     for one in curves:
         _curve(ax, one, colour[one["agent"]], alone=len(curves) == 1)
+    for one in case.in_one_go:
+        if one["gait"] == gait and one["steps"]:
+            _one_go(ax, one, INK if len(curves) == 1 else colour[one["agent"]])
     greedy, best_known = (
         next((one[field] for one in curves if one[field]), None)
         for field in ("greedy_m", "best_known_m")
@@ -115,6 +122,23 @@ def _curve(ax: Axes, one: Curve, colour: str, alone: bool) -> None:
     ax.plot(one["steps"], one["iqm_m"], color=INK if alone else colour, lw=2, marker="o", ms=3.5)
 
 
+def _one_go(ax: Axes, one: Curve, colour: str) -> None:
+    """Draw a practice in one go: its middle, and its interval as bars, without its seeds."""
+    ax.plot(one["steps"], one["iqm_m"], color=colour, lw=1.6, ls=IN_ONE_GO)
+    if one["low_m"][0] is not None:
+        below, above = (
+            [abs(limit - middle) for limit, middle in zip(one[name], one["iqm_m"], strict=True)]
+            for name in ("low_m", "high_m")
+        )
+        ax.errorbar(
+            *(one["steps"], one["iqm_m"], [below, above]),
+            fmt="none",
+            ecolor=colour,
+            elinewidth=0.8,
+            capsize=2,
+        )
+
+
 def _lowest(curves: Sequence[Curve]) -> list[float]:
     return [0.0, *(min(block) * 1.1 for one in curves for block in one["points_m"])]
 
@@ -137,6 +161,10 @@ def _key(one: Figure, cases: Sequence[Case]) -> None:
             Patch(color=shade, alpha=0.4, lw=0, label="its 95 % interval"),
             Line2D([], [], color=shade, lw=0.9, alpha=0.6, label="one seed"),
         ]
+    for agent in dict.fromkeys(c["agent"] for case in cases for c in case.in_one_go):
+        label = f"{title_of(agent)} in one go: ε falls once"
+        shade = INK if alone else colour[agent]
+        handles.append(Line2D([], [], color=shade, lw=1.6, ls=IN_ONE_GO, label=label))
     if any(c["best_known_m"] for case in cases for c in case.curves):
         handles.append(Line2D([], [], color=INK, lw=THIN, label="best known"))
     one.legend(handles=handles, loc="outside lower center", ncols=3, labelcolor=MUTED)
@@ -144,14 +172,14 @@ def _key(one: Figure, cases: Sequence[Case]) -> None:
 
 def _alt(case: Case, gait: str) -> str:
     sentences = [
-        f"{title_of(one['agent'])}: "
+        f"{title_of(one['agent'])}{', in one go' if one['blocks'] == 1 else ''}: "
         + ", ".join(
             f"{metres(middle)} after {steps:,} steps"
             for steps, middle in zip(one["steps"], one["iqm_m"], strict=True)
         )
         + (f"; greedy {metres(one['greedy_m'])}" if one["greedy_m"] else "")
         + (f"; best known {metres(one['best_known_m'])}." if one["best_known_m"] else ".")
-        for one in case.curves
+        for one in (*case.curves, *case.in_one_go)
         if one["gait"] == gait and one["steps"]
     ]
     return f"{gait_name(gait)} with {case.label}. {' '.join(sentences) or 'No trials yet.'}"

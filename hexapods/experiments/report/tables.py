@@ -179,14 +179,18 @@ def _iqm_m(one: Mapping[str, Any] | None, kind: str) -> float | None:
 
 
 def curves(case: Case) -> Table:
-    """Build the table of Figure 4: one row per curve, at a few steps of practice."""
-    drawn = [one for one in case.curves if one["steps"]]
+    """Build the table of Figure 4: one row per curve, at a few steps of practice.
+
+    Those of practices in one go follow the curves in blocks.
+    """
+    drawn = [one for one in (*case.curves, *case.in_one_go) if one["steps"]]
     steps = drawn[0]["steps"] if drawn else []
     chosen = [at for at in (250, 500, 1000, 2000) if at in steps] or steps
     several = len({one["agent"] for one in drawn}) > 1
 
     def row(one: Mapping[str, Any]) -> tuple[str, Sequence[Cell]]:
         name = gait_name(one["gait"]) + (f", {title_of(one['agent'])}" if several else "")
+        name += ", in one go" if one["blocks"] == 1 else ""
         walkers = one["walkers"][-1]
         references = [one[field] for field in ("greedy_m", "best_known_m")]
         return name, [

@@ -187,3 +187,23 @@ def test_claims_are_added_as_trials_complete() -> None:
     assert summarise(tried, {})["claims"] == []
     some = summarise(tried, dict(list(results.items())[:60]))
     assert 0 < len(some["claims"]) < len(summarise(tried, results)["claims"])
+
+
+@pytest.mark.parametrize(
+    ("in_one_go_m", "told"),
+    [
+        (0.45, "So the plateau is that of the restarted ε, not of the learner."),
+        (0.4, "Whether one go is better there is not established."),
+        (0.3, "So there the restarted ε costs nothing."),
+    ],
+)
+def test_the_plateau_of_the_blocks_is_compared_with_one_go(in_one_go_m: float, told: str) -> None:
+    def far(one: TrialSetting) -> Callable[[int], float]:
+        return around(0.4 if one.trial.blocks > 1 else in_one_go_m, 0.02)
+
+    summary = summary_of("figure4", far, seeds=12, observations=("measured",))
+    story = {section["heading"]: section["text"] for section in summary["story"]}
+
+    assert story["The plateau and the restarted ε"].endswith(told)
+    for name in ("flattens", "inclines"):
+        assert "in one go 2,000 steps come to " in claim(summary, name)["evidence"]

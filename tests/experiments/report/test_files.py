@@ -114,7 +114,7 @@ def test_the_csv_has_a_row_for_every_block_of_every_trial() -> None:
     summary = summarise(tried, results)
     rows = _rows(_csv(summary, results))
     learners = [row for row in rows if row["role"] == "learner"]
-    assert len(learners) == 2 * 5 * 8
+    assert len(learners) == 2 * 2 * 5 * 8  # readings, in blocks and in one go, seeds, walks
     first = [row for row in learners if row["trial"] == learners[0]["trial"]]
     assert [int(row["practised_steps"]) for row in first] == list(range(250, 2001, 250))
     assert [float(row["distance_m"]) for row in first] == list(

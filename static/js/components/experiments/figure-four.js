@@ -36,6 +36,7 @@ export function FigureFour({ known }) {
       <p class="dim">
         ${sentence(UNIT_NAMES[unit.value])}, against steps of practice.
         Line: interquartile mean; band: its 95 % interval; thin: each seed.
+        ${here.some(isInOneGo) && " Dotted: as many steps in one go, in which ε falls once and not in each block."}
       </p>
       <${AgentKey} agents=${agents}><${LevelKey} levels=${keyOf(here)} /><//>
       <div class="gait-panels">
@@ -51,7 +52,7 @@ export function FigureFour({ known }) {
 /** References of a curve's gait. @typedef {{ greedy: number | null, best: number | null }} Levels */
 /**
  * A curve in the unit that is shown, with its references.
- * @typedef {Line & Pick<CurveOfSetting, "agent" | "gait" | "walkers" | "best_known_m"> & Levels} ShownCurve
+ * @typedef {Line & Pick<CurveOfSetting, "agent" | "blocks" | "gait" | "walkers" | "best_known_m"> & Levels} ShownCurve
  */
 
 /**
@@ -68,20 +69,26 @@ const keyOf = (curves) => [...new Map(curves.flatMap(levelsOf).map((one) => [one
 
 /** @param {ShownCurve} one */
 const lastOf = ({ ys }) => shown(ys.at(-1));
-/** @param {{ agent: string }} one */
-const titleOf = ({ agent }) => agentOf(agent).title;
+/** Whether it practised all its steps in one go. @param {{ blocks: number }} one */
+const isInOneGo = ({ blocks }) => blocks === 1;
+/** @param {{ agent: string, blocks: number }} one */
+const titleOf = (one) => `${agentOf(one.agent).title}${isInOneGo(one) ? ", in one go" : ""}`;
+/** Dashes of a practice in one go [px]. */
+const DOTTED = [2, 3];
 
 /** @param {{ gait: string, curves: ShownCurve[], axes: Pick<Parameters<typeof Chart>[0], "x" | "y"> }} props */
 function Gait({ gait, curves, axes }) {
   const levels = levelsOf(curves[0]);
-  const ends = curves.map((one) => `${titleOf(one)} ${lastOf(one)} after ${count(one.xs.at(-1) ?? 0, "step")}`);
+  const ends = curves.map((one) => `${one.name} ${lastOf(one)} after ${count(one.xs.at(-1) ?? 0, "step")}`);
   const lines = levels.map(({ name, value }) => `; ${name.toLowerCase()} ${shown(value)}`);
   const label = `${gaitTitle(gait)}: ${ends.join(", ")}${lines.join("")}`;
-  const walkers = curves.length === 1 ? walkersOf(curves[0]) : "";
+  const inBlocks = curves.filter((one) => !isInOneGo(one));
+  const walkers = inBlocks.length === 1 ? walkersOf(inBlocks[0]) : "";
   return html`
     <figure>
       <figcaption>
-        <b>${gaitTitle(gait)}</b><span class="dim num">${curves.map(lastOf).join(" · ")}${walkers}</span>
+        <b>${gaitTitle(gait)}</b><span class="dim num">${inBlocks.map(lastOf).join(" · ")}${walkers}${
+          curves.filter(isInOneGo).map((one) => ` · ${lastOf(one)} in one go`)}</span>
       </figcaption>
       <${Chart} name=${gaitTitle(gait)} label=${label} lines=${curves} marks=${asMarks(levels)} xs=${curves[0].xs}
         ...${axes} />
@@ -108,8 +115,10 @@ function toUnit(one) {
     ys: all(one.iqm_m),
     low: all(one.low_m),
     high: all(one.high_m),
-    seeds: one.points_m.map(all),
-    dots: true,
+    // Those of the blocks are enough to see how far seeds lie apart.
+    seeds: isInOneGo(one) ? [] : one.points_m.map(all),
+    dots: !isInOneGo(one),
+    dash: isInOneGo(one) ? DOTTED : [],
     greedy: inUnit(one.greedy_m, factor),
     best: inUnit(one.best_known_m, factor),
   };
