@@ -176,8 +176,8 @@ class LossView(Answer):
         behind_m: how far this lane is behind that one.
         steps: of the lane so far, each of which was simulated with every other move.
         practised_steps: before the race; null if a training of them was deleted.
-        tried: moves of the table that it had tried when it took its last step.
-        moves: in the table.
+        tried: moves, or landings, of the table that it had tried when it took its last step.
+        entries: in the table, and of what kind they are.
         states: different ones that it walked through.
         tried_there: moves of these states that it had tried.
         moves_there: in these states.
@@ -200,7 +200,8 @@ class LossView(Answer):
     steps: Count
     practised_steps: Count | None
     tried: Count
-    moves: Count
+    entries: Count
+    kind: Literal["moves", "landings"]
     states: Count
     tried_there: Count
     moves_there: Count

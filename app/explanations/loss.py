@@ -10,10 +10,13 @@ from typing import Any, Literal, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from app.storage.errors import Conflict
+from app.storage.database.store import RunStore
+from app.storage.errors import Conflict, NotFound
 from app.storage.run import Run
 from hexapods.agents.explanation import in_millimetres
+from hexapods.agents.landing_table import LandingTable
 from hexapods.agents.protocol import Tabular, Valuing
+from hexapods.agents.q_table import QTable
 from hexapods.assembly import build_simulator, sensor_noise
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.text import counted, whole
@@ -54,13 +57,15 @@ class Tried(NamedTuple):
     """How much of a learner's table it had tried, when it took its last step.
 
     Attributes:
-        tried, moves: moves of all states, and those that were tried.
+        tried, entries: values of its table, and those of moves or landings that were tried.
+        kind: whether the values are of moves or of landings.
         states: number of different states in which it stood in the race.
         tried_there, moves_there: moves of these states, and those that were tried.
     """
 
     tried: int
-    moves: int
+    entries: int
+    kind: Literal["moves", "landings"]
     states: int
     tried_there: int
     moves_there: int
@@ -100,6 +105,18 @@ def standing_of(
     }
 
 
+def practised_steps(store: RunStore, training_id: str | None) -> int | None:
+    """Return the steps of a training and of those that it continues; None if one was deleted."""
+    steps = 0
+    try:
+        while training_id is not None:
+            training = store.get(training_id)
+            steps, training_id = steps + training.done, training.continued_from
+    except NotFound:
+        return None
+    return steps
+
+
 def simulate(lane: WalkedLane) -> list[ComparedMove]:
     """Simulate all moves in each state of a lane's walk; for a worker process.
 
@@ -136,13 +153,18 @@ def count_tried(agent: ValuedTable, walked: Iterable[Cells]) -> Tried:
         walked: the states in which it stood in the race.
     """
     table, there = agent.table, list(dict.fromkeys(walked))
-    tried = sum(_tried(agent, cells)[0] for cells, _, _ in table.rows())  # whole numbers
     tried_there, moves_there = (
         sum(column)  # whole numbers
         for column in zip(*(_tried(agent, cells) for cells in there), strict=True)
     )
-    moves = table.states * table.groups * (table.cells - 1)
-    return Tried(tried, moves, len(there), tried_there, moves_there)
+    if isinstance(table, LandingTable):
+        tried = sum(visits > 0 for _, _, visits in table.rows())  # whole numbers
+        return Tried(tried, table.size, "landings", len(there), tried_there, moves_there)
+    stored: Iterable[Cells] = map(table.cells_at, range(table.states))
+    if isinstance(table, QTable):
+        stored = (cells for cells, _, _ in table.rows())
+    tried = sum(_tried(agent, cells)[0] for cells in stored)  # whole numbers
+    return Tried(tried, table.size, "moves", len(there), tried_there, moves_there)
 
 
 def _tried(agent: Valuing, cells: Cells) -> tuple[int, int]:
@@ -199,9 +221,9 @@ def _about_table(tried: Tried, practised_steps: int | None) -> str:
     )
     stood = "the state" if tried.states == 1 else f"the {whole(tried.states)} states"
     return (
-        f"{practice} it had tried {whole(tried.tried)} of the {whole(tried.moves)} moves in its "
-        f"table ({100 * tried.tried / tried.moves:.0f} %), and {whole(tried.tried_there)} of the "
-        f"{whole(tried.moves_there)} in {stood} that it walked through here."
+        f"{practice} it had tried {whole(tried.tried)} of the {whole(tried.entries)} {tried.kind} "
+        f"in its table ({100 * tried.tried / tried.entries:.0f} %), and {whole(tried.tried_there)} "
+        f"of the {whole(tried.moves_there)} moves in {stood} that it walked through here."
     )
 
 

@@ -18,6 +18,7 @@ from app.explanations.loss import (
     ValuedTable,
     WalkedLane,
     loss_as_json,
+    practised_steps,
     simulate,
     standing_of,
 )
@@ -26,7 +27,7 @@ from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.stopping import Stopping
 from app.jobs.turns import Turns
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Conflict, NotFound
+from app.storage.errors import Busy, Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import RUNNING, Run
 from app.storage.stored_tables import load_table
@@ -194,23 +195,12 @@ class Explanations:
                 raise Conflict(f"its {number:,} steps are too many: {error}", run.state) from error
             except InvalidInput as error:
                 raise Conflict(f"it cannot be walked again: {error}", run.state) from error
-            practised = self._practised_steps(run.lane_training_ids[lane])
+            practised = practised_steps(self._store, run.lane_training_ids[lane])
             numbers = _in(run, lambda: loss_as_json(compared, learner_before, practised))
             return {"run_id": run_id, "lane": lane, "agent": recording.agent, **standing, **numbers}
 
         key = (_version(run, number, steps), "loss", lane, number, json.dumps(standing))
         return self._answer(key, answer)
-
-    def _practised_steps(self, training_id: str | None) -> int | None:
-        """Return the steps of a training and of those that it continues; None if one is gone."""
-        steps = 0
-        try:
-            while training_id is not None:
-                training = self._store.get(training_id)
-                steps, training_id = steps + training.done, training.continued_from
-        except NotFound:
-            return None
-        return steps
 
     def _lane(self, run: Run, lane: int) -> LaneRecording:
         lanes = self._recordings.race(run.id)

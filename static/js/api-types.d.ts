@@ -604,7 +604,7 @@ export interface Curve {
   mean_m: number[];
 }
 /**
- * Learning curve of a setting: distances after each block of practice [m].
+ * Learning curve of a setting: distances after each block, or on the way in one go [m].
  */
 export interface CurveOfSetting {
   steps_per_episode: number | null;
@@ -2879,13 +2879,14 @@ export interface LossView {
    */
   practised_steps: number | null;
   /**
-   * moves of the table that it had tried when it took its last step.
+   * moves, or landings, of the table that it had tried when it took its last step.
    */
   tried: number;
   /**
-   * in the table.
+   * in the table, and of what kind they are.
    */
-  moves: number;
+  entries: number;
+  kind: "moves" | "landings";
   /**
    * different ones that it walked through.
    */

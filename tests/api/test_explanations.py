@@ -228,7 +228,7 @@ def test_a_learner_that_loses_is_told_why(api: Api, trained: dict[str, Any]) -> 
     LossView.model_validate(told)
     total_m = [lane["total_distance_m"] for lane in race["result"]["lanes"]]
 
-    assert (told["steps"], told["practised_steps"], told["moves"]) == (50, STEPS, 1500)
+    assert (told["steps"], told["practised_steps"], told["entries"]) == (50, STEPS, 1500)
     assert 0 < told["tried"] <= STEPS
     assert told["is_ranked"]
     assert told["behind_m"] > 0
