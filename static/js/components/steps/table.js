@@ -9,6 +9,7 @@ import { html } from "../elements.js";
 import { Heatmap } from "./heatmap.js";
 import { Landings } from "./landings.js";
 import { Navigator, Trouble, useMoment, Waiting } from "./navigator.js";
+import { SideBySide } from "./side-by-side.js";
 
 /** @import { Moment } from "../../steps.js" */
 /** @import { StateTable } from "../../types.js" */
@@ -20,6 +21,7 @@ export function Table() {
   return html`
     <div class="table-tab">
       <${Navigator} at=${at} />
+      <${SideBySide} />
       <${WholeTable} at=${at} />
     </div>
   `;
