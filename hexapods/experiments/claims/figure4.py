@@ -114,7 +114,7 @@ def _beside_one_go(case: Case) -> str:
     if compared is None:
         return ""
     return (
-        f" So it is in blocks, in each of which ε begins again at 1: in one go 2,000 steps come to "
+        f" That is in blocks, in each of which ε begins again at 1; in one go 2,000 steps come to "
         f"{shares(compared.in_one_go)} of greedy's distance."
     )
 

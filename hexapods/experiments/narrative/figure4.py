@@ -92,7 +92,7 @@ def compare_with_one_go(cases: Sequence[Case]) -> str | None:
     sentences = [
         f"With {case.label} the blocks come to {shares(beside.in_blocks)} of greedy's distance "
         f"after 2,000 steps, a practice in one go to {shares(beside.in_one_go)}: "
-        f"{shares(beside.gain)} more. {verdicts[beside.verdict]}"
+        f"a difference of {shares(beside.gain)}. {verdicts[beside.verdict]}"
         for case, beside in compared
     ]
     return (
