@@ -46,13 +46,13 @@ def test_greedy_makes_the_best_move_of_each_state() -> None:
     assert all(move.best_reward_m == move.reward_m for move in moves)
 
 
-def test_of_two_steps_ahead_some_steps_bring_less_than_they_could() -> None:
-    race = race_of("two-step")
+def test_of_random_steps_most_bring_less_than_they_could() -> None:
+    race = race_of("random-walk")
     (lane,) = walked(race)
     moves = compared(race, lane)
 
     assert all(move.best_reward_m >= move.reward_m for move in moves)
-    assert any(move.best_reward_m > move.reward_m for move in moves)
+    assert sum(move.best_reward_m > move.reward_m + 0.001 for move in moves) > 6  # of 12
 
 
 def test_noisy_sensors_say_the_same_again() -> None:
