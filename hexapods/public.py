@@ -13,6 +13,7 @@ from hexapods.agents.lookahead import Greedy as Greedy
 from hexapods.agents.lookahead import LookAhead as LookAhead
 from hexapods.agents.lookahead import TwoStep as TwoStep
 from hexapods.agents.mcts import Mcts as Mcts
+from hexapods.agents.multilevel_model import MultilevelModel as MultilevelModel
 from hexapods.agents.n_step_sarsa import NStepSarsa as NStepSarsa
 from hexapods.agents.posterior_sampling import PosteriorSampling as PosteriorSampling
 from hexapods.agents.prioritized_sweeping import PrioritizedSweeping as PrioritizedSweeping

@@ -23,6 +23,7 @@ from hexapods.agents.informed import Informed
 from hexapods.agents.linear_model import LinearModel
 from hexapods.agents.lookahead import Greedy, LookAhead, TwoStep
 from hexapods.agents.mcts import Mcts
+from hexapods.agents.multilevel_model import MultilevelModel
 from hexapods.agents.n_step_sarsa import NStepSarsa
 from hexapods.agents.posterior_sampling import PosteriorSampling
 from hexapods.agents.prioritized_sweeping import PrioritizedSweeping
@@ -62,6 +63,7 @@ OURS: Mapping[str, AgentClass] = {
     "afterstate-q": AfterstateQ,
     "afterstate-r-max": AfterstateRMax,
     "linear-model": LinearModel,
+    "multilevel-model": MultilevelModel,
     "greedy": Greedy,
     "two-step": TwoStep,
     "look-ahead": LookAhead,
