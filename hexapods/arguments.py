@@ -9,10 +9,12 @@ import numpy as np
 
 from hexapods.agents import registry
 from hexapods.agents.registry import AgentClass
+from hexapods.domain.creatures import own_gait
 from hexapods.domain.disturbance_documents import as_text, disturbance, parse_disturbance
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.gait import GaitSpec, read_gait
+from hexapods.domain.grid import FootGrid
 from hexapods.domain.model_robot import ModelRobot, model_robot
 from hexapods.domain.records import check_kept
 from hexapods.domain.robot import PRESETS, Robot, document_of, read_document, robot
@@ -22,6 +24,7 @@ from hexapods.files import path_of
 from hexapods.imports.child import read_robot_file
 from hexapods.imports.upload import MAX_UPLOAD_BYTES
 from hexapods.runs.config import WalkingProblem
+from hexapods.runs.recommendation import recommend
 
 C = TypeVar("C", bound=WalkingProblem)
 GAIT = "left-right-origin"
@@ -168,6 +171,30 @@ def load_robot(file: str | os.PathLike[str], name: str | None = None) -> Robot:
     if path.suffix.lower() != ".json":
         data = document_of(model_robot(read_robot_file(data, path.name).model, path.stem))
     return read_document(data, name or path.stem[:MAX_NAME])
+
+
+def recommended_agent(
+    robot: RobotLike = "stiff",
+    gait: GaitLike | None = None,
+    *,
+    divisions: int = FootGrid.divisions,
+) -> str:
+    """Return the name of the learner to begin with for a robot in a gait.
+
+    It follows from whether the robot stands while each group of legs swings (its support margin).
+
+    Args:
+        robot: as `train` takes it.
+        gait: as `train` takes it; by default one that suits the robot.
+        divisions: points along each side of the foot grid.
+
+    Raises:
+        UnknownName, InvalidInput: if an argument is not valid.
+    """
+    made = read_robot(robot)
+    gait = own_gait(made) if gait is None else read_gait(gait)
+    walk = WalkingProblem(gait=gait, robot=made, divisions=divisions)
+    return recommend(made, walk.resolved_gait, len(walk.grid)).agent
 
 
 def _refuse(name: str, valid: str, given: object) -> NoReturn:

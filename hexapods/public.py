@@ -34,6 +34,7 @@ from hexapods.agents.sarsa import Sarsa as Sarsa
 from hexapods.agents.sarsa_lambda import SarsaLambda as SarsaLambda
 from hexapods.agents.tabular import TabularLearner as TabularLearner
 from hexapods.arguments import load_robot as load_robot
+from hexapods.arguments import recommended_agent as recommended_agent
 from hexapods.domain import gait as _gait
 from hexapods.domain.disturbances import DeadBand as DeadBand
 from hexapods.domain.disturbances import Delay as Delay

@@ -199,3 +199,16 @@ def test_a_file_of_something_else_is_refused(
         path.write_bytes(content)
     with pytest.raises(hx.HexapodError, match=reason):
         hx.load(path)
+
+
+def test_a_recommended_learner_is_one_to_train_with() -> None:
+    """By default in the gait that suits the robot; what is not valid is refused by name."""
+    assert hx.recommended_agent("dog") == hx.recommended_agent() == "linear-model"
+    assert hx.recommended_agent({"n_legs": 3}) == hx.recommended_agent("dog", "bound")
+    agent = hx.recommended_agent("dog", "bound")
+    training = hx.train(agent, robot="dog", gait="bound", steps=5, simulator="kinematic")
+    assert training.config.agent == "multilevel-model"
+    with pytest.raises(hx.InvalidInput, match="stiff or compliant"):
+        hx.recommended_agent(4)  # type: ignore[arg-type]
+    with pytest.raises(hx.UnknownName, match="bound"):
+        hx.recommended_agent("dog", "hop")

@@ -42,6 +42,8 @@ class RobotOption(Described):
         azimuths_deg: directions of its legs in its own frame, anticlockwise.
         gait: a gait that suits it.
         gaits: names of the gaits that its legs can have.
+        recommended_agent: by each of these gaits the learner to begin with, on the usual foot grid;
+            `POST /robots/preview` says why, and of any gait and grid.
         built: parts in whose place a disturbance puts another value, as they were built.
     """
 
@@ -55,6 +57,7 @@ class RobotOption(Described):
     azimuths_deg: list[float]
     gait: AnyGait
     gaits: list[str]
+    recommended_agent: dict[str, str]
     built: dict[str, float]
 
 

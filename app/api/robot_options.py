@@ -8,10 +8,12 @@ from hexapods.domain import disturbances
 from hexapods.domain.creatures import Creature, own_gait
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import GAIT_TITLES, NAMED_GAITS, GaitSpec, gait_as_json, resolve
+from hexapods.domain.grid import FootGrid
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.robot import Robot, as_mapping, by_value
 from hexapods.domain.suggestions import usual_grid_side_m
 from hexapods.domain.text import counted
+from hexapods.runs.recommendation import recommend
 
 
 def gait_options(name: str) -> dict[str, Any]:
@@ -54,6 +56,7 @@ def stored_options(stored: StoredRobot) -> dict[str, Any]:
 def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
     legs = legs_of(made)
     numbers = range(1, len(legs) + 1)
+    gaits = [name for name in NAMED_GAITS if _divides(name, made)]
     return {
         "id": made.id,
         "hidden": False,
@@ -64,7 +67,11 @@ def _robot(made: Robot, gait: str | GaitSpec) -> dict[str, Any]:
         "limits_rad": [[joint.limits_rad for joint in legs.of_leg(number)] for number in numbers],
         "azimuths_deg": [*made.azimuths_deg],
         "gait": gait_as_json(gait),
-        "gaits": [name for name in NAMED_GAITS if _divides(name, made)],
+        "gaits": gaits,
+        "recommended_agent": {
+            name: recommend(made, resolve(name, made.azimuths_deg), len(FootGrid())).agent
+            for name in gaits
+        },
         "built": {part: getattr(made, part) for part in _replaced_parts()},
     }
 

@@ -222,4 +222,5 @@ def _sentences(known: Preview) -> list[str]:
         )
     elif known.tips:
         told.append("No other groups that were tried let it stand.")
+    told.append(f"Learner to begin with: {known.recommended_agent}. {known.recommended_because}")
     return told

@@ -19,6 +19,7 @@ from hexapods.domain.robot import legs_written_out, written_out
 from hexapods.domain.sums import ordered_sum
 from hexapods.domain.support import STANDS_M, Support
 from hexapods.runs.config import RACE_STEPS, WalkingProblem
+from hexapods.runs.recommendation import recommend
 
 _SIDE_STEP_M = 0.005
 """Grids are tried in steps of this size."""
@@ -108,6 +109,8 @@ class Preview(Record):
         safe_side_m: largest grid side with which every action is always possible; likewise.
         beside_grid: which legs cannot follow the grid, in a sentence; null if all can.
         better: groups to take instead; null if it does not tip, or tips with any.
+        recommended_agent: learner to begin with, by the support margin.
+        recommended_because: why, in a sentence.
     """
 
     gait: AnyGait
@@ -131,6 +134,8 @@ class Preview(Record):
     safe_side_m: float | None
     beside_grid: str | None
     better: BetterGroups | None
+    recommended_agent: str
+    recommended_because: str
 
 
 def preview(walk: WalkingProblem) -> Preview:
@@ -156,6 +161,7 @@ def preview(walk: WalkingProblem) -> Preview:
     states, actions = cells ** len(gait.groups), len(gait.groups) * (cells - 1)
     advance_m = law_m_per_step(gait, grid)
     spec = gait_spec(walk.gait)
+    recommended = recommend(robot, gait, cells)
     return Preview(
         gait=GaitSpec(spec.right_leg, spec.left_leg, groups=gait.groups),
         forward_deg=gait.forward_deg,
@@ -193,6 +199,8 @@ def preview(walk: WalkingProblem) -> Preview:
         safe_side_m=safe,
         beside_grid=_beside_grid(legs),
         better=_better(walk, support) if least < STANDS_M else None,
+        recommended_agent=recommended.agent,
+        recommended_because=recommended.reason,
     )
 
 

@@ -3252,6 +3252,12 @@ export interface RobotOption {
    */
   gaits: string[];
   /**
+   * by each of these gaits the learner to begin with, on the usual foot grid; `POST /robots/preview` says why, and of any gait and grid.
+   */
+  recommended_agent: {
+    [k: string]: string;
+  };
+  /**
    * parts in whose place a disturbance puts another value, as they were built.
    */
   built: {
@@ -3483,6 +3489,14 @@ export interface Preview {
    * groups to take instead; null if it does not tip, or tips with any.
    */
   better: BetterGroups | null;
+  /**
+   * learner to begin with, by the support margin.
+   */
+  recommended_agent: string;
+  /**
+   * why, in a sentence.
+   */
+  recommended_because: string;
 }
 /**
  * Value printed in the paper [m], and its quantile among the seeds.

@@ -5,7 +5,7 @@ import { listed } from "./format.js";
 import { makeTexts, parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
 import { ignored, page } from "./page-state.js";
 import { linkedText, unlinked } from "./robots.js";
-import { agentOf, bounded, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
+import { agentOf, bounded, isClosed, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
 import { options, role, served } from "./store.js";
 
 /** @import { Parsed } from "./parse.js" */
@@ -187,11 +187,31 @@ export const setFields = (changes) => batch(() => {
 /** @type {(field: string, value: FormValue) => void} */
 export const setField = (field, value) => setFields({ [field]: value });
 
+/** Whether a person or a link has chosen the learner; else the page offers one that suits the body. */
+export const learnerIsChosen = signal(false);
+
+/** Choose the learner. @param {string} agent */
+export const chooseLearner = (agent) => batch(() => {
+  learnerIsChosen.value = true;
+  takeLearner(agent);
+});
+
 /**
- * Choose the learner. It takes the lane of the one before it, unless it has its own.
+ * Offer a learner for the body: it is taken unless a person has chosen one, or a lesson's card sets it. Without one it
+ * is the server's default.
+ * @param {string | null} agent
+ */
+export function offerLearner(agent) {
+  const offered = agent ?? served().defaults.training.agent;
+  const isFree = !learnerIsChosen.value && !isReadOnly.value && page.lesson.value === null && !isClosed("agent");
+  if (isFree && offered !== form.value.agent && learns(offered)) takeLearner(offered);
+}
+
+/**
+ * Take a learner into the form. It takes the lane of the one before it, unless it has its own.
  * @param {string} agent
  */
-export function chooseLearner(agent) {
+function takeLearner(agent) {
   const { lanes, agent: before } = form.value;
   const isSet = texts().peek().has("lanes") && !lanes.includes(agent);
   setFields({ agent, ...(isSet ? { lanes: lanes.map((lane) => (lane === before ? agent : lane)) } : {}) });
@@ -257,6 +277,7 @@ export const openForm = () => batch(() => {
   const others = given.filter(([field]) => !(field in known)).map((part) => part.join("="));
   ignored.query.value = [...ignored.query.peek(), ...others];
   page.form.value = new URLSearchParams(given.filter(([field]) => field in known));
+  learnerIsChosen.value = page.form.peek().has("agent");
   // Of a lesson's link what is typed goes before what the card presets, the default too.
   if (page.lesson.peek() === null) leaveOutDefaults();
 });

@@ -1,7 +1,7 @@
 // What is known of the form's robot, gait and foot grid before anything runs: support, reach, states, speed.
-import { signal } from "@preact/signals";
+import { effect, signal, untracked } from "@preact/signals";
 import { previewRobot } from "./api.js";
-import { bodyFields, setField, wrong } from "./form.js";
+import { bodyFields, offerLearner, setField, wrong } from "./form.js";
 import { listed, metres, millimetres, whole } from "./format.js";
 import { keepAnswer } from "./steps.js";
 import { connection, options } from "./store.js";
@@ -15,15 +15,32 @@ export const preview = signal({ answer: null, error: null, again: false });
 
 const BODY_FIELDS = ["gait", "robot", "divisions", "grid_side_m"];
 
-/** Keep the preview of the form, until the function that is returned is called. */
-export const followPreview = () => keepAnswer(
-  () => {
-    const isKnown = connection.value === "live" && options.value && !BODY_FIELDS.some((field) => field in wrong.value);
-    return isKnown ? JSON.stringify(bodyFields()) : "";
-  },
-  (key) => previewRobot(JSON.parse(key)),
-  preview,
-);
+/** Keep the preview of the form, and offer a learner by it, until the function that is returned is called. */
+export function followPreview() {
+  const stops = [
+    keepAnswer(
+      () => {
+        const isKnown = connection.value === "live" && options.value
+          && !BODY_FIELDS.some((field) => field in wrong.value);
+        return isKnown ? JSON.stringify(bodyFields()) : "";
+      },
+      (key) => previewRobot(JSON.parse(key)),
+      preview,
+    ),
+    effect(() => {
+      const { answer } = preview.value;
+      if (answer) untracked(() => offerLearner(offeredFor(answer)));
+    }),
+  ];
+  return () => stops.forEach((stop) => stop());
+}
+
+/**
+ * The learner that the form has for a body unless a person chooses one: where it tips the recommended one, since the
+ * usual ones hardly walk it; else, null, the server's default.
+ * @param {Preview} known
+ */
+export const offeredFor = ({ tips, recommended_agent }) => (tips ? recommended_agent : null);
 
 /** How it stands and how fast it is by the law, in a line. @param {Preview} known */
 export function inWords({ states, actions, tips, margin_m, law_m }) {

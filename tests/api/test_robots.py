@@ -34,6 +34,21 @@ def test_a_body_of_ones_own_that_tips_is_offered_other_groups(api: Api) -> None:
     assert known["better"]["margin_m"] >= -1e-6
 
 
+def test_a_learner_is_recommended_for_body_and_gait(api: Api) -> None:
+    """The options have it for the named gaits of each robot, as the preview has it of any gait."""
+    options = api.call("GET", "/options").json()
+    learners = {agent["name"] for agent in options["agents"] if agent["learns"]}
+    by_robot = {robot["name"]: robot["recommended_agent"] for robot in options["robots"]}
+    for robot in options["robots"]:
+        assert [*robot["recommended_agent"]] == robot["gaits"]
+        assert {*robot["recommended_agent"].values()} <= learners
+    for robot, gait in (("dog", "trot"), ("dog", "bound"), ("stiff", "pace")):
+        known = told(api, {"gait": gait, "robot": robot})
+        assert known["recommended_agent"] == by_robot[robot][gait]
+        assert ("It tips" in known["recommended_because"]) == known["tips"]
+    assert by_robot["dog"]["trot"] != by_robot["dog"]["bound"]
+
+
 def test_the_body_is_written_out_with_its_grid(api: Api) -> None:
     known = told(api, {"gait": "trot", "robot": "dog"})
 

@@ -26,6 +26,7 @@ def test_a_robot_that_tips_is_told_so_and_what_would_stand(tmp_path: Path) -> No
     assert "0.67 m in 50" in shown
     assert "It tips: the least support margin is -173 mm." in shown
     assert "With the groups [1, 3] [2, 4] it stands: 0 mm, 25 states." in shown
+    assert "Learner to begin with: multilevel-model. It tips while a group swings" in shown
 
 
 def test_a_robot_is_shown_with_the_gait_that_suits_it(tmp_path: Path) -> None:

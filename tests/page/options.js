@@ -126,12 +126,12 @@ export const OPTIONS = {
     {
       ...described("stiff", "Stiff"), ...BUILT_IN, joints: jointsOf(6), limits_rad: limitsOf(6),
       robot: { preset: "stiff" },
-      gait: "tripod", gaits: ["tripod", "wave"],
+      gait: "tripod", gaits: ["tripod", "wave"], recommended_agent: { tripod: "learner", wave: "learner" },
       azimuths_deg: [0, 60, 120, 180, 240, 300], built: { friction: 1 },
     },
     {
       ...described("dog", "Dog"), ...BUILT_IN, joints: jointsOf(4), limits_rad: limitsOf(4),
-      robot: { preset: "dog" }, gaits: ["wave"],
+      robot: { preset: "dog" }, gaits: ["wave"], recommended_agent: { wave: "tracer" },
       azimuths_deg: [-60, 60, 120, -120], built: { friction: 1 },
       gait: { right_leg: 1, left_leg: 2, groups: [[1, 3], [2, 4]] },
     },

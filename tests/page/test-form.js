@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  chooseLearner, chooseRobot, enter, form, isReadOnly, mistakes, openForm, raceBody, setField, setFields, stageTexts,
-  trainingBody, tryOwnSettings, whatIfBody, wrong,
+  chooseLearner, chooseRobot, enter, form, isReadOnly, mistakes, offerLearner, openForm, raceBody, setField, setFields,
+  stageTexts, trainingBody, tryOwnSettings, whatIfBody, wrong,
 } from "../../static/js/form.js";
 import { ignored, page } from "../../static/js/page-state.js";
 import { options, role } from "../../static/js/store.js";
@@ -42,6 +42,37 @@ test("a robot brings the gait that suits it, unless another one was chosen that 
   assert.equal(form.value.gait, "wave");
   chooseRobot(/** @type {any} */ ({ preset: "dog", friction: 0.3 }));
   assert.equal(form.value.gait, "wave", "what a robot of one's own can have is told by the server");
+});
+
+test("a learner is offered for a body, and the server's default for the next one that stands", () => {
+  offerLearner("tracer");
+  assert.equal(form.value.agent, "tracer");
+  assert.equal(String(inLink()), "agent=tracer", "the link is that of the same learner");
+  offerLearner(null);
+  assert.equal(form.value.agent, OPTIONS.defaults.training.agent);
+  offerLearner("greedy");
+  assert.equal(form.value.agent, OPTIONS.defaults.training.agent, "that learns nothing");
+});
+
+test("a learner that a person or a link has chosen is never replaced", () => {
+  chooseLearner(OPTIONS.defaults.training.agent);
+  offerLearner("tracer");
+  assert.equal(form.value.agent, OPTIONS.defaults.training.agent);
+
+  open("agent=tracer");
+  offerLearner(null);
+  assert.equal(form.value.agent, "tracer");
+});
+
+test("no learner is offered to a spectator, nor in a lesson", () => {
+  role.value = "spectator";
+  offerLearner("tracer");
+  assert.equal(page.form.value.has("agent"), false);
+  role.value = "operator";
+  page.lesson.value = "first";
+  offerLearner("tracer");
+  page.lesson.value = null;
+  assert.equal(page.form.value.has("agent"), false);
 });
 
 test("a link has what was changed, and is clean again when the form is", () => {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { form, openForm } from "../../static/js/form.js";
 import { page } from "../../static/js/page-state.js";
-import { inWords, moveLeg, objections } from "../../static/js/preview.js";
+import { inWords, moveLeg, objections, offeredFor } from "../../static/js/preview.js";
 import { options } from "../../static/js/store.js";
 import { OPTIONS } from "./options.js";
 
@@ -28,6 +28,12 @@ test("what speaks against a robot is said at once: reach, tipping, tables that d
   assert.equal(reach, "Leg 2 does not reach.");
   assert.match(tip, /^It tips while legs 1\+2 and 3\+4 swing/);
   assert.match(table, /^A table of 2.000.000 values is too large/);
+});
+
+test("the recommended learner is offered where a body tips; else the usual one is left", () => {
+  const known = { ...STANDS, recommended_agent: "tracer" };
+  assert.equal(offeredFor(known), null);
+  assert.equal(offeredFor({ ...known, tips: true }), "tracer");
 });
 
 test("a leg moves to the next group, and after the last one begins its own", () => {

@@ -1,5 +1,6 @@
 """What is told of a walking problem before anything runs."""
 
+import re
 from typing import Any
 
 import pytest
@@ -67,6 +68,35 @@ def test_a_robot_that_tips_is_offered_other_groups() -> None:
     assert pace.better.margin_m == pytest.approx(0.125)
     assert pace.better.states == 25
     assert not told(pace.better.gait).tips
+
+
+@pytest.mark.parametrize(
+    ("gait", "written", "agent", "because"),
+    [
+        ("left-right-origin", "stiff", "linear-model", "stands .* 125 mm"),
+        ("tripod", "ant", "linear-model", "stands"),
+        ("trot", "dog", "linear-model", r"\(support margin 0 mm\)"),
+        ("bound", "stiff", "multilevel-model", "tips .* −"),
+        ("one-by-one", {"n_legs": 3}, "multilevel-model", "which group moved"),
+    ],
+)
+def test_a_learner_is_recommended_by_the_support_margin(
+    gait: str, written: Any, agent: str, because: str
+) -> None:
+    known = told(gait, written)
+
+    assert known.recommended_agent == agent
+    assert known.tips == (agent == "multilevel-model")
+    assert re.search(because, known.recommended_because)
+
+
+def test_a_recommended_learner_takes_the_problem() -> None:
+    """A body that tips, with too many pairs to plan for, is left to one that does not plan."""
+    known = told("one-by-one", {"n_legs": 3}, divisions=6)
+
+    assert known.tips
+    assert known.recommended_agent == "linear-model"
+    assert "too many" in known.recommended_because
 
 
 def test_where_no_groups_help_none_are_offered() -> None:

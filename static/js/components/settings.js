@@ -1,13 +1,13 @@
 // The settings of a run. Those of the learner that are live also change a training that runs.
 import { tune } from "../live-changes.js";
 import { presentRates, rateInWords } from "../training.js";
-import { chooseLearner, chooseRobot, enter, form, setField, wrong, isReadOnly } from "../form.js";
+import { chooseRobot, enter, form, setField, wrong, isReadOnly } from "../form.js";
 import { count, listed } from "../format.js";
 import { liveTraining, trainingInView } from "../on-stage.js";
 import { numberOfLegs } from "../robots.js";
 import { isOperator } from "../selectors.js";
 import {
-  agentOf, beginningOf, fullTitle, furtherSettings, isAllowed, isClosed, kindOf, laneSettings, learners,
+  agentOf, beginningOf, fullTitle, furtherSettings, isAllowed, isClosed, kindOf, laneSettings,
   mainSettings, PRACTICE_FIELDS, quantityOf, ROBOT_FIELDS, settingOf, sliderOf,
 } from "../settings.js";
 import { evaluations, options, served } from "../store.js";
@@ -21,6 +21,7 @@ import { HexapodGlyph, html } from "./elements.js";
 import {
   attributesOf, closable, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
+import { Learner } from "./learner.js";
 import { Disturbances, WorldPicker } from "./world.js";
 
 /** @import { Changed, Run, SettingOption, SettingValue } from "../types.js" */
@@ -111,11 +112,6 @@ const SeedAndObservation = () => html`
     <${SelectField} field="observation" label="Observation"
       choices=${choicesOf(options.value?.observations, observationTitle)} />
   </div>
-`;
-
-const Learner = () => html`
-  <${SelectField} field="agent" label="Learner" onValue=${chooseLearner} words=${agentOf(form.value.agent).description}
-    choices=${learners.value.map(({ name, title }) => [name, title])} />
 `;
 
 const PracticeSteps = () => html`
