@@ -41,6 +41,36 @@ def test_a_creature_brings_its_gait_is_told_beforehand_and_walks(
     assert training["config"]["gait"] == "tetrapod"
 
 
+def test_a_body_that_tips_is_offered_its_learner_and_a_choice_of_ones_own_stays(
+    dashboard: Dashboard, server: Serving
+) -> None:
+    page = dashboard.page
+    dashboard.open(f"{server.address}?depth=study&tab=train")
+    learner = page.get_by_label("Learner", exact=True)
+    told = page.get_by_role("status").filter(has_text="for this body")
+    expect(told).to_contain_text("Linear model is recommended for this body. It stands")
+    expect(learner).to_have_value("q-learning")
+
+    page.get_by_role("radio", name="Bound").check(force=True)
+    expect(learner).to_have_value("multilevel-model")
+    expect(told).to_contain_text("Multilevel model is offered for this body. It tips while")
+    for theme in ("dark", "light"):
+        page.emulate_media(color_scheme=theme)
+        assert dashboard.violations() == []
+    page.get_by_role("radio", name="Tripod").check(force=True)
+    expect(learner).to_have_value("q-learning")
+
+    learner.select_option("sarsa")
+    page.get_by_role("radio", name="Bound").check(force=True)
+    expect(told).to_contain_text("Multilevel model is recommended for this body. It tips while")
+    expect(learner).to_have_value("sarsa")
+    told.get_by_role("button", name="Take it").click()
+    expect(learner).to_have_value("multilevel-model")
+    page.get_by_role("radio", name="Tripod").check(force=True)
+    expect(told).to_contain_text("Linear model is recommended")
+    expect(learner).to_have_value("multilevel-model")
+
+
 def test_what_tips_is_offered_other_groups_and_legs_are_moved_between_them(
     dashboard: Dashboard, server: Serving
 ) -> None:
