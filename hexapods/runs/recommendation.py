@@ -59,4 +59,4 @@ def recommend(robot: Robot, gait: Gait, cells: int) -> Recommendation:
 
 
 def _millimetres(metres: float) -> str:
-    return f"{round(1000 * metres) or 0} mm".replace("-", "−")
+    return f"{round(1000 * metres) or 0}\N{NO-BREAK SPACE}mm".replace("-", "−")

@@ -73,9 +73,9 @@ def test_a_robot_that_tips_is_offered_other_groups() -> None:
 @pytest.mark.parametrize(
     ("gait", "written", "agent", "because"),
     [
-        ("left-right-origin", "stiff", "linear-model", "stands .* 125 mm"),
+        ("left-right-origin", "stiff", "linear-model", "stands .* 125.mm"),
         ("tripod", "ant", "linear-model", "stands"),
-        ("trot", "dog", "linear-model", r"\(support margin 0 mm\)"),
+        ("trot", "dog", "linear-model", r"\(support margin 0.mm\)"),
         ("bound", "stiff", "multilevel-model", "tips .* −"),
         ("one-by-one", {"n_legs": 3}, "multilevel-model", "which group moved"),
     ],
