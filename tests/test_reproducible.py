@@ -44,6 +44,7 @@ DIGESTS = {
     "r-max": "4429de9c25ea",
     "posterior-sampling": "3d0d0585fbc2",
     "linear-model": "4f1b0571cbcc",
+    "multilevel-model": "15500c0bc749",
     "greedy": "41057ef4948b",
     "two-step": "41057ef4948b",
     "look-ahead": "41057ef4948b",
