@@ -35,6 +35,9 @@ from hexapods.agents.sarsa_lambda import SarsaLambda as SarsaLambda
 from hexapods.agents.tabular import TabularLearner as TabularLearner
 from hexapods.arguments import load_robot as load_robot
 from hexapods.arguments import recommended_agent as recommended_agent
+from hexapods.benchmarks import Benchmark as Benchmark
+from hexapods.benchmarks import TaskScore as TaskScore
+from hexapods.benchmarks import benchmark as benchmark
 from hexapods.domain import gait as _gait
 from hexapods.domain.disturbances import DeadBand as DeadBand
 from hexapods.domain.disturbances import Delay as Delay

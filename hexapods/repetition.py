@@ -225,7 +225,7 @@ def experiment(
     from hexapods.experiments.summary import summarise  # noqa: PLC0415  # SciPy takes a second
 
     check_callable("on_trial", on_trial)
-    _check_main_module()
+    check_main_module()
     config = check_kept(experiment_config(name, _read(given)))
     spec = ClusterSpec(workers=workers)
     kept: AbstractContextManager[Progress] = (
@@ -246,7 +246,7 @@ def experiment(
     return done
 
 
-def _check_main_module() -> None:
+def check_main_module() -> None:
     """Check that a program which defines agents is not one that its processes would run again.
 
     Raises:
@@ -284,7 +284,7 @@ def _read(given: Mapping[str, Any]) -> dict[str, Any]:
         name: plain(value) if name in _SINGLE else values_of(value) for name, value in given.items()
     }
     readers = {
-        "agents": _agent_of_processes,
+        "agents": agent_of_processes,
         "robots": read_robot,
         "gaits": read_gait,
         "worlds": _world,
@@ -294,7 +294,7 @@ def _read(given: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
-def _agent_of_processes(given: str | AgentClass) -> str:
+def agent_of_processes(given: str | AgentClass) -> str:
     """Return the name of an agent that the processes of an experiment can import.
 
     Raises:

@@ -1,6 +1,7 @@
 """The `hexapods` command line: each command parses its options and makes one call.
 
-Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `best-known`, `runs` (list,
+Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `benchmark`,
+`best-known`, `runs` (list,
 show, delete; `run_files` and `servos` have its verbs that write files), `robots` (list, show,
 export), `export`, `imports`, `verify`, `doctor` (with checks in `machine_checks` and
 `data_checks`), `bench` (with the measurements in `benchmarks`).
@@ -35,6 +36,7 @@ COMMANDS = {
     "experiment": "experiment",
     "sweep": "sweep",
     "tune": "tune",
+    "benchmark": "benchmark",
     "best-known": "best_known",
     "runs": "runs",
     "robots": "robots",

@@ -82,9 +82,12 @@ class CommandParser(argparse.ArgumentParser):
     Attributes:
         offers_settings: whether the parser has options for the agents' settings.
         takes_lists: whether such an option takes several values, separated by commas.
+        takes_agent_first: whether the agent is an argument, and no option.
+        setting_flags: by name of a setting its option, where the command has one of that name.
     """
 
-    offers_settings = takes_lists = False
+    offers_settings = takes_lists = takes_agent_first = False
+    setting_flags: Mapping[str, str] = MappingProxyType({})
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Add the options of the agents' settings, then parse."""
@@ -93,6 +96,8 @@ class CommandParser(argparse.ArgumentParser):
             agent_parser.add_argument("--agent", action="append", default=[])
             given, _ = agent_parser.parse_known_args(args)
             named = [name for text in given.agent for name in split(text)]
+            if self.takes_agent_first:
+                named = [text for text in args or () if text in usable_agents() or ":" in text][:1]
             own: Mapping[str, Sequence[DeclaredSetting]] = {}
             with contextlib.suppress(HexapodError):  # the command reports the unknown agent
                 own = settings_by_name(named or [TrainingConfig.agent])
@@ -112,7 +117,8 @@ class CommandParser(argparse.ArgumentParser):
             if self.takes_lists:
                 add_list(group, setting, read)
             else:
-                group.add_argument(flag(name), type=read, help=_help(setting))
+                option = self.setting_flags.get(name, flag(name))
+                group.add_argument(option, dest=name, type=read, help=_help(setting))
         self.set_defaults(agent_settings=tuple({**every, **own}))
 
 
