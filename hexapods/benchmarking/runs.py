@@ -1,11 +1,11 @@
 """Runs of a benchmark: for each task, budget and seed a training from scratch and a frozen walk."""
 
-from collections.abc import Callable, Generator, Iterable, Mapping
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from hexapods.agents.registry import check_problem
+from hexapods.agents.registry import check_problem, find, parameter_names
 from hexapods.assembly import build_simulator
 from hexapods.benchmarking.config import BenchmarkConfig
 from hexapods.benchmarking.protocol import PLAIN_SEED, BestKnown, Task, tasks_of
@@ -37,11 +37,6 @@ class Run(NamedTuple):
     budget: int
     number: int
 
-    @property
-    def key(self) -> str:
-        """Unique name of the run."""
-        return f"{self.task}/{self.budget}#{self.number}"
-
 
 class RunResult(NamedTuple):
     """Result of a run.
@@ -63,13 +58,11 @@ class TaskPlan:
     Attributes:
         task: the task.
         walk: its walking problem.
-        settings: by budget the setting of its trials; none if the agent cannot walk the task.
-        error: why it cannot; None if it can.
+        error: why the agent cannot walk it; None if it can.
     """
 
     task: Task
     walk: WalkingProblem
-    settings: Mapping[int, TrialSetting]
     error: str | None = None
 
 
@@ -81,25 +74,29 @@ def plan_tasks(config: BenchmarkConfig) -> list[TaskPlan]:
 def _task_plan(config: BenchmarkConfig, task: Task) -> TaskPlan:
     walk = task.walk(config.seed, config.chosen.tolerance)
     check_reach(walk.robot, walk.resolved_gait, walk.grid)
-    trainings = {budget: _training(config, walk, budget) for budget in config.budgets}
     try:
         check_problem(config.agent, problem_of(walk), config.settings)
     except HexapodError as error:
-        return TaskPlan(task, walk, {}, message(str(error)))
-    settings = {
-        budget: TrialSetting(
-            key=f"{task.name}/{budget}",
-            role="learner" if config.learns else "reference",
-            robot=walk.robot.name,
-            trial=TrialConfig(
-                training=training,
-                blocks=int(config.learns),
-                evaluations=(budget,) if config.learns else (),
-            ),
-        )
-        for budget, training in trainings.items()
-    }
-    return TaskPlan(task, walk, settings)
+        return TaskPlan(task, walk, message(str(error)))
+    return TaskPlan(task, walk)
+
+
+def _trial(config: BenchmarkConfig, plan: TaskPlan, runs: Sequence[Run]) -> Trial:
+    """Return the trial of runs of a task that differ in their budget only, ascending."""
+    budgets = tuple(run.budget for run in runs)
+    number = runs[0].number
+    setting = TrialSetting(
+        key=f"{plan.task.name}/{'+'.join(map(str, budgets))}",
+        role="learner" if config.learns else "reference",
+        robot=plan.walk.robot.name,
+        trial=TrialConfig(
+            training=_training(config, plan.walk, budgets[-1]),
+            blocks=int(config.learns),
+            evaluations=budgets if config.learns else (),
+        ),
+    )
+    seed = trial_seed(config.seed, _LEAGUE, number)
+    return Trial(f"{setting.key}#{number}", setting, number, seed)
 
 
 def _training(config: BenchmarkConfig, walk: WalkingProblem, budget: int) -> TrainingConfig:
@@ -146,27 +143,54 @@ def run_all(
         ClusterLost: if no worker can be started.
     """
     by_name = {plan.task.name: plan for plan in plans}
-    pending: dict[str, Run] = {}
-    trials = []
+    possible: list[Run] = []
     for run in runs:
-        plan = by_name[run.task]
-        if plan.error is not None:
-            yield run, RunResult(0.0, plan.error)
-            continue
-        seed = trial_seed(config.seed, _LEAGUE, run.number)
-        trials.append(Trial(run.key, plan.settings[run.budget], run.number, seed))
-        pending[run.key] = run
-    with closing(run_trials(trials, spec, may_continue)) as outcomes:
-        for outcome in outcomes:
-            yield pending[outcome.key], _result(outcome)
+        reason = by_name[run.task].error
+        if reason is None:
+            possible.append(run)
+        else:
+            yield run, RunResult(0.0, reason)
+    parts = _practised_together(possible) if _ignores_length(config) else [[r] for r in possible]
+    while parts:
+        trials = [_trial(config, by_name[part[0].task], part) for part in parts]
+        pending = {trial.key: part for trial, part in zip(trials, parts, strict=True)}
+        parts = []
+        with closing(run_trials(trials, spec, may_continue)) as outcomes:
+            for outcome in outcomes:
+                part = pending[outcome.key]
+                results = _results(outcome, len(part))
+                if results is None:
+                    parts += [[run] for run in part]  # shorter ones may succeed
+                else:
+                    yield from zip(part, results, strict=True)
 
 
-def _result(outcome: Outcome) -> RunResult:
-    if outcome.result is None:
-        return RunResult(0.0, message(outcome.set_aside or "it has no result"))
-    if outcome.result.failure is not None:
-        return RunResult(0.0, message(outcome.result.failure))
-    return RunResult(outcome.result.distances_m[-1])
+def _ignores_length(config: BenchmarkConfig) -> bool:
+    """Whether an agent does not know how long it will practise.
+
+    Then what it has learned after some steps of a longer practice is what it learns in a practice
+    of so many steps, and one practice serves all budgets.
+    """
+    return config.learns and "steps" not in parameter_names(find(config.agent))
+
+
+def _practised_together(runs: Iterable[Run]) -> list[list[Run]]:
+    """Return runs by task and seed, each with its budgets ascending."""
+    by_practice: dict[tuple[str, int], list[Run]] = {}
+    for run in sorted(runs, key=lambda run: (run.number, run.budget)):
+        by_practice.setdefault((run.task, run.number), []).append(run)
+    return list(by_practice.values())
+
+
+def _results(outcome: Outcome, count: int) -> list[RunResult] | None:
+    """Return the results of a trial's runs; None if it failed, and has more than one."""
+    done = outcome.result
+    failure = outcome.set_aside if done is None else done.failure
+    if done is not None and failure is None:
+        return [RunResult(distance_m) for distance_m in done.distances_m]
+    if count > 1:
+        return None
+    return [RunResult(0.0, message(failure or "it has no result"))]
 
 
 def best_known_of(config: BenchmarkConfig, plan: TaskPlan, threads: int = 1) -> BestKnown:
