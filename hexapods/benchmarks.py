@@ -12,9 +12,8 @@ from hexapods.agents.registry import AgentClass
 from hexapods.arguments import check_callable, plain, values_of
 from hexapods.benchmarking.config import BenchmarkConfig, benchmark_config
 from hexapods.benchmarking.kept_runs import KeptRuns, kept_runs
-from hexapods.benchmarking.protocol import DEFAULT_PROTOCOL, PLAIN_SEED, BestKnown
-from hexapods.benchmarking.runs import TaskPlan, best_known_of, plan_tasks, run_all, runs_of
-from hexapods.domain.errors import HexapodError
+from hexapods.benchmarking.protocol import DEFAULT_PROTOCOL, PLAIN_SEED
+from hexapods.benchmarking.runs import TaskPlan, all_best_known, plan_tasks, run_all, runs_of
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import check_kept
 from hexapods.experiments.cluster import ClusterSpec
@@ -271,10 +270,5 @@ def _benchmark(
 ) -> Benchmark:
     from hexapods.benchmarking.score_file import score_content  # noqa: PLC0415  # SciPy
 
-    best_known: dict[str, BestKnown | str] = {}
-    for plan in plans:
-        try:
-            best_known[plan.task.name] = best_known_of(config, plan, spec.workers or cores())
-        except HexapodError as error:
-            best_known[plan.task.name] = str(error)
+    best_known = all_best_known(config, plans, spec.workers or cores())
     return Benchmark(config, score_content(config, plans, kept.results, best_known))

@@ -1,9 +1,9 @@
-"""`hexapods verify`: repeat a tournament that has ended, and compare each number to the last digit.
+"""`hexapods verify`: repeat a tournament or a benchmark, and compare each number to the last digit.
 
-The file is that of the tournament's page. The exit code is 0 if everything repeats, and 1 if
-something differs; each difference is a sentence. On another kind of processor, or by other
-versions, distances may differ in their last digits: where nothing else differs and all ranks hold,
-the exit code is 0 too. See docs/tournaments.md.
+The file is that of a tournament's page, or the score file of `hexapods benchmark`. The exit code is
+0 if everything repeats, and 1 if something differs; each difference is a sentence. On another kind
+of processor, or by other versions, distances may differ in their last digits: where nothing else
+differs and all ranks hold, the exit code is 0 too. See docs/tournaments.md and docs/benchmark.md.
 """
 
 import argparse
@@ -14,18 +14,34 @@ from app.cli.exit_codes import FAILED
 from app.cli.files import read_bounded
 from app.cli.options import CommandParser, integer
 from app.cli.terminal import progress, show_table
+from app.cli.verify_benchmark import is_score_file, verify_benchmark
 from hexapods.agents.appearance import name_of
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.records import to_json
 from hexapods.domain.text import visible
 
 if TYPE_CHECKING:
     from hexapods.tournaments.tournament_file import TournamentFile
 
+_MAX_BYTES = 48 << 20
+"""Of a file; tournaments have a few MB, and no more is read of them."""
+
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser("verify", help="repeat a tournament", description=__doc__)
-    parser.add_argument("file", metavar="FILE", help="file of a tournament that has ended")
+    parser = commands.add_parser(
+        "verify", help="repeat a tournament or a benchmark", description=__doc__
+    )
+    parser.add_argument(
+        "file", metavar="FILE", help="file of a tournament that has ended, or score file"
+    )
+    parser.add_argument(
+        "--sample",
+        type=integer,
+        metavar="RUNS",
+        help="of a benchmark, repeat only so many runs (default: all); scores are always computed "
+        "again",
+    )
     parser.add_argument(
         "--workers", type=integer, help="worker processes on this machine (default: one per core)"
     )
@@ -34,16 +50,21 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Repeat a tournament, and print its ranking and what differs.
+    """Repeat a tournament or a benchmark, and print its result and what differs.
 
     Raises:
-        HexapodError: if the file is no tournament, or cannot be repeated.
+        HexapodError: if the file is neither, or cannot be repeated.
     """
+    data = read_bounded(options.file, _MAX_BYTES)
+    if is_score_file(data):
+        return verify_benchmark(data, options)
+    if options.sample is not None:
+        raise InvalidInput("--sample is for score files of benchmarks; leave it out")
     # Imported here, as SciPy takes a second to import.
-    from hexapods.tournaments.tournament_file import MAX_BYTES, read_file  # noqa: PLC0415
+    from hexapods.tournaments.tournament_file import read_file  # noqa: PLC0415
     from hexapods.tournaments.verification import verification, version_note  # noqa: PLC0415
 
-    tournament = read_file(read_bounded(options.file, MAX_BYTES), options.file)
+    tournament = read_file(data, options.file)
     with progress("draws") as bar:
         task = bar.add_task("judging again", total=None)
         outcome = verification(

@@ -212,3 +212,16 @@ def best_known_of(config: BenchmarkConfig, plan: TaskPlan, threads: int = 1) -> 
         distance_m=round(best_known.search(simulator, width), 6),
         found_by=f"beam search, width {width}",
     )
+
+
+def all_best_known(
+    config: BenchmarkConfig, plans: Iterable[TaskPlan], threads: int
+) -> dict[str, BestKnown | str]:
+    """Return `best_known_of` each task by its name, or in its place why there is none."""
+    best_known_by_task: dict[str, BestKnown | str] = {}
+    for plan in plans:
+        try:
+            best_known_by_task[plan.task.name] = best_known_of(config, plan, threads)
+        except HexapodError as error:
+            best_known_by_task[plan.task.name] = message(str(error))
+    return best_known_by_task

@@ -1,0 +1,78 @@
+"""The part of `hexapods verify` that repeats score files of `hexapods benchmark`."""
+
+import argparse
+import json
+
+from app.cli.exit_codes import FAILED
+from app.cli.terminal import progress
+from hexapods.domain.text import counted
+
+_MAX_TOLD = 20
+
+
+def is_score_file(data: bytes) -> bool:
+    """Whether a file says that it is of a benchmark's protocol; it may be damaged."""
+    try:
+        content = json.loads(data)
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(content, dict) and "protocol" in content
+
+
+def verify_benchmark(data: bytes, options: argparse.Namespace) -> int:
+    """Repeat a benchmark, and print its row and what differs.
+
+    Args:
+        data: content of the score file.
+        options: `file`, `workers`, `sample` and `json` of the command.
+
+    Raises:
+        HexapodError: if it cannot be read or repeated.
+    """
+    # Imported here, as SciPy takes a second to import.
+    from hexapods.benchmarking.score_file import HEAD, decode, row_of  # noqa: PLC0415
+    from hexapods.benchmarking.verification import (  # noqa: PLC0415
+        verification,
+        version_note,
+    )
+
+    content = decode(data, options.file)
+    with progress("runs") as bar:
+        task = bar.add_task("repeating", total=None)
+        outcome = verification(
+            content,
+            options.workers,
+            options.sample,
+            lambda done, total: bar.update(task, completed=done, total=total),
+        )
+    note, differences = version_note(content), outcome.differences
+    is_rounded = bool(differences) and outcome.is_rounding and note is not None
+    repeats = not differences
+    if options.json:
+        shown = {
+            "protocol": content["protocol"],
+            "agent": content["agent"],
+            "repeats": repeats,
+            "is_rounding": is_rounded,
+            "repeated_runs": outcome.repeated,
+            "differences": differences,
+            "version_note": note,
+        }
+        print(json.dumps(shown))
+        return 0 if repeats or is_rounded else FAILED
+    print(HEAD)
+    print(row_of(content))
+    for sentence in () if is_rounded else differences[:_MAX_TOLD]:
+        print(sentence)
+    if len(differences) > _MAX_TOLD and not is_rounded:
+        print(f"{len(differences) - _MAX_TOLD:,} more differences.")
+    if note is not None:
+        print(note)
+    count = counted(outcome.repeated, "run")
+    if repeats:
+        print(f"{options.file} repeats to the last digit: {count}, and all scores.")
+    elif is_rounded:
+        print(f"{options.file} repeats but for last digits: {count}, and all scores.")
+    else:
+        print(f"{options.file} does not repeat: see the differences above.")
+    return 0 if repeats or is_rounded else FAILED
