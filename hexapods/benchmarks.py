@@ -14,6 +14,7 @@ from hexapods.benchmarking.config import BenchmarkConfig, benchmark_config
 from hexapods.benchmarking.kept_runs import KeptRuns, kept_runs
 from hexapods.benchmarking.protocol import DEFAULT_PROTOCOL, PLAIN_SEED
 from hexapods.benchmarking.runs import TaskPlan, all_best_known, plan_tasks, run_all, runs_of
+from hexapods.benchmarking.score_file import encode, row_of, score_content
 from hexapods.domain.observation import Observation
 from hexapods.domain.records import check_kept
 from hexapods.experiments.cluster import ClusterSpec
@@ -111,8 +112,6 @@ class Benchmark:
 
     def row(self) -> str:
         """Return it as a line of the table in docs/benchmark.md, in Markdown."""
-        from hexapods.benchmarking.score_file import row_of  # noqa: PLC0415  # SciPy
-
         return row_of(self.content)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
@@ -125,8 +124,6 @@ class Benchmark:
             InvalidInput: if it is no path.
             OSError: if the file cannot be written.
         """
-        from hexapods.benchmarking.score_file import encode  # noqa: PLC0415  # SciPy
-
         target = path_of(path, "a score file")
         write_atomically(target, encode(self.content))
         return target
@@ -268,7 +265,5 @@ def run_benchmark(
 def _benchmark(
     config: BenchmarkConfig, plans: Sequence[TaskPlan], kept: KeptRuns, spec: ClusterSpec
 ) -> Benchmark:
-    from hexapods.benchmarking.score_file import score_content  # noqa: PLC0415  # SciPy
-
     best_known = all_best_known(config, plans, spec.workers or cores())
     return Benchmark(config, score_content(config, plans, kept.results, best_known))

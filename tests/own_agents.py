@@ -160,3 +160,15 @@ class Forgetful:
 
     def learn(self, transition: Transition) -> None:
         pass
+
+
+class TiresLate(Restless):
+    """Breaks when it has learned from fifty steps."""
+
+    learned = 0
+
+    def learn(self, transition: Transition) -> None:
+        self.learned += 1
+        if self.learned > 50:
+            raise RuntimeError("I am tired")
+        super().learn(transition)

@@ -9,7 +9,7 @@ import argparse
 import signal
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from app.cli.exit_codes import FAILED, INTERRUPTED
 from app.cli.files import check_writable
@@ -18,12 +18,11 @@ from app.cli.terminal import progress, show_table
 from app.cli.trials import RATE_WINDOW_S, discard, workers_text
 from hexapods.benchmarking.config import benchmark_config
 from hexapods.benchmarking.protocol import DEFAULT_PROTOCOL, PLAIN_SEED, PROTOCOLS, protocol
+from hexapods.benchmarking.score_file import HEAD, encode
+from hexapods.benchmarks import Benchmark, run_benchmark
 from hexapods.domain.text import counted, visible
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.interruption import stop_signals
-
-if TYPE_CHECKING:
-    from hexapods.benchmarks import Benchmark
 
 _USUAL = protocol(DEFAULT_PROTOCOL)
 _MAX_ERRORS = 5
@@ -101,10 +100,6 @@ def run(options: argparse.Namespace) -> int:
     spec, out = ClusterSpec(workers=options.workers), options.out
     if out is not None:
         check_writable(str(out))
-    # Imported here, as SciPy takes a second to import.
-    from hexapods.benchmarking.score_file import encode  # noqa: PLC0415
-    from hexapods.benchmarks import run_benchmark  # noqa: PLC0415
-
     print_line = discard if options.json else print
     total = len(config.tasks) * len(config.budgets) * config.seeds
     print_line(f"{counted(total, 'run')} of {config.protocol} {workers_text(spec)}")
@@ -132,9 +127,7 @@ def run(options: argparse.Namespace) -> int:
     return FAILED if done.failed else 0
 
 
-def _print_scores(done: "Benchmark") -> None:
-    from hexapods.benchmarking.score_file import HEAD  # noqa: PLC0415
-
+def _print_scores(done: Benchmark) -> None:
     entries = [*done.content["tasks"], {"title": "All tasks", **done.content["aggregate"]}]
     steps = [
         f"{budget:,} steps" if budget else "does not practise" for budget in done.config.budgets

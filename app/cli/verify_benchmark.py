@@ -5,6 +5,8 @@ import json
 
 from app.cli.exit_codes import FAILED
 from app.cli.terminal import progress
+from hexapods.benchmarking.score_file import HEAD, decode, row_of
+from hexapods.benchmarking.verification import verification, version_note
 from hexapods.domain.text import counted
 
 _MAX_TOLD = 20
@@ -29,13 +31,6 @@ def verify_benchmark(data: bytes, options: argparse.Namespace) -> int:
     Raises:
         HexapodError: if it cannot be read or repeated.
     """
-    # Imported here, as SciPy takes a second to import.
-    from hexapods.benchmarking.score_file import HEAD, decode, row_of  # noqa: PLC0415
-    from hexapods.benchmarking.verification import (  # noqa: PLC0415
-        verification,
-        version_note,
-    )
-
     content = decode(data, options.file)
     with progress("runs") as bar:
         task = bar.add_task("repeating", total=None)

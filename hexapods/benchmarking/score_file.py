@@ -7,13 +7,13 @@ from typing import Any, NoReturn
 from hexapods.benchmarking.config import BenchmarkConfig
 from hexapods.benchmarking.protocol import PLAIN_SEED, PROTOCOLS, BestKnown
 from hexapods.benchmarking.runs import Run, RunResult, TaskPlan
-from hexapods.benchmarking.scores import scores_of
 from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.text import visible
 from hexapods.experiments.worker import versions
 from hexapods.machine import description, instructions
+from hexapods.runs.config import agent_settings
 
 FORMAT = 1
 MAX_BYTES = 32 << 20
@@ -31,6 +31,8 @@ def score_content(
     best_known: Mapping[str, BestKnown | str],
 ) -> dict[str, Any]:
     """Return the content of a score file; arguments as of `scores_of`."""
+    from hexapods.benchmarking.scores import scores_of  # noqa: PLC0415  # SciPy takes a second
+
     plain = to_json(config)
     return {
         "format": FORMAT,
@@ -161,8 +163,6 @@ def _protocol_text(content: Mapping[str, Any]) -> str:
 
 def _differing(agent: Mapping[str, Any]) -> str:
     """Return the settings of an agent in words, without those of its defaults."""
-    from hexapods.runs.config import agent_settings  # noqa: PLC0415
-
     declared = agent_settings(agent["name"])
     own = [
         f"{name} {value}"
