@@ -65,7 +65,9 @@ class Benchmark:
     def tasks(self) -> tuple[TaskScore, ...]:
         """The score on each task; `pandas.DataFrame(it.tasks)` is a table."""
         return tuple(
-            _score(entry["name"], entry, sum(one["seed"] is not None for one in entry["errors"]))
+            _score(
+                entry["name"], entry, sum(error["seed"] is not None for error in entry["errors"])
+            )
             for entry in self.content["tasks"]
         )
 
@@ -79,17 +81,17 @@ class Benchmark:
     @property
     def profile(self) -> Mapping[float, float]:
         """Share of all runs that score at least as much, by score."""
-        return {one["at"]: one["share"] for one in self.content["aggregate"]["profile"]}
+        return {point["at"]: point["share"] for point in self.content["aggregate"]["profile"]}
 
     @property
     def failed(self) -> Mapping[str, str]:
         """Why each run failed that did, by task, steps of practice and seed."""
         return {
             task["name"]
-            if one["seed"] is None
-            else f"{task['name']}, {one['steps']} steps, seed {one['seed']}": one["error"]
+            if error["seed"] is None
+            else f"{task['name']}, {error['steps']} steps, seed {error['seed']}": error["error"]
             for task in self.content["tasks"]
-            for one in task["errors"]
+            for error in task["errors"]
         }
 
     def table(self) -> ResultTable:
@@ -138,10 +140,10 @@ class Benchmark:
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><th>{html.escape(one.name)}</th><td>{one.score:.3f}</td>"
-            f"<td>{'' if one.low is None else f'{one.low:.3f} to {one.high:.3f}'}</td>"
-            f"<td>{one.failed or ''}</td></tr>"
-            for one in self.tasks
+            f"<tr><th>{html.escape(task.name)}</th><td>{task.score:.3f}</td>"
+            f"<td>{'' if task.low is None else f'{task.low:.3f} to {task.high:.3f}'}</td>"
+            f"<td>{task.failed or ''}</td></tr>"
+            for task in self.tasks
         )
         head = "<tr><th></th><th>score</th><th>95 % interval</th><th>failed</th></tr>"
         caption = html.escape(repr(self)[1:-1])

@@ -23,7 +23,7 @@ def test_a_class_is_scored_and_its_file_is_that_of_the_command_line(tmp_path: Pa
     assert tripod.score == pytest.approx(done.score)
     assert done.interval is not None
     assert done.interval[0] <= done.score <= done.interval[1]
-    assert [one.name for one in done.budgets] == ["3", "6"]
+    assert [entry.name for entry in done.budgets] == ["3", "6"]
     assert done.profile[0.0] == 1.0
     assert done.failed == {}
     assert repr(done).startswith("<Benchmark q-learning, hexabench-1, a part of the protocol: 0.")
@@ -54,7 +54,9 @@ def test_with_a_file_it_goes_on_where_it_ended(tmp_path: Path) -> None:
         **{**SMALL, "seeds": 4},
     )
     assert seen == [6, 7, 8], "six of the eight runs were there"
-    kept, grown = (one.content["tasks"][0]["budgets"][0]["distances_m"] for one in (first, more))
+    kept, grown = (
+        scored.content["tasks"][0]["budgets"][0]["distances_m"] for scored in (first, more)
+    )
     assert grown[:3] == kept
 
 

@@ -137,7 +137,7 @@ def _print_scores(done: Benchmark) -> None:
             entry["title"],
             "" if entry.get("best_known_m") is None else f"{entry['best_known_m']:.3f}",
             _text(entry),
-            *(_text(one) for one in entry["budgets"]),
+            *(_text(at_budget) for at_budget in entry["budgets"]),
         )
         for entry in entries
     ]

@@ -40,7 +40,7 @@ def drawn_body(rng: np.random.Generator) -> tuple[Robot, GaitSpec]:
         friction = round(float(rng.uniform(*_FRICTION)), 3)
         order = rng.permutation(count) + 1
         usual = Robot()
-        own: dict[str, Any] = {
+        dimensions: dict[str, Any] = {
             name: round(getattr(usual, name) * scale, 4)
             for name, scale in zip(_SCALED, scales, strict=True)
         }
@@ -48,7 +48,7 @@ def drawn_body(rng: np.random.Generator) -> tuple[Robot, GaitSpec]:
         groups = tuple(tuple(sorted(part.tolist())) for part in np.array_split(order, _GROUPS))
         gait = GaitSpec(1, 2, groups=groups)
         try:
-            robot = Robot(name="drawn body", legs=legs, friction=friction, **own)
+            robot = Robot(name="drawn body", legs=legs, friction=friction, **dimensions)
             resolved = resolve(gait, robot.azimuths_deg)
             check_reach(robot, resolved, FootGrid())
         except InvalidInput:

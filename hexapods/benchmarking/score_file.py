@@ -102,13 +102,13 @@ def config_of(content: Mapping[str, Any]) -> BenchmarkConfig:
         HexapodError, ValueError, TypeError, KeyError: if it has none.
     """
     agent = content["agent"]
-    given = {
+    plain = {
         **{name: content[name] for name in ("protocol", "budgets", "seeds", "seed")},
         **{name: agent[name] for name in _AGENT},
         "agent": agent["name"],
         "tasks": [task["name"] for task in content["tasks"]],
     }
-    return from_json(BenchmarkConfig, json.dumps(given).encode(), strict=True)
+    return from_json(BenchmarkConfig, json.dumps(plain).encode(), strict=True)
 
 
 def results_of(content: Mapping[str, Any]) -> dict[Run, RunResult]:
@@ -119,12 +119,12 @@ def results_of(content: Mapping[str, Any]) -> dict[Run, RunResult]:
     """
     results = {}
     for task in content["tasks"]:
-        errors = {(one["steps"], one["seed"]): str(one["error"]) for one in task["errors"]}
+        errors = {(error["steps"], error["seed"]): str(error["error"]) for error in task["errors"]}
         for entry in task["budgets"]:
             for number, distance_m in enumerate(entry["distances_m"]):
                 run = Run(str(task["name"]), int(entry["steps"]), number)
-                error = errors.get((run.budget, number))
-                results[run] = RunResult(float(distance_m), error)
+                reason = errors.get((run.budget, number))
+                results[run] = RunResult(float(distance_m), reason)
     return results
 
 
@@ -132,15 +132,15 @@ def row_of(content: Mapping[str, Any]) -> str:
     """Return a score file as a line of a table in Markdown, whose head is `HEAD`."""
     agent, aggregate = content["agent"], content["aggregate"]
     name = visible(agent["name"])
-    own = _differing(agent)
+    settings = _differing(agent)
     by_budget = [
         _score_text(entry) if entry["steps"] == 0 else f"{entry['steps']:,}: {_score_text(entry)}"
         for entry in aggregate["budgets"]
     ]
-    failed = sum(one["seed"] is not None for task in content["tasks"] for one in task["errors"])
+    failed = sum(error["seed"] is not None for task in content["tasks"] for error in task["errors"])
     practises = aggregate["budgets"][0]["steps"] > 0
     return _ROW.format(
-        f"`{name}`{f' ({own})' if own else ''}".replace("|", "\\|"),
+        f"`{name}`{f' ({settings})' if settings else ''}".replace("|", "\\|"),
         _protocol_text(content),
         content["seeds"],
         _score_text(aggregate),
@@ -164,14 +164,14 @@ def _protocol_text(content: Mapping[str, Any]) -> str:
 def _differing(agent: Mapping[str, Any]) -> str:
     """Return the settings of an agent in words, without those of its defaults."""
     declared = agent_settings(agent["name"])
-    own = [
+    differing = [
         f"{name} {value}"
         for name, value in agent["settings"].items()
         if name in declared and value != declared[name].default
     ]
     if agent["observation"] != BenchmarkConfig.observation:
-        own.append(str(agent["observation"]))
-    return ", ".join(own)
+        differing.append(str(agent["observation"]))
+    return ", ".join(differing)
 
 
 def _score_text(entry: Mapping[str, Any]) -> str:

@@ -56,10 +56,10 @@ def scores_of(
             [results[Run(name, budget, number)] for number in range(config.seeds)]
             for budget in config.budgets
         ]
-        known = best_known[name]
-        best_m = known.distance_m if isinstance(known, BestKnown) else 0.0
+        best = best_known[name]
+        best_m = best.distance_m if isinstance(best, BestKnown) else None
         scores = np.array(
-            [[score_of(run.distance_m, best_m) for run in row] for row in of_task]
+            [[score_of(run.distance_m, best_m or 0.0) for run in row] for row in of_task]
         )  # (budgets, seeds)
         strata.append(scores)
         tasks.append(
@@ -67,9 +67,9 @@ def scores_of(
                 "name": name,
                 "title": plan.task.title,
                 **_entry(_iqm([scores])),
-                "best_known_m": known.distance_m if isinstance(known, BestKnown) else None,
-                "found_by": known.found_by if isinstance(known, BestKnown) else None,
-                "errors": _errors(config, of_task, known),
+                "best_known_m": best_m,
+                "found_by": best.found_by if isinstance(best, BestKnown) else None,
+                "errors": _errors(config, of_task, best),
                 "walk": to_json(plan.walk),
                 "budgets": [
                     {
@@ -95,7 +95,7 @@ def _aggregate(config: BenchmarkConfig, strata: Sequence[FloatArray]) -> dict[st
 
 
 def _errors(
-    config: BenchmarkConfig, of_task: Sequence[Sequence[RunResult]], known: BestKnown | str
+    config: BenchmarkConfig, of_task: Sequence[Sequence[RunResult]], best: BestKnown | str
 ) -> list[dict[str, Any]]:
     """Return why runs failed: steps, number of the seed, and the error; both None for the task."""
     errors: list[dict[str, Any]] = [
@@ -104,8 +104,8 @@ def _errors(
         for number, run in enumerate(row)
         if run.error is not None
     ]
-    if isinstance(known, str):
-        errors.append({"steps": None, "seed": None, "error": f"best known: {known}"})
+    if isinstance(best, str):
+        errors.append({"steps": None, "seed": None, "error": f"best known: {best}"})
     return errors
 
 
@@ -130,7 +130,7 @@ def _iqm(strata: Sequence[FloatArray]) -> Interval:
             np.moveaxis(scores[:, seeds.astype(np.int64)], 0, -1)  # (…, seeds, budgets)
             for scores, seeds in zip(strata, chosen, strict=True)
         ]
-        flat = [one.reshape(*one.shape[:-2], -1) for one in runs]
+        flat = [scores.reshape(*scores.shape[:-2], -1) for scores in runs]
         return iqm(np.concatenate(flat, axis=-1))
 
     numbers = [tuple(map(float, range(scores.shape[1]))) for scores in strata]
@@ -142,7 +142,7 @@ def _share_at_least(strata: Sequence[FloatArray], limit: float) -> Interval:
 
     def mean(*reached: FloatArray, axis: int = -1) -> FloatArray:
         return np.asarray(
-            np.mean([one.mean(axis=axis) for one in reached], axis=0), dtype=np.float64
+            np.mean([shares.mean(axis=axis) for shares in reached], axis=0), dtype=np.float64
         )
 
     reached = [

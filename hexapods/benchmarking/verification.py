@@ -73,7 +73,7 @@ def verification(
     for run, result in run_all(config, plans, runs, spec):
         repeated[run] = result
         on_run(len(repeated), len(runs))
-    told = [
+    sentences = [
         f"{_name(run)}: {_text(in_file[run])} in the file, {_text(repeated[run])} repeated."
         for run in runs
         if in_file[run] != repeated[run]
@@ -82,7 +82,9 @@ def verification(
     again = score_content(config, plans, in_file, all_best_known(config, plans, workers or cores()))
     scores = list(_score_differences(content, again))
     is_rounding = is_rounding and all(of_rounding for _, of_rounding in scores)
-    return Verification(len(repeated), told + [sentence for sentence, _ in scores], is_rounding)
+    return Verification(
+        len(repeated), sentences + [sentence for sentence, _ in scores], is_rounding
+    )
 
 
 def version_note(content: Mapping[str, Any]) -> str | None:
@@ -90,10 +92,10 @@ def version_note(content: Mapping[str, Any]) -> str | None:
     # Python is in the file, but results do not depend on it, nor on the kernel's version.
     named = ("racing-hexapods", "numpy", "mujoco", "processor")
     versions = {name: str(content["versions"].get(name)) for name in named}
-    other = difference(versions, own_versions())
-    if other is None:
+    differs = difference(versions, own_versions())
+    if differs is None:
         return None
-    return visible(f"This is {other}, by which results may differ in their last digits.")
+    return visible(f"This is {differs}, by which results may differ in their last digits.")
 
 
 def _score_differences(

@@ -95,6 +95,6 @@ def test_best_known_is_stored_of_the_plain_draw_and_searched_of_others() -> None
     assert best_known_of(config, plan) == plan.task.best_known
     # Ideal, as a beam of physics takes minutes.
     ideal = TaskPlan(plan.task, WalkingProblem(gait="tripod", simulator="kinematic"))
-    found = best_known_of(small(tasks=("drawn-body",), seed=5), ideal)
-    assert found == BestKnown(distance_m=found.distance_m, found_by="beam search, width 48")
-    assert found.distance_m > 0.5
+    best = best_known_of(small(tasks=("drawn-body",), seed=5), ideal)
+    assert best == BestKnown(distance_m=best.distance_m, found_by="beam search, width 48")
+    assert best.distance_m > 0.5

@@ -81,8 +81,8 @@ def test_its_row_is_a_line_of_the_table_and_says_that_it_is_a_part() -> None:
 
 def test_the_row_of_a_whole_protocol_has_its_name_alone() -> None:
     config = small("greedy", tasks=None, budgets=None, seeds=None)
-    known = {plan.task.name: plan.task.best_known for plan in plan_tasks(config)}
-    content = score_content(config, plan_tasks(config), results(config, 0.2), known)
+    best_known = {plan.task.name: plan.task.best_known for plan in plan_tasks(config)}
+    content = score_content(config, plan_tasks(config), results(config, 0.2), best_known)
     assert content["is_whole_protocol"] is True
     assert row_of(content).startswith("| `greedy` | hexabench-1 | 30 | ")
     assert "does not practise" in row_of(content)
@@ -90,8 +90,8 @@ def test_the_row_of_a_whole_protocol_has_its_name_alone() -> None:
 
 def test_the_row_has_settings_that_differ_from_the_defaults() -> None:
     config = small(settings={"alpha": 0.5}, observation="planned", seed=4)
-    known = {plan.task.name: plan.task.best_known for plan in plan_tasks(config)}
-    row = row_of(score_content(config, plan_tasks(config), results(config, 0.2), known))
+    best_known = {plan.task.name: plan.task.best_known for plan in plan_tasks(config)}
+    row = row_of(score_content(config, plan_tasks(config), results(config, 0.2), best_known))
     assert row.startswith(
         "| `q-learning` (alpha 0.5, planned) | hexabench-1 (part: tripod; seed 4)"
     )

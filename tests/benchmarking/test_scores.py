@@ -50,7 +50,7 @@ def test_the_profile_is_the_share_of_runs_that_reach_a_score() -> None:
     done = results(config, 0.0)
     done |= {run: RunResult(0.5) for run in done if run.budget == 6}
     profile = scores_of(config, plan_tasks(config), done, {"tripod": KNOWN})["aggregate"]["profile"]
-    shares = {one["at"]: one["share"] for one in profile}
+    shares = {point["at"]: point["share"] for point in profile}
     assert shares[0.0] == 1.0
     assert shares[0.05] == shares[1.0] == 0.5
     assert shares[1.05] == 0.0

@@ -68,8 +68,8 @@ def test_a_changed_file_does_not_repeat(folder: Path) -> None:
     assert "changed.json does not repeat" in done.stdout
     done = hexapods("verify", "changed.json", "--sample", "1", "--json", folder=folder)
     assert done.returncode == 1
-    told = json.loads(done.stdout)
-    assert (told["repeats"], told["repeated_runs"]) == (False, 1)
+    shown = json.loads(done.stdout)
+    assert (shown["repeats"], shown["repeated_runs"]) == (False, 1)
 
 
 def test_more_seeds_are_added_to_a_file(folder: Path, tmp_path: Path) -> None:
@@ -110,8 +110,8 @@ def test_a_run_that_fails_counts_as_0_and_the_exit_code_is_1(folder: Path) -> No
 
 
 def test_interrupted_it_goes_on_where_it_was(folder: Path) -> None:
-    given = ("benchmark", OWN, "--tasks", "tripod", "--budget", "100,200", "--workers", "1")
-    command = [*given, "--seeds", "3", "--out", "i.json"]
+    place = ("--tasks", "tripod", "--budget", "100,200", "--workers", "1")
+    command = ["benchmark", OWN, *place, "--seeds", "3", "--out", "i.json"]
     with (folder / "errors.txt").open("w+") as errors:
         env = {"PATH": "/usr/bin:/bin", "HEXAPODS_DATA": str(folder / "data")}
         running = start_hexapods(command, env, errors, folder)
