@@ -7,6 +7,7 @@ from app.cli.exit_codes import FAILED
 from app.cli.terminal import progress
 from hexapods.benchmarking.score_file import HEAD, decode, row_of
 from hexapods.benchmarking.verification import verification, version_note
+from hexapods.domain.json_lists import check_lists
 from hexapods.domain.text import counted
 
 _MAX_TOLD = 20
@@ -15,6 +16,7 @@ _MAX_TOLD = 20
 def is_score_file(data: bytes) -> bool:
     """Whether a file says that it is of a benchmark's protocol; it may be damaged."""
     try:
+        check_lists(data)
         content = json.loads(data)
     except (ValueError, RecursionError):
         return False

@@ -27,7 +27,7 @@ def test_the_examples_run(tmp_path: Path) -> None:
         )
         assert (done.returncode, done.stderr) == (0, ""), example
         printed += done.stdout.splitlines()
-    assert len(examples) == 7
+    assert len(examples) == 8
     assert {"program.py", "race.npz", "sarsa.npz", "trials.csv"} <= {
         path.name for path in tmp_path.iterdir()
     }
