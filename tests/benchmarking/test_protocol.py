@@ -25,7 +25,7 @@ HEXABENCH_1 = protocol("hexabench-1")
 @pytest.mark.parametrize(
     ("file", "digest"),
     [
-        ("hexabench_1.json", "68f83b0119475047c33d100f5b59cc904503fc64926f0bd5ecfc73ceb15fcfc6"),
+        ("hexabench_1.json", "f0c64a44b8d21127ea7d8d0f07b159a39893f3a9da9f43c91a862728dc20771e"),
         ("mantis.json", "b5a88f86992000e8323d52172886cc7ac5804ca341a3930af862b32dc8ff1256"),
     ],
 )
