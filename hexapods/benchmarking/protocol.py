@@ -93,7 +93,8 @@ class Protocol:
         seeds: number of seeds of each task and budget.
         tolerance: build tolerance of the robots, of which each seed draws one.
         steps_per_episode: number of steps for which ε is constant.
-        beam_width: width of the beam that finds the best known distance of other draws.
+        beam_width: width of the beam, with a bonus for the next step, that finds the best known
+            distance of other draws.
     """
 
     name: str

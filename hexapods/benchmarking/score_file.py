@@ -10,6 +10,7 @@ from hexapods.benchmarking.runs import Run, RunResult, TaskPlan
 from hexapods.domain.errors import DamagedFile, HexapodError, UnknownName
 from hexapods.domain.json_lists import check_lists
 from hexapods.domain.records import from_json, to_json
+from hexapods.domain.settings import complete
 from hexapods.domain.text import visible
 from hexapods.experiments.worker import versions
 from hexapods.machine import description, instructions
@@ -102,9 +103,12 @@ def config_of(content: Mapping[str, Any]) -> BenchmarkConfig:
         HexapodError, ValueError, TypeError, KeyError: if it has none.
     """
     agent = content["agent"]
+    # A later version may have added a setting, of which the default is what was there before.
+    settings = complete(agent_settings(agent["name"]), agent["settings"], agent["name"])
     plain = {
         **{name: content[name] for name in ("protocol", "budgets", "seeds", "seed")},
-        **{name: agent[name] for name in _AGENT},
+        "observation": agent["observation"],
+        "settings": dict(settings),
         "agent": agent["name"],
         "tasks": [task["name"] for task in content["tasks"]],
     }

@@ -25,7 +25,7 @@ HEXABENCH_1 = protocol("hexabench-1")
 @pytest.mark.parametrize(
     ("file", "digest"),
     [
-        ("hexabench_1.json", "f0c64a44b8d21127ea7d8d0f07b159a39893f3a9da9f43c91a862728dc20771e"),
+        ("hexabench_1.json", "80f1d6d3f03f3509862641e31caa8444ed68ea61a0d595f36297446fcdcf7142"),
         ("mantis.json", "b5a88f86992000e8323d52172886cc7ac5804ca341a3930af862b32dc8ff1256"),
     ],
 )

@@ -96,5 +96,7 @@ def test_best_known_is_stored_of_the_plain_draw_and_searched_of_others() -> None
     # Ideal, as a beam of physics takes minutes.
     ideal = TaskPlan(plan.task, WalkingProblem(gait="tripod", simulator="kinematic"))
     best = best_known_of(small(tasks=("drawn-body",), seed=5), ideal)
-    assert best == BestKnown(distance_m=best.distance_m, found_by="beam search, width 48")
+    assert best == BestKnown(
+        distance_m=best.distance_m, found_by="beam search with a bonus, width 16"
+    )
     assert best.distance_m > 0.5
