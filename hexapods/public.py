@@ -1,5 +1,7 @@
 """The names of `import hexapods as hx`, which loads this module when the first of them is used."""
 
+from hexapods.agents.afterstate_q import AfterstateQ as AfterstateQ
+from hexapods.agents.afterstate_r_max import AfterstateRMax as AfterstateRMax
 from hexapods.agents.beam import Beam as Beam
 from hexapods.agents.double_q import DoubleQ as DoubleQ
 from hexapods.agents.dyna_q import DynaQ as DynaQ
