@@ -38,7 +38,7 @@ from tests.experiments.sample_experiments import (
 )
 from tests.promises.length import only_whole
 
-MAX_BYTES = 1_400_000
+MAX_BYTES = 2_000_000
 NASTY = '<img src=x onerror="alert(1)"><script>alert(2)</script>'
 LRO = "left-right-origin"
 
