@@ -25,7 +25,7 @@ HEXABENCH_1 = protocol("hexabench-1")
 @pytest.mark.parametrize(
     ("file", "digest"),
     [
-        ("hexabench_1.json", "80f1d6d3f03f3509862641e31caa8444ed68ea61a0d595f36297446fcdcf7142"),
+        ("hexabench_1.json", "f5b7bb96b17914d1f6f17ade90ee9d2ec970dc90b317756813bf93d3f804864c"),
         ("mantis.json", "b5a88f86992000e8323d52172886cc7ac5804ca341a3930af862b32dc8ff1256"),
     ],
 )
