@@ -54,7 +54,11 @@ def test_the_farthest_of_all_walks_is_best_known() -> None:
         assert best_m == max(row["distance_m"] for row in walks)
 
 
-@pytest.mark.parametrize("report", sorted(path.parent for path in REPORTS.glob("*/summary.json")), ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "report",
+    sorted(path.parent for path in REPORTS.glob("*/summary.json")),
+    ids=lambda path: path.name,
+)
 def test_no_agent_in_a_committed_report_walks_more_than_a_millimetre_farther(report: Path) -> None:
     walks = [(walk, best_known_m(walk.problem)) for walk in reported_walks(report)]
 
