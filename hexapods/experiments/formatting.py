@@ -11,7 +11,7 @@ _NO_BREAK_SPACE = "\u00a0"
 
 def percent(value: float) -> str:
     """Format a share as `74 %`, with a no-break space."""
-    return f"{100 * value:.0f}{_NO_BREAK_SPACE}%"
+    return f"{number(100 * value, 0)}{_NO_BREAK_SPACE}%"
 
 
 def number(value: float, digits: int = 2) -> str:
@@ -31,7 +31,7 @@ def shares(estimate: Interval | Mapping[str, Any]) -> str:
     value, low, high = Interval.of(estimate)
     if low is None or high is None:
         return percent(value)
-    return f"{percent(value)} ({100 * low:.0f} to {100 * high:.0f})"
+    return f"{percent(value)} ({number(100 * low, 0)} to {number(100 * high, 0)})"
 
 
 def distance(estimate: Interval | Mapping[str, Any]) -> str:
