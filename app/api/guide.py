@@ -33,7 +33,18 @@ CONTENTS = (
             "exports",
         ),
     ),
-    ("Experiments", ("experiments", "figures", "python", "operations", "hosting")),
+    (
+        "Experiments",
+        (
+            "experiments",
+            "figures",
+            "benchmark",
+            "outside-baselines",
+            "python",
+            "operations",
+            "hosting",
+        ),
+    ),
     (
         "How it works",
         (

@@ -217,7 +217,8 @@ class MultilevelModel:
     def _outcomes(self) -> IntArray:
         """Return landing with mover, next state and count of each outcome, (outcomes, 3)."""
         rows = [(*followed, count) for followed, count in self._next.items()]
-        return np.array(rows, np.int64).reshape(-1, 3)
+        # NumPy indexes and counts by its index type alone, which has 32 bits on some machines.
+        return np.array(rows, np.intp).reshape(-1, 3)
 
     def _pair(self, observation: Cells, action: Action) -> int:
         """Return the index of a pair."""

@@ -72,7 +72,7 @@ class PairLayout:
         offsets[:, :, 1] -= (offsets[:, :, 1] * shares).sum(1)[:, None]
         squares = (offsets[:, :, None] - cells_m) ** 2
         nearest = (squares[..., 0] + squares[..., 1]).argmin(-1)
-        after: IntArray = np.zeros(self.states, np.int64)
+        after: IntArray = np.zeros(self.states, np.intp)
         for cell in nearest.T:
             after = after * self.cells + cell
         return np.repeat(after, self.groups)

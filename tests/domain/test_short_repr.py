@@ -44,6 +44,7 @@ def examples() -> Mapping[str, object]:
         "a figure": race.result.lanes[0],
         "view": hx.view(race),
         "policy": hx.policy(print),
+        "benchmark": hx.benchmark("wave", tasks=("tripod",), seeds=1, workers=1),
         "world": hx.World([hx.Limp(legs=[leg], at_step=leg) for leg in range(1, 7)]),
         "gait": hx.Gait(1, 2, groups=((1, 3, 5), (2, 4, 6))),
         "leg": CREATURES["spider"].robot.legs[0],

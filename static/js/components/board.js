@@ -141,7 +141,7 @@ function Lane({ row, longest }) {
         <td colspan="5">
           <${TimeStrip} spent=${row.spent} longest=${longest} />
           ${linesBelow(row).map(([kind, words]) => html`<p class=${kind}>${words}</p>`)}
-          ${isLoser(row.lane) && !page.isPresenting.value && html`
+          ${isLoser(row.lane) && isAtLeast("try") && !page.isPresenting.value && html`
             <button class="link" onClick=${() => explainLoss(row.lane)}>
               Why does it lose?<span class="sr-only"> ${row.title}</span>
             </button>

@@ -8,7 +8,7 @@ from app.storage.database.store import RunStore
 from app.storage.run import TABLE, Run
 from hexapods.domain.settings import SettingValues
 from hexapods.runs.results import RaceResult, TrainingResult
-from tests.storage.stores import ODD, SWEEP, TRIALS, experiment, race, training
+from tests.storage.stores import ODD, PLAIN, SWEEP, TRIALS, experiment, race, training
 
 # Schemas up to 0003 were released when every agent had Q-learning's settings.
 _RATES = {"alpha": 0.3, "gamma": 0.9, "epsilon_start": 1.0, "epsilon_end": 0.0}
@@ -32,6 +32,7 @@ RUNS: list[Run] = [
     training(
         "0pmz0000a0002",
         state="failed",
+        config=replace(PLAIN, settings=SettingValues(_RATES)),
         continued_from="0pmz0000a0001",
         error="The physics diverged.",
         created_at=_T,
