@@ -199,7 +199,7 @@ def test_why_a_learner_loses_is_asked_on_the_board(
     with shared_server.api() as api:
         race = finished(api, "races", {**WALK, "steps": 20, "lanes": lanes})
         hold(api, race, 1e3)
-    dashboard.open(shared_server.link())
+    dashboard.open(shared_server.link(depth="try"))
     ask = dashboard.panel.get_by_role("button", name="Why does it lose?")
     expect(ask).to_have_count(1)  # not of greedy, which has won
     ask.click()
