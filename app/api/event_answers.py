@@ -130,11 +130,17 @@ class SceneView(Answer):
 
 
 class SnapshotView(Answer):
-    """State of the server when the stream begins: the newest runs, or the one that is followed."""
+    """State of the server when the stream begins: the newest runs, or the one that is followed.
+
+    Attributes:
+        robots_version: of the list of stored robots; a greater one than in the options that a
+            client has means that they have changed since.
+    """
 
     version: str
     role: Literal["operator", "spectator", "visitor"]
     viewers: Count
+    robots_version: Count
     runs: list[ListedRunView]
     stage: StageView
     scene: SceneView
@@ -207,6 +213,7 @@ class RobotsEvent(Answer):
     """Stored robots have changed; `GET /options` has them. `count` leaves hidden ones out."""
 
     count: Count
+    version: Count
 
 
 class EventBodies(Answer):

@@ -165,6 +165,7 @@ def _snapshot(
         "version": __version__,
         "role": "visitor" if listener.is_visitor else role,
         "viewers": shared.hub.counters.viewers,
+        "robots_version": store.robots.version,
         "runs": [services.jobs.view(run) for run in runs],
         "stage": shared.stage.state(),
         "scene": shared.stage.scene(),

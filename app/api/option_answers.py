@@ -4,7 +4,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
-from app.api.answers import Answer, Settings
+from app.api.answers import Answer, Count, Settings
 from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.gait import AnyGait
 from hexapods.domain.robot import AnyRobot
@@ -241,11 +241,13 @@ class OptionsView(Answer):
         leg_fields: numbers of a leg that the editor of bodies offers.
         torso_fields: those of the rest of the robot.
         tournament_fields: numbers of a new tournament, beside those of its walking problem.
+        robots_version: increases with each change of the stored robots.
         titles: names of fields that are no declared settings.
         exports: files of a recorded walk.
     """
 
     version: str
+    robots_version: Count
     gaits: list[GaitOption]
     robots: list[RobotOption]
     leg_fields: dict[str, SettingOption]

@@ -100,8 +100,7 @@ def _content(agents: tuple[str, ...], robots: RobotStore, version: int) -> Compr
         robots: the stored ones.
         version: of their list.
     """
-    del version
-    answer = catalogue(agents, robots.readable(hidden=True))
+    answer = catalogue(agents, robots.readable(hidden=True), version)
     return CompressedContent(bytes(JSONResponse(answer).body), "application/json")
 
 
@@ -119,16 +118,20 @@ _LEGS = declare("legs", Annotated[int, Ge(1), Le(MAX_LEGS), disturbances.LEGS], 
 """A leg in the list of those to which something happens."""
 
 
-def catalogue(agents: Collection[str], robots: Iterable[StoredRobot] = ()) -> dict[str, Any]:
+def catalogue(
+    agents: Collection[str], robots: Iterable[StoredRobot] = (), robots_version: int = 0
+) -> dict[str, Any]:
     """Return all options, defaults and limits, in plain types.
 
     Args:
         agents: names of the agents that were registered at server start.
         robots: those that are stored.
+        robots_version: of the list of these.
     """
     settings = _all_settings(agents)
     return {
         "version": __version__,
+        "robots_version": robots_version,
         "gaits": [gait_options(name) for name in NAMED_GAITS],
         "robots": [*map(built_in_options, CREATURES.values()), *map(stored_options, robots)],
         "leg_fields": {name: _setting(setting) for name, setting in leg_fields().items()},

@@ -188,4 +188,5 @@ def preview_robot(body: _PreviewBody) -> Response:
 
 def publish_robots(services: Services) -> None:
     """Send an event to all pages, as stored robots have changed."""
-    services.bus.publish("robots", {"count": len(services.store.robots.stored())})
+    robots = services.store.robots
+    services.bus.publish("robots", {"count": len(robots.stored()), "version": robots.version})

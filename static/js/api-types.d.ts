@@ -1104,6 +1104,10 @@ export interface SnapshotView {
   version: string;
   role: "operator" | "spectator" | "visitor";
   viewers: number;
+  /**
+   * of the list of stored robots; a greater one than in the options that a client has means that they have changed since.
+   */
+  robots_version: number;
   runs: ((TrainingView | RaceView | ExperimentView) | DamagedRunView)[];
   stage: StageView;
   scene: SceneView;
@@ -1997,6 +2001,7 @@ export interface ViewersEvent {
  */
 export interface RobotsEvent {
   count: number;
+  version: number;
 }
 /**
  * A room has changed; sent on its own stage alone.
@@ -3002,6 +3007,10 @@ export interface NewRoom {
  */
 export interface OptionsView {
   version: string;
+  /**
+   * increases with each change of the stored robots.
+   */
+  robots_version: number;
   gaits: GaitOption[];
   robots: RobotOption[];
   /**

@@ -1,7 +1,7 @@
 // Entry point: loads the options, opens the event stream, renders the page.
 import { effect, signal, untracked } from "@preact/signals";
 import { render } from "preact";
-import { getOptions, getStage, RequestError } from "./api.js";
+import { getStage } from "./api.js";
 import { App } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
@@ -9,6 +9,7 @@ import { openExperimentForm } from "./experiments/form.js";
 import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
+import { followOptions, isLockOut } from "./options.js";
 import { followLesson, followPresentation } from "./lesson.js";
 import { followHistory, page, reload } from "./page-state.js";
 import { followPresenter, followTheme } from "./page.js";
@@ -18,41 +19,15 @@ import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
 import { isVisitor } from "./selectors.js";
 import {
-  applyEvent, connection, eventNames, isLockedOut, openEvents, options, robotChanges, role, version,
+  applyEvent, connection, eventNames, isLockedOut, openEvents, role, version,
 } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 
-const FIRST_RETRY_MS = 500;
-const LONGEST_RETRY_MS = 8000;
-
-/** @param {unknown} error */
-const isLockOut = (error) => error instanceof RequestError && (error.status === 401 || error.status === 403);
-
-/** Ask for the options until they come; the forms work from then on. */
-async function loadOptions(attempt = 0) {
-  try {
-    options.value = await getOptions();
-    isLockedOut.value = false;
-  } catch (error) {
-    isLockedOut.value = isLockOut(error);
-    setTimeout(loadOptions, Math.min(FIRST_RETRY_MS * 2 ** attempt, LONGEST_RETRY_MS), attempt + 1);
-    return;
-  }
+/** Open the forms; the options are there. */
+function openForms() {
   openForm();
   openExperimentForm();
   followAs(() => role.value === "spectator", () => import("./spectators.js"), (own) => own.followStageSettings());
-  followRobots();
-}
-
-/** Ask for the options again when stored robots have changed. */
-function followRobots() {
-  let seen = robotChanges.peek();
-  effect(() => {
-    if (robotChanges.value === seen) return;
-    seen = robotChanges.value;
-    // What a later change asks for is newer.
-    getOptions().then((newer) => { if (robotChanges.peek() === seen) options.value = newer; }, () => {});
-  });
 }
 
 /**
@@ -113,7 +88,7 @@ openEvents(eventNames, applyEvent, (state) => {
   // The stream does not say why it ended: the server may have come back with a token.
   if (state === "reconnecting") getStage().catch((error) => (isLockedOut.value = isLockOut(error)));
 });
-loadOptions();
+followOptions(openForms);
 
 const root = /** @type {HTMLElement} */ (document.getElementById("app"));
 root.replaceChildren();

@@ -22,8 +22,8 @@ export const viewers = signal(null);
 export const options = signal(null);
 /** The options, for code that runs only once they are known: components, and what they call. */
 export const served = () => /** @type {Options} */ (options.value);
-/** Counts when stored robots may have changed: the options have them. */
-export const robotChanges = signal(0);
+/** Of the stored robots, which the options have. */
+export const robotsVersion = signal(0);
 /** Every known run by id. @type {Signal<Map<string, Run>>} */
 export const runs = signal(new Map());
 /** Runs that the server cannot read, by id: listed, and can be deleted. @type {Signal<Map<string, DamagedRun>>} */
@@ -84,11 +84,10 @@ const handlers = {
     // It tells of the stage and of the newest runs; an answer about an older run is still news.
     newestEvents.set("stage", eventCount);
     for (const { id } of data.runs ?? []) newestEvents.set(id, eventCount);
-    // What changed while the stream was broken is not known.
-    if (version.peek() !== null) robotChanges.value += 1;
     version.value = data.version ?? null;
     role.value = data.role ?? "operator";
     viewers.value = data.viewers ?? null;
+    robotsVersion.value = data.robots_version ?? 0;
     runs.value = new Map();
     damagedRuns.value = new Map();
     rates.value = {};
@@ -121,7 +120,7 @@ const handlers = {
   },
   summary: ({ run_id, done }) => setEntry(summarised, run_id, done),
   viewers: (data) => (viewers.value = data.count),
-  robots: () => (robotChanges.value += 1),
+  robots: (data) => (robotsVersion.value = data.version),
   scene: (data) => (commonScene.value = data),
 };
 

@@ -117,7 +117,7 @@ const limitsOf = (legs) => Array.from({ length: legs }, () => [[-1.2, 1.2], [-1.
 
 /** @type {Options} */
 export const OPTIONS = {
-  version: "1",
+  version: "1", robots_version: 1,
   gaits: ["tripod", "wave"].map((name) => ({
     ...described(name, `The ${name}`), forward_deg: 0, azimuths_deg: [0, 60, 120, 180, 240, 300],
     pairs: [[1, 4], [2, 5], [3, 6]],

@@ -3,6 +3,7 @@
 import itertools
 import logging
 import threading
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -31,7 +32,8 @@ UPLOAD_ENDING = ".upload"
 FOUND_ENDING = ".found"
 """Of what was found in them, in JSON."""
 _ENDINGS = (ENDING, UPLOAD_ENDING, FOUND_ENDING)
-_versions = itertools.count()
+# From the time [ms], so that versions increase across restarts of the server.
+_versions = itertools.count(time.time_ns() // 1_000_000)
 _logger = logging.getLogger(__name__)
 
 
@@ -54,7 +56,7 @@ class RobotStore:
     without a row, which the next start deletes.
 
     Attributes:
-        version: of the list of robots; another one after each change.
+        version: of the list of robots; a greater one after each change.
     """
 
     def __init__(self, database: Database, folder: Path, disk_space: DiskSpace) -> None:
