@@ -41,13 +41,21 @@ run: $(RUN_STAMP) ## Serve the dashboard; options by ARGS="--port 9000 --share"
 .PHONY: venv
 venv: $(DQN_STAMP) $(PAGE_STAMP) ## Make or update .venv with everything a developer needs
 
-.PHONY: test
-test: ## Run every check; this is the gate
-	@$(MAKE) --no-print-directory --jobs=3 lint browser pythons $(DQN_STAMP)
-	@$(MAKE) --no-print-directory --jobs=4 test-page types docs pytest
-
+# Each tier of checks has those of the one before; tests/tiers.py has the rule by which tests are in them.
 .PHONY: check
-check: lint types ## Check the Python code: format, linter, types, import contracts
+check: ## Check in a minute or so: format, linter, types, contracts, the page's units, the library
+	@$(MAKE) --no-print-directory --jobs=3 $(DEV_STAMP) $(PAGE_STAMP)
+	@$(MAKE) --no-print-directory --jobs=3 lint types test-page pytest-check
+
+.PHONY: test
+test: ## Run what check does, and API, storage, jobs, journeys through the page: before a push
+	@$(MAKE) --no-print-directory --jobs=3 $(DEV_STAMP) $(PAGE_STAMP) browser
+	@$(MAKE) --no-print-directory --jobs=4 lint types test-page docs pytest-test
+
+.PHONY: promises
+promises: ## Run what test does not: each promise in short, all of the browser, other Pythons
+	@$(MAKE) --no-print-directory --jobs=3 browser pythons $(DQN_STAMP)
+	@$(MAKE) --no-print-directory pytest-promises
 
 .PHONY: lint
 lint: $(DEV_STAMP)
@@ -56,19 +64,31 @@ lint: $(DEV_STAMP)
 	$(BIN)/lint-imports --no-logo
 
 .PHONY: types
-types: $(DQN_STAMP)
+types: $(DEV_STAMP)
 	$(BIN)/mypy
 
-.PHONY: pytest
-pytest: $(DQN_STAMP)
-	$(BIN)/python -m pytest --numprocesses $(TEST_PROCESSES)
+# `.ci/run` adds up what the files below build/ say. The first tier's tests take as long as mypy beside them: one
+# process is as fast as three, each of which would have to import what it tests.
+PYTEST = $(BIN)/python -m pytest --junitxml=build/$@.xml
+
+.PHONY: pytest-check
+pytest-check: $(DEV_STAMP)
+	$(PYTEST) --tier=check
+
+.PHONY: pytest-test
+pytest-test: $(DEV_STAMP)
+	$(PYTEST) --tier=check --tier=test --numprocesses $(TEST_PROCESSES)
+
+.PHONY: pytest-promises
+pytest-promises: $(DQN_STAMP)
+	$(PYTEST) --tier=promises --numprocesses $(TEST_PROCESSES)
 
 # Beside the other checks: it mostly waits for the network.
 .PHONY: browser
 browser: $(DEV_STAMP)
 	$(BIN)/python tests/install_browser.py
 
-# Before the other checks: it mostly installs, and pytest's closing line is to be the last.
+# Before the tests: it mostly installs, and pytest's closing line is to be the last.
 .PHONY: pythons
 pythons: $(DEV_STAMP) ## Compare results to the last bit in every other Python that is here
 	$(BIN)/python -m tests.other_pythons

@@ -7,6 +7,7 @@ import gc
 import threading
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import hypothesis
@@ -14,6 +15,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserType, Page, sync_playwright
 from xdist.remote import Producer
 
+from tests import tiers
 from tests.forked import start_fork_server
 from tests.in_parallel import FileByFile
 from tests.install_browser import HOW_TO_GET_ONE, find_browser
@@ -56,8 +58,25 @@ _WITHOUT_EVENT_LOOPS = ("agents", "domain", "runs")
 """Folders whose tests start none in the main thread."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Order the files so that the processes that run them have work until the end.
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare `--tier`."""
+    tiers.add_option(parser)
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Import no file of which no test is selected."""
+    return True if tiers.is_left_out(collection_path, config) else None
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Give each test the marker of its tier."""
+    tiers.mark(item)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Select the tests of the tiers that are asked for, and order their files.
+
+    The order is such that the processes that run them have work until the end.
 
     Promises wait a lot, for servers and time-outs: they are spread among the others. Then come
     browser tests. Playwright's synchronous interface keeps an event loop running in the main thread
@@ -65,6 +84,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     are tests that need no event loop. Of both kinds the longest files are first, since a long one
     at the very end would leave the other processes without work.
     """
+    config.stash[tiers.COLLECTED] = list(items)
+    tiers.select(config, items)
     files = list(dict.fromkeys(item.path for item in items))
     promises = [file for file in files if "promises" in file.parts]
     others = [file for file in files if "promises" not in file.parts]

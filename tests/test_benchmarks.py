@@ -12,6 +12,7 @@ from tests.own_agents import Stumbling
 SMALL: dict[str, Any] = {"tasks": "tripod", "budgets": [3, 6], "seeds": 3, "workers": 1}
 
 
+@pytest.mark.test
 def test_a_class_is_scored_and_its_file_is_that_of_the_command_line(tmp_path: Path) -> None:
     seen: list[tuple[int, int]] = []
     done = hx.benchmark(hx.QLearning, alpha=0.5, on_run=lambda *of: seen.append(of), **SMALL)
@@ -44,6 +45,7 @@ def test_all_runs_are_a_table() -> None:
     assert table["score"] == pytest.approx(shares)
 
 
+@pytest.mark.test
 def test_with_a_file_it_goes_on_where_it_ended(tmp_path: Path) -> None:
     seen: list[int] = []
     first = hx.benchmark("q-learning", file=tmp_path / "s.json", **SMALL)

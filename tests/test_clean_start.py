@@ -9,6 +9,8 @@ import pytest
 
 from tests.imports.robots import bug
 
+pytestmark = pytest.mark.promises
+
 LOAD = """
 import hexapods as hx
 print("legs", len(hx.load_robot("bug.urdf").legs))

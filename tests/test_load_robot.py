@@ -9,6 +9,7 @@ from hexapods.domain.robot import document_of
 from tests.imports.robots import dog
 
 
+@pytest.mark.test
 def test_a_robot_from_a_file_is_trained_and_known_by_its_id(tmp_path: Path) -> None:
     (tmp_path / "spot.xml").write_text(dog())
     spot = hx.load_robot(tmp_path / "spot.xml")

@@ -50,6 +50,7 @@ def raced(model: RobotModel, *agents: str, steps: int = STEPS) -> hx.Race:
     return hx.race(list(agents), gait=gait, robot=made, steps=steps, grid_side_m=side_m)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("name", MODELS)
 def test_they_are_recorded_analysed_drawn_and_exported(name: str) -> None:
     model, joints = MODELS[name]
@@ -132,6 +133,7 @@ def test_learners_and_searches_race_with_it_and_tell_why() -> None:
     assert len(race.standings) == 3
 
 
+@pytest.mark.test
 def test_q_learning_practises_with_it() -> None:
     made = model_robot(quadruped_model(), "own")
     side_m = usual_grid_side_m(made, "trot")

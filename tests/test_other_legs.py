@@ -156,6 +156,7 @@ def table_of(config: RaceConfig, lane: LaneRecording) -> tuple[list[str], FloatA
     return head.split(","), np.array([[float(n or "nan") for n in row.split(",")] for row in rows])
 
 
+@pytest.mark.test
 @pytest.mark.parametrize(
     ("made", "joints"),
     [

@@ -72,6 +72,7 @@ def test_one_that_takes_action_masks_is_told_what_is_legal() -> None:
     assert race.recording[0].steps[0].action == (2, 4)
 
 
+@pytest.mark.test
 def test_it_reads_its_state_as_its_lane_says(tmp_path: Path) -> None:
     lanes = [hx.lane(hx.policy(next_cell), observation=how) for how in ("measured", "commanded")]
     race = hx.race(lanes, **QUICK)

@@ -87,6 +87,7 @@ class Mine(hx.QLearning):
 GUARD = 'if __name__ == "__main__":'
 
 
+@pytest.mark.promises
 @pytest.mark.parametrize(
     ("agent", "line", "trials"),
     [("", "if True:", 2), (AGENT, GUARD, 2), (AGENT, "if True:", None)],

@@ -26,6 +26,8 @@ from hexapods.runs.tables import Checkpoint, snapshot
 from hexapods.runs.training import train
 from tests.digests import COMMON_INSTRUCTIONS, digests_of, results
 
+pytestmark = pytest.mark.test
+
 DIGESTS = {
     "training": "3fd5285abdd8",
     "race": "8aea485629bb",

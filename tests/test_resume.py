@@ -64,6 +64,7 @@ def test_a_training_that_is_resumed_equals_the_unbroken_one(
     assert_equal(hx.resume(path), hx.train(agent, **QUICK))
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("agent", ["q-learning", "expected-sarsa"])
 def test_in_mujoco_too(agent: str, tmp_path: Path) -> None:
     given: dict[str, Any] = {**QUICK, "simulator": "mujoco", "steps": 12, "evaluate_every": 0}

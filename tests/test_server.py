@@ -78,6 +78,7 @@ def test_event_stream_begins_with_a_snapshot_continues_with_changes_and_is_resum
     )
 
 
+@pytest.mark.promises
 def test_server_does_not_import_modules_of_experiments() -> None:
     """These modules, and trimesh, which viser may import, would double the start time."""
     look = (

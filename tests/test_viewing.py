@@ -18,6 +18,7 @@ def test_a_race_is_a_page(tmp_path: Path) -> None:
     assert repr(view).startswith("<View of A <race>: ")
 
 
+@pytest.mark.test
 def test_a_training_walks_alone() -> None:
     training = hx.train(steps=20, simulator="kinematic", seed=3)
     assert hx.view(training).title == "Q-learning: 50 steps"

@@ -13,6 +13,8 @@ import pytest
 
 from tests.promises.length import at_length
 
+pytestmark = pytest.mark.promises
+
 CHECKOUT = Path(__file__).parent.parent
 LOCK = CHECKOUT / "requirements.lock"
 SHORTER = {"steps=500": "steps=20", 'world="ice"': 'world="ice", steps=5'}

@@ -116,6 +116,7 @@ def agent(request: pytest.FixtureRequest) -> str:
     return name
 
 
+@pytest.mark.test
 def test_an_explained_training_is_the_training_to_the_last_bit(agent: str) -> None:
     config = config_of(agent)
     plain, told = build_learner(config), build_learner(config)
@@ -129,6 +130,7 @@ def test_an_explained_training_is_the_training_to_the_last_bit(agent: str) -> No
         np.testing.assert_array_equal(array, arrays[name], name)
 
 
+@pytest.mark.test
 def test_every_rule_gives_the_value_after_it_to_the_last_bit(agent: str) -> None:
     for step in explained(agent):
         for one in step.updates:
@@ -136,6 +138,7 @@ def test_every_rule_gives_the_value_after_it_to_the_last_bit(agent: str) -> None
             assert one.is_exact
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("name", [name for name in LEARNERS if name != "linear-model"])
 @settings(max_examples=4, deadline=None)
 @given(seed=st.integers(0, 10_000))

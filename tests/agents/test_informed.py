@@ -110,6 +110,7 @@ def raced(preset: str, gait: str, *lanes: LaneConfig, threads: int = 1) -> Seque
 GAITS = at_length(["left-right-vertical"], [*PAPER_GAITS])
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("gait", GAITS)
 def test_informed_search_overtakes_greedy_on_the_stiff_robot(gait: str) -> None:
     informed, greedy = raced("stiff", gait, lane_config("informed"), lane_config("greedy"))

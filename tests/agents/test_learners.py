@@ -179,6 +179,7 @@ def best_average_m() -> float:
     return (sums[239] - sums[119]) / 120
 
 
+@pytest.mark.promises
 @pytest.mark.parametrize("name", [name for name in TEMPORAL if name not in ON_POLICY])
 def test_the_average_reward_converges_to_the_best(name: str) -> None:
     """Each value is then its reward, less the average, and the best value that follows it."""
@@ -197,6 +198,7 @@ def test_the_average_reward_converges_to_the_best(name: str) -> None:
     assert max(errors_m) < 0.02 * best_average_m()
 
 
+@pytest.mark.promises
 @pytest.mark.parametrize("name", ON_POLICY)
 def test_the_average_reward_converges_to_that_of_the_policy(name: str) -> None:
     """It is that of random steps here, which lead nowhere."""

@@ -16,6 +16,8 @@ from hexapods.runs.training import evaluate, train
 from tests.figures import look_ahead
 from tests.promises.length import at_length
 
+pytestmark = pytest.mark.promises
+
 GAITS = at_length(("left-right-vertical",), tuple(PAPER_GAITS))
 PRIORS = at_length(("none",), ("none", "kinematic"))
 UNEVEN = at_length((("slippery", 1.3),), (("compliant", 1.2), ("slippery", 1.3)))

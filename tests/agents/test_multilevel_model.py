@@ -219,6 +219,7 @@ def test_a_problem_with_too_many_pairs_is_refused_with_what_helps() -> None:
         MultilevelModel(six)
 
 
+@pytest.mark.test
 def test_a_frozen_copy_walks_forward_on_a_body_that_tips() -> None:
     """Four legs in a ring, moved two by two, tip; greedy walks 0.396 m there."""
     trained = hx.train(

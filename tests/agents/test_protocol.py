@@ -67,6 +67,7 @@ def test_agent_implements_the_protocol(agent: str) -> None:
     assert isinstance(learner(agent).walker.agent, Agent)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("observation", OBSERVATIONS)
 def test_agent_chooses_legal_actions_in_each_observation_mode(
     agent: str, observation: Observation
@@ -81,6 +82,7 @@ def test_agent_chooses_legal_actions_in_each_observation_mode(
         walker.carry_out(action)
 
 
+@pytest.mark.test
 def test_agent_is_deterministic_for_a_seed(agent: str) -> None:
     one, other = learner(agent, seed=5), learner(agent, seed=5)
 
@@ -88,6 +90,7 @@ def test_agent_is_deterministic_for_a_seed(agent: str) -> None:
     assert written(one) == written(other)
 
 
+@pytest.mark.test
 def test_agent_continues_identically_from_a_loaded_state(agent: str) -> None:
     original, copy = learner(agent, seed=1), learner(agent, seed=2)
     walk(original, steps_for(agent))

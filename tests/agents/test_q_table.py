@@ -106,6 +106,7 @@ def test_reading_an_unvisited_state_allocates_no_row() -> None:
     assert not table.dump()["where"].size
 
 
+@pytest.mark.test
 def test_memory_is_proportional_to_visited_states() -> None:
     table = QTable(3, 65)
     chance = np.random.default_rng(1)

@@ -290,6 +290,7 @@ def test_options_are_compressed_once_and_revalidated(api: Api) -> None:
     assert plain.json() == first.json()
 
 
+@pytest.mark.promises
 def test_robot_differs_from_its_design_by_the_tolerance(api: Api) -> None:
     body = {**MUJOCO, "agent": "q-learning", "steps": 2, "evaluate_every": 0, "world": "limp-pair"}
     plain, built, again = (

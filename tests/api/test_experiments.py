@@ -247,6 +247,7 @@ def test_what_if_compares_chosen_with_default_settings(api: Api) -> None:
     assert answer["compute_s"] > 0
 
 
+@pytest.mark.promises
 @pytest.mark.parametrize("experiment", ["league", "recovery", "groups", "bodies"])
 def test_experiments_with_curves_run_on_the_server(experiment: str, api: Api) -> None:
     body = {

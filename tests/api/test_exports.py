@@ -56,6 +56,7 @@ def test_log_of_a_race(api: Api, raced: dict[str, Any]) -> None:
     assert f'filename="race-{raced["id"]}.mcap"' in answer.headers["content-disposition"]
 
 
+@pytest.mark.promises
 def test_video_of_a_race(api: Api, raced: dict[str, Any]) -> None:
     def video(**query: Any) -> Any:
         return api.call("POST", f"/runs/{raced['id']}/video", params=query)

@@ -35,6 +35,7 @@ def uploads(api: Api) -> list[tuple[str, str]]:
     ]
 
 
+@pytest.mark.promises
 def test_uploads_are_refused_before_they_are_read(full: tuple[Api, str]) -> None:
     api, _ = full
     paths = uploads(api)

@@ -386,6 +386,7 @@ def test_robots_of_the_rules_are_in_the_file(school: Contest) -> None:
     assert verify(file, workers=1) == []
 
 
+@pytest.mark.promises
 def test_what_waits_is_withdrawn_or_deleted(school: Contest) -> None:
     tournament = school.open(rules=IN_MUJOCO | {"steps": 50})
     for number in range(4):

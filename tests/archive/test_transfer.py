@@ -480,6 +480,7 @@ def _race_with(source: RunStore, change: Change) -> bytes:
     return repacked(export_run(source, RACED), race_npz=buffer.getvalue())
 
 
+@pytest.mark.promises
 def test_invalid_recordings_are_refused(source: RunStore) -> None:
     assert imported(_race_with(source, lambda arrays: None)).id == RACED
 

@@ -36,6 +36,7 @@ def test_a_line_that_was_not_written_whole_is_run_again(tmp_path: Path) -> None:
         assert len(kept.results) == 2
 
 
+@pytest.mark.test
 def test_runs_of_a_score_file_count(tmp_path: Path) -> None:
     done = small_benchmark()
     (tmp_path / "s.json").write_bytes(encode(done.content))

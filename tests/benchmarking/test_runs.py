@@ -28,6 +28,7 @@ def done(config: BenchmarkConfig, runs: Sequence[Run] | None = None) -> dict[Run
     return dict(run_all(config, plan_tasks(config), runs or runs_of(config), ONE_WORKER))
 
 
+@pytest.mark.test
 def test_a_run_is_a_training_from_scratch_that_then_walks_frozen() -> None:
     config = small(seeds=1, budgets=(6,))
     plans = plan_tasks(config)
@@ -44,6 +45,7 @@ def test_a_run_is_a_training_from_scratch_that_then_walks_frozen() -> None:
     assert result == (trained.distance_m, None)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("agent", ["linear-model", "r-max"])
 def test_one_practice_serves_all_budgets_of_an_agent_that_does_not_know_its_length(
     agent: str,

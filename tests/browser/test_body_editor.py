@@ -58,6 +58,7 @@ def use(editor: Locator) -> Locator:
     return editor.get_by_role("button", name="Use this body")
 
 
+@pytest.mark.test
 def test_a_body_is_edited_used_trained_and_opened_again(
     dashboard: Dashboard, shared_server: Serving
 ) -> None:

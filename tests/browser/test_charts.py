@@ -27,6 +27,7 @@ PNG = b"\x89PNG"
 TOKEN = "for-the-operator"
 
 
+@pytest.mark.test
 def test_charts_answer(dashboard: Dashboard, flat_browser: Browser, tmp_path: Path) -> None:
     with serving(tmp_path / "data", token=TOKEN) as server:
         dashboard.open(server.link(token=TOKEN, depth="study", tab="board", **SHORT))

@@ -63,6 +63,7 @@ def marks_what_differs(page: Page) -> None:
     expect(practised).to_contain_text("150 steps100 steps")
 
 
+@pytest.mark.test
 def test_runs_are_compared_side_by_side_and_raced(
     dashboard: Dashboard, shared_server: Serving, duel: Duel
 ) -> None:

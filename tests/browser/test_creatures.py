@@ -18,6 +18,7 @@ def beforehand(dashboard: Dashboard) -> Locator:
     return dashboard.group("Known before it walks")
 
 
+@pytest.mark.test
 def test_a_creature_brings_its_gait_is_told_beforehand_and_walks(
     dashboard: Dashboard, server: Serving
 ) -> None:

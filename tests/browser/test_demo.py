@@ -99,6 +99,7 @@ def own_runs_alone_are_changed(dashboard: Dashboard, other_id: str) -> None:
     assert other_id in str(dashboard.get("api/v1/runs"))
 
 
+@pytest.mark.test
 def test_on_a_phone(flat_browser: Browser, tmp_path: Path) -> None:
     with (
         serving(tmp_path, token=TOKEN, demo=1) as server,

@@ -239,6 +239,7 @@ def fits(dashboard: Dashboard) -> None:
     page.get_by_role("radio", name="A setting", exact=True).check(force=True)
 
 
+@pytest.mark.test
 def test_all_settings_are_there_and_mistakes_hold_them_back(
     dashboard: Dashboard, shared_server: Serving
 ) -> None:
@@ -400,6 +401,7 @@ def call(server: Serving, body: object = None, path: str = "") -> dict[str, Any]
     return found
 
 
+@pytest.mark.test
 def test_spectators_see_the_report_without_controls(
     dashboard: Dashboard, flat_browser: Browser, tmp_path: Path
 ) -> None:

@@ -20,6 +20,7 @@ RACE = {
 }
 
 
+@pytest.mark.test
 def test_footfalls_of_a_race(dashboard: Dashboard, flat_browser: Browser, tmp_path: Path) -> None:
     with serving(tmp_path, token=TOKEN) as server, server.api(TOKEN) as api:
         hold(api, finished(api, "races", RACE), 2.0)

@@ -90,6 +90,7 @@ RACE = {
 }
 
 
+@pytest.mark.test
 def test_depths_tabs_and_time(dashboard: Dashboard, shared_server: Serving) -> None:
     page = dashboard.page
     with shared_server.api() as api:

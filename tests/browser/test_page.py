@@ -12,6 +12,7 @@ from tests.browser.serving import Serving, serving
 pytestmark = pytest.mark.timeout(300)
 
 
+@pytest.mark.test
 def test_a_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(server.address)
@@ -33,6 +34,7 @@ def test_a_first_visit_invites(dashboard: Dashboard, server: Serving) -> None:
     )
 
 
+@pytest.mark.test
 def test_the_lesson_goes_card_by_card_and_is_over_once(
     dashboard: Dashboard, shared_server: Serving
 ) -> None:
@@ -90,6 +92,7 @@ def test_fields_have_room_and_views_have_the_same_edges(
     assert abs(panel["x"] + panel["width"] - more["x"] - more["width"]) <= 8
 
 
+@pytest.mark.test
 def test_links_carry_the_form(dashboard: Dashboard, shared_server: Serving) -> None:
     page = dashboard.page
     dashboard.open(shared_server.link(depth="study"))
@@ -203,6 +206,7 @@ def test_the_3d_view_has_the_theme_and_forwards_keys(dashboard: Dashboard, serve
     expect(page.locator("html")).to_have_attribute("data-theme", "dark")
 
 
+@pytest.mark.test
 def test_spectators_get_no_controls(dashboard: Dashboard, tmp_path: Path) -> None:
     page = dashboard.page
     with serving(tmp_path, token="for-the-operator") as guarded:
@@ -219,6 +223,7 @@ def test_spectators_get_no_controls(dashboard: Dashboard, tmp_path: Path) -> Non
         assert dashboard.get("/api/v1/trainings")["items"] == []
 
 
+@pytest.mark.test
 def test_a_guarded_page_says_what_it_needs(dashboard: Dashboard, tmp_path: Path) -> None:
     with serving(tmp_path, token="for-the-operator", spectators="token") as guarded:
         dashboard.page.goto(guarded.address)

@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.dashboard import Dashboard
@@ -20,6 +21,7 @@ def practice(page: Page) -> str:
     return page.get_by_role("spinbutton", name="Practice, as a number").input_value()
 
 
+@pytest.mark.test
 def test_a_link_opens_what_was_set_and_what_was_shown(
     dashboard: Dashboard, server: Serving
 ) -> None:

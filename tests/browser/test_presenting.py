@@ -26,6 +26,7 @@ PHONE: ViewportSize = {"width": 390, "height": 844}
 LEAST_PX = 18
 
 
+@pytest.mark.test
 def test_a_window_is_presented_and_a_remote_turns_its_cards(
     dashboard: Dashboard, flat_browser: Browser, tmp_path: Path
 ) -> None:

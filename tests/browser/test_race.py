@@ -17,6 +17,7 @@ SHORT = urlencode({"steps": 8, "evaluate_every": 4, "race_steps": 3})
 LONG = urlencode({"steps": 100_000, "pace": 8})
 
 
+@pytest.mark.test
 @pytest.mark.looks_at_3d
 def test_train_then_race_then_again(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page

@@ -26,6 +26,7 @@ def shown_time(page: Page) -> float:
     return time_s
 
 
+@pytest.mark.test
 @pytest.mark.looks_at_3d
 @pytest.mark.timeout(300)
 def test_a_spectator_replays_a_race_while_the_stage_goes_on(

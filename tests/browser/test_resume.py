@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 from urllib.request import Request, urlopen
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.dashboard import Dashboard
@@ -95,6 +96,7 @@ def test_a_practice_that_was_stopped_stays_on_stage_and_goes_on_with_its_race(
         assert dashboard.violations() == []
 
 
+@pytest.mark.test
 def test_a_race_that_was_stopped_has_no_leader_and_goes_on(
     tmp_path: Path, dashboard: Dashboard
 ) -> None:

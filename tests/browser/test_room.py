@@ -269,6 +269,7 @@ def deletes_the_room(teacher: RoomPage, school: Serving, code: str) -> None:
         assert api.get("runs").json()["items"] == []
 
 
+@pytest.mark.test
 def test_a_wrong_code_leads_to_a_field_for_the_right_one(
     flat_browser: Browser, school: Serving
 ) -> None:

@@ -27,6 +27,7 @@ def school(tmp_path: Path) -> Iterator[Serving]:
         yield server
 
 
+@pytest.mark.test
 def test_a_teacher_removes_somebody_whose_phone_says_so(
     flat_browser: Browser, school: Serving
 ) -> None:

@@ -108,6 +108,7 @@ def walks(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Serving]:
         yield server
 
 
+@pytest.mark.test
 def test_a_run_gets_a_name_tags_and_notes_in_its_place(
     dashboard: Dashboard, walks: Serving
 ) -> None:

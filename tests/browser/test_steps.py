@@ -23,6 +23,7 @@ def step_number(page: Page) -> Locator:
     return page.get_by_role("textbox", name="Step", exact=True)
 
 
+@pytest.mark.test
 def test_a_practice_is_explained_step_by_step(dashboard: Dashboard, shared_server: Serving) -> None:
     page = dashboard.page
     with shared_server.api() as api:
@@ -156,6 +157,7 @@ def test_a_state_is_shown_in_the_scene_and_found_from_it(
     expect(grid).to_be_in_viewport()
 
 
+@pytest.mark.test
 def test_lanes_of_a_race_are_explained(dashboard: Dashboard, shared_server: Serving) -> None:
     page = dashboard.page
     with shared_server.api() as api:

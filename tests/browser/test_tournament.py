@@ -336,6 +336,7 @@ def test_what_is_not_there_is_told(flat_browser: Browser, school: Serving) -> No
         api.delete(f"tournaments/{made['id']}").raise_for_status()
 
 
+@pytest.mark.test
 def test_a_tournament_goes_on_when_its_server_comes_back(
     flat_browser: Browser, tmp_path: Path
 ) -> None:

@@ -15,6 +15,7 @@ pytestmark = pytest.mark.timeout(300)
 SHORT = urlencode({"steps": 60, "simulator": "kinematic", "evaluate_every": 0})
 
 
+@pytest.mark.test
 def test_a_slider_is_tried_out_and_gone_on_with(dashboard: Dashboard, server: Serving) -> None:
     page = dashboard.page
     dashboard.open(f"{server.address}?{SHORT}&depth=study")

@@ -13,6 +13,7 @@ from tests.cli.running import in_process, output
 from tests.quick_robot import HASTY
 
 
+@pytest.mark.promises
 def test_bench_prints_every_figure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(benchmarks, "ROUNDS", 1)
     monkeypatch.setattr(benchmarks, "WALK", replace(benchmarks.WALK, robot=HASTY))

@@ -109,6 +109,7 @@ def test_a_run_that_fails_counts_as_0_and_the_exit_code_is_1(folder: Path) -> No
     assert len(content["tasks"][0]["errors"]) == 6
 
 
+@pytest.mark.promises
 def test_interrupted_it_goes_on_where_it_was(folder: Path) -> None:
     place = ("--tasks", "tripod", "--budget", "100,200", "--workers", "1")
     command = ["benchmark", OWN, *place, "--seeds", "3", "--out", "i.json"]

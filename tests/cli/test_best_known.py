@@ -9,6 +9,8 @@ import pytest
 from hexapods import __version__
 from tests.cli.running import ROOT, in_process, refusal
 
+pytestmark = pytest.mark.promises
+
 BEAM = ("--by", "beam", "--width", "1")
 
 

@@ -62,6 +62,7 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.promises
 def test_an_engine_that_another_package_has_written_over_is_told(tmp_path: Path) -> None:
     (tmp_path / "sitecustomize.py").write_text("import mujoco\nmujoco.__version__ = '3.17.0'\n")
     done = hexapods("doctor", folder=tmp_path, PYTHONPATH=str(tmp_path), **ANY_PORT)

@@ -70,6 +70,7 @@ def test_table1_prints_json_and_adds_seeds_in_the_same_folder(tmp_path: Path) ->
     }
 
 
+@pytest.mark.promises
 def test_custom_agent_is_compared_and_its_failed_trials_are_retried(tmp_path: Path) -> None:
     agent = tmp_path / "mine.py"
     shutil.copy(EXAMPLES / "my_agent.py", agent)
@@ -92,6 +93,7 @@ def test_custom_agent_is_compared_and_its_failed_trials_are_retried(tmp_path: Pa
     assert [len(curve["steps"]) for curve in summary["curves"]] == [8, 8, 8, 8]
 
 
+@pytest.mark.promises
 def test_interrupted_sweep_is_resumed_by_the_same_command(tmp_path: Path) -> None:
     file = tmp_path / "kept" / TRIALS
     before: dict[str, Any] = {}

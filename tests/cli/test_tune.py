@@ -32,6 +32,7 @@ def kept(file: Path) -> dict[str, TrialResult]:
     return {trial["key"]: TrialResult.from_json(trial["result"]) for trial in trials}
 
 
+@pytest.mark.promises
 def test_stopped_and_killed_it_goes_on_and_gives_what_an_unbroken_one_gives(tmp_path: Path) -> None:
     file, lines = tmp_path / "tuning-results" / TRIALS, 0
     for end in (signal.SIGTERM, signal.SIGKILL):
@@ -160,6 +161,7 @@ def test_results_of_another_experiment_are_refused(tmp_path: Path) -> None:
     assert sentence.endswith("mine has results of another experiment; choose another folder")
 
 
+@pytest.mark.promises
 def test_nothing_but_a_tuning_imports_optuna(tmp_path: Path) -> None:
     code = (
         "import sys, app.server, app.cli; app.cli._parser(); print('optuna' in sys.modules); "

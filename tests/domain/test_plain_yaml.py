@@ -16,6 +16,7 @@ PLAIN = st.recursive(
 )
 
 
+@pytest.mark.test
 @given(PLAIN)
 def test_what_is_written_is_read_again(value: object) -> None:
     assert read_plain(write_plain(value).encode(), "x", "lesson") == value

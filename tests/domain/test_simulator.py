@@ -116,6 +116,7 @@ def test_steps_are_deterministic_to_the_last_bit(build: Build) -> None:
     assert [bits(one, s) for s in states] == [bits(one, s) for s in walk(one, one.rest(), 12)]
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("divisions", [2, 3])
 def test_expand_equals_step_to_the_last_bit(build: Build, divisions: int) -> None:
     simulator = build("left-right-vertical", divisions=divisions)

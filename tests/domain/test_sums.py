@@ -60,6 +60,7 @@ def _is_whole(item: ast.expr) -> bool:
     return is_negation or isinstance(item, ast.Compare)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize(
     "package", ["hexapods", "app/classroom", "app/explanations", "app/stage", "app/what_if"]
 )

@@ -25,6 +25,8 @@ from tests.experiments.existing_cluster import scheduler
 from tests.promises.length import only_whole
 from tests.timeouts import LONG_S
 
+pytestmark = pytest.mark.promises
+
 
 @pytest.mark.parametrize(
     ("given", "names"),

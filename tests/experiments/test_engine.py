@@ -24,6 +24,8 @@ from tests.experiments.clusters import (
     workers_of,
 )
 
+pytestmark = pytest.mark.test
+
 ONE, TWO = ClusterSpec(workers=1), ClusterSpec(workers=2)
 
 

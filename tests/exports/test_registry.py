@@ -77,6 +77,7 @@ print(json.dumps({**found, "code": code, "file": (folder / "x.dum").read_text()}
 """
 
 
+@pytest.mark.promises
 def test_a_format_that_is_registered_has_its_route_command_and_menu(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", DUMMY + USE, str(tmp_path / "data")],

@@ -76,6 +76,7 @@ def test_the_page_has_its_modules_inline_and_its_title_as_text(parts: StageParts
     assert "frame-ancestors" not in page.split("</head>")[0].split("<script")[0]
 
 
+@pytest.mark.promises
 def test_a_page_that_would_be_too_large_has_fewer_frames(parts: StageParts) -> None:
     run, frames = parts.finished_race(LANES), frames_of(parts)
     whole = len(page_of(frames, run.id).encode())

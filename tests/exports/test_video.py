@@ -30,6 +30,8 @@ from tests.jobs.waiting import wait_until
 from tests.stage.stage_parts import StageParts
 from tests.timeouts import LONG_S
 
+pytestmark = pytest.mark.promises
+
 SMALL = VideoOptions(width=160, height=120, fps=5, clock="free")
 PICTURES = 11  # 6 steps of 0.32 s at 5 a second, and the end
 

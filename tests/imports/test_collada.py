@@ -89,6 +89,7 @@ def test_what_is_damaged_is_refused(data: bytes, said: str) -> None:
         read_collada(data, "square.dae")
 
 
+@pytest.mark.test
 def test_a_robot_is_drawn_by_them() -> None:
     files = {"bug.urdf": bug(torso=MESH.format(file="hull.dae"))}
 

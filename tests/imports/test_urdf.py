@@ -175,6 +175,7 @@ def test_a_link_of_which_a_mesh_is_missing_is_drawn_by_its_simple_shapes_too() -
     assert np.ptp(vertices, axis=0) == pytest.approx([0.1, 0.2, 0.04], abs=1e-6)
 
 
+@pytest.mark.test
 def test_large_meshes_are_simplified() -> None:
     files = {
         "bug.urdf": bug(torso=MESH.format(file="hull.stl")),

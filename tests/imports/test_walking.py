@@ -10,6 +10,7 @@ from tests.imports.robots import HOME, bug, dog, read
 STEPS = 20
 
 
+@pytest.mark.test
 @pytest.mark.parametrize(
     "text", [dog(keyframes={"home": HOME}), dog(), bug()], ids=["keyframe", "searched", "URDF"]
 )

@@ -53,6 +53,7 @@ def worker_pids() -> set[int]:
     return {process.pid for process in (*jobs, *workers_of(me))}
 
 
+@pytest.mark.promises
 @pytest.mark.timeout(300)
 def test_interrupted_experiment_resumes_without_repeating_trials(
     jobs: Jobs, store: RunStore

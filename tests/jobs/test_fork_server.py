@@ -12,6 +12,8 @@ import pytest
 from tests.served import BODY, ENDLESS, Served, serving_from
 from tests.timeouts import LONG_S
 
+pytestmark = pytest.mark.promises
+
 SWEEP = {
     "experiment": "sweep",
     "simulator": "kinematic",

@@ -189,6 +189,7 @@ def test_stopped_training_whose_table_was_used_does_not_go_on(
     assert open_jobs().resume("t").state == "queued"
 
 
+@pytest.mark.promises
 def test_disturbed_training_that_was_killed_equals_the_unbroken_one(
     store: RunStore, open_jobs: Callable[[], Jobs]
 ) -> None:

@@ -38,6 +38,7 @@ LEAGUE: dict[str, Any] = {
 }
 
 
+@pytest.mark.promises
 @pytest.mark.parametrize(("name", "given"), [("sweep", SWEEP), ("league", LEAGUE)])
 def test_a_trial_run_here_has_the_trials_distance(
     jobs: Jobs, store: RunStore, name: Any, given: dict[str, Any]

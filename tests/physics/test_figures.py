@@ -29,7 +29,7 @@ ROBOTS: dict[str, dict[str, float]] = {
 }
 SEEDS = range(8)
 
-pytestmark = pytest.mark.timeout(1800)
+pytestmark = [pytest.mark.promises, pytest.mark.timeout(1800)]
 
 
 EVERY_ROBOT_AND_GAIT = list(product(ROBOTS, GAITS))

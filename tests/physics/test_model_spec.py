@@ -83,6 +83,7 @@ def test_the_model_of_a_built_in_robot_is_built_alike(name: str) -> None:
     }
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("gait", ["left-right-origin", "tripod"])
 def test_it_walks_as_far_as_the_built_in_one(gait: str) -> None:
     made = model_robot(model_of(Robot()), "own", **AS_BUILT_IN)
@@ -95,6 +96,7 @@ def test_it_walks_as_far_as_the_built_in_one(gait: str) -> None:
     assert own == pytest.approx(built_in, rel=0.01)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize(
     ("model", "least_m"),
     [

@@ -40,6 +40,7 @@ def layer(simulator: MujocoSimulator) -> tuple[list[MujocoState], list[Action]]:
     return [s for s, _ in pairs], [a for _, a in pairs]
 
 
+@pytest.mark.test
 def test_results_do_not_depend_on_the_number_of_threads() -> None:
     def rows(threads: int) -> tuple[bytes, bytes]:
         simulator = build(threads=threads)

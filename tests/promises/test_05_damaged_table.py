@@ -18,6 +18,8 @@ from hexapods.runs.tables import from_bytes, snapshot, to_bytes
 from hexapods.runs.training import train
 from tests.storage.stores import opened, training
 
+pytestmark = pytest.mark.test
+
 DAMAGES = 1000
 
 

@@ -17,6 +17,8 @@ from tests.promises.length import at_length
 from tests.served import ENDLESS, Served
 from tests.timeouts import LONG_S
 
+pytestmark = pytest.mark.test
+
 RUNS = at_length(1, 10)
 PAIRS_A_RUN = at_length(60, 100)
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from app.storage.run import CHECKPOINT
 from hexapods.assembly import build_learner
@@ -19,6 +20,8 @@ from hexapods.runs.training import train
 from tests.promises.length import at_length
 from tests.served import Served
 from tests.storage.stores import opened, training
+
+pytestmark = pytest.mark.test
 
 CONFIG = training_config(gait="left-right-origin", steps=500, evaluate_every=1)
 STEP = 3

@@ -22,6 +22,8 @@ from hexapods.runs.config import training_config
 from tests.storage.stores import opened, training
 from tests.timeouts import LONG_S
 
+pytestmark = pytest.mark.test
+
 DAY = timedelta(days=1)
 both_ways = pytest.mark.parametrize("jump", [DAY, -DAY], ids=["forward", "back"])
 

@@ -18,6 +18,8 @@ from schemathesis.generation import GenerationMode
 from tests.api.calls import ADDRESS, WALK, Api
 from tests.promises.length import at_length, only_whole
 
+pytestmark = pytest.mark.test
+
 CASES = 10_000
 EVERY = at_length(3, 1)
 ENDLESS = "/api/v1/events"

@@ -8,9 +8,13 @@ import http.client
 from collections.abc import Iterator
 from urllib.parse import urlsplit
 
+import pytest
+
 from app.api.memory_limit import MAX_BODY_BYTES
 from tests.browser.serving import Serving
 from tests.promises.raw import every_route, watched_memory
+
+pytestmark = pytest.mark.test
 
 OFFERED_BYTES = 256 << 20
 CHUNK = bytes(1 << 16)

@@ -14,6 +14,8 @@ from tests.browser.serving import Serving, serving
 from tests.promises.length import at_length
 from tests.promises.raw import every_route, send, status_of
 
+pytestmark = pytest.mark.test
+
 SECRET = "this-must-never-be-seen"
 UP = ["..", "%2e%2e", "%2E.", ".%2e", "%252e%252e", "..%00", "..;", "....//..", "%c0%ae%c0%ae"]
 SLASH = ["/", "%2f", "%2F", "\\", "%5c", "%252f", "//", "/./", "%c0%af"]

@@ -5,9 +5,13 @@ Over raw sockets: 100 % refused. The gate tries every third of them on each rout
 `make soak`.
 """
 
+import pytest
+
 from tests.browser.serving import Serving
 from tests.promises.length import at_length
 from tests.promises.raw import every_route, request_lines, send, status_of
+
+pytestmark = pytest.mark.test
 
 EVERY = at_length(3, 1)
 FOREIGN_HOSTS = [

@@ -21,6 +21,8 @@ from tests.experiments.clusters import CRASHING, one_by_one
 from tests.experiments.crashing_agent import FOLDER, set_crashes, tries
 from tests.promises.length import at_length
 
+pytestmark = pytest.mark.test
+
 CONFIG: ExperimentConfig = experiment_config(
     "sweep",
     {

@@ -29,6 +29,8 @@ from tests.postgresql import PostgresServer
 from tests.promises.released import sample
 from tests.storage.stores import BACKENDS, TRIALS, database_url, opened, training
 
+pytestmark = pytest.mark.test
+
 FOLDER = Path(sample.__file__).parent
 SCRIPTS = ScriptDirectory(str(Path(migration.__file__).with_name("migrations")))
 REVISIONS = [script.revision for script in SCRIPTS.walk_revisions()]

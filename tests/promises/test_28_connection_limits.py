@@ -16,6 +16,8 @@ from tests.promises.length import at_length
 from tests.served import Served, serving_from
 from tests.viewer.serving import Viewer
 
+pytestmark = pytest.mark.test
+
 TOKEN = "only-the-operator-knows-this"
 PLACES = at_length(10, 300)
 SHARE = PLACES * 4 // 5

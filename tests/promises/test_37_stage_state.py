@@ -25,6 +25,8 @@ from tests.promises.length import at_length
 from tests.stage.stage_parts import GAIT, StageParts
 from tests.storage.stores import temporary_store
 
+pytestmark = pytest.mark.test
+
 SEQUENCES = at_length(15, 10_000)
 EVENTS = 25
 STEPS = 6

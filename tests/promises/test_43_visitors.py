@@ -21,6 +21,8 @@ from tests.browser.serving import Serving, serving
 from tests.jobs.waiting import wait_until
 from tests.promises.raw import Route, every_route, request_lines, send, status_of
 
+pytestmark = pytest.mark.test
+
 TOKEN = "a-token-for-tests"
 READS = {"GET", "HEAD", "WS"}
 BODY = {"gait": "left-right-origin", "simulator": "kinematic", "steps": 20}

@@ -19,6 +19,8 @@ from hexapods.experiments.report.page import page
 from hexapods.experiments.report.trials_csv import trials_csv
 from tests.promises.length import at_length
 
+pytestmark = pytest.mark.test
+
 QUICK: dict[str, Any] = {
     "simulator": at_length("kinematic", "mujoco"),
     "steps": 3,

@@ -49,6 +49,7 @@ def test_longer_walks_come_farther() -> None:
     assert all(near < far for near, far in pairwise(found))
 
 
+@pytest.mark.promises
 def test_bonus_makes_a_narrow_beam_better_than_a_wide_one_without() -> None:
     starfish = replace(IDEAL, robot=robot("starfish"), gait=CREATURES["starfish"].gait)
     simulator = build_simulator(starfish)

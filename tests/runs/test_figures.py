@@ -29,7 +29,7 @@ from tests.promises.length import at_length
 SEEDS = at_length(200, 1000)
 Rows = dict[str, FloatArray]
 
-pytestmark = pytest.mark.timeout(1800)
+pytestmark = [pytest.mark.promises, pytest.mark.timeout(1800)]
 
 
 @pytest.fixture(scope="module")

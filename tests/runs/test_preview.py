@@ -143,6 +143,7 @@ def test_only_the_leg_that_does_not_reach_is_told() -> None:
     assert short.out_of_reach == short.legs[2].out_of_reach
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_body_written_out_is_the_same_robot(name: str) -> None:
     known = told("one-by-one", name)

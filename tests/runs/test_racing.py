@@ -75,6 +75,7 @@ def test_step_records_observation_action_and_reward() -> None:
     assert (first.observation, first.action) == ((0, 0, 0), (0, 1))
 
 
+@pytest.mark.test
 def test_a_lane_is_independent_of_the_other_lanes() -> None:
     alone = of_lane(run(config("greedy", simulator="mujoco", steps=3)), 0)
     beside = of_lane(run(config("greedy", "greedy", "two-step", simulator="mujoco", steps=3)), 0)
@@ -109,6 +110,7 @@ def test_lanes_of_the_same_agent_have_independent_generators() -> None:
     assert one != other
 
 
+@pytest.mark.test
 def test_race_is_deterministic() -> None:
     asked = config("tests.own_agents:Restless", "greedy", seed=3, simulator="mujoco", steps=3)
 
@@ -250,6 +252,7 @@ def test_decision_may_be_interrupted_and_is_no_failure() -> None:
         next(records)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("threads", [1, 2, 4])
 def test_branch_takes_the_same_steps_to_the_last_bit_until_something_happens(threads: int) -> None:
     """The original is on one thread; the robot draws its noise, its build and its learner anew."""
@@ -284,6 +287,7 @@ def test_branch_takes_the_same_steps_to_the_last_bit_until_something_happens(thr
         assert now[4:] != was[4:]
 
 
+@pytest.mark.promises
 def test_a_branch_does_not_search_again_for_the_steps_it_shares() -> None:
     lanes = (
         lane_config("two-step"),

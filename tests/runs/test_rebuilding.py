@@ -86,6 +86,7 @@ def test_every_reading_of_the_feet_is_rebuilt(observation: Observation) -> None:
         assert agent_state(rebuilt.agent) == agent_state(learner.walker.agent)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("agent", ["q-learning", "linear-model"])
 def test_a_disturbed_training_on_mujoco_is_rebuilt_without_physics(agent: str) -> None:
     world = World((SensorNoise(sd_m=0.004), Limp(legs=(1, 4), at_step=12)))

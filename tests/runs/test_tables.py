@@ -220,6 +220,7 @@ def test_flipped_bit_in_a_value_is_detected() -> None:
         from_bytes(bytes(data), "worn.npz")
 
 
+@pytest.mark.test
 def test_zip_bomb_is_refused_before_unpacking() -> None:
     bomb = npz({"q": np.zeros(20_000_000)}, compressed=True)  # 160 MB in 160 kB
     assert len(bomb) < 1_000_000

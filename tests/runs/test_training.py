@@ -166,6 +166,7 @@ def test_the_baseline_walks_once_in_a_process_for_what_it_depends_on() -> None:
     assert len(walks) == 4
 
 
+@pytest.mark.test
 @on_both
 def test_evaluation_does_not_change_the_learner(simulator: SimulatorName) -> None:
     config = replace(CONFIG, simulator=simulator, robot=HASTY, steps=70)
@@ -199,6 +200,7 @@ def test_evaluation_takes_fifty_steps_from_rest() -> None:
     assert evaluated.motion.qpos[-1, 1] == pytest.approx(evaluated.distance_m, abs=1e-6)
 
 
+@pytest.mark.test
 @on_both
 def test_the_same_config_and_seed_give_the_same_table(simulator: SimulatorName) -> None:
     config = replace(CONFIG, simulator=simulator, robot=HASTY, steps=60, evaluate_every=0)
@@ -207,6 +209,7 @@ def test_the_same_config_and_seed_give_the_same_table(simulator: SimulatorName) 
     assert table_hash(run(config)[0]) != table_hash(run(replace(config, seed=4))[0])
 
 
+@pytest.mark.test
 def test_the_table_is_the_same_at_any_thread_count() -> None:
     config = replace(CONFIG, simulator="mujoco", robot=HASTY, steps=40, evaluate_every=40)
     runs = [run(config, threads) for threads in (1, 2, 4)]
@@ -223,6 +226,7 @@ def unbroken_run(simulator: SimulatorName) -> tuple[TrainingConfig, Learner, lis
     return config, *run(config)
 
 
+@pytest.mark.test
 @on_both
 @pytest.mark.parametrize("broken_at", [13, 50, 77])
 def test_training_resumed_from_a_checkpoint_equals_the_unbroken_run(
@@ -378,6 +382,7 @@ EVENTFUL = training_config(
 )
 
 
+@pytest.mark.promises
 def test_the_robot_is_evaluated_where_the_world_changes_and_greedy_in_each_world() -> None:
     learner, records = run(EVENTFUL)
     evaluated = [record.step for record in records if isinstance(record, Evaluated)]
@@ -388,6 +393,7 @@ def test_the_robot_is_evaluated_where_the_world_changes_and_greedy_in_each_world
     assert training_result(learner, EVENTFUL).greedy_distance_m == references[-1]
 
 
+@pytest.mark.test
 def test_a_disturbed_training_resumes_to_the_last_bit() -> None:
     unbroken, records = run(EVENTFUL)
     for step in (9, 10, 21):
@@ -404,6 +410,7 @@ def test_a_disturbed_training_resumes_to_the_last_bit() -> None:
         assert [r.distance_m for r in after if isinstance(r, StepTaken)] == distances[step:]
 
 
+@pytest.mark.test
 def test_what_happens_while_it_runs_equals_what_was_planned() -> None:
     """But for an evaluation in the new world, which changes nothing."""
     planned = replace(EVENTFUL, world=World((Limp(legs=(1, 4), at_step=7),)))

@@ -95,6 +95,7 @@ def at_slow_draw(working: Judge, tournament: Tournament) -> int:
     return pid
 
 
+@pytest.mark.promises
 def test_an_entry_that_ends_its_processes_has_failed(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = tournaments.create(SLOW, "", None, 6)
@@ -109,6 +110,7 @@ def test_an_entry_that_ends_its_processes_has_failed(store: RunStore) -> None:
     assert judgements[0] == Judgement(0.0, f"{MAX_DEATHS} processes ended while they judged it.")
 
 
+@pytest.mark.promises
 def test_a_draw_that_takes_too_long_has_failed(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = tournaments.create(SLOW, "", None, 6)
@@ -125,6 +127,7 @@ def test_a_draw_has_more_time_where_searches_may_simulate_more() -> None:
     assert limit_s(replace(SLOW, transitions=100_000), 120.0) == 300.0
 
 
+@pytest.mark.promises
 def test_what_nobody_waits_for_is_given_up(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = tournaments.create(SLOW, "", None, 6)
@@ -139,6 +142,7 @@ def test_what_nobody_waits_for_is_given_up(store: RunStore) -> None:
     assert Tournaments(store).all() == [other]
 
 
+@pytest.mark.promises
 def test_the_judge_stops_at_once_and_goes_on_later(store: RunStore) -> None:
     tournaments = Tournaments(store)
     tournament = tournaments.create(QUICK, "", None, 6)

@@ -79,6 +79,7 @@ def elsewhere() -> dict[str, Judgement]:
     return dict(zip(AGENTS, pickle.loads(done.stdout), strict=True))
 
 
+@pytest.mark.promises
 @pytest.mark.parametrize("agent", AGENTS)
 def test_a_judgement_depends_on_neither_order_nor_thread_nor_process(
     elsewhere: dict[str, Judgement], agent: str
@@ -112,6 +113,7 @@ def test_what_learns_in_races_by_default_does_here() -> None:
     assert judge(rules, entry, DRAW).distance_m == goes_on != stops
 
 
+@pytest.mark.promises
 def test_the_world_and_the_tolerance_of_the_draw_hold() -> None:
     hasty: dict[str, Any] = {"simulator": "mujoco", "gait": "tripod", "robot": HASTY, "steps": 5}
     rules = rules_of(**hasty, worlds=("flat", "ice"))
@@ -186,6 +188,7 @@ def test_an_agent_that_would_practise_with_a_model_of_the_secret_world_is_refuse
         judge(rules_of(), EntryConfig(agent="seer"), DRAW)
 
 
+@pytest.mark.promises
 def test_a_search_that_simulates_too_many_transitions_has_failed() -> None:
     two_steps = EntryConfig(agent="look-ahead", settings=SettingValues({"depth": 2}))
     assert judge(rules_of(), two_steps, DRAW).failure is None

@@ -83,6 +83,7 @@ def test_entries_of_other_draws_are_refused() -> None:
         ranking({0: [0.1] * 5, 1: [0.1] * 6}, {})
 
 
+@pytest.mark.test
 @given(DISTANCES, st.randoms(use_true_random=False))
 def test_ranks_are_consistent_and_independent_of_the_order(
     points: list[list[float]], order: random.Random
@@ -105,6 +106,7 @@ def test_ranks_are_consistent_and_independent_of_the_order(
             assert one.number in by_number[other].not_separable
 
 
+@pytest.mark.test
 def test_many_entries_are_ranked_by_the_same_resamples() -> None:
     """Two hundred entries have 19,900 pairs; each pair alone would take minutes."""
     distances = sample(200, 20)

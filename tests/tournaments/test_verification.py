@@ -26,6 +26,8 @@ from tests.promises.length import only_whole
 from tests.quick_robot import HASTY, QUICK_STEPS
 from tests.tournaments.sample_tournaments import judged, rules_of, table_file
 
+pytestmark = pytest.mark.test
+
 OTHER_SECRET = "fedcba9876543210" * 4
 
 

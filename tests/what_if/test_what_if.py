@@ -60,6 +60,7 @@ def distances(training: TrainingConfig) -> list[float]:
     return [run_trial(trial).distances_m[0] for trial in trials]
 
 
+@pytest.mark.promises
 def test_thirty_kinematic_seeds_run_of_each_variant(what_if: WhatIf) -> None:
     chosen = changed({"alpha": 0.9, "epsilon_end": 0.2})
     answer = what_if.ask(chosen)
@@ -76,6 +77,7 @@ def test_thirty_kinematic_seeds_run_of_each_variant(what_if: WhatIf) -> None:
         assert half["walkers"] == len(far) / 30
 
 
+@pytest.mark.promises
 def test_variants_differ_in_settings_only(what_if: WhatIf) -> None:
     answer = what_if.ask(replace(SHORT, observation="commanded"))
     commanded = replace(SHORT, observation="commanded")
@@ -83,6 +85,7 @@ def test_variants_differ_in_settings_only(what_if: WhatIf) -> None:
     assert answer["chosen"] == answer["default"]
 
 
+@pytest.mark.promises
 def test_all_walk_in_the_world_as_it_is_in_the_end(what_if: WhatIf) -> None:
     noise = SensorNoise(sd_m=0.02)
     later = replace(SHORT, world=World((replace(noise, at_step=30),)))
@@ -181,6 +184,7 @@ def test_only_computing_is_charged(what_if: WhatIf) -> None:
     assert len(charged) == 1
 
 
+@pytest.mark.promises
 def test_waiting_for_a_core_is_neither_charged_nor_refused(
     what_if: WhatIf, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -204,6 +208,7 @@ def test_nothing_is_computed_for_who_has_left(what_if: WhatIf, pool: ProcessPool
     assert charged, "it was not computed before"
 
 
+@pytest.mark.promises
 def test_too_many_waiting_requests_are_refused_as_busy(what_if: WhatIf) -> None:
     answers: list[Any] = []
 

@@ -145,6 +145,7 @@ def test_every_assumption_has_its_test() -> None:
     }
 
 
+@pytest.mark.test
 def test_only_this_package_uses_private_parts() -> None:
     """The rest of the app uses only what `viser` itself exports, and not `viser.infra`.
 

@@ -29,6 +29,7 @@ def small(experiment: str, seeds: int = 3, **given: Any) -> dict[str, Any]:
     return summary_of(experiment, lambda _: around(0.3), seeds=seeds, **only, **given)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 def test_a_figure_renders_to_the_same_bytes_each_time_without_a_date(experiment: str) -> None:
     summary = small(experiment)
@@ -39,6 +40,7 @@ def test_a_figure_renders_to_the_same_bytes_each_time_without_a_date(experiment:
         assert not any(re.search(rb"CreationDate|dc:date|Creation Time", one) for one in first)
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 @pytest.mark.parametrize("done", [0, 2, 5])
 def test_figures_of_an_incomplete_experiment_can_be_drawn(experiment: str, done: int) -> None:
@@ -54,6 +56,7 @@ def test_figures_of_an_incomplete_experiment_can_be_drawn(experiment: str, done:
         assert render(one.figure, "png")
 
 
+@pytest.mark.test
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 def test_every_picture_has_its_numbers_in_the_alternative_text(experiment: str) -> None:
     summary = summary_of(experiment, lambda _: around(0.3, 0.0), seeds=3)
