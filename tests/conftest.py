@@ -1,6 +1,6 @@
 """Fixtures for every test: a real browser with WebGL2 in software, and a real PostgreSQL.
 
-`make test` runs the tests in several processes (pytest-xdist).
+`make test` and `make promises` run the tests in several processes (pytest-xdist).
 """
 
 import gc

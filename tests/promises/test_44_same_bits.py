@@ -1,6 +1,6 @@
 """Promise 44: the same seed gives the same bits.
 
-In every Python that is on a machine: `make pythons`, which `make test` runs, runs
+In every Python that is on a machine: `make pythons`, which `make promises` runs, runs
 tests/test_reproducible.py in each, and tests/domain/test_sums.py refuses what differs between them.
 With other instructions of the processor it is said from which step on results differ, and whether
 the ranks hold: here NumPy is denied all that newer processors have, in a process of its own.
