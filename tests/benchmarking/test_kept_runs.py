@@ -10,6 +10,8 @@ from hexapods.benchmarking.score_file import encode
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from tests.benchmarking.sample_benchmarks import small, small_benchmark
 
+pytestmark = pytest.mark.test
+
 RUN = Run("tripod", 3, 0)
 RESULT = RunResult(0.1234567890123456)
 
@@ -36,7 +38,6 @@ def test_a_line_that_was_not_written_whole_is_run_again(tmp_path: Path) -> None:
         assert len(kept.results) == 2
 
 
-@pytest.mark.test
 def test_runs_of_a_score_file_count(tmp_path: Path) -> None:
     done = small_benchmark()
     (tmp_path / "s.json").write_bytes(encode(done.content))

@@ -19,6 +19,8 @@ from hexapods.benchmarking.score_file import (
 from hexapods.domain.errors import DamagedFile, UnknownName
 from tests.benchmarking.sample_benchmarks import results, small, small_benchmark
 
+pytestmark = pytest.mark.test
+
 
 def test_it_has_what_the_issue_of_a_score_needs() -> None:
     content = small_benchmark().content

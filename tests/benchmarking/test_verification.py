@@ -9,6 +9,8 @@ from hexapods.benchmarking.verification import verification, version_note
 from hexapods.domain.errors import InvalidInput
 from tests.benchmarking.sample_benchmarks import small_benchmark
 
+pytestmark = pytest.mark.test
+
 
 def changed() -> dict[str, Any]:
     return deepcopy(dict(small_benchmark().content))
@@ -45,7 +47,6 @@ def test_another_best_known_distance_is_told() -> None:
     assert told.startswith("tasks tripod best_known_m: 0.3 in the file, ")
 
 
-@pytest.mark.test
 def test_last_digits_are_told_apart_from_other_differences() -> None:
     content = changed()
     content["tasks"][0]["budgets"][0]["distances_m"][0] += 1e-14

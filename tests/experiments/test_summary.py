@@ -25,6 +25,8 @@ from tests.experiments.sample_experiments import (
 from tests.figures import GREEDY_H, H_M
 from tests.promises.length import at_length
 
+pytestmark = pytest.mark.test
+
 LRO = "left-right-origin"
 Q500 = f"{LRO}/measured/stiff/q-learning/500"
 

@@ -28,6 +28,8 @@ from hexapods.experiments.tuning.tuning import BATCH, NothingTried, Run, Tuning,
 from hexapods.experiments.worker import Outcome
 from hexapods.runs.config import agent_settings
 
+pytestmark = pytest.mark.test
+
 LRO = "left-right-origin"
 MOODY = "tests.own_agents:Moody"
 """An agent of which one setting makes all the difference."""

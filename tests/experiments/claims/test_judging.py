@@ -15,6 +15,8 @@ from tests.experiments.sample_experiments import (
     summary_of,
 )
 
+pytestmark = pytest.mark.test
+
 ODD_GAIT = "left-right-vertical"
 Far = Callable[[TrialSetting], Callable[[int], float]]
 
@@ -139,7 +141,6 @@ def test_where_the_cases_disagree_the_verdict_depends_and_the_evidence_lists_the
     ]
 
 
-@pytest.mark.test
 def test_a_curve_that_halves_its_distance_to_the_end_flattens_and_still_inclines() -> None:
     """The made-up curve is at 50, 94 and 100 % of its end after 250, 1,000 and 2,000 steps."""
     for name in ("improves", "flattens", "inclines", "approaches", "odd-gait-satisfies"):

@@ -51,7 +51,13 @@ def small(experiment: str = "table1", **given: Any) -> tuple[Any, Results]:
     return summarise(tried, results), results
 
 
-@pytest.mark.parametrize("experiment", [pytest.param("table1", marks=only_whole), "figure4"])
+@pytest.mark.parametrize(
+    "experiment",
+    [
+        pytest.param("table1", marks=only_whole),
+        pytest.param("figure4", marks=pytest.mark.promises),
+    ],
+)
 def test_a_whole_report_of_thirty_seeds_is_small_enough_to_commit(experiment: str) -> None:
     tried = config(experiment, seeds=30)
     results = sample_results(tried, lambda _: around(0.3, 0.2))
