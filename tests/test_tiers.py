@@ -47,7 +47,8 @@ def tiers_of(target: str) -> list[str]:
 
 def test_each_test_has_exactly_one_tier(collected: list[pytest.Item]) -> None:
     for item in collected:
-        marked = {mark.name for mark in item.iter_markers()} & set(TIERS)
+        # A marker of a test is before that of its module.
+        marked = {mark.name for mark in item.own_markers} & set(TIERS)
         assert len(marked) == 1, f"{item.nodeid} has the tiers {sorted(marked)}"
 
 
