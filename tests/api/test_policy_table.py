@@ -1,0 +1,34 @@
+"""Each operation is refused, counted and bounded as the committed table says, for each role."""
+
+import json
+from typing import Any
+
+from tests.api.policy_table import TABLE, recorded
+
+
+def outcomes(table: dict[str, Any]) -> dict[tuple[str, str], str]:
+    """Return the outcome, with its sentence, by operation and case."""
+    found: dict[tuple[str, str], str] = {}
+    for operation, of_operation in table["operations"].items():
+        for outcome, group in of_operation.items():
+            kind, _, number = outcome.removesuffix("]").partition(" [")
+            said = table["sentences"][int(number)] if number else ""
+            for line in table["groups"][group]:
+                server, _, roles = line.partition(": ")
+                for role in roles.split(" | "):
+                    found[operation, f"{server}: {role}"] = f"{kind} {said}".strip()
+    return found
+
+
+def test_the_guards_decide_as_the_table_says() -> None:
+    """`python -m tests.api.policy_table` writes it anew, if a difference is meant."""
+    expected = outcomes(json.loads(TABLE.read_text("utf-8")))
+    now = outcomes(recorded())
+    differences = [
+        f"{operation}, {case}: was {expected.get((operation, case))}, is {now.get((operation, case))}"
+        for operation, case in sorted({*expected, *now})
+        if expected.get((operation, case)) != now.get((operation, case))
+    ]
+    assert not differences, "\n".join([f"{len(differences)} differences", *differences[:40]])
+    assert len({operation for operation, _ in now}) > 140
+    assert len(now) > 6000
