@@ -13,8 +13,8 @@ from functools import cache, partial
 from types import FrameType
 
 import uvicorn
-from fastapi import APIRouter, FastAPI
-from starlette.routing import BaseRoute
+from fastapi import FastAPI
+from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 from app.api import (
@@ -43,25 +43,33 @@ from app.api import (
     trainings,
     visitors,
 )
-from app.api.auth import TokenGuard
 from app.api.card_starts import CardStarts
-from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
+from app.api.concurrency_limit import WorkSlots
 from app.api.deps import Services
 from app.api.events import close_streams, listeners_of
+from app.api.guards import RouteGuards
 from app.api.guide import guide_routes
 from app.api.host_check import HostGuard
-from app.api.memory_limit import HeldBodies
+from app.api.identity import IdentityProvider
 from app.api.middleware import SecurityHeaders
+from app.api.policy import (
+    WATCH_STAGE,
+    GuardedPage,
+    GuardedSocket,
+    Policy,
+    api_router,
+    guard_everything,
+)
 from app.api.problem_pages import ProblemPages
-from app.api.rate_limit import RateLimit, what_if_limiter
+from app.api.rate_limit import what_if_limiter
 from app.api.request_headers import DeclaredHeaders
 from app.api.room_access import RoomAccess
 from app.api.room_stages import RoomStages
 from app.api.stage_paths import StagePaths, stage_of
 from app.api.starts import start_routes
-from app.api.unfinished import Unfinished
+from app.api.unfinished import IncompleteBodyGuard
 from app.api.visitor_access import VisitorAccess
-from app.api.wellformed import WellFormed
+from app.api.wellformed import MalformedRequestGuard
 from app.classroom.lessons import Lessons
 from app.classroom.rooms import Rooms
 from app.demo import expiry
@@ -208,24 +216,21 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     app.state.metrics = monitoring.registry_of(app.state.services)
     _add_routes(app, app.state.services.agents, is_demo=settings.demo)
     problems.install(app)
-    contract.install(app, app.state.services.agents, settings)
-    # The middleware that is added last runs first.
-    app.add_middleware(ConcurrencyLimit, slots=app.state.work_slots)
-    app.add_middleware(HeldBodies)
-    access = RoomAccess(rooms, contests.room_of)
+    providers: list[IdentityProvider] = [RoomAccess(rooms, contests.room_of, settings)]
+    if settings.demo:
+        providers.append(VisitorAccess(of_visitors, settings))
+    contract.install(app, app.state.services.agents, settings, providers)
     what_ifs = app.state.services.what_if_limiter
-    app.add_middleware(RateLimit, settings=settings, what_ifs=what_ifs)
-    app.add_middleware(
-        TokenGuard,
-        settings=settings,
-        rooms=access,
-        visitors=VisitorAccess(of_visitors) if settings.demo else None,
+    guards = RouteGuards(
+        settings, app.state.work_slots, what_ifs, providers, app.exception_handlers
     )
+    guard_everything(app, guards)
+    # The middleware that is added last runs first.
     app.add_middleware(HostGuard, settings=settings)
-    app.add_middleware(Unfinished)
+    app.add_middleware(IncompleteBodyGuard)
     app.add_middleware(ProblemPages)
     app.add_middleware(StagePaths, stages=app.state.services.stages)
-    app.add_middleware(WellFormed)
+    app.add_middleware(MalformedRequestGuard)
     app.add_middleware(DeclaredHeaders)
     app.add_middleware(SecurityHeaders)
     return app
@@ -239,7 +244,7 @@ def _judges_niceness(settings: Settings) -> int:
 def _add_routes(app: FastAPI, agents: tuple[str, ...], *, is_demo: bool) -> None:
     app.router.routes += _api_routes(agents)
     app.router.routes += [
-        *viewer_routes(_serve_viewer),
+        *_viewer_routes(),
         *pages.page_routes(assets.static_dir()),
         *classroom_pages.classroom_routes(pages.page_content("room.html", assets.static_dir())),
         *classroom_pages.tournament_routes(
@@ -250,6 +255,18 @@ def _add_routes(app: FastAPI, agents: tuple[str, ...], *, is_demo: bool) -> None
     ]
 
 
+def _viewer_routes() -> list[BaseRoute]:
+    """Return the routes of the 3D view behind the guards, of which its package knows nothing."""
+    watch = Policy(access=WATCH_STAGE)
+    routes: list[BaseRoute] = []
+    for route in viewer_routes(_serve_viewer):
+        if isinstance(route, Route):
+            routes.append(GuardedPage(route.path, route.endpoint, watch, name=route.name))
+        elif isinstance(route, WebSocketRoute):
+            routes.append(GuardedSocket(route.path, route.endpoint, watch, name=route.name))
+    return routes
+
+
 async def _serve_viewer(websocket: WebSocket) -> None:
     await stage_of(websocket.scope).hub.serve(websocket)
 
@@ -257,17 +274,17 @@ async def _serve_viewer(websocket: WebSocket) -> None:
 @cache
 def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
     """Return the routes that are the same in all apps; FastAPI takes long to build them."""
-    router, versioned = APIRouter(), APIRouter(prefix="/api/v1")
+    router, prefix = api_router(), "/api/v1"
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(archives, trainings, races, experiments, runs, exports, replays, gait),
         *(stage, spectators, events, options, robots, lessons, rooms, tournaments, visitors),
     )
     for module in modules:
-        versioned.include_router(module.router)
-    versioned.include_router(start_routes(agents))
-    versioned.include_router(tournaments.entry_routes(agents))
-    for included in (versioned, monitoring.router, docs.router):
+        router.include_router(module.router, prefix=prefix)
+    router.include_router(start_routes(agents), prefix=prefix)
+    router.include_router(tournaments.entry_routes(agents), prefix=prefix)
+    for included in (monitoring.router, docs.router):
         router.include_router(included)
     return tuple(router.routes)
 

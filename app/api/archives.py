@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Sequence
 
-from fastapi import APIRouter, Request
+from fastapi import Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import AnyRunView, ImportedView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.formats import attachment
+from app.api.policy import OPERATOR, WATCH, WATCH_RUN, api_router, policy
 from app.api.robots import publish_robots
 from app.api.runs import RunIdsQuery, RunPath, find, located, phrase
 from app.archive import archive
@@ -16,10 +17,11 @@ from app.archive.transfer import export_chunks, export_many, import_runs
 from app.storage.run import KINDS, IdempotencyKey, Kind, Run, robots_of
 from hexapods.domain.errors import InvalidInput
 
-router = APIRouter()
+router = api_router()
 
 
 def _export(kind: Kind) -> Callable[..., Response]:
+    @policy(access=WATCH_RUN, work="download")
     def export(services: ServicesDep, run_id: RunPath) -> Response:
         """Return a `.zip` that another server's import, or `hexapods import`, accepts."""
         run = find(services, kind, run_id)
@@ -52,6 +54,7 @@ for _kind in KINDS:
         409: {},
     },
 )
+@policy(access=WATCH, work="download")
 def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     """Return one `.zip` with the archive of each, which `POST /runs/import` accepts."""
     data = export_many(services.store, ids, services.exports)
@@ -67,6 +70,7 @@ def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     response_model=ImportedView,
     openapi_extra=takes_file("application/octet-stream"),
 )
+@policy(access=OPERATOR, starts=True, takes_file=True)
 def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep) -> Response:
     """Import the body, an archive, whole or not at all; otherwise as `POST /import`."""
     runs = _imported(services, start_request, is_one=False)
@@ -82,6 +86,7 @@ def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep
     responses=answers(201, headers=LOCATION),
     openapi_extra=takes_file("application/octet-stream"),
 )
+@policy(access=OPERATOR, starts=True, takes_file=True)
 def import_archive(
     services: ServicesDep, request: Request, start_request: StartRequestDep
 ) -> Response:

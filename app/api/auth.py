@@ -1,6 +1,7 @@
-"""Token and session authentication, which gives each request its role on the stage."""
+"""Authentication by token, session or identity, and authorization by the access of a route."""
 
 import asyncio
+from collections.abc import Sequence
 from urllib.parse import parse_qsl, urlencode
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -8,21 +9,18 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.cookies import SessionCookie, is_secure
+from app.api.identity import Identity, IdentityProvider, run_ids_of
+from app.api.policy import policy_of
 from app.api.problems import problem
-from app.api.rate_limit import is_question, too_many
-from app.api.room_access import READ_METHODS, RoomAccess
-from app.api.stage_paths import path_of, stage_of
-from app.api.visitor_access import VisitorAccess, visitor_cookie
+from app.api.rate_limit import too_many
+from app.api.stage_paths import stage_of
 from app.limits.addresses import client_of
 from app.limits.connections import Connection
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
-from app.stage.roles import Role, Roles
-from app.storage.database.room_rows import Seat
+from app.stage.roles import Roles
 from hexapods.domain.errors import HexapodError
 
-PUBLIC_PATHS = ("/healthz", "/readyz")
-_PUBLIC_FOLDERS = ("/static/",)
 WRONG_TOKENS, WRONG_TOKENS_PER_S = 20, 0.2
 _AUTH_HINT = (
     "send the server's token as Authorization: Bearer …, or open its page once with ?token=… "
@@ -31,47 +29,43 @@ _AUTH_HINT = (
 
 
 class TokenGuard:
-    """Authentication middleware: authorises every request and websocket by its role.
+    """Authentication and authorization: lets a request or websocket pass by its role and identity.
 
-    `Roles` of the stage decide on it. Without a token every client is operator; the server then
+    `Roles` of the stage know operators. Without a token every client is operator; the server then
     binds to loopback only. An operator's browser has a session, whose id is in a cookie. Wrong
     tokens and wrong session ids of an address draw on the same token bucket. The right ones are let
     in even when it is empty, or others at an operator's address could lock them out: they are too
-    long to be guessed (`MIN_TOKEN_LENGTH`), and the limit bounds the load. Paths without a route
-    are guarded too.
+    long to be guessed (`MIN_TOKEN_LENGTH`), and the limit bounds the load. What a client who is no
+    operator may do is decided by the access of the route, and by the features that know the client.
     """
 
     def __init__(
-        self,
-        app: ASGIApp,
-        settings: Settings,
-        rooms: RoomAccess,
-        visitors: VisitorAccess | None = None,
+        self, app: ASGIApp, settings: Settings, providers: Sequence[IdentityProvider] = ()
     ) -> None:
         """Wrap an app, inside `StagePaths`; of the settings it uses `public_url`.
 
         Args:
             app: the wrapped app.
             settings: of the server.
-            rooms: decides what participants of rooms may do.
-            visitors: decides what visitors may do; None on a server that is no demo.
+            providers: know clients who are no operators; the first that knows one decides.
         """
-        self._app, self._rooms, self._visitors = app, rooms, visitors
+        self._app, self._providers = app, providers
         self._wrong_guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._settings = settings
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Store the role in the scope's state and call the app, or refuse with 401 or 429."""
-        if scope["type"] not in ("http", "websocket"):
-            await self._app(scope, receive, send)
-            return
+        """Store role and identity in the scope's state and call the app, or refuse the request."""
         headers, roles = Headers(scope=scope), stage_of(scope).roles
-        if _has_token_parameter(scope):
+        if policy_of(scope).opens_session and _has_token_parameter(scope):
             response = await self._open_session(scope, roles)
             await response(scope, receive, send)
             return
         cookie, bearer = self._cookie(scope), _bearer(headers)
-        role, seats = self._identify(scope, roles.of(bearer, cookie.value))
+        role = roles.of(bearer, cookie.value)
+        identity = None
+        if role == "spectator" or not roles.needs_token:
+            identity = next(filter(None, (one.identify(scope) for one in self._providers)), None)
+        role = role if identity is None else "spectator"
         if role == "spectator" and roles.needs_token:
             wrong = [credential for credential in (bearer, cookie.value) if credential]
             wait_s = max((self._wrong_guesses.take(client_of(scope)) for _ in wrong), default=0.0)
@@ -80,9 +74,9 @@ class TokenGuard:
             if wait_s > 0:
                 await _too_many_guesses(scope, wait_s)(scope, receive, send)
                 return
-        refusal = self._refusal(scope, roles, seats) if role == "spectator" else None
+        refusal = self._refusal(scope, roles, identity) if role == "spectator" else None
         if refusal is None:
-            scope["state"]["role"] = role
+            scope["state"].update(role=role, identity=identity)
             if role == "operator" and roles.needs_token:
                 _mark_authenticated(scope)
             await self._app(scope, receive, send)
@@ -91,33 +85,18 @@ class TokenGuard:
         else:
             await refusal(scope, receive, send)
 
-    def _identify(self, scope: Scope, role: Role) -> tuple[Role, tuple[Seat, ...]]:
-        """Return the role of a client and its seats in rooms; store these and a visitor's cookie.
-
-        Where nobody needs a token, a participant is who has a room's cookie.
-        """
-        seats: tuple[Seat, ...] = ()
-        is_secure = self._is_secure(scope)
-        if role == "spectator" or not stage_of(scope).roles.needs_token:
-            seats = self._rooms.seats(scope, is_secure=is_secure)
-        role = "spectator" if seats else role
-        is_visitor = self._visitors is not None and role == "spectator" and not seats
-        scope["state"]["seats"] = seats
-        scope["state"]["visitor"] = (
-            visitor_cookie(scope, is_secure=is_secure) if is_visitor else None
-        )
-        return role, seats
-
-    def _refusal(self, scope: Scope, roles: Roles, seats: tuple[Seat, ...]) -> ASGIApp | None:
+    def _refusal(self, scope: Scope, roles: Roles, identity: Identity | None) -> ASGIApp | None:
         """Return the refusal of a request of no operator; None if it is allowed."""
-        refusal = self._rooms.refuse(scope, seats, is_public=roles.is_public)
-        if refusal is not None or seats:
-            return refusal
-        if self._rooms.is_open_to_all(scope) or _is_open_to_spectators(scope, roles):
-            return None
-        if self._visitors is not None:
-            return self._visitors.refuse(scope, scope["state"]["visitor"].value)
-        return _unauthorized(f"This needs the operator: {_AUTH_HINT}.")
+        for run_id in run_ids_of(scope):
+            for provider in self._providers:
+                if (why := provider.why_hidden(run_id, identity)) is not None:
+                    return problem(403, why)
+        access, as_spectator = policy_of(scope).access, None
+        if not access.admits_spectators(is_public=roles.is_public):
+            as_spectator = _unauthorized(f"This needs the operator: {_AUTH_HINT}.")
+        if identity is None:
+            return as_spectator
+        return identity.refusal(scope, access, as_spectator)
 
     def _is_secure(self, scope: Scope) -> bool:
         return is_secure(scope, self._settings)
@@ -126,7 +105,7 @@ class TokenGuard:
         return SessionCookie(scope, self._is_secure(scope), stage_of(scope).session_path)
 
     async def _open_session(self, scope: Scope, roles: Roles) -> Response:
-        """Open a session for the token of `/?token=…`, and redirect to the address without it."""
+        """Open a session for the token of `?token=…`, and redirect to the address without it."""
         items = _query(scope)
         rest = urlencode([(name, value) for name, value in items if name != "token"])
         given = next(value for name, value in items if name == "token")
@@ -148,16 +127,6 @@ class TokenGuard:
         return response
 
 
-def _is_open_to_spectators(scope: Scope, roles: Roles) -> bool:
-    changes = scope["type"] == "http" and scope["method"] not in READ_METHODS
-    if changes and not is_question(scope):
-        return False
-    path = path_of(scope)
-    # The page's files are public; the data they show is not.
-    is_open = path == "/" or path in PUBLIC_PATHS or path.startswith(_PUBLIC_FOLDERS)
-    return roles.is_public or is_open
-
-
 def _mark_authenticated(scope: Scope) -> None:
     """Mark the connection as authenticated, which exempts it from eviction."""
     connection: Connection | None = scope["state"].get("connection")
@@ -166,8 +135,6 @@ def _mark_authenticated(scope: Scope) -> None:
 
 
 def _has_token_parameter(scope: Scope) -> bool:
-    if scope["type"] != "http" or path_of(scope) != "/" or scope["method"] not in ("GET", "HEAD"):
-        return False
     return any(name == "token" for name, _ in _query(scope))
 
 

@@ -5,12 +5,14 @@ from urllib.parse import quote
 
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
-from starlette.routing import BaseRoute, Route
+from starlette.routing import BaseRoute
 
 from app.api.compression import CompressedContent
 from app.api.deps import Services
+from app.api.policy import WATCH, GuardedPage, Policy, policy
 from app.api.problem_pages import prefers_html
 from app.api.problems import as_sentence, problem
+from app.api.room_access import BY_CODE, WATCH_TOURNAMENT
 from app.classroom.names import normalized
 from app.storage.errors import NotFound
 
@@ -26,9 +28,9 @@ def classroom_routes(page: CompressedContent) -> list[BaseRoute]:
     """
     show_room = _found_page(page, lambda own, params: own.rooms.get(params["code"]))
     return [
-        Route("/l/{lesson_id}", _lesson, name="lesson_page"),
-        Route("/r/{code}", show_room, name="room_page"),
-        Route("/r/{code}/", _room, name="room_stage"),
+        GuardedPage("/l/{lesson_id}", _lesson, name="lesson_page"),
+        GuardedPage("/r/{code}", show_room, Policy(access=BY_CODE), name="room_page"),
+        GuardedPage("/r/{code}/", _room, name="room_stage"),
     ]
 
 
@@ -41,7 +43,8 @@ def tournament_routes(page: CompressedContent) -> list[BaseRoute]:
     show_tournament = _found_page(
         page, lambda own, params: own.tournaments.get(params["tournament_id"])
     )
-    return [Route("/t/{tournament_id}", show_tournament, name="tournament_page")]
+    watch = Policy(access=WATCH_TOURNAMENT)
+    return [GuardedPage("/t/{tournament_id}", show_tournament, watch, name="tournament_page")]
 
 
 def _found_page(
@@ -63,6 +66,7 @@ def _found_page(
     return show
 
 
+@policy(access=WATCH)
 def _lesson(request: Request) -> Response:
     """Lead to `/?lesson=ID`; relative, so that it is valid behind a proxy with a prefix."""
     services: Services = request.app.state.services
@@ -75,6 +79,7 @@ def _lesson(request: Request) -> Response:
     return RedirectResponse(f"../?lesson={quote(lesson_id)}{'&' if query else ''}{query}", 303)
 
 
+@policy(access=BY_CODE)
 def _room(request: Request) -> Response:
     services: Services = request.app.state.services
     given = request.path_params["code"]

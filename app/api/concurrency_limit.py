@@ -5,45 +5,22 @@ occupies none. No work is begun for a client that has left.
 """
 
 import asyncio
-import re
 from collections.abc import Awaitable, Callable
-from typing import Literal, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 from starlette.datastructures import Headers
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.auth import PUBLIC_PATHS
 from app.api.middleware import HttpMiddleware
+from app.api.policy import Work, work_of
 from app.api.problems import problem
-from app.api.rate_limit import (
-    PREVIEW,
-    ROBOTS,
-    export_load,
-    is_encoding,
-    is_reading_robot,
-    is_spectators_what_if,
-    too_many,
-)
-from app.api.stage_paths import path_of
+from app.api.rate_limit import too_many
 from app.limits.addresses import client_of
 from app.limits.connections import set_client
 from app.limits.fair_semaphore import FairSemaphore, NotAdmitted
 from app.stage.roles import Role
 from app.storage.errors import Busy
-
-Work = Literal["probe", "what-if", "encoding", "download", "analysis", "other"]
-"""Kinds of work.
-
-- `probe`: liveness and readiness, in milliseconds: a busy server is not taken for a dead one.
-- `what-if`: of spectators, each of which takes all cores: an operator's waits for one of them.
-- `encoding`: files of long runs that take up to minutes before their first byte, and robots' files
-  that are read.
-- `download`: files that are computed chunk by chunk while a client reads them.
-- `analysis`: any other view of what a run recorded, which takes seconds if that is long, and what
-  is told of a robot before it walks, if it is large.
-- `other`: listings, commands and files of the page, in milliseconds.
-"""
 
 
 class Slots(NamedTuple):
@@ -76,14 +53,6 @@ MAX_WAITING = 200
 six each at most."""
 _RETRY_S = 5
 _EVENT_STREAM = "text/event-stream"
-_READ_METHODS = ("GET", "HEAD")
-_OF_A_RUN = re.compile(r"/api/v1/(runs|trainings|races|experiments)/[^/]+/.+")
-_OF_A_ROBOT = re.compile(rf"{ROBOTS}/[^/]+(/.*)?")
-_DOWNLOAD = re.compile(
-    # A dot is any character: else each `files/` before a line break is tried to the line's end.
-    r"/api/v1/(.*/(export|recording|files/.*)|tournaments/[^/]+/file)",
-    re.DOTALL,
-)
 T = TypeVar("T")
 
 
@@ -114,28 +83,11 @@ class WorkSlots:
             semaphore.close()
 
 
-def work_of(scope: Scope) -> Work:
-    """Return the kind of work of a request; to be called inside `TokenGuard`."""
-    if path_of(scope) in PUBLIC_PATHS:
-        return "probe"
-    if is_spectators_what_if(scope):
-        return "what-if"
-    if is_encoding(scope) or is_reading_robot(scope):
-        return "encoding"
-    path = path_of(scope)
-    if scope["method"] not in _READ_METHODS:
-        return "analysis" if path == PREVIEW and scope["method"] == "POST" else "other"
-    if export_load(scope) == "stream" or _DOWNLOAD.fullmatch(path) is not None:
-        return "download"
-    is_analysis = any(of.fullmatch(path) is not None for of in (_OF_A_RUN, _OF_A_ROBOT))
-    return "analysis" if is_analysis else "other"
-
-
 class ConcurrencyLimit(HttpMiddleware):
-    """Middleware that limits concurrent requests; requests beyond the limit wait.
+    """Guard that limits concurrent requests by kind of work; requests beyond the limit wait.
 
-    To be installed inside `TokenGuard`, which sets the role, and inside `HeldBodies`, which sends
-    the start of a response with its first chunk.
+    To be installed inside `TokenGuard`, which sets the role, and inside `BodyMemoryLimit`, which
+    sends the start of a response with its first chunk.
     """
 
     def __init__(self, app: ASGIApp, slots: WorkSlots) -> None:

@@ -5,20 +5,18 @@ here from its method, path and parameters, so that a new route has them without 
 """
 
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Any
 
 from fastapi import FastAPI
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.auth import PUBLIC_PATHS
-from app.api.cookies import NAME, ROOM_NAME, VISITOR_NAME
+from app.api.cookies import NAME
 from app.api.event_answers import EventBodies
+from app.api.identity import IdentityProvider
+from app.api.policy import Access, Policy, policies
 from app.api.problems import MEDIA_TYPE
-from app.api.rate_limit import QUESTIONS
-from app.api.room_access import OF_BOTH, OF_PARTICIPANTS, OPEN_TO_ALL
-from app.api.visitor_access import OF_OWN_RUNS, STARTS
 from app.classroom import lesson
 from app.settings import Settings
 
@@ -143,13 +141,19 @@ _generated: dict[tuple[tuple[str, ...], int], Schema] = {}
 _lock = threading.Lock()
 
 
-def install(app: FastAPI, agents: tuple[str, ...], settings: Settings) -> None:
+def install(
+    app: FastAPI,
+    agents: tuple[str, ...],
+    settings: Settings,
+    providers: Sequence[IdentityProvider],
+) -> None:
     """Make the app complete its OpenAPI document on first use, and cache it.
 
     Args:
         app: the app, with all its routes.
         agents: names of the registered agents.
         settings: decide which operations need the token.
+        providers: know who may use operations without it.
     """
     generate, cache = app.openapi, list[Schema]()
 
@@ -159,13 +163,17 @@ def install(app: FastAPI, agents: tuple[str, ...], settings: Settings) -> None:
                 key = (agents, len(app.routes))
                 if key not in _generated:
                     _generated[key] = generate()
-                cache.append(_completed(deepcopy(_generated[key]), agents, settings))
+                schema = _completed(deepcopy(_generated[key]), agents, policies(app))
+                _add_security(schema, policies(app), settings, providers)
+                cache.append(schema)
             return cache[0]
 
     app.openapi = openapi  # type: ignore[method-assign]
 
 
-def _completed(schema: Schema, agents: tuple[str, ...], settings: Settings) -> Schema:
+def _completed(
+    schema: Schema, agents: tuple[str, ...], by_operation: Mapping[tuple[str, str], Policy]
+) -> Schema:
     components = schema.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
     # FastAPI finds neither: routes do not declare errors, and events are sent as text.
@@ -182,12 +190,12 @@ def _completed(schema: Schema, agents: tuple[str, ...], settings: Settings) -> S
     for method, path, operation in operations(schema):
         successes = {k: v for k, v in operation["responses"].items() if int(k) < 400}
         extra = {s for s in operation["responses"] if int(s) >= 400 and s != "422"}
-        statuses = sorted({*problems_of(method, path, operation), *map(int, extra)})
+        of_route = by_operation[method, path]
+        statuses = sorted({*problems_of(method, path, operation, of_route), *map(int, extra)})
         problems = {str(s): {"$ref": f"#/components/responses/{_PROBLEMS[s][0]}"} for s in statuses}
         operation["responses"] = successes | problems
     _link_runs(schema)
     _name_agents(schemas, agents)
-    _add_security(schema, settings)
     return schema
 
 
@@ -199,10 +207,13 @@ def operations(schema: Schema) -> Iterator[tuple[str, str, Schema]]:
                 yield method, path, methods[method]
 
 
-def problems_of(method: str, path: str, operation: Mapping[str, Any]) -> set[int]:
-    """Return the error statuses of an operation, derived from method, path and parameters."""
-    # From middleware, from the store, and from defects.
-    statuses = {400, 401, 403, 429, 500, 503}
+def problems_of(method: str, path: str, operation: Mapping[str, Any], policy: Policy) -> set[int]:
+    """Return the error statuses of an operation, by its policy, method and parameters."""
+    # From what is before all routes (wrong hosts, too many wrong tokens, no free slot), from the
+    # store, and from defects.
+    statuses = {400, 403, 429, 500, 503}
+    if policy.access.spectators != "always":
+        statuses |= {401}
     parameters = [parameter["name"] for parameter in operation.get("parameters", ())]
     if parameters:
         statuses |= {422}
@@ -215,7 +226,7 @@ def problems_of(method: str, path: str, operation: Mapping[str, Any]) -> set[int
         statuses |= {409, 422, 507}
     if "requestBody" in operation:
         statuses |= {404, 413, 415}
-    if "idempotency-key" in parameters and "/rooms/" not in path:
+    if "idempotency-key" in parameters and policy.starts:
         statuses |= {410}  # the run was deleted
     return statuses
 
@@ -251,7 +262,12 @@ def _name_agents(schemas: Schema, agents: tuple[str, ...]) -> None:
             item["enum"] = list(agents)
 
 
-def _add_security(schema: Schema, settings: Settings) -> None:
+def _add_security(
+    schema: Schema,
+    by_operation: Mapping[tuple[str, str], Policy],
+    settings: Settings,
+    providers: Sequence[IdentityProvider],
+) -> None:
     schema["components"]["securitySchemes"] = {
         "bearer": {"type": "http", "scheme": "bearer", "description": "the server's token"},
         "cookie": {
@@ -261,39 +277,20 @@ def _add_security(schema: Schema, settings: Settings) -> None:
             "description": "set by opening the page once with ?token=… in its address; the name "
             "ends with the port of that address, and begins with __Host- over HTTPS",
         },
-        "participant": {
-            "type": "apiKey",
-            "in": "cookie",
-            "name": f"{ROOM_NAME}_{settings.port}_CODE",
-            "description": "set by joining a room; its name ends with the code of the room",
-        },
-        **({"visitor": _of_visitors(settings)} if settings.demo else {}),
+        **dict(provider.scheme for provider in providers),
     }
-    operator: list[Schema] = [{"bearer": []}, {"cookie": []}]
     for method, path, operation in operations(schema):
-        needs_token = settings.token is not None and (
-            (method in _WRITE_METHODS and path not in QUESTIONS)
-            or (settings.spectators != "public" and path not in PUBLIC_PATHS)
-        )
-        if (method, path) in OF_PARTICIPANTS:
-            operation["security"] = [{"participant": []}]
-        elif needs_token and (method, path) in OF_BOTH:
-            operation["security"] = [*operator, {"participant": []}]
-        elif needs_token and (method, path) not in OPEN_TO_ALL:
-            operation["security"] = operator
-            if settings.demo and (method, path) in STARTS:
-                # Without the cookie the start sets one.
-                operation["security"] = [*operator, {"visitor": []}, {}]
-            elif settings.demo and (method, path) in OF_OWN_RUNS:
-                operation["security"] = [*operator, {"visitor": []}]
-        else:
-            operation["security"] = [*operator, {}]
+        access = by_operation[method, path].access
+        operation["security"] = _requirements(access, settings, providers)
 
 
-def _of_visitors(settings: Settings) -> Schema:
-    return {
-        "type": "apiKey",
-        "in": "cookie",
-        "name": f"{VISITOR_NAME}_{settings.port}",
-        "description": "set by the first start of a visitor; it opens their own runs to them",
-    }
+def _requirements(
+    access: Access, settings: Settings, providers: Sequence[IdentityProvider]
+) -> list[Schema]:
+    """Return by what an operation can be used; an empty requirement means nothing is needed."""
+    others = [one for provider in providers for one in provider.requirements(access)]
+    if not access.is_for_operators:
+        return others
+    is_public = settings.spectators == "public"
+    is_open = settings.token is None or access.admits_spectators(is_public=is_public)
+    return [{"bearer": []}, {"cookie": []}, *([{}] if is_open else others)]

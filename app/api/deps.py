@@ -141,11 +141,11 @@ def _role(request: Request) -> Role:
 
 
 def _reader(request: Request) -> tuple[Seat, ...] | None:
-    return None if request.state.role == "operator" else request.state.seats
+    return None if request.state.role == "operator" else getattr(request.state, "seats", ())
 
 
 def _visitor(request: Request) -> SessionCookie | None:
-    cookie: SessionCookie | None = request.state.visitor
+    cookie: SessionCookie | None = getattr(request.state, "visitor", None)
     return cookie
 
 

@@ -4,18 +4,20 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from fastapi import APIRouter, Request
+from fastapi import Request
 from starlette.responses import HTMLResponse, Response
 
 from app.api.compression import CompressedContent
+from app.api.policy import WATCH, api_router, policy
 from app.api.templates import render as render_template
 
-router = APIRouter(include_in_schema=False)
+router = api_router(include_in_schema=False)
 
 _METHODS = ("get", "post", "put", "patch", "delete")
 
 
 @router.get("/openapi.json")
+@policy(access=WATCH)
 def get_openapi(request: Request) -> Response:
     """Return the OpenAPI document."""
     state = request.app.state
@@ -27,6 +29,7 @@ def get_openapi(request: Request) -> Response:
 
 
 @router.get("/docs")
+@policy(access=WATCH)
 def get_docs(request: Request) -> Response:
     """Return every route with its fields, rendered from `/openapi.json`."""
     return HTMLResponse(render(request.app.openapi(), str(request.base_url).rstrip("/")))

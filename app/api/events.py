@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator, Iterator
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Query, Request
+from fastapi import Depends, Header, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
@@ -18,6 +18,7 @@ from app.api.deps import (
     VisitorDep,
 )
 from app.api.descriptions import VALID
+from app.api.policy import WATCH_STAGE, api_router, policy
 from app.limits.addresses import client_of
 from app.limits.client_slots import NoFreeSlot, Refusal
 from app.storage.database.room_rows import Seat
@@ -40,7 +41,7 @@ EVENT_STREAM: dict[str, Any] = {
 }
 """How a route that yields `stream_events` is declared."""
 
-router = APIRouter(prefix="/events", tags=["events"])
+router = api_router(prefix="/events", tags=["events"])
 
 
 def _existing_run_id(
@@ -93,6 +94,7 @@ def close_streams(services: Services, seat: Seat) -> None:
     summary="Stream the events of all runs and of the stage",
     **EVENT_STREAM,
 )
+@policy(access=WATCH_STAGE)
 async def get_events(
     services: ServicesDep,
     shared: StageDep,

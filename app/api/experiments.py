@@ -11,6 +11,7 @@ from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.formats import attachment, file_response, negotiated
+from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.runs import RunPath, find, run_routes, start_run
 from app.api.schemas import TrialBody
 from app.jobs.trial_runs import trial_start
@@ -53,6 +54,7 @@ router = run_routes("experiment")
 
 
 @router.get("/{run_id}/summary", summary="Get an experiment's summary", response_model=SummaryView)
+@policy(access=WATCH_RUN, work="analysis")
 def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     """Return the newest summary, which is recomputed every few seconds while trials run."""
     run = find(services, "experiment", run_id)
@@ -73,6 +75,7 @@ def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     response_class=Response,
     responses=answers(200, {"text/html": TEXT}, headers=ATTACHMENT),
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_report(services: ServicesDep, run_id: RunPath) -> Response:
     """Return the whole report as one file, once the experiment has ended."""
     run = find(services, "experiment", run_id)
@@ -85,6 +88,7 @@ def get_report(services: ServicesDep, run_id: RunPath) -> Response:
     response_class=Response,
     responses=answers(200, _FILE_SCHEMAS, headers=ATTACHMENT),
 )
+@policy(access=WATCH_RUN, work="download")
 def get_file(
     services: ServicesDep, run_id: RunPath, name: Annotated[str, Path(description="file name")]
 ) -> Response:
@@ -99,6 +103,7 @@ def get_file(
     response_model=TrialsView,
     responses=answers(200, {"text/csv": TEXT}),
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_trials(
     services: ServicesDep,
     request: Request,
@@ -121,6 +126,7 @@ def get_trials(
     response_model=TrainingView | RaceView,
     responses=answers(202, headers=LOCATION),
 )
+@policy(access=OPERATOR, starts=True)
 def run_trial(
     services: ServicesDep,
     request: Request,

@@ -4,22 +4,23 @@ from collections.abc import Callable
 from inspect import Parameter, Signature
 from typing import Annotated, Any, Literal, NamedTuple
 
-from fastapi import APIRouter, Depends, Query, Request
+from fastapi import Depends, Query, Request
 from starlette.responses import Response
 
 from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import ServicesDep
 from app.api.fields import Declared
 from app.api.formats import attachment, negotiated
+from app.api.policy import OPERATOR, WATCH_RUN, Policy, api_router, with_policy
 from app.api.runs import RunPath
 from app.exports.stored_walks import source_of
 from app.storage.errors import Conflict
 from hexapods.domain.errors import TooLong
-from hexapods.exports.export_format import Execution, ExportFormat, FileType
+from hexapods.exports.export_format import Execution, ExportFormat, FileType, Load
 from hexapods.exports.options import ExportOptions
 from hexapods.exports.registry import EXPORTS
 
-router = APIRouter(prefix="/runs/{run_id}", tags=["exports"])
+router = api_router(prefix="/runs/{run_id}", tags=["exports"])
 
 
 class _Query(NamedTuple):
@@ -53,7 +54,17 @@ def _query_of(one: ExportFormat) -> Callable[..., _Query]:
     return read
 
 
+_POLICIES: dict[Load, Policy] = {
+    "stream": Policy(access=WATCH_RUN, work="download"),
+    "encode": Policy(access=WATCH_RUN, work="encoding"),
+    # The renderer has slots of its own.
+    "render": Policy(access=OPERATOR, starts=True),
+}
+"""By what a format costs a server."""
+
+
 def _endpoint(one: ExportFormat) -> Callable[..., Response]:
+    @with_policy(_POLICIES[one.load])
     def export(
         services: ServicesDep, run_id: RunPath, query: Annotated[_Query, Depends(_query_of(one))]
     ) -> Response:

@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from starlette.responses import JSONResponse, Response
 
 from app.api.deps import Services, ServicesDep
 from app.api.descriptions import VALID
+from app.api.policy import WATCH_RUN, api_router, policy
 from app.api.runs import RunPath
 from app.storage.errors import Conflict, Damaged
 from app.storage.run import DamagedRun, Run, world_of
@@ -26,7 +27,7 @@ from hexapods.runs.recorded_walk import (
 TrainingPart = Literal["practice", "evaluation"]
 Part = Literal["race", "practice", "evaluation"]
 
-router = APIRouter(prefix="/runs", tags=["runs"])
+router = api_router(prefix="/runs", tags=["runs"])
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,7 @@ class GaitAnalysis(Record):
     summary="Analyse the gait: footfalls, speed, posture, torque, energy",
     response_model=GaitAnalysis,
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_gait(
     services: ServicesDep,
     run_id: RunPath,

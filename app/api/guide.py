@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, Response
-from starlette.routing import BaseRoute, Route
+from starlette.routing import BaseRoute
 
+from app.api.policy import WATCH, GuardedPage, policy
 from app.api.problems import problem
 from app.api.templates import render
 from hexapods import __version__
@@ -73,6 +74,7 @@ def guide_routes(folder: Path) -> list[BaseRoute]:
         folder: folder of the documentation, in Markdown.
     """
 
+    @policy(access=WATCH)
     def show(request: Request) -> Response:
         name = request.path_params["name"]
         if name not in _NAMES:
@@ -80,7 +82,7 @@ def guide_routes(folder: Path) -> list[BaseRoute]:
             return problem(404, f"The guide has no page {name!r}; it has {known}.")
         return HTMLResponse(_page(folder, name))
 
-    return [Route("/guide/{name}", show, name="guide")]
+    return [GuardedPage("/guide/{name}", show, name="guide")]
 
 
 @cache

@@ -4,13 +4,15 @@ import json
 from dataclasses import replace
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Path, Query, Request
+from fastapi import Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.classroom_answers import LessonList, LessonView, NewLesson
 from app.api.contract import GIVEN_LESSON, TEXT, answers
 from app.api.deps import BodyDep, ReaderDep, Services, ServicesDep
 from app.api.formats import attachment, negotiated
+from app.api.policy import OPERATOR, api_router, policy
+from app.api.room_access import LESSONS
 from app.api.spectators import link_of
 from app.classroom.lesson import Lesson, adapter, html_of
 from app.classroom.lesson_file import (
@@ -27,7 +29,7 @@ YAML_TYPES = (MEDIA_TYPE, "text/yaml", "application/x-yaml", "text/x-yaml")
 _TYPES = {"application/json": "json", **dict.fromkeys(YAML_TYPES, "yaml")}
 LessonPath = Annotated[str, Path(description="id of the lesson", max_length=100)]
 
-router = APIRouter(prefix="/lessons", tags=["lessons"])
+router = api_router(prefix="/lessons", tags=["lessons"])
 
 
 def _lesson(services: ServicesDep, request: Request, body: BodyDep) -> Lesson:
@@ -63,6 +65,7 @@ def _lesson(services: ServicesDep, request: Request, body: BodyDep) -> Lesson:
         }
     },
 )
+@policy(access=OPERATOR)
 def add_lesson(
     services: ServicesDep, request: Request, lesson: Annotated[Lesson, Depends(_lesson)]
 ) -> Response:
@@ -80,6 +83,7 @@ def add_lesson(
 
 
 @router.get("", summary="List lessons", response_model=LessonList)
+@policy(access=LESSONS)
 def list_lessons(services: ServicesDep) -> Response:
     """Return the lessons that are built in, and those that were stored."""
     items = [
@@ -102,6 +106,7 @@ def list_lessons(services: ServicesDep) -> Response:
     response_model=LessonView,
     responses=answers(200, {MEDIA_TYPE: GIVEN_LESSON}),
 )
+@policy(access=LESSONS)
 def get_lesson(
     services: ServicesDep,
     request: Request,
@@ -133,6 +138,7 @@ def _while_taught(services: Services, found: FoundLesson) -> tuple[FoundLesson, 
 
 
 @router.delete("/{lesson_id}", status_code=204, summary="Delete a stored lesson")
+@policy(access=OPERATOR)
 def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> None:
     """Delete it; rooms that have it keep it."""
     services.lessons.delete(lesson_id)

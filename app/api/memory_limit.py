@@ -12,8 +12,8 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.middleware import HttpMiddleware
+from app.api.policy import policy_of
 from app.api.problems import problem
-from app.api.stage_paths import path_of
 from app.limits.addresses import client_of
 from app.limits.memory_budget import MemoryBudget, Refusal
 from app.stage.roles import Role
@@ -21,12 +21,6 @@ from app.storage.artifact_file import CHUNK_BYTES
 
 MAX_BODY_BYTES = 1 << 20
 MAX_FILE_BYTES = 64 << 20
-_FILE_ROUTES = (
-    "/api/v1/trainings/import",
-    "/api/v1/import",
-    "/api/v1/runs/import",
-    "/api/v1/robots",
-)
 ANSWERS_BYTES, ANSWERS_SHARE_BYTES = 64 << 20, 32 << 20
 BODIES_BYTES, BODIES_SHARE_BYTES = 128 << 20, 96 << 20
 _SMALL_BYTES = 64 << 10
@@ -35,8 +29,8 @@ _RETRY_AFTER_S = 5
 _Refusal = Refusal | Literal["too large"]
 
 
-class HeldBodies(HttpMiddleware):
-    """Middleware that limits and budgets bodies by role; to be installed inside `TokenGuard`."""
+class BodyMemoryLimit(HttpMiddleware):
+    """Guard that limits and budgets bodies by role; to be installed inside `TokenGuard`."""
 
     def __init__(self, app: ASGIApp) -> None:
         """Wrap an app."""
@@ -48,7 +42,7 @@ class HeldBodies(HttpMiddleware):
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, or refuse with 413, 429 or 503."""
         role: Role = scope["state"]["role"]
-        limit = MAX_FILE_BYTES if path_of(scope) in _FILE_ROUTES else MAX_BODY_BYTES
+        limit = MAX_FILE_BYTES if policy_of(scope).takes_file else MAX_BODY_BYTES
         length = Headers(scope=scope).get("content-length", "")
         if length.isdigit() and int(length[:18]) > limit:
             await _refusal_response("too large", limit)(scope, receive, send)
@@ -85,7 +79,7 @@ class _RequestBody:
             more = self._received - self._held
             self.refusal = self._budget.reserve(self._client, more)
             self._held += 0 if self.refusal else more
-        # Simulate a disconnect for the app; `HeldBodies` sends the refusal.
+        # Simulate a disconnect for the app; `BodyMemoryLimit` sends the refusal.
         return message if self.refusal is None else {"type": "http.disconnect"}
 
     def release(self) -> None:

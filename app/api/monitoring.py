@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from fastapi import APIRouter, Request
+from fastapi import Request
 from prometheus_client import (
     CollectorRegistry,
     GCCollector,
@@ -22,22 +22,25 @@ from starlette.responses import JSONResponse, Response
 from app.api.answers import HealthView
 from app.api.contract import TEXT, answers
 from app.api.deps import Services, ServicesDep
+from app.api.policy import PUBLIC, WATCH, api_router, policy
 from app.api.problems import problem
 from app.events.damage import damage_counts
 from app.storage.run import STATES
 from hexapods import __version__
 from hexapods.domain.errors import HexapodError
 
-router = APIRouter(tags=["health"])
+router = api_router(tags=["health"])
 
 
 @router.get("/healthz", response_model=HealthView, summary="Liveness probe")
+@policy(access=PUBLIC, work="probe")
 async def get_health() -> Response:
     """Return 200 as long as the server responds at all."""
     return JSONResponse({"status": "ok", "version": __version__})
 
 
 @router.get("/readyz", response_model=HealthView, summary="Readiness probe")
+@policy(access=PUBLIC, work="probe")
 def get_readiness(services: ServicesDep) -> Response:
     """Return 503 with the reason while something that runs need is unavailable."""
     trouble = _unready_reason(services)
@@ -67,6 +70,7 @@ def _unready_reason(services: Services) -> str | None:
         200, {"text/plain; version=0.0.4": TEXT, "application/openmetrics-text": TEXT}
     ),
 )
+@policy(access=WATCH)
 def get_metrics(request: Request) -> Response:
     """Return metrics of runs by state, steps, viewers, frames, the queue and the process."""
     encode, content_type = exposition.choose_encoder(request.headers.get("accept", ""))

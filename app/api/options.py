@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
-from fastapi import APIRouter, Request
+from fastapi import Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.body_fields import leg_fields, torso_fields
@@ -23,6 +23,7 @@ from app.api.option_texts import (
     SIMULATOR_TEXTS,
     SIMULATOR_TITLES,
 )
+from app.api.policy import ANY_PAGE, api_router, policy
 from app.api.robot_options import built_in_options, gait_options, stored_options
 from app.api.tournament_bodies import tournament_fields
 from app.archive.transfer import MAX_RUNS
@@ -76,7 +77,7 @@ from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from hexapods.shows.scene_spec import PAPERS_LANES
 
-router = APIRouter(prefix="/options", tags=["options"])
+router = api_router(prefix="/options", tags=["options"])
 
 
 @router.get(
@@ -84,6 +85,7 @@ router = APIRouter(prefix="/options", tags=["options"])
     response_model=OptionsView,
     summary="List gaits, robots, agents and clocks; defaults, limits and help",
 )
+@policy(access=ANY_PAGE)
 def get_options(services: ServicesDep, request: Request) -> Response:
     """Return the options, defaults, limits and help texts of all forms."""
     robots = services.store.robots

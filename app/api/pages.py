@@ -11,11 +11,12 @@ from pathlib import Path
 
 from starlette.requests import Request
 from starlette.responses import Response
-from starlette.routing import BaseRoute, Mount, Route
+from starlette.routing import BaseRoute
 from starlette.staticfiles import PathLike, StaticFiles
 from starlette.types import Scope
 
 from app.api.compression import CompressedContent
+from app.api.policy import ANY_PAGE, PUBLIC, GuardedFiles, GuardedPage, Policy, policy
 
 _INLINE_SCRIPT = re.compile(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", re.DOTALL)
 _INDEX = "index.html"
@@ -36,16 +37,19 @@ def page_routes(folder: Path) -> list[BaseRoute]:
     index = page_content(_INDEX, folder)
     files = _Files(directory=folder)
 
+    @policy(access=PUBLIC, opens_session=True)
     async def show(request: Request) -> Response:
         return index.response(request.scope)
 
+    @policy(access=ANY_PAGE)
     async def favicon(request: Request) -> Response:
         return await files.get_response("favicon.svg", request.scope)
 
     return [
-        Route("/", show, name="dashboard"),
-        Route("/favicon.ico", favicon, name="favicon"),
-        Mount("/static", files, name="static"),
+        GuardedPage("/", show, name="dashboard"),
+        GuardedPage("/favicon.ico", favicon, name="favicon"),
+        # The page's files are public; the data they show is not.
+        GuardedFiles("/static", files, Policy(access=PUBLIC), name="static"),
     ]
 
 

@@ -6,13 +6,16 @@ from typing import Annotated, Literal
 
 import msgspec
 from fastapi import Query, Request
+from starlette.datastructures import QueryParams
 from starlette.responses import Response, StreamingResponse
+from starlette.types import Scope
 
 from app.api.compression import gzipped
 from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
 from app.api.explanation_answers import LossView
 from app.api.formats import attachment, negotiated
+from app.api.policy import WATCH_RUN, Work, policy
 from app.api.recorded_answers import RecordingView, TimelineView
 from app.api.runs import RunPath, find, run_routes
 from app.stage.playback import original_of
@@ -29,12 +32,20 @@ from hexapods.runs.recording import LaneRecording
 router = run_routes("race")
 
 
+def _work_of_recording(scope: Scope) -> Work:
+    """Return the kind of work of a recording: as a stream for viser it takes long to encode."""
+    # Decoded as the endpoint decodes it, so that percent-encoding cannot bypass the limit.
+    formats = QueryParams(scope["query_string"]).getlist("format")
+    return "encoding" if "viser" in formats else "download"
+
+
 @router.get(
     "/{run_id}/recording",
     summary="Get a race's recording (JSON, .npz, viser)",
     response_model=RecordingView,
     responses=answers(200, {"application/x-npz": BINARY, "application/octet-stream": BINARY}),
 )
+@policy(access=WATCH_RUN, work=_work_of_recording)
 def get_recording(
     services: ServicesDep,
     request: Request,
@@ -62,6 +73,7 @@ def get_recording(
     summary="Get each lane's distance over time under one clock",
     response_model=TimelineView,
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_timeline(
     services: ServicesDep,
     request: Request,
@@ -88,6 +100,7 @@ def get_timeline(
     summary="Explain why a learner with a table loses a race",
     response_model=LossView,
 )
+@policy(access=WATCH_RUN, work="analysis")
 def explain_loss(
     services: ServicesDep,
     run_id: RunPath,

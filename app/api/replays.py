@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from fastapi import APIRouter, Depends, Path, Query, Request
+from fastapi import Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.compression import gzipped
@@ -10,12 +10,13 @@ from app.api.contract import BINARY, answers
 from app.api.deps import ServicesDep
 from app.api.descriptions import VALID
 from app.api.fields import RunId
+from app.api.policy import WATCH_RUN, api_router, policy
 from app.api.recorded_answers import ReplayView
 from app.api.runs import RunPath
 from hexapods.runs.clocks import Clock
 from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL
 
-router = APIRouter(prefix="/runs/{run_id}/replay", tags=["replays"])
+router = api_router(prefix="/runs/{run_id}/replay", tags=["replays"])
 
 _MEDIA_TYPE = "application/octet-stream"
 _FRAMES = answers(200, {_MEDIA_TYPE: BINARY})
@@ -28,6 +29,7 @@ GhostQuery = Annotated[RunId | None, Query(description=VALID["ghost"])]
 @router.get(
     "", summary="Get a replay's plan: intervals, steps and marks", response_model=ReplayView
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_replay(
     services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper", ghost: GhostQuery = None
 ) -> Response:
@@ -45,6 +47,7 @@ def get_replay(
     response_class=Response,
     responses=_FRAMES,
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_replay_scene(
     services: ServicesDep, request: Request, run_id: RunPath, ghost: GhostQuery = None
 ) -> Response:
@@ -55,6 +58,7 @@ def get_replay_scene(
 @router.get(
     "/moment", summary="Get one frame of a replay", response_class=Response, responses=_FRAMES
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_replay_moment(
     *,
     services: ServicesDep,
@@ -74,6 +78,7 @@ def get_replay_moment(
     response_class=Response,
     responses=_FRAMES,
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_replay_posture(
     *,
     services: ServicesDep,
@@ -115,6 +120,7 @@ def _segment_key(
     response_class=Response,
     responses=_FRAMES,
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_replay_segment(
     *,
     services: ServicesDep,

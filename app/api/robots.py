@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Query
+from fastapi import Path, Query
 from pydantic import ConfigDict, Field, create_model
 from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import JSONResponse, Response
@@ -11,6 +11,7 @@ from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers
 from app.api.deps import BodyDep, Services, ServicesDep
 from app.api.fields import Body, Name, record_fields
 from app.api.formats import attachment
+from app.api.policy import OPERATOR, QUESTION, WATCH, api_router, policy
 from app.api.robot_answers import (
     StoredRobotsView,
     StoredRobotView,
@@ -30,7 +31,7 @@ from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
 
 FILE_TYPES = ("application/xml", "application/zip", "application/octet-stream")
-router = APIRouter(prefix="/robots", tags=["robots"])
+router = api_router(prefix="/robots", tags=["robots"])
 
 _OTHER = {"world", "simulator", "tolerance", "reward"}
 """Fields of the walking problem that a preview does not depend on."""
@@ -89,6 +90,7 @@ class RobotChangeBody(PatchBody):
         }
     },
 )
+@policy(access=OPERATOR, work="encoding", takes_file=True)
 def store_robot(
     services: ServicesDep,
     body: BodyDep,
@@ -108,6 +110,7 @@ def store_robot(
 
 
 @router.get("", summary="List stored robots", response_model=StoredRobotsView)
+@policy(access=WATCH)
 def list_robots(
     services: ServicesDep,
     hidden: Annotated[bool, Query(description="true, to list hidden ones too")] = False,
@@ -119,6 +122,7 @@ def list_robots(
 
 
 @router.get("/{robot_id:robot}", summary="Get a stored robot", response_model=WholeRobotView)
+@policy(access=WATCH, work="analysis")
 def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
     """Return a stored robot with all its numbers, and what is known of it before it walks."""
     robots = services.store.robots
@@ -130,6 +134,7 @@ def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
     summary="Rename or hide a stored robot, give it another gait, or correct it",
     response_model=StoredRobotView,
 )
+@policy(access=OPERATOR, work="encoding")
 def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBody) -> Response:
     """Change what is said of a robot, which keeps its id, or how its file is read.
 
@@ -152,6 +157,7 @@ def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBo
 @router.delete(
     "/{robot_id:robot}", status_code=204, summary="Delete a stored robot", name="del_robot"
 )
+@policy(access=OPERATOR)
 def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
     """Delete a robot that no run uses; one that runs use can be hidden."""
     services.store.robots.delete(robot_id)
@@ -164,6 +170,7 @@ def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
     response_class=Response,
     responses=answers(200, {"application/json": {"type": "object"}}, headers=ATTACHMENT),
 )
+@policy(access=WATCH, work="analysis")
 def get_robot_file(services: ServicesDep, robot_id: RobotPath) -> Response:
     """Return its document, which `POST /robots` and `hexapods robots import` store elsewhere."""
     data = services.store.robots.document(robot_id)
@@ -175,6 +182,7 @@ def get_robot_file(services: ServicesDep, robot_id: RobotPath) -> Response:
     summary="Tell support, reach, states and speed of a robot before it walks",
     response_model=Preview,
 )
+@policy(access=QUESTION, work="analysis")
 def preview_robot(body: _PreviewBody) -> Response:
     """Return what follows from robot, gait and foot grid; nothing is simulated.
 

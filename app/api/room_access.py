@@ -9,139 +9,112 @@ it is shown to others.
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from urllib.parse import parse_qsl
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Literal
 
-from starlette.responses import Response
-from starlette.types import Scope
+from starlette.types import ASGIApp, Scope
 
-from app.api.cookies import ROOM_NAME, SessionCookie, cookies_of, name_of_server
+from app.api.cookies import ROOM_NAME, SessionCookie, cookies_of, is_secure, name_of_server
+from app.api.identity import Identity
+from app.api.policy import ANY_PAGE, QUESTION, WATCH_RUN, WATCH_STAGE, Access, Work
 from app.api.problems import as_sentence, problem
-from app.api.rate_limit import is_question
-from app.api.stage_paths import path_of
+from app.api.stage_paths import stage_of
 from app.classroom.names import CODE, normalized
-from app.classroom.room import Deed
+from app.classroom.room import Deed, Room
 from app.classroom.rooms import Rooms
+from app.settings import Settings
 from app.storage.database.room_rows import Seat
 from app.storage.errors import NotFound
 
-ROOMS = "/api/v1/rooms"
 PAGES = "/r"
-READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
-_OF_ROOM = re.compile(r"/api/v1/rooms/(?P<code>[^/]+)(?P<rest>/.*)?")
-_PAGE_OF_ROOM = re.compile(r"/r/(?P<code>[^/]+)(?P<rest>/.*)?")
-_OF_RUN = re.compile(r"/api/v1/(?:runs|trainings|races|experiments)/(?P<run>[^/]+)(?:/.*)?")
 _CODE = re.compile(CODE)
-_OF_TOURNAMENT = re.compile(r"(?:/api/v1/tournaments|/t)/(?P<id>[^/]+)(?P<rest>/.*)?")
-_ENTER = "/entries"
-_DEEDS: Mapping[str, Deed] = {"/predictions": "predict", "/runs": "run"}
-"""By the end of the path that is sent to, what the card must allow."""
-_LEAVE = "/me"
-_JOIN = "/participants"
-OPEN_TO_ALL = frozenset(
-    {
-        ("get", f"{ROOMS}/{{code}}"),
-        ("post", f"{ROOMS}/{{code}}{_JOIN}"),
-        ("get", f"{PAGES}/{{code}}"),
-        ("get", f"{PAGES}/{{code}}/"),
-    }
-)
-"""Operations and pages for which a code is all that is needed."""
-OF_PARTICIPANTS = frozenset(
-    {("delete", f"{ROOMS}/{{code}}{_LEAVE}"), *(("post", f"{ROOMS}/{{code}}{x}") for x in _DEEDS)}
-)
-"""Operations that need the cookie of a participant."""
-OF_BOTH = frozenset({("post", f"/api/v1/tournaments/{{tournament_id}}{_ENTER}")})
-"""Operations for operators and for participants."""
-_TAUGHT = re.compile(r"/api/v1/lessons(/.*)?")
-"""Paths that a participant may not read: lessons have the answers."""
-_READ_IN_ROOM = re.compile(
-    r"/|/favicon\.ico|/static/.*|/viewer/?.*|/healthz|/readyz|/api/v1/(stage|events|options|tournaments)"
-)
-"""Besides the room itself and its runs, what participants read where others need the token."""
+_NOT_OF_ROOM = "participants see their room alone here; watching needs the token"
+BY_CODE = Access(name="room by its code", spectators="always", is_read=True)
+"""Shows a room to whoever has its code."""
+JOIN = Access(name="join room", spectators="always")
+"""Takes a seat in a room, for which its code is all that is needed."""
+WATCH_ROOM = Access(name="watch room", spectators="watching", is_read=True)
+"""Shows something of the room `code` of the path."""
+LESSONS = Access(name="lessons", spectators="watching", is_read=True)
+"""Shows lessons, which have the answers: no participant reads them."""
+WATCH_TOURNAMENT = Access(name="watch tournament", spectators="watching", is_read=True)
+"""Shows the tournament `tournament_id` of the path."""
+LIST_TOURNAMENTS = Access(name="list tournaments", spectators="watching", is_read=True)
+"""Lists tournaments, without those that who asks may not know."""
+ENTER_TOURNAMENT = Access(name="enter tournament")
+"""Enters the tournament `tournament_id` of the path."""
 
 
-class RoomAccess:
-    """Decides what a request of no operator may do. Thread-safe."""
+@dataclass(frozen=True, kw_only=True)
+class ParticipantAccess(Access):
+    """Who is in the room `code` of the path may do it.
 
-    def __init__(self, rooms: Rooms, room_of_tournament: Callable[[str], str | None]) -> None:
-        """Decide about these rooms.
+    Attributes:
+        deed: what the card that is shown must allow; to leave is always allowed.
+    """
 
-        Args:
-            rooms: those of the server.
-            room_of_tournament: returns the code of a tournament's room by the tournament's id;
-                None if it has none, or there is no such tournament.
-        """
-        self._rooms, self._room_of_tournament = rooms, room_of_tournament
+    deed: Deed | Literal["leave"]
+    is_for_operators: bool = False
 
-    def seats(self, scope: Scope, *, is_secure: bool) -> tuple[Seat, ...]:
-        """Return which participants of open rooms a client is, by its cookies."""
-        found = []
-        for code, key in _room_keys(scope, is_secure):
-            participant = self._rooms.seat(code, key)
-            with suppress(NotFound):  # deleted meanwhile
-                if participant is not None and self._rooms.get(code).is_open:
-                    found.append((code, participant.seed))
-        return tuple(found)
 
-    def refuse(self, scope: Scope, seats: tuple[Seat, ...], *, is_public: bool) -> Response | None:
-        """Return the refusal of a request by its path; None if the rules of rooms allow it.
+@cache
+def participant(deed: Deed | Literal["leave"]) -> ParticipantAccess:
+    """Return the access of a deed of participants in their room."""
+    return ParticipantAccess(name=f"participant: {deed}", deed=deed)
 
-        Args:
-            scope: of the request, or of a websocket.
-            seats: which participants the client is.
-            is_public: whether spectators may watch.
-        """
-        if any(self._rooms.is_hidden(one, seats) for one in _runs_in(scope)):
-            return problem(403, "This run is a participant's; it is shown after the reveal.")
-        return self._refuse_participant(scope, seats, is_public=is_public) if seats else None
 
-    def is_open_to_all(self, scope: Scope) -> bool:
-        """Whether a code is all that a request needs: to see a room, and to join it."""
-        if scope["type"] != "http":
-            return False
-        path, method = path_of(scope), "get" if scope["method"] == "HEAD" else scope["method"]
-        found = _OF_ROOM.fullmatch(path) or _PAGE_OF_ROOM.fullmatch(path)
-        if found is None:
-            return False
-        template = f"{path[: found.start('code')]}{{code}}{found['rest'] or ''}"
-        return (method.lower(), template) in OPEN_TO_ALL
+class Participant:
+    """The identity of a client with seats in open rooms.
 
-    def _refuse_participant(
-        self, scope: Scope, seats: tuple[Seat, ...], *, is_public: bool
-    ) -> Response | None:
+    Attributes:
+        seats: code of each room, and seed there.
+        asks_what_if: whether the request runs a card that is a what-if.
+    """
+
+    def __init__(
+        self,
+        seats: tuple[Seat, ...],
+        rooms: Rooms,
+        room_of_tournament: Callable[[str], str | None],
+    ) -> None:
+        """Create the identity of one request; the arguments are those of `RoomAccess`."""
+        self.seats, self._rooms, self._room_of_tournament = seats, rooms, room_of_tournament
+        self._codes = frozenset(dict(seats))
+        self.asks_what_if = False
+
+    @property
+    def limited_as(self) -> str:
+        """Key of its token bucket of what-ifs: many participants may share an address."""
+        return " ".join(f"{code} {seed}" for code, seed in self.seats)
+
+    def refusal(self, scope: Scope, access: Access, as_spectator: ASGIApp | None) -> ASGIApp | None:
         """Return the refusal of a participant's request: by default of all that is a change."""
-        room = _OF_ROOM.fullmatch(path_of(scope))
-        code = None if room is None else normalized(room["code"])
-        rest = (room["rest"] or "") if room is not None and code in dict(seats) else None
-        if scope["type"] == "websocket" or scope["method"] in READ_METHODS:
-            if _TAUGHT.fullmatch(path_of(scope)):
-                return problem(403, "A lesson has its answers; participants see its cards alone.")
-            is_own = rest is not None or self._is_read_in_room(scope, seats)
-            if is_public or is_own or self.is_open_to_all(scope):
-                return None
-            return problem(403, "Participants see their room alone here; watching needs the token.")
-        deed = _DEEDS.get(rest or "") if scope["method"] == "POST" else None
-        leaves = (scope["method"], rest) == ("DELETE", _LEAVE)
-        refusal = None
-        if deed is not None and code is not None:
-            in_room = self._rooms.get(code)
-            scope["state"]["asks_what_if"] = deed == "run" and in_room.shown.go == "what-if"
-            refusal = in_room.refusal(deed)
-        elif not (leaves or self._enters(scope, seats) or self.is_open_to_all(scope)):
-            refusal = self._what_is_allowed(scope, seats[0][0])
-        return None if refusal is None else problem(403, as_sentence(refusal))
+        params: Mapping[str, Any] = scope.get("path_params", {})
+        if access is LESSONS:
+            why: str | None = "a lesson has its answers; participants see its cards alone"
+        elif access.spectators == "always":
+            why = None
+        elif access.is_read:
+            may_read = as_spectator is None or self._is_of_room(scope, access, params)
+            why = None if may_read else _NOT_OF_ROOM
+        elif isinstance(access, ParticipantAccess) and self._is_in(params):
+            why = self._why_not(access, self._rooms.get(params["code"]))
+        elif access is ENTER_TOURNAMENT and self._is_of_tournament(params):
+            why = None
+        else:
+            why = self._what_is_allowed(access)
+        return None if why is None else problem(403, as_sentence(why))
 
-    def _enters(self, scope: Scope, seats: tuple[Seat, ...]) -> bool:
-        """Whether a request enters a tournament of a participant's room."""
-        found = _OF_TOURNAMENT.fullmatch(path_of(scope))
-        is_entry = found is not None and (scope["method"], found["rest"]) == ("POST", _ENTER)
-        return is_entry and self._is_of_own_tournament(scope, seats)
+    def _why_not(self, access: ParticipantAccess, room: Room) -> str | None:
+        """Return why the card that a room shows forbids a deed; None if it allows it."""
+        if access.deed == "leave":
+            return None
+        self.asks_what_if = access.deed == "run" and room.shown.go == "what-if"
+        return room.refusal(access.deed)
 
-    def _is_of_own_tournament(self, scope: Scope, seats: tuple[Seat, ...]) -> bool:
-        found = _OF_TOURNAMENT.fullmatch(path_of(scope))
-        return found is not None and self._room_of_tournament(found["id"]) in dict(seats)
-
-    def _what_is_allowed(self, scope: Scope, code: str) -> str:
+    def _what_is_allowed(self, access: Access) -> str:
+        code = self.seats[0][0]
         room = self._rooms.get(code)
         deeds: dict[Deed, str] = {
             "predict": "an answer to the card",
@@ -149,23 +122,94 @@ class RoomAccess:
         }
         open_deeds = [words for deed, words in deeds.items() if room.refusal(deed) is None]
         allowed = " and ".join(open_deeds) or "nothing but to watch"
-        what = "This question" if is_question(scope) else "This"
+        what = "This question" if access is QUESTION else "This"
         return (
             f"{what} is not open to participants of a room; the card that the room {code} shows "
-            f"allows {allowed}. DELETE {ROOMS}/{code}{_LEAVE} leaves the room"
+            f"allows {allowed}. DELETE /api/v1/rooms/{code}/me leaves the room"
         )
 
-    def _is_read_in_room(self, scope: Scope, seats: tuple[Seat, ...]) -> bool:
-        path, codes = path_of(scope), set(dict(seats))
-        run = _OF_RUN.fullmatch(path)
-        if run is not None:
-            owner = self._rooms.owner_of(run["run"])
-            return owner is not None and owner.partition(" ")[0] in codes
-        if self._is_of_own_tournament(scope, seats):
-            return True
-        is_rooms_stage = scope.get("root_path", "").removeprefix(f"{PAGES}/") in codes
-        shared = path in ("/api/v1/stage", "/api/v1/events") or path.startswith("/viewer")
-        return _READ_IN_ROOM.fullmatch(path) is not None and (is_rooms_stage or not shared)
+    def _is_of_room(self, scope: Scope, access: Access, params: Mapping[str, Any]) -> bool:
+        """Whether something that is read is of a room of the participant, or of every page."""
+        if access is WATCH_RUN:
+            owner = self._rooms.owner_of(params["run_id"])
+            return owner is not None and owner.partition(" ")[0] in self._codes
+        if access is WATCH_STAGE:
+            return stage_of(scope).path.removeprefix(f"{PAGES}/") in self._codes
+        if access is WATCH_ROOM:
+            return self._is_in(params)
+        if access is WATCH_TOURNAMENT:
+            return self._is_of_tournament(params)
+        return access in (ANY_PAGE, LIST_TOURNAMENTS)
+
+    def _is_in(self, params: Mapping[str, Any]) -> bool:
+        return normalized(params["code"]) in self._codes
+
+    def _is_of_tournament(self, params: Mapping[str, Any]) -> bool:
+        return self._room_of_tournament(params["tournament_id"]) in self._codes
+
+
+class RoomAccess:
+    """Knows participants, and hides their runs. Thread-safe.
+
+    Attributes:
+        scheme: of a participant's cookie.
+    """
+
+    def __init__(
+        self,
+        rooms: Rooms,
+        room_of_tournament: Callable[[str], str | None],
+        settings: Settings,
+    ) -> None:
+        """Decide about these rooms.
+
+        Args:
+            rooms: those of the server.
+            room_of_tournament: returns the code of a tournament's room by the tournament's id;
+                None if it has none, or there is no such tournament.
+            settings: of the server.
+        """
+        self._rooms, self._room_of_tournament = rooms, room_of_tournament
+        self._settings = settings
+        self.scheme: tuple[str, Mapping[str, Any]] = (
+            "participant",
+            {
+                "type": "apiKey",
+                "in": "cookie",
+                "name": f"{ROOM_NAME}_{settings.port}_CODE",
+                "description": "set by joining a room; its name ends with the code of the room",
+            },
+        )
+
+    def identify(self, scope: Scope) -> Participant | None:
+        """Return which participants of open rooms a client is, by its cookies."""
+        seats = []
+        for code, key in _room_keys(scope, is_secure(scope, self._settings)):
+            row = self._rooms.seat(code, key)
+            with suppress(NotFound):  # deleted meanwhile
+                if row is not None and self._rooms.get(code).is_open:
+                    seats.append((code, row.seed))
+        scope["state"]["seats"] = tuple(seats)
+        return Participant(tuple(seats), self._rooms, self._room_of_tournament) if seats else None
+
+    def why_hidden(self, run_id: str, identity: Identity | None) -> str | None:
+        """Return why a run is hidden: others than its participant see it after the reveal."""
+        seats = identity.seats if isinstance(identity, Participant) else ()
+        if not self._rooms.is_hidden(run_id, seats):
+            return None
+        return "This run is a participant's; it is shown after the reveal."
+
+    def requirements(self, access: Access) -> list[dict[str, list[str]]]:
+        """Return that a participant's cookie is needed, or does as well as an operator's."""
+        is_open = isinstance(access, ParticipantAccess) or access is ENTER_TOURNAMENT
+        return [{"participant": []}] if is_open else []
+
+
+def work_of_card(scope: Scope) -> Work:
+    """Return the kind of work of what a card runs: a what-if, or a run that is queued."""
+    identity: Identity | None = scope["state"]["identity"]
+    is_what_if = isinstance(identity, Participant) and identity.asks_what_if
+    return "what-if" if is_what_if else "other"
 
 
 def room_cookie(scope: Scope, code: str, *, is_secure: bool) -> SessionCookie:
@@ -180,12 +224,3 @@ def _room_keys(scope: Scope, is_secure: bool) -> Iterator[tuple[str, str]]:
         code = name.removeprefix(beginning)
         if code != name and _CODE.fullmatch(code) is not None:
             yield code, key
-
-
-def _runs_in(scope: Scope) -> Iterator[str]:
-    """Yield all that may be the id of a run in a request's address."""
-    found = _OF_RUN.fullmatch(path_of(scope))
-    if found is not None:
-        yield found["run"]
-    for _, value in parse_qsl(scope["query_string"].decode("latin-1")):
-        yield from (one.strip() for one in value.split(","))

@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator
 from contextlib import suppress
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Header, Path, Query, Request
+from fastapi import Depends, Header, Path, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import ServerSentEvent
 from starlette.responses import JSONResponse, Response
@@ -23,8 +23,9 @@ from app.api.cookies import SessionCookie, is_secure
 from app.api.deps import EventListener, IdempotencyKeyHeader, ReaderDep, Services, ServicesDep
 from app.api.events import EVENT_STREAM, client_slot, stream_events
 from app.api.formats import attachment, negotiated
+from app.api.policy import OPERATOR, WATCH, api_router, policy
 from app.api.rate_limit import asker_of
-from app.api.room_access import room_cookie
+from app.api.room_access import BY_CODE, JOIN, WATCH_ROOM, participant, room_cookie, work_of_card
 from app.api.room_bodies import (
     CardBody,
     FreezeBody,
@@ -57,7 +58,7 @@ MIN_JOIN_KEY = 16
 """Characters of the Idempotency-Key of a request to join, which is a secret."""
 _SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
 
-router = APIRouter(prefix="/rooms", tags=["rooms"])
+router = api_router(prefix="/rooms", tags=["rooms"])
 
 
 def _seat(services: ServicesDep, code: CodePath, reader: ReaderDep) -> int:
@@ -87,6 +88,7 @@ SeatDep = Annotated[int, Depends(_seat)]
     response_model=NewRoom,
     responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
 )
+@policy(access=OPERATOR, starts=True)
 async def open_room(
     services: ServicesDep, request: Request, body: RoomBody | None = None
 ) -> Response:
@@ -116,6 +118,7 @@ async def open_room(
 
 
 @router.get("", summary="List the rooms that who asks may know", response_model=RoomList)
+@policy(access=WATCH)
 def list_rooms(services: ServicesDep, request: Request, reader: ReaderDep) -> Response:
     """Return all rooms to operators, and to participants those in which they are."""
     codes = None if reader is None else set(dict(reader))
@@ -135,6 +138,7 @@ def list_rooms(services: ServicesDep, request: Request, reader: ReaderDep) -> Re
 
 
 @router.get("/{code}", summary="Get a room", response_model=RoomView)
+@policy(access=BY_CODE)
 def get_room(
     services: ServicesDep, request: Request, code: CodePath, reader: ReaderDep
 ) -> Response:
@@ -153,6 +157,7 @@ def get_room(
         200: {"model": JoinedView, "description": "who is in the room already"},
     },
 )
+@policy(access=JOIN)
 def join_room(
     services: ServicesDep,
     request: Request,
@@ -180,6 +185,7 @@ def join_room(
 
 
 @router.delete("/{code}/me", status_code=204, summary="Leave a room")
+@policy(access=participant("leave"))
 def leave_room(
     services: ServicesDep, request: Request, code: CodePath, seed: SeatDep, response: Response
 ) -> None:
@@ -199,6 +205,7 @@ def _cookie(services: Services, request: Request, code: str) -> SessionCookie:
     summary="Hide the name of a participant, or approve",
     response_model=RoomView,
 )
+@policy(access=OPERATOR)
 def change_participant(
     services: ServicesDep, request: Request, code: CodePath, seed: SeedPath, body: ParticipantBody
 ) -> Response:
@@ -210,6 +217,7 @@ def change_participant(
 @router.delete(
     "/{code}/participants/{seed}", summary="Remove a participant", response_model=RoomView
 )
+@policy(access=OPERATOR)
 def remove_participant(
     services: ServicesDep, request: Request, code: CodePath, seed: SeedPath
 ) -> Response:
@@ -225,6 +233,7 @@ def remove_participant(
 
 
 @router.put("/{code}/card", summary="Show a card", response_model=RoomView)
+@policy(access=OPERATOR)
 def show_card(services: ServicesDep, request: Request, code: CodePath, body: CardBody) -> Response:
     """Show a card to all, and lock what it does not open."""
     room = services.rooms.show_card(code, body.card)
@@ -232,6 +241,7 @@ def show_card(services: ServicesDep, request: Request, code: CodePath, body: Car
 
 
 @router.post("/{code}/freeze", summary="Freeze all, or go on", response_model=RoomView)
+@policy(access=OPERATOR)
 def freeze_room(
     services: ServicesDep, request: Request, code: CodePath, body: FreezeBody | None = None
 ) -> Response:
@@ -241,6 +251,7 @@ def freeze_room(
 
 
 @router.post("/{code}/reveal", summary="Reveal a card", response_model=RoomView)
+@policy(access=OPERATOR)
 def reveal_card(
     services: ServicesDep, request: Request, code: CodePath, body: RevealBody | None = None
 ) -> Response:
@@ -252,6 +263,7 @@ def reveal_card(
 
 
 @router.post("/{code}/end", summary="End a room", response_model=RoomView)
+@policy(access=OPERATOR)
 async def end_room(services: ServicesDep, request: Request, code: CodePath) -> Response:
     """Close the room and its stage; its results stay."""
     room = await run_in_threadpool(services.rooms.end, code)
@@ -261,6 +273,7 @@ async def end_room(services: ServicesDep, request: Request, code: CodePath) -> R
 
 
 @router.delete("/{code}", summary="Delete a room that has ended", response_model=DeletedView)
+@policy(access=OPERATOR)
 def delete_room(
     services: ServicesDep,
     code: CodePath,
@@ -281,6 +294,7 @@ def delete_room(
 @router.put(
     "/{code}/spotlight", summary="Show a participant's run on the stage", response_model=RoomView
 )
+@policy(access=OPERATOR)
 def put_spotlight(
     services: ServicesDep, request: Request, code: CodePath, body: SpotlightBody
 ) -> Response:
@@ -295,6 +309,7 @@ def put_spotlight(
 @router.post(
     "/{code}/predictions", status_code=201, summary="Answer a card", response_model=PredictionView
 )
+@policy(access=participant("predict"))
 def predict(services: ServicesDep, code: CodePath, seed: SeatDep, body: PredictionBody) -> Response:
     """Keep the answer of the participant who asks; it can be given once, before the reveal."""
     value = services.rooms.predict(code, seed, body.card, body.value)
@@ -311,6 +326,7 @@ def predict(services: ServicesDep, code: CodePath, seed: SeatDep, body: Predicti
         200: {"model": WhatIfView, "description": "the answer of a what-if"},
     },
 )
+@policy(access=participant("run"), work=work_of_card, starts=True)
 def start_run(
     services: ServicesDep,
     request: Request,
@@ -359,6 +375,7 @@ def _name(room: Room, seed: int) -> str:
     response_model=ResultsView,
     responses=answers(200, {MEDIA_TYPE: TEXT}),
 )
+@policy(access=WATCH_ROOM)
 def get_results(
     services: ServicesDep,
     request: Request,
@@ -408,6 +425,7 @@ def _room_stage(services: ServicesDep, code: CodePath) -> SharedStage:
     summary="Stream the events of a room and of its stage",
     **EVENT_STREAM,
 )
+@policy(access=WATCH_ROOM)
 async def get_room_events(
     services: ServicesDep,
     shared: Annotated[SharedStage, Depends(_room_stage)],

@@ -30,6 +30,7 @@ from app.api.deps import ReaderDep, Services, ServicesDep, StartRequest, StartRe
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
 from app.api.explanation_answers import ExplanationView
 from app.api.fields import RunId
+from app.api.policy import OPERATOR, OWN_RUNS, START, WATCH, WATCH_RUN, Access, api_router, policy
 from app.api.recorded_answers import CurvesView
 from app.api.run_code import run_code
 from app.api.schemas import AnnotationBody
@@ -104,7 +105,7 @@ def start_run(
     A visitor of a demo starts within the allowance, and is known by a cookie from then on. Of the
     visitor's idempotency key a hash is stored: who has the key of a first start owns its run.
     """
-    visitor: SessionCookie | None = request.state.visitor
+    visitor: SessionCookie | None = getattr(request.state, "visitor", None)
     if visitor is None:
         (run,) = start_request.runs(services, lambda key: [services.jobs.start(start, key)])
         return located(services, request, run, 202)
@@ -132,10 +133,11 @@ def located(services: Services, request: Request, run: Run, status: int) -> Resp
     return JSONResponse(services.jobs.view(run), status, {"Location": location})
 
 
-router = APIRouter(prefix="/runs", tags=["runs"])
+router = api_router(prefix="/runs", tags=["runs"])
 
 
 @router.get("", summary="List runs of every kind", response_model=RunPage)
+@policy(access=WATCH)
 def list_runs(
     services: ServicesDep,
     listing: ListingDep,
@@ -146,6 +148,7 @@ def list_runs(
 
 
 @router.delete("", summary="Delete runs that have ended", response_model=DeletedView)
+@policy(access=OWN_RUNS)
 def delete_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     """Delete each run that can be deleted; the answer names the others, and why they are kept."""
     return JSONResponse(delete_each(services, ids))
@@ -173,6 +176,7 @@ def delete_each(services: Services, ids: Iterable[str]) -> dict[str, Any]:
         "the newest, for small pictures. Runs without evaluations are left out."
     ),
 )
+@policy(access=WATCH)
 def get_curves(services: ServicesDep, ids: RunIdsQuery) -> Response:
     """Return thinned curves; `GET /trainings/{run_id}/curve` has all points of one."""
     found = services.store.curves.thinned(frozenset(ids), MAX_POINTS)
@@ -188,6 +192,7 @@ def get_curves(services: ServicesDep, ids: RunIdsQuery) -> Response:
     summary="Get a run of any kind",
     response_model=AnyRunView,
 )
+@policy(access=WATCH_RUN)
 def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
     """Return a run whose kind is not known."""
     return JSONResponse(services.jobs.view(services.store.find(run_id)))
@@ -198,6 +203,7 @@ def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
     summary="Rename a run, or change its tags or notes",
     response_model=AnyRunView,
 )
+@policy(access=OWN_RUNS)
 def annotate_run(services: ServicesDep, run_id: RunPath, body: AnnotationBody) -> Response:
     """Change them in any state of the run; tags and notes are replaced as a whole."""
     return JSONResponse(services.jobs.view(services.jobs.annotate(run_id, body.changes())))
@@ -210,6 +216,7 @@ def annotate_run(services: ServicesDep, run_id: RunPath, body: AnnotationBody) -
     response_model=AnyRunView,
     responses=answers(202, headers=LOCATION),
 )
+@policy(access=START, starts=True)
 def run_again(
     services: ServicesDep, request: Request, run_id: RunPath, start_request: StartRequestDep
 ) -> Response:
@@ -223,6 +230,7 @@ def run_again(
 @router.get(
     "/{run_id}/code", summary="Get commands and Python that repeat a run", response_model=CodeView
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Response:
     """Return what makes exactly this run, on the command line and in Python.
 
@@ -237,6 +245,7 @@ def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Respon
     summary="Explain why a step was taken and what was learned from it",
     response_model=ExplanationView,
 )
+@policy(access=WATCH_RUN, work="analysis")
 def explain_step(
     services: ServicesDep,
     run_id: RunPath,
@@ -260,16 +269,18 @@ def _page(services: Services, listing: Listing) -> Response:
 
 def run_routes(kind: Kind) -> APIRouter:
     """Create the routes common to all kinds of runs, for one kind."""
-    router = APIRouter(prefix=f"/{kind}s", tags=[f"{kind}s"])
+    router = api_router(prefix=f"/{kind}s", tags=[f"{kind}s"])
     view, page = VIEWS[kind]
 
     @router.get("", summary=f"List {kind}s", name=f"list_{kind}s", response_model=page)
+    @policy(access=WATCH)
     def list_runs(services: ServicesDep, listing: ListingDep) -> Response:
         return _page(services, listing._replace(kind=kind))
 
     @router.get(
         "/{run_id}", summary=phrase("Get {}", kind), name=f"get_{kind}", response_model=view
     )
+    @policy(access=WATCH_RUN)
     def get_run(services: ServicesDep, run_id: RunPath) -> Response:
         return JSONResponse(services.jobs.view(find_any(services, kind, run_id)))
 
@@ -279,6 +290,7 @@ def run_routes(kind: Kind) -> APIRouter:
         summary=phrase("Delete {} that has ended", kind),
         name=f"del_{kind}",
     )
+    @policy(access=_changed_by(kind))
     def delete_run(services: ServicesDep, run_id: RunPath) -> None:
         find_any(services, kind, run_id)
         services.jobs.delete(run_id)
@@ -286,7 +298,7 @@ def run_routes(kind: Kind) -> APIRouter:
     for verb, summary in _VERBS.items():
         router.add_api_route(
             f"/{{run_id}}/{verb}",
-            _command(kind, verb),
+            policy(access=_told_by(kind, verb), starts=verb == "resume")(_command(kind, verb)),
             methods=["POST"],
             status_code=202,
             summary=phrase(summary, kind),
@@ -312,6 +324,19 @@ def phrase(template: str, kind: Kind) -> str:
     """Insert a kind of run, with its article, into a sentence."""
     sentence = template.format(f"an {kind}" if kind[0] in "aeiou" else f"a {kind}")
     return sentence[0].upper() + sentence[1:]
+
+
+def start_access(kind: Kind) -> Access:
+    """Return who may start runs of a kind: experiments, which take all cores, operators alone."""
+    return OPERATOR if kind == "experiment" else START
+
+
+def _changed_by(kind: Kind) -> Access:
+    return OPERATOR if kind == "experiment" else OWN_RUNS
+
+
+def _told_by(kind: Kind, verb: str) -> Access:
+    return _changed_by(kind) if verb == "stop" else OPERATOR
 
 
 def _command(kind: Kind, verb: str) -> Callable[..., Any]:

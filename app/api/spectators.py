@@ -5,11 +5,12 @@ from functools import lru_cache
 from urllib.parse import urlsplit
 
 import segno
-from fastapi import APIRouter, Request
+from fastapi import Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import SpectatorsView
 from app.api.deps import ServicesDep, StageDep
+from app.api.policy import WATCH, api_router, policy
 from app.settings import PREFIX, Settings, is_loopback
 
 _WILDCARDS = ("0.0.0.0", "::")  # noqa: S104 - compared, not bound
@@ -21,12 +22,13 @@ _LOOPBACK_ONLY = (
     f"hexapods serve --share, or set {PREFIX}PUBLIC_URL."
 )
 
-router = APIRouter(prefix="/spectators", tags=["stage"])
+router = api_router(prefix="/spectators", tags=["stage"])
 
 
 @router.get(
     "", response_model=SpectatorsView, summary="Get the spectators' address and their number"
 )
+@policy(access=WATCH)
 def get_spectators(request: Request, services: ServicesDep, shared: StageDep) -> Response:
     """Return the address at which others watch, or why there is none, and its QR code."""
     is_public = shared.roles.is_public

@@ -9,8 +9,9 @@ from app.api.agent_bodies import agent_bodies
 from app.api.answers import EstimateView, TrainingView, WhatIfView
 from app.api.contract import LOCATION, answers
 from app.api.deps import RoleDep, Services, ServicesDep, StartRequestDep
+from app.api.policy import OPERATOR, QUESTION, api_router, policy
 from app.api.rate_limit import what_ifs_used_up, whole_seconds
-from app.api.runs import VIEWS, RunPath, find, start_run
+from app.api.runs import VIEWS, RunPath, find, start_access, start_run
 from app.limits.addresses import client_of
 from app.storage.errors import Busy
 from app.storage.run import Kind
@@ -24,7 +25,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
     Args:
         agents: names of the registered agents.
     """
-    router, bodies = APIRouter(), agent_bodies(agents)
+    router, bodies = api_router(), agent_bodies(agents)
     training_body: Any = bodies.training
     change_body: Any = bodies.change
     _add_starts(
@@ -66,6 +67,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
         summary="Change pace or live settings of a training",
         response_model=TrainingView,
     )
+    @policy(access=OPERATOR)
     def change_training(services: ServicesDep, run_id: RunPath, body: change_body) -> Response:
         """Apply the change between two steps, and record it with the step's number in `changes`."""
         find(services, "training", run_id)
@@ -82,6 +84,7 @@ def start_routes(agents: tuple[str, ...]) -> APIRouter:
             f"{OPERATORS_LIMIT_S:g} s: settings that take longer are refused."
         ),
     )
+    @policy(access=QUESTION, work="what-if")
     def ask(
         services: ServicesDep, request: Request, role: RoleDep, body: training_body
     ) -> Response:
@@ -109,6 +112,7 @@ def _add_starts(
         estimate: likewise, of what is estimated.
     """
 
+    @policy(access=start_access(kind), starts=True)
     def start_of_kind(
         services: ServicesDep,
         request: Request,
@@ -117,6 +121,7 @@ def _add_starts(
     ) -> Response:
         return start_run(services, request, start_request, body.start())
 
+    @policy(access=OPERATOR)
     def estimate_of_kind(
         services: ServicesDep,
         body: body_type,

@@ -10,6 +10,8 @@ from app.api.agent_bodies import agent_bodies
 from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import ReaderDep, Services, ServicesDep
 from app.api.formats import attachment
+from app.api.policy import OPERATOR, api_router, policy
+from app.api.room_access import ENTER_TOURNAMENT, LIST_TOURNAMENTS, WATCH_TOURNAMENT
 from app.api.tournament_answers import EntryView, TournamentList, TournamentView
 from app.api.tournament_bodies import EndBody, EntryBody, TournamentBody
 from app.api.tournament_views import (
@@ -34,7 +36,7 @@ from hexapods.tournaments.tournament_file import MEDIA_TYPE
 
 TournamentPath = Annotated[str, Path(description="id of the tournament", max_length=64)]
 
-router = APIRouter(prefix="/tournaments", tags=["tournaments"])
+router = api_router(prefix="/tournaments", tags=["tournaments"])
 
 
 @router.post(
@@ -44,6 +46,7 @@ router = APIRouter(prefix="/tournaments", tags=["tournaments"])
     response_model=TournamentView,
     responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
 )
+@policy(access=OPERATOR, starts=True)
 def open_tournament(services: ServicesDep, request: Request, body: TournamentBody) -> Response:
     """Open a tournament: its secret is drawn, and the secret's SHA-256 shown.
 
@@ -64,6 +67,7 @@ def open_tournament(services: ServicesDep, request: Request, body: TournamentBod
 @router.get(
     "", summary="List the tournaments that who asks may know", response_model=TournamentList
 )
+@policy(access=LIST_TOURNAMENTS)
 def list_tournaments(services: ServicesDep, reader: ReaderDep) -> Response:
     """Return all to operators; to others those without a room, and those of their rooms."""
     codes = {None, *dict(reader or ())}
@@ -76,6 +80,7 @@ def list_tournaments(services: ServicesDep, reader: ReaderDep) -> Response:
 
 
 @router.get("/{tournament_id}", summary="Get a tournament", response_model=TournamentView)
+@policy(access=WATCH_TOURNAMENT)
 def get_tournament(
     services: ServicesDep, request: Request, tournament_id: TournamentPath, reader: ReaderDep
 ) -> Response:
@@ -88,6 +93,7 @@ def get_tournament(
 
 
 @router.post("/{tournament_id}/end", summary="End a tournament", response_model=TournamentView)
+@policy(access=OPERATOR)
 def end_tournament(
     services: ServicesDep,
     request: Request,
@@ -109,6 +115,7 @@ def end_tournament(
     response_class=Response,
     responses=answers(200, {MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
 )
+@policy(access=WATCH_TOURNAMENT, work="download")
 def get_tournament_file(
     services: ServicesDep, tournament_id: TournamentPath, reader: ReaderDep
 ) -> Response:
@@ -122,6 +129,7 @@ def get_tournament_file(
 
 
 @router.delete("/{tournament_id}", status_code=204, summary="Delete a tournament")
+@policy(access=OPERATOR)
 def delete_tournament(services: ServicesDep, tournament_id: TournamentPath) -> None:
     """Delete it, with its entries and their tables; what is judged of it is given up."""
     services.tournaments.delete(tournament_id)
@@ -133,7 +141,7 @@ def entry_routes(agents: tuple[str, ...]) -> APIRouter:
     Args:
         agents: names of the registered agents.
     """
-    entries, bodies = APIRouter(prefix="/tournaments"), agent_bodies(agents)
+    entries, bodies = api_router(prefix="/tournaments"), agent_bodies(agents)
     entry_body: Any = bodies.entry
 
     @entries.post(
@@ -147,6 +155,7 @@ def entry_routes(agents: tuple[str, ...]) -> APIRouter:
             200: {"model": EntryView, "description": "an equal entry of the same entrant"},
         },
     )
+    @policy(access=ENTER_TOURNAMENT)
     def enter(
         services: ServicesDep,
         tournament_id: TournamentPath,

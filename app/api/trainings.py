@@ -14,6 +14,7 @@ from app.api.deps import ServicesDep, StartRequestDep
 from app.api.explanation_answers import TableView
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
+from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.recorded_answers import CurveView, QTableView
 from app.api.runs import RunPath, find, located, run_routes
 from app.archive import table_import
@@ -40,6 +41,7 @@ router = run_routes("training")
     responses=answers(201, headers=LOCATION),
     openapi_extra=takes_file("application/octet-stream"),
 )
+@policy(access=OPERATOR, starts=True, takes_file=True)
 def import_training(
     services: ServicesDep,
     request: Request,
@@ -72,6 +74,7 @@ def _without_step(given: Any) -> Any:
     response_model=AnyDisturbance,
     responses=answers(202),
 )
+@policy(access=OPERATOR)
 def disturb_training(
     services: ServicesDep,
     run_id: RunPath,
@@ -93,6 +96,7 @@ def disturb_training(
     response_model=CurveView,
     responses=answers(200, {"text/csv": TEXT}),
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_curve(
     services: ServicesDep,
     request: Request,
@@ -131,6 +135,7 @@ def _best_known_m(run: Run) -> float | None:
         "`count` choose which."
     ),
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_table_at(
     services: ServicesDep,
     run_id: RunPath,
@@ -150,6 +155,7 @@ def get_table_at(
     response_model=QTableView,
     responses=answers(200, {"text/csv": TEXT, tables.MEDIA_TYPE: BINARY}),
 )
+@policy(access=WATCH_RUN, work="analysis")
 def get_table(
     services: ServicesDep,
     request: Request,

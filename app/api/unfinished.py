@@ -16,14 +16,14 @@ _STREAM_ERRORS = (anyio.BrokenResourceError, anyio.ClosedResourceError)
 _logger = logging.getLogger(__name__)
 
 
-class Unfinished(HttpMiddleware):
-    """Middleware for errors that no exception handler can answer; installed outside `HeldBodies`.
+class IncompleteBodyGuard(HttpMiddleware):
+    """Middleware for errors that no exception handler can answer; installed outside the guards.
 
     A stream may fail after its start, as when its run is deleted. It is cut off, so that its client
-    takes it for no whole file; if none of it was sent yet (`HeldBodies` holds back its start), the
-    client gets the problem. A request that uvicorn cancels, since it does not end in time when the
-    server stops, gets 503. FastAPI's event stream sometimes raises a broken-stream error when its
-    client disconnects.
+    takes it for no whole file; if none of it was sent yet, as `BodyMemoryLimit` holds back its
+    start, the client gets the problem. A request that uvicorn cancels, since it does not end in
+    time when the server stops, gets 503. FastAPI's event stream sometimes raises a broken-stream
+    error when its client disconnects.
     """
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:

@@ -3,18 +3,18 @@
 from datetime import timedelta
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Request
+from fastapi import Path, Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
-from starlette.routing import Route
 
 from app.api.answers import AllowanceView, VisitorList
 from app.api.deps import ReaderDep, Services, ServicesDep, VisitorDep
+from app.api.policy import OPERATOR, WATCH, GuardedPage, api_router, policy
 from app.demo.allowance import HOUR
 from app.storage.errors import Forbidden, NotFound
 
 VisitorPath = Annotated[str, Path(description="id of the visitor", max_length=64)]
 
-router = APIRouter(tags=["demo"])
+router = api_router(tags=["demo"])
 _OF_A_DEMO = "User-agent: *\nDisallow: /api/\nDisallow: /viewer/\nDisallow: /r/\nDisallow: /t/\n"
 _OF_OTHERS = "User-agent: *\nDisallow: /\n"
 
@@ -25,6 +25,7 @@ _OF_OTHERS = "User-agent: *\nDisallow: /\n"
     response_model=AllowanceView,
     responses={404: {}},
 )
+@policy(access=WATCH)
 def get_allowance(services: ServicesDep, visitor: VisitorDep) -> Response:
     """Return the limits of each visitor, what who asks has left, and the ids of their runs."""
     _check_demo(services)
@@ -51,6 +52,7 @@ def get_allowance(services: ServicesDep, visitor: VisitorDep) -> Response:
     response_model=VisitorList,
     responses={404: {}},
 )
+@policy(access=WATCH)
 def list_visitors(services: ServicesDep, reader: ReaderDep) -> Response:
     """Return the visitors of whom something is kept or counted; for operators alone."""
     _check_demo(services)
@@ -72,21 +74,23 @@ def list_visitors(services: ServicesDep, reader: ReaderDep) -> Response:
 
 
 @router.delete("/visitors/{visitor_id}", status_code=204, summary="End a visitor of a demo")
+@policy(access=OPERATOR)
 def end_visitor(services: ServicesDep, visitor_id: VisitorPath) -> None:
     """Stop and delete all that a visitor has made, and forget the visitor."""
     _check_demo(services)
     services.expiry.end_visitor(visitor_id)
 
 
-def robots_txt(*, is_demo: bool) -> Route:
+def robots_txt(*, is_demo: bool) -> GuardedPage:
     """Return the route of `/robots.txt`: of a demo the page may be found, of others nothing."""
 
+    @policy(access=WATCH)
     async def show(request: Request) -> Response:
         del request
         headers = {"Cache-Control": f"max-age={int(timedelta(days=1).total_seconds())}"}
         return PlainTextResponse(_OF_A_DEMO if is_demo else _OF_OTHERS, headers=headers)
 
-    return Route("/robots.txt", show, name="robots_txt")
+    return GuardedPage("/robots.txt", show, name="robots_txt")
 
 
 def _check_demo(services: Services) -> None:

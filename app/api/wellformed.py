@@ -9,7 +9,7 @@ from app.api.problems import problem
 MAX_TARGET_BYTES = 8 << 10
 
 
-class WellFormed(HttpMiddleware):
+class MalformedRequestGuard(HttpMiddleware):
     """Middleware: refuse ambiguous framing and malformed targets; serve HEAD by GET."""
 
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:

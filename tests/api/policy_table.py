@@ -1,8 +1,8 @@
 """Records how the guards treat each operation: every route × role × stage, on the real app.
 
 `recorded` sends each request through the app's whole stack up to its route, which does not run: a
-request that reaches it has passed the guards. `policy_table.json` has what came of it. Write it anew
-after a change that is meant, and read the difference:
+request that reaches it has passed the guards. `policy_table.json` has what came of it. Write it
+anew after a change that is meant, and read the difference:
 
     python -m tests.api.policy_table
 """
@@ -108,13 +108,6 @@ class Outcome(NamedTuple):
     said: str
 
 
-class Watch:
-    """What limiters, slots and bodies have noted of the request that is sent."""
-
-    def __init__(self) -> None:
-        self.notes: list[str] = []
-
-
 def recorded() -> dict[str, Any]:
     """Return the table: by operation, its outcomes, each with the cases in which it is.
 
@@ -210,10 +203,10 @@ async def _record_server(
         for name, role in roles.items():
             services.rooms.show_card(fill["code"], list(CARDS).index(role.card))
             for prefix in ("", f"/r/{fill['code']}") if server in WITH_PREFIX else ("",):
-                for method, path in operations(app):
-                    outcome = await _send(app, method, prefix, path, role, fill)
+                for operation in operations(app):
+                    outcome = await _send(app, operation, prefix, role, fill)
                     where = "room" if prefix else ""
-                    cases[f"{method} {path}"][outcome].append(f"{server}: {name} @{where}")
+                    cases[" ".join(operation)][outcome].append(f"{server}: {name} @{where}")
     finally:
         await services.room_stages.close_all()
 
@@ -232,10 +225,11 @@ def operations(app: FastAPI) -> list[tuple[str, str]]:
 
 
 async def _send(
-    app: FastAPI, method: str, prefix: str, path: str, role: Role, fill: dict[str, str]
+    app: FastAPI, operation: tuple[str, str], prefix: str, role: Role, fill: dict[str, str]
 ) -> Outcome:
     """Send a request, and return what came of it."""
-    path, _, query = path.partition("?")
+    method, address = operation
+    path, _, query = address.partition("?")
     if "{run_id}" not in path and not query:
         query = f"id={role.run}"
     values = {"lesson_id": "one-run-proves-nothing", "seed": "0", "level": "0", "number": "1"}
@@ -263,7 +257,7 @@ async def _send(
         **({} if method == "WS" else {"method": method}),
     }
     sent: list[Message] = []
-    _watch.notes = []
+    _notes.clear()
 
     async def receive() -> Message:
         return {"type": f"{kind}.connect" if method == "WS" else "http.request", "body": b""}
@@ -274,7 +268,7 @@ async def _send(
     await app(scope, receive, send)
     status, said = _answer(sent)
     # In the order of their names: a guard that comes before another one decides the same.
-    notes = " ".join(sorted(dict.fromkeys(_watch.notes)))
+    notes = " ".join(sorted(dict.fromkeys(_notes)))
     for secret, name in ((fill["tournament_id"], "TOURNAMENT"), (fill["code"], "CODE")):
         said = said.replace(secret, name)
     said = re.sub(r"\b(room |rooms/)(?!CODE)[A-Z0-9]{4,}", r"\1OTHER", said)
@@ -296,34 +290,35 @@ def _answer(sent: list[Message]) -> tuple[str, str]:
 
 
 PASSED = 299
-_watch = Watch()
+_notes: list[str] = []
+"""What limiters, slots and bodies have noted of the request that is sent."""
 
 
 @contextmanager
 def _recorder() -> Iterator[None]:
     """Let routes answer without running, and let limits note what they count; none refuses."""
     take, acquire = RateLimiter.take, FairSemaphore.acquire
-    request_body = memory_limit._RequestBody.__init__
+    request_body = memory_limit._RequestBody.__init__  # noqa: SLF001
 
     def noting_take(limiter: RateLimiter, client: str) -> float:
         names = {STARTS: "start", WHAT_IFS: "what-if-token", 20: "guess"}
-        _watch.notes.append(names[limiter._size])
+        _notes.append(names[limiter._size])  # noqa: SLF001
         take(limiter, client)
         return 0.0
 
     async def noting_acquire(semaphore: FairSemaphore, *args: Any, **more: Any) -> None:
-        _watch.notes.append(f"slot:{_slots_of_size.get(id(semaphore), '?')}")
+        _notes.append(f"slot:{_slot_names.get(id(semaphore), '?')}")
         await acquire(semaphore, *args, **more)
 
     def noting_body(body: Any, receive: Receive, limit: int, budget: Any, client: str) -> None:
-        _watch.notes.append(f"body:{limit >> 20}MiB")
+        _notes.append(f"body:{limit >> 20}MiB")
         request_body(body, receive, limit, budget, client)
 
     with ExitStack() as stack:
         for changed, name, replacement in (
             (RateLimiter, "take", noting_take),
             (FairSemaphore, "acquire", noting_acquire),
-            (memory_limit._RequestBody, "__init__", noting_body),
+            (memory_limit._RequestBody, "__init__", noting_body),  # noqa: SLF001
             (APIRoute, "handle", _handle),
             (Route, "handle", _handle),
             (Mount, "handle", _handle),
@@ -334,7 +329,7 @@ def _recorder() -> Iterator[None]:
         yield
 
 
-_slots_of_size: dict[int, str] = {}
+_slot_names: dict[int, str] = {}
 
 
 def _named_slots() -> Callable[[], Any]:
@@ -342,9 +337,9 @@ def _named_slots() -> Callable[[], Any]:
 
     def make() -> Any:
         slots = WorkSlots()
-        for (role, work), semaphore in slots._semaphores.items():
-            _slots_of_size[id(semaphore)] = f"{role}/{work}"
-        _slots_of_size[id(slots._probes)] = "probe"
+        for (role, work), semaphore in slots._semaphores.items():  # noqa: SLF001
+            _slot_names[id(semaphore)] = f"{role}/{work}"
+        _slot_names[id(slots._probes)] = "probe"  # noqa: SLF001
         return slots
 
     return make

@@ -2,6 +2,7 @@
 
 import asyncio
 import socket
+from pathlib import Path
 
 from starlette.types import Message, Receive, Scope, Send
 
@@ -11,19 +12,27 @@ from app.api.concurrency_limit import (
     SLOTS,
     ConcurrencyLimit,
     WorkSlots,
-    work_of,
 )
-from app.api.rate_limit import PREVIEW, WHAT_IF
+from app.api.policy import QUESTION, WATCH, Policy, policies, work_of
 from app.limits.connections import ConnectionTable
+from app.server import create_app
+from app.settings import Settings
 from app.stage.roles import Role
+from tests.api.guarding import admitted
+from tests.storage.stores import temporary_store
 
 STOP = "/api/v1/trainings/x/stop"
+OTHER, PROBE = Policy(access=WATCH), Policy(access=WATCH, work="probe")
+FILE = Policy(access=WATCH, work="encoding")
+WHAT_IF = Policy(access=QUESTION, work="what-if")
 READING = SLOTS["spectator"]["other"].size
 
 
-def scope(role: str, address: str, method: str = "GET", path: str = "/") -> Scope:
-    request = {"type": "http", "method": method, "path": path}
-    return {**request, "state": {"role": role}, "client": (address, 1)}
+def scope(
+    role: str, address: str, method: str = "GET", path: str = "/", policy: Policy = OTHER
+) -> Scope:
+    request = {"type": "http", "method": method, "path": path, "query_string": b""}
+    return {**request, "state": admitted(role, policy), "client": (address, 1)}
 
 
 async def nothing() -> Message:
@@ -65,7 +74,7 @@ def test_what_ifs_of_spectators_do_not_delay_what_spectators_read() -> None:
             await asyncio.Event().wait()
 
         app = ConcurrencyLimit(work, WorkSlots())
-        what_ifs = [scope("spectator", str(n), "POST", WHAT_IF) for n in range(20)]
+        what_ifs = [scope("spectator", str(n), "POST", policy=WHAT_IF) for n in range(20)]
         tasks = [
             asyncio.ensure_future(app(one, nothing, ignore))
             for one in (*what_ifs, scope("spectator", "a"))
@@ -91,11 +100,9 @@ def test_requests_do_not_delay_probes() -> None:
             await asyncio.Event().wait()
 
         app = ConcurrencyLimit(work, WorkSlots())
-        paths = ["/"] * 50 + ["/readyz"] * 50
-        tasks = [
-            asyncio.ensure_future(app(scope("spectator", "a", path=path), nothing, ignore))
-            for path in paths
-        ]
+        requests = [scope("spectator", "a") for _ in range(50)]
+        requests += [scope("spectator", "a", path="/readyz", policy=PROBE) for _ in range(50)]
+        tasks = [asyncio.ensure_future(app(one, nothing, ignore)) for one in requests]
         await asyncio.sleep(0.01)
         for task in tasks:
             task.cancel()
@@ -118,7 +125,7 @@ def test_files_that_take_long_delay_nothing_else() -> None:
         paths = ["/api/v1/runs/x/mcap", "/api/v1/runs/x/page", "/api/v1/races/x/recording"]
         roles: list[Role] = ["spectator", "operator"]
         requests: list[Scope] = [
-            {**scope(role, str(n), path=path), "query_string": b"format=vise%72"}
+            scope(role, str(n), path=path, policy=FILE)
             for role in roles
             for n in range(10)
             for path in paths
@@ -202,23 +209,32 @@ def test_each_kind_of_work_has_slots_of_its_own() -> None:
         "/readyz": "probe",
         "/": "other",
         "/api/v1/runs": "other",
-        "/api/v1/runs/x": "other",
-        "/api/v1/runs/x/page": "encoding",
-        "/api/v1/runs/x/trajectory": "download",
+        "/api/v1/runs/{run_id}": "other",
+        "/api/v1/runs/{run_id}/page": "encoding",
+        "/api/v1/runs/{run_id}/trajectory": "download",
         "/api/v1/runs/export": "download",
-        "/api/v1/races/x/recording": "download",
-        "/api/v1/experiments/x/files/trials.csv": "download",
-        "/api/v1/races/x/timeline": "analysis",
-        "/api/v1/runs/x/replay/segments/0/1": "analysis",
+        "/api/v1/races/{run_id}/recording": "download",
+        "/api/v1/experiments/{run_id}/files/{name}": "download",
+        "/api/v1/races/{run_id}/timeline": "analysis",
+        "/api/v1/runs/{run_id}/replay/segments/{level}/{number}": "analysis",
         "/api/v1/robots": "other",
-        "/api/v1/robots/0123456789ab": "analysis",
-        "/api/v1/robots/0123456789ab/file": "analysis",
+        "/api/v1/robots/{robot_id}": "analysis",
+        "/api/v1/robots/{robot_id}/file": "analysis",
     }
-    asked = {path: {**scope("spectator", "a", path=path), "query_string": b""} for path in kinds}
-    assert {path: work_of(one) for path, one in asked.items()} == kinds
-    assert work_of(scope("operator", "a", "POST", STOP)) == "other"
-    assert work_of(scope("spectator", "a", "POST", PREVIEW)) == "analysis"
-    assert work_of(scope("spectator", "a", "POST", WHAT_IF)) == "what-if"
+    with temporary_store() as store:
+        of_routes = policies(create_app(Settings(data=Path("unused")), store))
+
+    def kind(role: str, method: str, path: str, query: bytes = b"") -> str:
+        asked = scope(role, "a", policy=of_routes[method, path])
+        return work_of({**asked, "query_string": query})
+
+    assert {path: kind("spectator", "get", path) for path in kinds} == kinds
+    recording = "/api/v1/races/{run_id}/recording"
+    assert kind("spectator", "get", recording, b"format=vise%72") == "encoding"
+    assert kind("operator", "post", "/api/v1/trainings/{run_id}/stop") == "other"
+    assert kind("spectator", "post", "/api/v1/robots/preview") == "analysis"
+    assert kind("spectator", "post", "/api/v1/what-if") == "what-if"
+    assert kind("operator", "post", "/api/v1/what-if") == "other"
 
 
 def test_nothing_is_begun_for_a_client_that_has_left() -> None:

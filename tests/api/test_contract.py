@@ -27,11 +27,10 @@ from app.api.event_answers import EventBodies
 from app.api.events import get_events
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.option_answers import OptionsView
+from app.api.policy import OPERATOR, MissingPolicy, policies, policy
 from app.api.problems import STATUSES
-from app.api.rate_limit import QUESTIONS
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.api.robot_answers import StoredRobotsView, StoredRobotView, WholeRobotView
-from app.api.room_access import OF_BOTH, OF_PARTICIPANTS, OPEN_TO_ALL
 from app.server import create_app
 from app.settings import Settings
 from hexapods.domain.errors import HexapodError
@@ -78,10 +77,13 @@ def test_every_route_is_described(app: FastAPI, described: dict[str, Any]) -> No
     assert {(method, path) for method, path, _ in operations(described)} == routes
 
 
-def test_every_operation_describes_all_its_responses(described: dict[str, Any]) -> None:
+def test_every_operation_describes_all_its_responses(
+    app: FastAPI, described: dict[str, Any]
+) -> None:
+    by_operation = policies(app)
     for method, path, operation in operations(described):
         said = {int(status) for status in operation["responses"]}
-        assert problems_of(method, path, operation) <= said, path
+        assert problems_of(method, path, operation, by_operation[method, path]) <= said, path
         assert [status for status in said if 200 <= status < 300], path
         for status, answer in operation["responses"].items():
             content = resolved(described, answer).get("content", {})
@@ -114,6 +116,7 @@ def test_new_route_gets_its_problem_responses(serve: Serve) -> None:
     assert isinstance(app, FastAPI)
 
     @app.put("/api/v1/new/{thing}/part")
+    @policy(access=OPERATOR)
     def put_part(thing: str, body: dict[str, int]) -> None:
         """A route without declared errors."""
 
@@ -123,33 +126,49 @@ def test_new_route_gets_its_problem_responses(serve: Serve) -> None:
     assert operation["responses"]["422"]["$ref"].endswith("/UnprocessableContent")
 
 
+def test_a_route_without_a_policy_cannot_be_defined(serve: Serve) -> None:
+    app = serve().client.app
+    assert isinstance(app, FastAPI)
+    with pytest.raises(MissingPolicy, match="/api/v1/new has no policy"):
+
+        @app.get("/api/v1/new")
+        def get_new() -> None:
+            """A route whose author has not said who may use it."""
+
+
+def test_only_what_may_refuse_strangers_describes_that(described: dict[str, Any]) -> None:
+    probe = described["paths"]["/healthz"]["get"]["responses"]
+    assert "401" not in probe
+    assert {"403", "429"} <= set(probe), "a wrong host, too many wrong tokens"
+    assert "401" in described["paths"]["/metrics"]["get"]["responses"]
+
+
 @pytest.mark.parametrize(
-    ("settings", "reads", "writes"),
+    "settings",
     [
-        ({}, True, True),
-        ({"token": "a-token-for-tests"}, True, False),
-        ({"token": "a-token-for-tests", "spectators": "token"}, False, False),
+        {},
+        {"token": "a-token-for-tests"},
+        {"token": "a-token-for-tests", "spectators": "token"},
     ],
 )
-def test_security_requirements_are_described(
-    serve: Serve, settings: dict[str, Any], reads: bool, writes: bool
-) -> None:
+def test_security_requirements_are_described(serve: Serve, settings: dict[str, Any]) -> None:
     api = serve(**settings)
     bearer = {"Authorization": "Bearer a-token-for-tests"} if settings else {}
     described = api.client.get("/openapi.json", headers=bearer).json()
     assert set(described["components"]["securitySchemes"]) == {"bearer", "cookie", "participant"}
+    assert isinstance(api.client.app, FastAPI)
+    by_operation = policies(api.client.app)
+    is_public = settings.get("spectators") != "token"
     for method, path, operation in operations(described):
         is_free = {} in operation["security"]
-        if path in ("/healthz", "/readyz") or (method, path) in OPEN_TO_ALL:
-            assert is_free
-        elif (method, path) in OF_PARTICIPANTS:
+        access = by_operation[method, path].access
+        if not access.is_for_operators:
             assert operation["security"] == [{"participant": []}]
-        elif not writes and (method, path) in OF_BOTH:
-            assert {"participant": []} in operation["security"]
-            assert not is_free
         else:
-            is_read = method == "get" or path in QUESTIONS
-            assert is_free == (reads if is_read else writes), path
+            may_watch = access.admits_spectators(is_public=is_public)
+            assert is_free == (may_watch or not settings), path
+            if path.endswith("/entries") and settings:
+                assert {"participant": []} in operation["security"]
             if path != "/api/v1/events":  # it has no end
                 answer = api.client.request(method, path.replace("{run_id}", "none"))
                 assert (answer.status_code != 401) == is_free, path

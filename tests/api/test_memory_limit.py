@@ -12,7 +12,9 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.api.memory_limit import ANSWERS_SHARE_BYTES, BODIES_SHARE_BYTES, HeldBodies
+from app.api.memory_limit import ANSWERS_SHARE_BYTES, BODIES_SHARE_BYTES, BodyMemoryLimit
+from app.api.policy import PUBLIC, Policy
+from tests.api.guarding import admitted
 
 MB = 1 << 20
 LARGE = 8 * MB
@@ -33,13 +35,14 @@ class AsOperator:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "http":
-            scope["state"] = {"role": "operator"}
+            takes_file = scope["path"].endswith("import")
+            scope["state"] = admitted("operator", Policy(access=PUBLIC, takes_file=takes_file))
         await self._app(scope, receive, send)
 
 
 @pytest.fixture
 def port() -> Iterator[int]:
-    app = AsOperator(HeldBodies(answer))
+    app = AsOperator(BodyMemoryLimit(answer))
     config = uvicorn.Config(app, host="127.0.0.1", port=0, lifespan="off", log_level="critical")
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)

@@ -22,12 +22,11 @@ def outcomes(table: dict[str, Any]) -> dict[tuple[str, str], str]:
 
 def test_the_guards_decide_as_the_table_says() -> None:
     """`python -m tests.api.policy_table` writes it anew, if a difference is meant."""
-    expected = outcomes(json.loads(TABLE.read_text("utf-8")))
-    now = outcomes(recorded())
+    was, now = outcomes(json.loads(TABLE.read_text("utf-8"))), outcomes(recorded())
     differences = [
-        f"{operation}, {case}: was {expected.get((operation, case))}, is {now.get((operation, case))}"
-        for operation, case in sorted({*expected, *now})
-        if expected.get((operation, case)) != now.get((operation, case))
+        f"{operation}, {case}: was {was.get((operation, case))}, is {now.get((operation, case))}"
+        for operation, case in sorted({*was, *now})
+        if was.get((operation, case)) != now.get((operation, case))
     ]
     assert not differences, "\n".join([f"{len(differences)} differences", *differences[:40]])
     assert len({operation for operation, _ in now}) > 140

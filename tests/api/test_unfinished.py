@@ -11,9 +11,10 @@ from starlette.responses import StreamingResponse
 from starlette.types import Message, Receive, Scope
 
 from app.api import problems
-from app.api.memory_limit import HeldBodies
-from app.api.unfinished import Unfinished
+from app.api.memory_limit import BodyMemoryLimit
+from app.api.unfinished import IncompleteBodyGuard
 from app.storage.errors import NotFound
+from tests.api.guarding import admitted
 
 SCOPE: Scope = {
     "type": "http",
@@ -21,7 +22,7 @@ SCOPE: Scope = {
     "path": "/",
     "query_string": b"",
     "headers": [],
-    "state": {"role": "operator"},
+    "state": admitted("operator"),
 }
 
 
@@ -44,8 +45,8 @@ def streaming(chunks: int) -> FastAPI:
         return StreamingResponse(parts())
 
     problems.install(app)
-    app.add_middleware(HeldBodies)
-    app.add_middleware(Unfinished)
+    app.add_middleware(BodyMemoryLimit)
+    app.add_middleware(IncompleteBodyGuard)
     return app
 
 
@@ -89,7 +90,7 @@ def test_a_request_that_is_cancelled_is_answered() -> None:
         async def send(message: Message) -> None:
             sent.append(message)
 
-        task = asyncio.ensure_future(Unfinished(wait)(dict(SCOPE), receive, send))
+        task = asyncio.ensure_future(IncompleteBodyGuard(wait)(dict(SCOPE), receive, send))
         await asyncio.sleep(0)
         task.cancel()
         await task
@@ -109,7 +110,7 @@ def test_other_errors_are_raised() -> None:
         del message
 
     with pytest.raises(RuntimeError, match="unexpected"):
-        asyncio.run(Unfinished(broken)(dict(SCOPE), receive, send))
+        asyncio.run(IncompleteBodyGuard(broken)(dict(SCOPE), receive, send))
 
 
 async def receive_disconnect() -> Message:
@@ -124,12 +125,12 @@ async def ignore(message: Message) -> None:
     del message
 
 
-def failing(error: Exception) -> Unfinished:
+def failing(error: Exception) -> IncompleteBodyGuard:
     async def app(scope: Scope, receive: Receive, send: object) -> None:
         await receive()
         raise error
 
-    return Unfinished(app)
+    return IncompleteBodyGuard(app)
 
 
 BROKEN = anyio.BrokenResourceError()

@@ -13,6 +13,7 @@ from starlette.datastructures import Headers
 from app.api.room_access import RoomAccess, room_cookie
 from app.classroom.lesson import read_lesson
 from app.classroom.rooms import IDLE, MAX_OPEN, Rooms
+from app.settings import Settings
 from app.storage.database.room_rows import RoomRun, Seat
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict, Forbidden, NotFound
@@ -233,9 +234,11 @@ def test_an_open_room_of_an_earlier_version_goes_on_until_it_ends(store: RunStor
     assert again.get("KM4 T7Q").predictions == {(0, 0): 0.5}
     headers = Headers({"host": "127.0.0.1:8000"}).raw
     name = room_cookie({"headers": headers, "state": {"cookies": {}}}, old, is_secure=False).name
-    scope = {"headers": headers, "state": {"cookies": {name: joined.key}}}
-    access = RoomAccess(again, lambda tournament: None)
-    assert access.seats(scope, is_secure=False) == ((old, 0),)
+    scope = {"scheme": "http", "headers": headers, "state": {"cookies": {name: joined.key}}}
+    access = RoomAccess(again, lambda tournament: None, Settings(data=Path("unused")))
+    identity = access.identify(scope)
+    assert identity is not None
+    assert identity.seats == ((old, 0),)
     again.end(old)
     with pytest.raises(Conflict, match="has ended"):
         again.join(old)

@@ -1,15 +1,18 @@
 """Raw HTTP requests that clients would not send, and a monitor of the server's memory."""
 
+import re
 import socket
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 import psutil
 from fastapi.routing import iter_route_contexts
 
+from app.api.policy import Access, policies
 from app.server import create_app
 from app.settings import Settings
 from tests.storage.stores import temporary_store
@@ -37,6 +40,19 @@ def every_route() -> list[Route]:
             routes += [Route(method, path) for method in sorted(context.methods or {"WS"})]
     assert len(routes) > 30
     return routes
+
+
+@cache
+def accesses() -> dict[Route, Access]:
+    """Return the access of each of `every_route`, as its policy has it."""
+    with temporary_store() as store:
+        of_routes = policies(create_app(Settings(data=Path("unused")), store))
+    found: dict[Route, Access] = {}
+    for route in every_route():
+        path = "/static" if route.path.startswith("/static/") else route.path
+        method = "get" if route.method in ("HEAD", "WS") else route.method.lower()
+        found[route] = of_routes[method, re.sub(":(path|robot)}", "}", path)].access
+    return found
 
 
 def send(port: int, *lines: str, body: bytes = b"", source: str = "127.0.0.1") -> bytes:

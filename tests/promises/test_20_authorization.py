@@ -13,17 +13,22 @@ from typing import Any, NamedTuple
 import pytest
 from playwright.sync_api import Page, Request, expect
 
-from app.api.room_access import OPEN_TO_ALL
 from tests.browser.dashboard import PATIENCE_MS, Dashboard
 from tests.browser.serving import Serving, serving
 from tests.promises.length import at_length
-from tests.promises.raw import Route, every_route, request_lines, send, status_of
+from tests.promises.raw import Route, accesses, every_route, request_lines, send, status_of
 
 TOKEN = "a-token-for-tests"
 READS = {"GET", "HEAD", "WS"}
 WHAT_IF, PREVIEW = "/api/v1/what-if", "/api/v1/robots/preview"
 FOR_ANYONE = {"/", "/healthz", "/readyz", "/static/favicon.svg"}
 """Accessible without the token: the page, which asks for it, and the health checks."""
+BY_CODE = {
+    ("GET", "/api/v1/rooms/{code}"),
+    ("POST", "/api/v1/rooms/{code}/participants"),
+    *((method, f"/r/{{code}}{end}") for method in ("GET", "HEAD") for end in ("", "/")),
+}
+"""Accessible to whoever has the code of a room."""
 STARTED = ("/api/v1/trainings", "/api/v1/races", "/api/v1/experiments")
 OPERATOR = f"Authorization: Bearer {TOKEN}"
 VALID_BODIES: dict[str, Any] = {
@@ -46,8 +51,15 @@ def role_of(route: Route) -> str:
 
 def is_open_by_code(route: Route) -> bool:
     """Whether the code of a room is all that a route requires."""
-    method = {"HEAD": "get"}.get(route.method, route.method.lower())
-    return (method, route.path) in OPEN_TO_ALL
+    return (route.method, route.path) in BY_CODE
+
+
+def test_the_policy_of_each_route_is_its_role() -> None:
+    """What is open is listed by hand above; all else is as the policies say."""
+    spectators = {"operator": "never", "spectator": "watching", "anyone": "always"}
+    for route in every_route():
+        role = "anyone" if is_open_by_code(route) else role_of(route)
+        assert accesses()[route].spectators == spectators[role], route
 
 
 def status_for(server: Serving, route: Route, run_id: str, *headers: str) -> int:

@@ -13,11 +13,12 @@ from typing import Any, NamedTuple
 import httpx2
 import pytest
 
+from app.api.room_access import ENTER_TOURNAMENT, ParticipantAccess
 from app.classroom.lesson import Card
 from app.classroom.lessons import built_in
 from tests.browser.serving import Serving, serving
 from tests.promises.length import at_length
-from tests.promises.raw import Route, every_route, request_lines, send, status_of
+from tests.promises.raw import Route, accesses, every_route, request_lines, send, status_of
 from tests.timeouts import LONG_S
 
 TOKEN = "a-token-for-tests"
@@ -149,6 +150,20 @@ def may_change(route: Route, card: Card) -> bool:
         return True
     field = NEEDS.get(route.path) if route.method == "POST" else None
     return field is not None and getattr(card, field) is not None
+
+
+def test_policies_open_to_participants_what_is_listed_here() -> None:
+    opened = {
+        tuple(route)
+        for route, access in accesses().items()
+        if not access.is_read
+        and (
+            isinstance(access, ParticipantAccess)
+            or access is ENTER_TOURNAMENT
+            or access.spectators == "always"
+        )
+    }
+    assert opened == ALWAYS | {("POST", path) for path in NEEDS}
 
 
 def test_a_participant_may_do_what_the_card_allows_and_nothing_else(

@@ -17,9 +17,10 @@ from typing import Any, NamedTuple
 import httpx2
 import pytest
 
+from app.api.policy import OWN_RUNS, START
 from tests.browser.serving import Serving, serving
 from tests.jobs.waiting import wait_until
-from tests.promises.raw import Route, every_route, request_lines, send, status_of
+from tests.promises.raw import Route, accesses, every_route, request_lines, send, status_of
 
 pytestmark = pytest.mark.test
 
@@ -147,6 +148,17 @@ def is_running(api: httpx2.Client, run_id: str) -> bool:
 def may_send(route: Route) -> bool:
     """Whether a visitor may send a request that changes something, of the operator's run."""
     return (route.method, route.path) in {*STARTS, *QUESTIONS, *BY_CODE}
+
+
+def test_policies_open_to_visitors_what_is_listed_here() -> None:
+    assert {tuple(route) for route, one in accesses().items() if one is START} == set(STARTS)
+    assert {tuple(route) for route, one in accesses().items() if one is OWN_RUNS} == OF_OWN
+    open_to_all = {
+        tuple(route)
+        for route, access in accesses().items()
+        if not access.is_read and access.spectators != "never"
+    }
+    assert open_to_all == QUESTIONS | BY_CODE
 
 
 @pytest.mark.parametrize("who", ["new", "known", "forged"])

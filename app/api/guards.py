@@ -1,0 +1,57 @@
+"""The guards of all routes in their order: access, rates, memory of bodies, slots for work."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from starlette.middleware.exceptions import ExceptionMiddleware
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.api.auth import TokenGuard
+from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
+from app.api.identity import IdentityProvider
+from app.api.memory_limit import BodyMemoryLimit
+from app.api.policy import Policy
+from app.api.rate_limit import RateLimit
+from app.limits.token_bucket import RateLimiter
+from app.settings import Settings
+
+
+class RouteGuards:
+    """Runs the guards of a request that has matched a route, before a byte of its body is read."""
+
+    def __init__(
+        self,
+        settings: Settings,
+        slots: WorkSlots,
+        what_ifs: RateLimiter,
+        providers: Sequence[IdentityProvider] = (),
+        handlers: Mapping[Any, Any] | None = None,
+    ) -> None:
+        """Create them.
+
+        Args:
+            settings: of the server.
+            slots: of all kinds of work.
+            what_ifs: limits what-ifs of spectators.
+            providers: know clients who are no operators.
+            handlers: exception handlers of the app, by exception: what a route raises, such as a
+                404, is answered inside the guards.
+        """
+        # Unexpected errors are for the app's own handler, which raises them again.
+        expected = {kind: one for kind, one in (handlers or {}).items() if kind is not Exception}
+        answered = ExceptionMiddleware(_call_route, expected)
+        limited = BodyMemoryLimit(ConcurrencyLimit(answered, slots))
+        counted = RateLimit(limited, settings, what_ifs)
+        self._first = TokenGuard(counted, settings, providers)
+
+    async def __call__(
+        self, policy: Policy, route: ASGIApp, scope: Scope, receive: Receive, send: Send
+    ) -> None:
+        """Call a route if all guards let the request pass, or refuse it."""
+        scope["state"].update(policy=policy, guarded_route=route)
+        await self._first(scope, receive, send)
+
+
+async def _call_route(scope: Scope, receive: Receive, send: Send) -> None:
+    route: ASGIApp = scope["state"]["guarded_route"]
+    await route(scope, receive, send)

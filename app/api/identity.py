@@ -1,0 +1,74 @@
+"""Identities: clients who are no operators, but of whom a feature knows more than that they watch.
+
+A feature that knows people by a cookie has an `IdentityProvider`, which the guards ask of each
+client who is no operator. What an identity may do beyond a spectator, or may not, it decides itself
+by the access of the route and the parameters of the request.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Protocol
+from urllib.parse import parse_qsl
+
+from starlette.types import ASGIApp, Scope
+
+from app.api.policy import Access
+
+
+class Identity(Protocol):
+    """A client whom a feature knows."""
+
+    @property
+    def limited_as(self) -> str | None:
+        """Key of its own token buckets; None to count as its address."""
+        ...
+
+    def refusal(self, scope: Scope, access: Access, as_spectator: ASGIApp | None) -> ASGIApp | None:
+        """Return the refusal of a request; None if it is allowed.
+
+        Args:
+            scope: of the request, or of a websocket, with the parameters of its path.
+            access: that of its route.
+            as_spectator: refusal that a spectator would get; None if a spectator may do it.
+        """
+        ...
+
+
+class IdentityProvider(Protocol):
+    """Knows clients who are no operators."""
+
+    @property
+    def scheme(self) -> tuple[str, Mapping[str, Any]]:
+        """Name of its security scheme in the API's description, and its definition."""
+        ...
+
+    def identify(self, scope: Scope) -> Identity | None:
+        """Return who a client is; None if it is nobody whom this provider knows.
+
+        Where nobody needs a token each client is asked about, and whoever is known is no operator.
+        """
+        ...
+
+    def why_hidden(self, run_id: str, identity: Identity | None) -> str | None:
+        """Return in a sentence why a run is hidden from a client; None if it is not.
+
+        Args:
+            run_id: of the run, or anything else in its place.
+            identity: of the client, of any provider; None for a spectator.
+        """
+        ...
+
+    def requirements(self, access: Access) -> list[dict[str, list[str]]]:
+        """Return by what, beside an operator's credentials, a route of an access can be used.
+
+        As security requirements of OpenAPI: each names schemes, and an empty one means nothing.
+        """
+        ...
+
+
+def run_ids_of(scope: Scope) -> Iterator[str]:
+    """Yield all that may be the id of a run: `run_id` of the path, and all values of the query."""
+    run_id = scope.get("path_params", {}).get("run_id")
+    if run_id is not None:
+        yield str(run_id)
+    for _, value in parse_qsl(scope["query_string"].decode("latin-1")):
+        yield from (part.strip() for part in value.split(","))

@@ -1,0 +1,349 @@
+"""The policy of a route: who may use it, and what it costs.
+
+The guards and the description of the API read it, and nothing else. It stands where the route is
+written, under the decorator that adds it, and a route without one cannot be defined:
+
+    @router.post("/races")
+    @policy(access=START, starts=True)
+    def start_race(...): ...
+
+A route runs the guards (`guards`) when it was matched and before its body is read. Features define
+accesses of their own, and identities who may use them (`identity`).
+"""
+
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from typing import Any, Literal, TypeVar
+
+from fastapi import FastAPI
+from fastapi.routing import APIRoute, APIRouter, iter_route_contexts
+from starlette.datastructures import URL
+from starlette.responses import RedirectResponse
+from starlette.routing import BaseRoute, Match, Mount, Route, WebSocketRoute
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.api.stage_paths import path_of
+
+Work = Literal["probe", "what-if", "encoding", "download", "analysis", "other"]
+"""Kinds of work, each of which has slots of its own.
+
+- `probe`: liveness and readiness, in milliseconds: a busy server is not taken for a dead one.
+- `what-if`: of spectators, each of which takes all cores: an operator's waits for one of them.
+- `encoding`: files of long runs that take up to minutes before their first byte, and robots' files
+  that are read. Each counts as a start.
+- `download`: files that are computed chunk by chunk while a client reads them.
+- `analysis`: any other view of what a run recorded, which takes seconds if that is long, and what
+  is told of a robot before it walks, if it is large.
+- `other`: listings, commands and files of the page, in milliseconds.
+"""
+READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+_ATTRIBUTE = "policy"
+E = TypeVar("E", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Access:
+    """Who may use a route. Operators always get to it; what others may, is decided here.
+
+    Attributes:
+        name: of this access.
+        spectators: whether those may use it of whom nothing else is known: `never`, `always`, or
+            `watching`, which is where watching needs no token.
+        is_read: whether the route shows something, and neither changes nor computes anything.
+        is_for_operators: whether to be an operator is enough; false for what only those can do
+            whom a feature knows.
+    """
+
+    name: str
+    spectators: Literal["always", "watching", "never"] = "never"
+    is_read: bool = False
+    is_for_operators: bool = True
+
+    def admits_spectators(self, *, is_public: bool) -> bool:
+        """Whether spectators may use the route.
+
+        Args:
+            is_public: whether watching needs no token.
+        """
+        return self.spectators == "always" or (self.spectators == "watching" and is_public)
+
+
+PUBLIC = Access(name="public", spectators="always", is_read=True)
+"""Needs no token on any server: the page's files, not the data it shows, and probes."""
+WATCH = Access(name="watch", spectators="watching", is_read=True)
+"""Shows something of the server to those who may watch."""
+WATCH_RUN = Access(name="watch run", spectators="watching", is_read=True)
+"""Shows something of the run `run_id` of the path."""
+WATCH_STAGE = Access(name="watch stage", spectators="watching", is_read=True)
+"""Shows what is on the stage of the path."""
+ANY_PAGE = Access(name="any page", spectators="watching", is_read=True)
+"""Tells what every page needs, whatever it shows."""
+QUESTION = Access(name="question", spectators="watching")
+"""Computes something and changes nothing, so that those who may watch may ask it."""
+OPERATOR = Access(name="operator")
+START = Access(name="start")
+"""Starts a run, within what the server allows to those who are no operators."""
+OWN_RUNS = Access(name="own runs")
+"""Changes the run `run_id` of the path, or all runs `id` of the query: operators, and who owns all
+of them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Policy:
+    """What the guards need to know of a route.
+
+    Attributes:
+        access: who may use it.
+        work: kind of its work, or a function that tells it by the request's scope.
+        starts: whether it counts as a start: of a run, or of something else that costs the server.
+        takes_file: whether its body may be as large as a file.
+        opens_session: whether `token` in its query opens an operator's session.
+    """
+
+    access: Access
+    work: Work | Callable[[Scope], Work] = "other"
+    starts: bool = False
+    takes_file: bool = False
+    opens_session: bool = False
+
+
+Guards = Callable[[Policy, ASGIApp, Scope, Receive, Send], Awaitable[None]]
+"""Calls an app for a request if all guards let it pass, or refuses it."""
+
+
+class MissingPolicy(TypeError):
+    """A route has no policy."""
+
+    def __init__(self, path: str) -> None:
+        super().__init__(
+            f"the route {path} has no policy; say who may use it and what it costs by "
+            "@policy(access=…) under the decorator that adds it (app/api/policy.py)"
+        )
+
+
+def policy(
+    *,
+    access: Access,
+    work: Work | Callable[[Scope], Work] = "other",
+    starts: bool = False,
+    takes_file: bool = False,
+    opens_session: bool = False,
+) -> Callable[[E], E]:
+    """Put a policy on an endpoint; the arguments are those of `Policy`."""
+    return with_policy(
+        Policy(
+            access=access,
+            work=work,
+            starts=starts,
+            takes_file=takes_file,
+            opens_session=opens_session,
+        )
+    )
+
+
+def with_policy(of_route: Policy) -> Callable[[E], E]:
+    """Put a policy that there is on an endpoint."""
+
+    def put(endpoint: E) -> E:
+        setattr(endpoint, _ATTRIBUTE, of_route)
+        return endpoint
+
+    return put
+
+
+def _policy_on(endpoint: object, path: str) -> Policy:
+    on_endpoint: Policy | None = getattr(endpoint, _ATTRIBUTE, None)
+    if on_endpoint is None:
+        raise MissingPolicy(path)
+    return on_endpoint
+
+
+def policy_without_route(scope: Scope) -> Policy:
+    """Return the policy of a path without a route, and of a method that its route does not have."""
+    if scope["type"] == "websocket" or scope["method"] in READ_METHODS:
+        return Policy(access=WATCH)
+    return Policy(access=OPERATOR, starts=scope["method"] == "POST")
+
+
+def policy_of(scope: Scope) -> Policy:
+    """Return the policy of a request; to be called inside the guards."""
+    of_route: Policy = scope["state"]["policy"]
+    return of_route
+
+
+def work_of(scope: Scope) -> Work:
+    """Return the kind of work of a request, which is decided once; inside `TokenGuard`."""
+    state = scope["state"]
+    if "work" not in state:
+        work = policy_of(scope).work
+        work = work(scope) if callable(work) else work
+        is_unlimited = work == "what-if" and state["role"] == "operator"
+        state["work"] = "other" if is_unlimited else work
+    work_of_request: Work = state["work"]
+    return work_of_request
+
+
+async def _guard(
+    of_route: Policy, app: ASGIApp, scope: Scope, receive: Receive, send: Send
+) -> None:
+    guards: Guards = scope["app"].state.guards
+    await guards(of_route, app, scope, receive, send)
+
+
+class GuardedRoute(APIRoute):
+    """A route of the API, behind the guards.
+
+    Attributes:
+        policy: that of its endpoint.
+    """
+
+    def __init__(self, path: str, endpoint: Callable[..., Any], **options: Any) -> None:
+        """Create a route.
+
+        Raises:
+            MissingPolicy: if there is no policy on the endpoint.
+        """
+        self.policy = _policy_on(endpoint, path)
+        super().__init__(path, endpoint, **options)
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request that matches, if the guards let it pass."""
+        await _guard(_policy_for(self, scope), super().handle, scope, receive, send)
+
+
+class GuardedPage(Route):
+    """A page, behind the guards.
+
+    Attributes:
+        policy: that of its endpoint.
+    """
+
+    def __init__(
+        self, path: str, endpoint: Callable[..., Any], policy: Policy | None = None, **options: Any
+    ) -> None:
+        """Create a route.
+
+        Args:
+            path: of the page.
+            endpoint: answers its requests.
+            policy: of the page; None for that on the endpoint.
+            options: further arguments of `Route`.
+
+        Raises:
+            MissingPolicy: if there is no policy.
+        """
+        self.policy = _policy_on(endpoint, path) if policy is None else policy
+        super().__init__(path, endpoint, **options)
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request that matches, if the guards let it pass."""
+        await _guard(_policy_for(self, scope), super().handle, scope, receive, send)
+
+
+class GuardedFiles(Mount):
+    """A folder of files, behind the guards.
+
+    Attributes:
+        policy: of reading its files.
+    """
+
+    def __init__(self, path: str, app: ASGIApp, policy: Policy, name: str | None = None) -> None:
+        """Serve an app, such as static files, below a path."""
+        self.policy = policy
+        super().__init__(path, app, name=name)
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request that matches, if the guards let it pass."""
+        is_read = scope["type"] == "http" and scope["method"] in READ_METHODS
+        of_request = self.policy if is_read else policy_without_route(scope)
+        await _guard(of_request, super().handle, scope, receive, send)
+
+
+class GuardedSocket(WebSocketRoute):
+    """A websocket, behind the guards.
+
+    Attributes:
+        policy: of connecting to it.
+    """
+
+    def __init__(
+        self, path: str, endpoint: Callable[..., Any], policy: Policy, name: str | None = None
+    ) -> None:
+        """Create a route."""
+        self.policy = policy
+        super().__init__(path, endpoint, name=name)
+
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve a browser, if the guards let it connect."""
+        await _guard(self.policy, super().handle, scope, receive, send)
+
+
+def _policy_for(route: GuardedRoute | GuardedPage, scope: Scope) -> Policy:
+    """Return the policy of a request that matches a route by its path."""
+    has_method = route.methods is None or scope["method"] in route.methods
+    return route.policy if has_method else policy_without_route(scope)
+
+
+def api_router(**options: Any) -> APIRouter:
+    """Return a router whose routes are behind the guards; arguments as of `APIRouter`."""
+    return APIRouter(route_class=GuardedRoute, **options)
+
+
+class _WithoutRoute:
+    """Answers requests for which there is no route, behind the guards: a redirect, or 404."""
+
+    def __init__(self, router: APIRouter) -> None:
+        self._router = router
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await _guard(policy_without_route(scope), self._answer, scope, receive, send)
+
+    async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Redirect to the path with or without its last slash if it is a route's, as Starlette."""
+        if scope["type"] == "http" and path_of(scope) != "/":
+            path = scope["path"]
+            other = {**scope, "path": path.rstrip("/") if path.endswith("/") else f"{path}/"}
+            if any(route.matches(other)[0] is not Match.NONE for route in self._router.routes):
+                await RedirectResponse(str(URL(scope=other)))(scope, receive, send)
+                return
+        await self._router.not_found(scope, receive, send)
+
+
+def guard_everything(app: FastAPI, guards: Guards) -> None:
+    """Put all that an app answers behind guards, also paths without a route.
+
+    Args:
+        app: the app, with all its routes.
+        guards: called for each request.
+
+    Raises:
+        MissingPolicy: if a route of the app has none, or is not behind the guards.
+    """
+    app.state.guards = guards
+    app.router.route_class = GuardedRoute
+    app.router.redirect_slashes = False
+    app.router.default = _WithoutRoute(app.router)
+    for context in iter_route_contexts(app.routes):
+        if not _is_guarded(context.original_route, app):
+            raise MissingPolicy(context.path or "/")
+
+
+def _is_guarded(route: BaseRoute, app: FastAPI) -> bool:
+    if isinstance(route, GuardedRoute):
+        return True
+    # FastAPI serves copies of other routes of a router that is included, which are not guarded.
+    is_page = isinstance(route, (GuardedPage, GuardedFiles, GuardedSocket))
+    return is_page and any(route is one for one in app.routes)
+
+
+def policies(app: FastAPI) -> dict[tuple[str, str], Policy]:
+    """Return the policies of all routes, by method in lower case and path."""
+    by_operation: dict[tuple[str, str], Policy] = {}
+    for context in iter_route_contexts(app.routes):
+        route = context.original_route
+        if isinstance(route, GuardedFiles):
+            by_operation["get", route.path] = route.policy
+        elif isinstance(route, (GuardedRoute, GuardedPage)):
+            path = context.path_format or route.path
+            by_operation |= {(one.lower(), path): route.policy for one in route.methods or ()}
+    return by_operation
