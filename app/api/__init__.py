@@ -6,7 +6,9 @@ common), `gait`, `replays`, `exports`, `stage`, `spectators`, `events`, `options
 `experiment_body`, `fields`, `descriptions`, `formats`. Answers: `answers`, `recorded_answers`,
 `experiment_answers`, `explanation_answers`, `option_answers`, `curves`, `problems`
 (RFC 9457), `templates` (web pages), `compression`. `contract` completes the OpenAPI document.
-Middleware: `middleware` (its base, security headers), `stage_paths` (which stage), `auth` (roles),
-`request_headers`, `cookies`, `host_check`, `wellformed`, `problem_pages`, `unfinished`,
-`memory_limit`, `concurrency_limit`, `rate_limit`. `deps` injects services and the stage.
+Middleware, before all routes: `middleware` (its base, security headers), `stage_paths` (which
+stage), `request_headers`, `cookies`, `host_check`, `wellformed`, `problem_pages`, `unfinished`.
+`policy` says on each route who may use it and what it costs; `guards` runs what reads that, when a
+route was matched: `auth` (roles, and identities of features: `identity`), `rate_limit`,
+`memory_limit`, `concurrency_limit`. `deps` injects services and the stage.
 """

@@ -69,8 +69,8 @@ _PROBLEMS: Mapping[int, tuple[str, str]] = {
     401: ("Unauthorized", "It needs the operator, or the token is wrong."),
     403: (
         "Forbidden",
-        "The request calls the server by a foreign name, comes from a foreign page, or is none "
-        "that a participant's card, or the demo to its visitors, allows.",
+        "The request calls the server by a foreign name, comes from a foreign page, or is not open "
+        "to this client; the detail says why.",
     ),
     404: ("NotFound", "There is no such thing (any more)."),
     405: ("MethodNotAllowed", "The method is not possible here."),
