@@ -8,7 +8,7 @@ import os
 import socket
 import sys
 import threading
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from functools import cache, partial
 from types import FrameType
 
@@ -19,14 +19,12 @@ from starlette.websockets import WebSocket
 
 from app.api import (
     archives,
-    classroom_pages,
     contract,
     docs,
     events,
     experiments,
     exports,
     gait,
-    lessons,
     monitoring,
     options,
     pages,
@@ -34,23 +32,16 @@ from app.api import (
     races,
     replays,
     robots,
-    rooms,
     runs,
     spectators,
     stage,
-    tournament_views,
-    tournaments,
     trainings,
-    visitors,
 )
-from app.api.card_starts import CardStarts
 from app.api.concurrency_limit import WorkSlots
 from app.api.deps import Services
-from app.api.events import close_streams, listeners_of
 from app.api.guards import RouteGuards
 from app.api.guide import guide_routes
 from app.api.host_check import HostGuard
-from app.api.identity import IdentityProvider
 from app.api.middleware import SecurityHeaders
 from app.api.policy import (
     WATCH_STAGE,
@@ -63,32 +54,23 @@ from app.api.policy import (
 from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import what_if_limiter
 from app.api.request_headers import DeclaredHeaders
-from app.api.room_access import RoomAccess
-from app.api.room_stages import RoomStages
 from app.api.stage_paths import StagePaths, stage_of
 from app.api.starts import start_routes
 from app.api.unfinished import IncompleteBodyGuard
-from app.api.visitor_access import VisitorAccess
 from app.api.wellformed import MalformedRequestGuard
-from app.classroom.lessons import Lessons
-from app.classroom.rooms import Rooms
-from app.demo import expiry
-from app.demo.allowance import Allowance
-from app.demo.expiry import Expiry
-from app.demo.visitors import Visitors
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.file_renderer import FileRenderer
+from app.feature import Feature, Features, load
 from app.jobs.jobs import Jobs
 from app.jobs.process_pool import ProcessPool
-from app.jobs.queue import Owner
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
-from app.settings import Settings
+from app.settings import PREFIX, Settings
 from app.stage.playback import Replays
 from app.stage.roles import Roles
 from app.storage.database.opening import open_store
@@ -97,8 +79,6 @@ from app.storage.errors import OwnershipLost
 from app.storage.idempotency import Idempotency
 from app.storage.recordings import Recordings
 from app.storage.server_lock import write_address_file
-from app.tournaments.judge import Judge
-from app.tournaments.tournaments import Tournaments
 from app.viewer.replay_frames import ReplayFrames
 from app.viewer.session import websocket_options
 from app.viewer.shared_stage import SharedStage
@@ -106,8 +86,7 @@ from app.viewer.viewer_page import viewer_routes
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
 from hexapods import __version__, assets
-from hexapods.domain.errors import HexapodError
-from hexapods.machine import cores
+from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.processes import return_freed_memory, start_fork_server
 from hexapods.runs.config import usable_agents
 
@@ -152,25 +131,14 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         viewer_slots=ClientSlots(settings.max_viewers, settings.viewers_per_address),
     )
     stages = [shared := new_stage()]
-    rooms, of_visitors = Rooms(store), Visitors(store, Allowance.of(settings))
-    of_visitors.is_hidden = lambda run_id: rooms.is_hidden(run_id, ())
-
-    def owner_of(run_id: str) -> Owner | None:
-        participant = rooms.owner_of(run_id)
-        return of_visitors.owner_of(run_id) if participant is None else Owner(participant)
-
-    room_stages = RoomStages(
-        stages, lambda path: new_stage(path=path, session_path="", announces=False)
-    )
-    rooms.on_changed = room_stages.publish
-    contests = Tournaments(store, on_changed=partial(tournament_views.publish, shared, room_stages))
+    features = Features(load(settings.without), store)
     jobs = Jobs(
         store,
         recordings,
         bus,
-        # Participants and visitors see their runs on pages of their own.
-        on_queued=lambda run_id: owner_of(run_id) or shared.stage.offer(run_id),
-        owner_of=owner_of,
+        # Who owns a run sees it on a page of their own.
+        on_queued=lambda run_id: features.owner_of(run_id) or shared.stage.offer(run_id),
+        owner_of=features.owner_of,
         niceness=settings.job_niceness,
     )
     app = FastAPI(
@@ -200,26 +168,27 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         stopping=stopping,
         what_if_limiter=what_if_limiter(settings),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
-        lessons=Lessons(store.lessons),
-        rooms=rooms,
-        room_stages=room_stages,
-        card_starts=CardStarts(usable_agents()),
-        tournaments=contests,
-        judge=Judge(contests, max(1, cores() // 2), _judges_niceness(settings)),
-        visitors=of_visitors,
-        expiry=Expiry(store, jobs, of_visitors, rooms if settings.demo else None, contests),
+        new_stage=lambda path: new_stage(path=path, session_path="", announces=False),
+        features=features,
     )
-    rooms.is_here = lambda seat: any(listeners_of(app.state.services, seat))
-    rooms.on_seat_taken = lambda seat: close_streams(app.state.services, seat)
-    rooms.has_entered = contests.has_entered
+    features.build(app.state.services)
+    store.is_public = features.visible_runs(None)
+    for feature in features:
+        bus.state_events |= set(feature.state_events)
     app.state.work_slots = WorkSlots()
     app.state.metrics = monitoring.registry_of(app.state.services)
-    _add_routes(app, app.state.services.agents, is_demo=settings.demo)
+    app.router.routes += _api_routes(app.state.services.agents, features.classes)
+    app.router.routes += [
+        *_viewer_routes(),
+        *pages.page_routes(assets.static_dir()),
+        *guide_routes(assets.docs_dir()),
+    ]
+    _check_paths(app.routes, features)
+    for feature in features:
+        app.router.routes += feature.pages()
     problems.install(app)
-    providers: list[IdentityProvider] = [RoomAccess(rooms, contests.room_of, settings)]
-    if settings.demo:
-        providers.append(VisitorAccess(of_visitors, settings))
-    contract.install(app, app.state.services.agents, settings, providers)
+    providers = features.providers
+    contract.install(app, app.state.services.agents, settings, features.classes, providers)
     what_ifs = app.state.services.what_if_limiter
     guards = RouteGuards(
         settings, app.state.work_slots, what_ifs, providers, app.exception_handlers
@@ -236,23 +205,22 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     return app
 
 
-def _judges_niceness(settings: Settings) -> int:
-    """Return the lowest priority, as people wait for trainings; that of jobs if they have ours."""
-    return 19 if settings.job_niceness else 0
+def _check_paths(routes: Sequence[BaseRoute], features: Features) -> None:
+    """Check that no two pages have the same path.
 
-
-def _add_routes(app: FastAPI, agents: tuple[str, ...], *, is_demo: bool) -> None:
-    app.router.routes += _api_routes(agents)
-    app.router.routes += [
-        *_viewer_routes(),
-        *pages.page_routes(assets.static_dir()),
-        *classroom_pages.classroom_routes(pages.page_content("room.html", assets.static_dir())),
-        *classroom_pages.tournament_routes(
-            pages.page_content("tournament.html", assets.static_dir())
-        ),
-        *guide_routes(assets.docs_dir()),
-        visitors.robots_txt(is_demo=is_demo),
-    ]
+    Raises:
+        InvalidInput: if a feature has the path of another one, or of the core.
+    """
+    paths: set[str] = {getattr(route, "path", "") for route in routes}
+    for feature in features:
+        for page in feature.pages():
+            path: str = getattr(page, "path", "")
+            if path in paths:
+                raise InvalidInput(
+                    f"the feature {feature.name} has the path {path}, which is there already; "
+                    f"leave one of both out by {PREFIX}WITHOUT"
+                )
+            paths.add(path)
 
 
 def _viewer_routes() -> list[BaseRoute]:
@@ -272,18 +240,23 @@ async def _serve_viewer(websocket: WebSocket) -> None:
 
 
 @cache
-def _api_routes(agents: tuple[str, ...]) -> tuple[BaseRoute, ...]:
+def _api_routes(
+    agents: tuple[str, ...], features: tuple[type[Feature], ...]
+) -> tuple[BaseRoute, ...]:
     """Return the routes that are the same in all apps; FastAPI takes long to build them."""
     router, prefix = api_router(), "/api/v1"
     # First, so that no other route matches `import` as a run's id.
     modules = (
         *(archives, trainings, races, experiments, runs, exports, replays, gait),
-        *(stage, spectators, events, options, robots, lessons, rooms, tournaments, visitors),
+        *(stage, spectators, events, robots),
     )
     for module in modules:
         router.include_router(module.router, prefix=prefix)
+    router.include_router(options.option_routes(features), prefix=prefix)
     router.include_router(start_routes(agents), prefix=prefix)
-    router.include_router(tournaments.entry_routes(agents), prefix=prefix)
+    for feature in features:
+        for of_feature in feature.routers(agents):
+            router.include_router(of_feature, prefix=prefix)
     for included in (monitoring.router, docs.router):
         router.include_router(included)
     return tuple(router.routes)
@@ -296,48 +269,24 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     async with contextlib.AsyncExitStack() as opened:
         for shared in services.stages:
             await opened.enter_async_context(shared)
-        opened.push_async_callback(services.room_stages.close_all)
-        for room in services.rooms.open_rooms():
-            await services.room_stages.open(room)
-        # Before what they have made is shown, or goes on.
-        await _clean_up(services)
+        await services.features.open(opened)
         services.jobs.open()
         await asyncio.to_thread(_resume_interrupted, services)
-        services.judge.start()
-        cleaning = asyncio.create_task(_keep_clean(services))
         try:
             yield
         finally:
-            cleaning.cancel()
             services.bus.close()
             await _end_long_requests(app)
             await asyncio.to_thread(services.jobs.close)
 
 
 def _resume_interrupted(services: Services) -> None:
-    """Queue again what participants of open rooms and visitors had started before a crash."""
-    for run_id in (*services.rooms.unfinished(), *services.visitors.unfinished()):
+    """Queue again what features let go on after a crash."""
+    for run_id in [run_id for feature in services.features for run_id in feature.unfinished()]:
         try:
             services.jobs.resume(run_id)
         except HexapodError as error:
             _logger.warning("an interrupted run is not resumed: %s", error)
-
-
-async def _keep_clean(services: Services) -> None:
-    """Clean up a demo for as long as there is one, or something is left of one."""
-    while services.settings.demo or services.visitors.count:
-        await asyncio.sleep(expiry.EVERY_S)
-        await _clean_up(services)
-
-
-async def _clean_up(services: Services) -> None:
-    try:
-        gone = await asyncio.to_thread(services.expiry.sweep)
-    except Exception:  # such as a damaged file: the next clean-up is not to be left out
-        _logger.exception("the clean-up has failed")
-        return
-    for code in gone:
-        await services.room_stages.close(code)
 
 
 async def _end_long_requests(app: FastAPI) -> None:
@@ -346,7 +295,7 @@ async def _end_long_requests(app: FastAPI) -> None:
     services.stopping.set()
     app.state.work_slots.close()
     for user in (
-        services.judge,
+        *services.features,
         services.what_if,
         services.explanations,
         services.estimates,

@@ -82,6 +82,7 @@ class Settings:
         log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
         max_viewers: how many may watch the stage at once, and as many may follow the events.
+        without: names of the features that are left out.
         demo: whether strangers may train, within an allowance, what is deleted after a day.
         demo_steps_per_hour: how many steps a visitor of a demo may compute in an hour.
         demo_hours: after how many hours what a visitor of a demo has made is deleted.
@@ -104,6 +105,7 @@ class Settings:
     job_niceness: int = 15
     max_viewers: int = 300
     log_level: LogLevel = "info"
+    without: tuple[str, ...] = ()
     demo: bool = False
     demo_steps_per_hour: int = 20_000
     demo_hours: int = 24
@@ -231,6 +233,8 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
         if isinstance(given.get(name), str):
             hosts = given[name].lower().split(",")
             given[name] = tuple(host.strip() for host in hosts if host.strip())
+    if isinstance(given.get("without"), str):
+        given["without"] = tuple(filter(None, map(str.strip, given["without"].split(","))))
     data = given.pop("data", None) or platformdirs.user_data_path("racing-hexapods", False)
     return Settings(data=Path(data).expanduser().absolute(), **given)
 

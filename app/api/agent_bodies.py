@@ -9,7 +9,7 @@ from pydantic import Field, create_model
 
 from app.api.descriptions import VALID
 from app.api.experiment_body import ExperimentBody
-from app.api.fields import Declared, OneOrMore, SettingsBody, named_in, one_of, record_fields
+from app.api.fields import Body, Declared, OneOrMore, SettingsBody, named_in, one_of, record_fields
 from app.api.schemas import (
     WALK,
     BranchBody,
@@ -19,7 +19,6 @@ from app.api.schemas import (
     RaceBody,
     TrainingBody,
 )
-from app.api.tournament_bodies import EntryBody
 from hexapods.agents.registry import learns
 from hexapods.domain.settings import REQUIRED, DeclaredSetting
 from hexapods.experiments.config import ExperimentConfig, settings_by_name
@@ -37,7 +36,6 @@ class AgentBodies:
         race: of a `RaceBody`, or, with `branch_from`, of a `BranchBody`.
         experiment: of an `ExperimentBody`.
         change: of a `ChangeBody`.
-        entry: of an `EntryBody`.
     """
 
     def __init__(self, agents: Sequence[str]) -> None:
@@ -53,7 +51,6 @@ class AgentBodies:
         self.race: Any = one_of({"race": _race_body(lanes), "branch": BranchBody}, _race_or_branch)
         self.experiment: Any = _experiment_body(agents)
         self.change: Any = _change_body(agents)
-        self.entry: Any = named_in({one: _entry_body(one) for one in agents}, "agent", "agent")
 
 
 @cache
@@ -113,11 +110,18 @@ def _lane_body(agent: str, practice: type[PracticeBody]) -> type[LaneBody]:
     )
 
 
-def _entry_body(agent: str) -> type[EntryBody]:
-    name = f"{_camel_case(agent)}Entry"
+def with_settings_of(agent: str, base: type[Body], suffix: str) -> type[Body]:
+    """Return a body with an agent's settings, none of them required, as its `settings`.
+
+    Args:
+        agent: name of the agent, the only value of the body's `agent`.
+        base: the body without settings.
+        suffix: end of the model's name, which begins with the agent's.
+    """
+    name = f"{_camel_case(agent)}{suffix}"
     settings = _settings_body(f"{name}Settings", _optional_settings(agent))
     fields: dict[str, Any] = {"agent": (_literal(agent), ...), "settings": settings}
-    return create_model(name, __base__=EntryBody, __doc__=EntryBody.__doc__, **fields)
+    return create_model(name, __base__=base, __doc__=base.__doc__, **fields)
 
 
 def _optional_settings(agent: str) -> dict[str, Any]:

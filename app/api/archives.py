@@ -107,8 +107,9 @@ def _imported(services: Services, start_request: StartRequest, *, is_one: bool) 
     def create(key: IdempotencyKey | None) -> Sequence[Run]:
         agents = services.agents
         runs = import_runs(store, body, ids, agents, "the archive", is_one=is_one, key=key)
-        # One that a visitor of a demo made and deleted, with the same id, is the operator's now.
-        services.visitors.forget([run.id for run in runs])
+        # One that was made by somebody else and deleted, with the same id, is the operator's now.
+        for feature in services.features:
+            feature.adopt([run.id for run in runs])
         return runs
 
     runs = start_request.runs(services, create)

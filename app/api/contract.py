@@ -13,11 +13,11 @@ from fastapi import FastAPI
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.cookies import NAME
-from app.api.event_answers import EventBodies
+from app.api.event_answers import event_bodies
 from app.api.identity import IdentityProvider
 from app.api.policy import Access, Policy, policies
 from app.api.problems import MEDIA_TYPE
-from app.classroom import lesson
+from app.feature import Feature
 from app.settings import Settings
 
 Schema = dict[str, Any]
@@ -25,9 +25,6 @@ BINARY: Schema = {"type": "string", "format": "binary"}
 TEXT: Schema = {"type": "string"}
 _REFERENCE = "#/components/schemas/{model}"
 _METHODS = ("get", "put", "post", "patch", "delete")
-_GIVEN_REFERENCE = "#/components/schemas/Given{model}"
-"""Of a lesson's parts as they are sent, in which more may be left out than in answers."""
-GIVEN_LESSON: Schema = {"$ref": _GIVEN_REFERENCE.format(model="Lesson")}
 _UNUSED_SCHEMAS = ("HTTPValidationError", "ValidationError")
 _WRITE_METHODS = frozenset(_METHODS) - {"get"}
 
@@ -136,8 +133,8 @@ def sends_events(name: str) -> Schema:
     return {"responses": {"200": {"content": content}}}
 
 
-_generated: dict[tuple[tuple[str, ...], int], Schema] = {}
-"""Cache of FastAPI's OpenAPI description by agents and number of routes; equal for all apps."""
+_generated: dict[tuple[tuple[str, ...], tuple[type[Feature], ...], int], Schema] = {}
+"""Cache of FastAPI's description of the API by agents, features and number of routes."""
 _lock = threading.Lock()
 
 
@@ -145,6 +142,7 @@ def install(
     app: FastAPI,
     agents: tuple[str, ...],
     settings: Settings,
+    features: tuple[type[Feature], ...],
     providers: Sequence[IdentityProvider],
 ) -> None:
     """Make the app complete its OpenAPI document on first use, and cache it.
@@ -153,6 +151,7 @@ def install(
         app: the app, with all its routes.
         agents: names of the registered agents.
         settings: decide which operations need the token.
+        features: those of the app.
         providers: know who may use operations without it.
     """
     generate, cache = app.openapi, list[Schema]()
@@ -160,10 +159,10 @@ def install(
     def openapi() -> Schema:
         with _lock:
             if not cache:
-                key = (agents, len(app.routes))
+                key = (agents, features, len(app.routes))
                 if key not in _generated:
                     _generated[key] = generate()
-                schema = _completed(deepcopy(_generated[key]), agents, policies(app))
+                schema = _completed(deepcopy(_generated[key]), agents, features, policies(app))
                 _add_security(schema, policies(app), settings, providers)
                 cache.append(schema)
             return cache[0]
@@ -172,18 +171,20 @@ def install(
 
 
 def _completed(
-    schema: Schema, agents: tuple[str, ...], by_operation: Mapping[tuple[str, str], Policy]
+    schema: Schema,
+    agents: tuple[str, ...],
+    features: tuple[type[Feature], ...],
+    by_operation: Mapping[tuple[str, str], Policy],
 ) -> Schema:
     components = schema.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
     # FastAPI finds neither: routes do not declare errors, and events are sent as text.
-    for name, model in (("Problem", ProblemDetails), ("EventBodies", EventBodies)):
+    for name, model in (("Problem", ProblemDetails), ("EventBodies", event_bodies(features))):
         described = model.model_json_schema(ref_template=_REFERENCE, mode="serialization")
         schemas |= described.pop("$defs")
         schemas[name] = described
-    given = lesson.adapter().json_schema(ref_template=_GIVEN_REFERENCE)
-    parts = given.pop("$defs") | {"Lesson": given}
-    schemas |= {f"Given{name}": one for name, one in parts.items()}
+    for feature in features:
+        feature.complete_schema(schemas)
     for name in _UNUSED_SCHEMAS:
         schemas.pop(name, None)
     components["responses"] = {name: _problem(status) for status, (name, _) in _PROBLEMS.items()}

@@ -1,4 +1,4 @@
-"""Session cookies: of operators, of participants of rooms, and of visitors of a demo."""
+"""Session cookies, of operators and of those whom features know."""
 
 from collections.abc import Iterable, Mapping
 
@@ -9,10 +9,6 @@ from app.settings import Settings
 from app.storage.sessions import SESSION_S
 
 NAME = "hexapods_operator"
-ROOM_NAME = "hexapods_room"
-VISITOR_NAME = "hexapods_visitor"
-NAMES = (NAME, ROOM_NAME, VISITOR_NAME)
-"""The beginnings of the names of all cookies that are read."""
 
 
 def is_secure(scope: Scope, settings: Settings) -> bool:
@@ -20,7 +16,8 @@ def is_secure(scope: Scope, settings: Settings) -> bool:
     return scope["scheme"] in ("https", "wss") or (settings.public_url or "").startswith("https:")
 
 
-_BEGINNINGS = tuple(f"{prefix}{name}_" for name in NAMES for prefix in ("", "__Host-"))
+_BEGINNINGS = ("hexapods_", "__Host-hexapods_")
+"""Of the names of all cookies that are read."""
 
 
 def kept_cookies(lines: Iterable[str]) -> Mapping[str, str]:

@@ -4,24 +4,19 @@ import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from threading import Lock
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
-from app.api.card_starts import CardStarts
-from app.api.cookies import SessionCookie
 from app.api.descriptions import VALID
-from app.api.room_stages import RoomStages
+from app.api.identity import Identity
 from app.api.stage_paths import stage_of
 from app.cache import BytesCache
-from app.classroom.lessons import Lessons
-from app.classroom.rooms import Rooms
-from app.demo.expiry import Expiry
-from app.demo.visitors import Visitors
 from app.events.run_metrics import RunMetrics
 from app.explanations.service import Explanations
 from app.exports.file_renderer import FileRenderer
+from app.feature import Features
 from app.jobs.jobs import Jobs
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
@@ -29,17 +24,16 @@ from app.limits.memory_budget import MemoryBudget
 from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.stage.roles import Role
-from app.storage.database.room_rows import Seat
 from app.storage.database.store import RunStore
 from app.storage.idempotency import Create, Idempotency
 from app.storage.recordings import Recordings
 from app.storage.run import MAX_KEY_LENGTH, Run
-from app.tournaments.judge import Judge
-from app.tournaments.tournaments import Tournaments
 from app.viewer.replay_frames import ReplayFrames
 from app.viewer.shared_stage import SharedStage
 from app.what_if.estimate import Estimates
 from app.what_if.what_if import WhatIf
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -59,11 +53,8 @@ class Services:
         stopping: ends what takes long in threads when the server stops.
         what_if_limiter: limits what-ifs of spectators, by their number and time.
         listeners: slots of event streams, of all stages.
-        lessons, rooms: of classes.
-        room_stages: the stages of the rooms that are open.
-        card_starts: makes what cards of lessons run.
-        tournaments, judge: of entries on secret seeds and worlds.
-        visitors, expiry: of a demo, and of what is left of one; the latter cleans it up.
+        new_stage: makes a further stage with a path, which uses the sessions of the first.
+        features: those of the server.
         stream_lock: held while a race is encoded as a recorded stream for viser.
         exports: memory budget of exports that clients are still reading.
         analyses: gait analyses and timelines, which all pages that watch a run request at once.
@@ -85,24 +76,29 @@ class Services:
     stopping: Stopping
     what_if_limiter: RateLimiter
     listeners: ClientSlots["EventListener"]
-    lessons: Lessons
-    rooms: Rooms
-    room_stages: RoomStages
-    card_starts: CardStarts
-    tournaments: Tournaments
-    judge: Judge
-    visitors: Visitors
-    expiry: Expiry
+    new_stage: Callable[[str], SharedStage]
+    features: Features
     stream_lock: Lock = field(default_factory=Lock)
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
     analyses: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
+    _provided: dict[type, Any] = field(default_factory=dict)
+
+    def provide(self, service: T) -> T:
+        """Offer a service of a feature to its routes, which get it by its class; return it."""
+        self._provided[type(service)] = service
+        return service
+
+    def of(self, kind: type[T]) -> T:
+        """Return the service of this class that a feature has provided."""
+        service: T = self._provided[kind]
+        return service
 
 
 class EventListener:
     """A client of the event stream, with its role; `close` ends its stream, if one is open."""
 
-    def __init__(self, role: Role, seats: Sequence[Seat] = (), *, is_visitor: bool = False) -> None:
-        self.role, self.seats, self.is_visitor = role, seats, is_visitor
+    def __init__(self, role: Role, identity: Identity | None = None) -> None:
+        self.role, self.identity = role, identity
         self.close: Callable[[], None] = lambda: None
 
 
@@ -140,13 +136,9 @@ def _role(request: Request) -> Role:
     return role
 
 
-def _reader(request: Request) -> tuple[Seat, ...] | None:
-    return None if request.state.role == "operator" else getattr(request.state, "seats", ())
-
-
-def _visitor(request: Request) -> SessionCookie | None:
-    cookie: SessionCookie | None = getattr(request.state, "visitor", None)
-    return cookie
+def _identity(request: Request) -> Identity | None:
+    identity: Identity | None = request.state.identity
+    return identity
 
 
 async def _body(request: Request) -> bytes:
@@ -179,8 +171,6 @@ StageDep = Annotated[SharedStage, Depends(_stage)]
 StartRequestDep = Annotated[StartRequest, Depends(_start_request)]
 BodyDep = Annotated[bytes, Depends(_body)]
 """The body of a request, as it was sent."""
-ReaderDep = Annotated[tuple[Seat, ...] | None, Depends(_reader)]
-"""Which participants of rooms the client is, whose runs it sees; None for operators."""
-VisitorDep = Annotated[SessionCookie | None, Depends(_visitor)]
-"""The cookie of the visitor of a demo who asks, empty before the first start; None for others."""
+IdentityDep = Annotated[Identity | None, Depends(_identity)]
+"""The client as a feature knows it; None for operators, and for other spectators."""
 RoleDep = Annotated[Role, Depends(_role)]

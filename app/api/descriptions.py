@@ -4,7 +4,6 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from app.archive.transfer import MAX_RUNS
-from app.classroom.lesson import MAX_CARDS
 from app.storage.run import KINDS, MAX_KEY_LENGTH, SORTS, STATES
 from hexapods.domain import disturbances
 from hexapods.domain.gait import NAMED_GAITS
@@ -33,7 +32,7 @@ def _one_of(names: Iterable[str]) -> str:
     return f"one of {', '.join(names)}"
 
 
-VALID: Mapping[str, str] = {
+VALID: dict[str, str] = {
     **{
         name: setting.valid
         for export in EXPORTS.values()
@@ -114,18 +113,6 @@ VALID: Mapping[str, str] = {
     "part": "practice, or evaluation for the newest one; of a training",
     "settings": "an object with the agent's settings, by name",
     "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
-    "lesson": "the id of a lesson, or a lesson itself",
-    "card": f"the number of a card, from 0 to {MAX_CARDS - 1}",
-    "value": "an answer to the card's question",
-    "needs_approval": "true or false",
-    "frozen": "true or false",
-    "is_name_hidden": "true or false",
-    "is_approved": "true or false",
-    "title": NAMES,
-    "room": "the code of a room",
-    "rules": "an object with gait, and what differs from the rules' defaults",
-    "tables": "true or false",
-    "withdraw_waiting": "true or false",
     "format": "a format that the description of the route names",
 }
 

@@ -1,9 +1,10 @@
 """Response models of `/events`: the data of each server-sent event; see `answers`."""
 
+from collections.abc import Iterable
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from app.api.answers import (
     Answer,
@@ -12,9 +13,8 @@ from app.api.answers import (
     Settings,
     StageView,
 )
-from app.api.classroom_answers import RoomState
 from app.api.recorded_answers import Evaluation
-from app.api.tournament_answers import TournamentState
+from app.feature import Feature
 from app.storage.run import Kind, State
 from hexapods.runs.clocks import Clock
 
@@ -133,12 +133,13 @@ class SnapshotView(Answer):
     """State of the server when the stream begins: the newest runs, or the one that is followed.
 
     Attributes:
+        role: `operator`, `spectator`, or another one of clients whom a feature knows.
         robots_version: of the list of stored robots; a greater one than in the options that a
             client has means that they have changed since.
     """
 
     version: str
-    role: Literal["operator", "spectator", "visitor"]
+    role: str
     viewers: Count
     robots_version: Count
     runs: list[ListedRunView]
@@ -190,25 +191,6 @@ class ViewersEvent(Answer):
     count: Count
 
 
-class RoomEvent(RoomState):
-    """A room has changed; sent on its own stage alone."""
-
-
-class TournamentEvent(Answer):
-    """A tournament has changed; `GET /tournaments/{tournament_id}` has it.
-
-    Attributes:
-        entries: number of its entries, without the references.
-        judged, of: number of draws that are judged, over all entries and references, and of all.
-    """
-
-    id: str
-    state: TournamentState | Literal["deleted"]
-    entries: Count
-    judged: Count
-    of: Count
-
-
 class RobotsEvent(Answer):
     """Stored robots have changed; `GET /options` has them. `count` leaves hidden ones out."""
 
@@ -217,7 +199,7 @@ class RobotsEvent(Answer):
 
 
 class EventBodies(Answer):
-    """Data of each server-sent event, by the event's name."""
+    """Data of each server-sent event of the core, by the event's name."""
 
     snapshot: SnapshotView
     run: ListedRunView
@@ -230,5 +212,11 @@ class EventBodies(Answer):
     summary: SummaryEvent
     viewers: ViewersEvent
     robots: RobotsEvent
-    room: RoomEvent
-    tournament: TournamentEvent
+
+
+def event_bodies(features: Iterable[type[Feature]]) -> type[EventBodies]:
+    """Return `EventBodies` with the events of features."""
+    bodies: dict[str, Any] = {
+        name: (body, ...) for feature in features for name, body in feature.event_bodies.items()
+    }
+    return create_model("EventBodies", __base__=EventBodies, __doc__=EventBodies.__doc__, **bodies)

@@ -1,6 +1,6 @@
 """Server-sent events: a snapshot, then the changes."""
 
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator
 from typing import Annotated, Any
 
 from fastapi import Depends, Header, Query, Request
@@ -10,18 +10,16 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from app.api.contract import sends_events
 from app.api.deps import (
     EventListener,
-    ReaderDep,
+    IdentityDep,
     RoleDep,
     Services,
     ServicesDep,
     StageDep,
-    VisitorDep,
 )
 from app.api.descriptions import VALID
 from app.api.policy import WATCH_STAGE, api_router, policy
 from app.limits.addresses import client_of
 from app.limits.client_slots import NoFreeSlot, Refusal
-from app.storage.database.room_rows import Seat
 from app.storage.errors import Busy
 from app.storage.json_text import json_text
 from app.viewer.shared_stage import SharedStage
@@ -56,16 +54,14 @@ async def client_slot(
     request: Request,
     services: ServicesDep,
     role: RoleDep,
-    reader: ReaderDep,
-    visitor: VisitorDep,
+    identity: IdentityDep,
 ) -> AsyncIterator[EventListener]:
     """Occupy a client slot until the stream ends, evicting another client if the slots allow it.
 
     Raises:
         Busy: if no slot is free.
     """
-    is_visitor = visitor is not None and not request.scope["root_path"]
-    listener = EventListener(role, reader or (), is_visitor=is_visitor)
+    listener = EventListener(role, identity)
     try:
         evicted = services.listeners.take(listener, client_of(request.scope), role == "operator")
     except NoFreeSlot as error:
@@ -76,17 +72,6 @@ async def client_slot(
         yield listener
     finally:
         services.listeners.leave(listener)
-
-
-def listeners_of(services: Services, seat: Seat) -> Iterator[EventListener]:
-    """Yield the clients that follow events as a participant of a room; from any thread."""
-    return (one for one in services.listeners.holders() if seat in one.seats)
-
-
-def close_streams(services: Services, seat: Seat) -> None:
-    """End the event streams of a participant, who has lost the seat; from any thread."""
-    for listener in listeners_of(services, seat):
-        listener.close()
 
 
 @router.get(
@@ -114,7 +99,7 @@ async def stream_events(
     listener: EventListener,
     last_event_id: str | None,
 ) -> AsyncIterator[ServerSentEvent]:
-    """Yield the events of a stage for one client, who sees no run that a room hides.
+    """Yield the events of a stage for one client, who sees no run that a feature hides.
 
     Args:
         services: of the server.
@@ -150,22 +135,22 @@ async def stream_events(
 
 
 def _is_hidden(services: Services, listener: EventListener, run_id: str | None) -> bool:
-    return listener.role != "operator" and services.rooms.is_hidden(run_id, listener.seats)
+    return listener.role != "operator" and services.features.is_hidden(run_id, listener.identity)
 
 
 def _snapshot(
     services: Services, shared: SharedStage, listener: EventListener, run_id: str | None
 ) -> tuple[str, set[str]]:
     """Return the snapshot as JSON, and the ids of the runs in it."""
-    store, role = services.store, listener.role
-    reader = None if role == "operator" else listener.seats
+    store, role, identity = services.store, listener.role, listener.identity
+    condition = None if role == "operator" else services.features.visible_runs(identity)
     if run_id is None:
-        runs = store.list(limit=NEWEST_RUNS, reader=reader).items
+        runs = store.list(limit=NEWEST_RUNS, condition=condition).items
     else:
         runs = [store.find(run_id)]
     snapshot: dict[str, Any] = {
         "version": __version__,
-        "role": "visitor" if listener.is_visitor else role,
+        "role": role if identity is None else identity.page_role,
         "viewers": shared.hub.counters.viewers,
         "robots_version": store.robots.version,
         "runs": [services.jobs.view(run) for run in runs],

@@ -22,6 +22,11 @@ class Identity(Protocol):
         """Key of its own token buckets; None to count as its address."""
         ...
 
+    @property
+    def page_role(self) -> str:
+        """Role of the client's pages, which show by it what the client can do."""
+        ...
+
     def refusal(self, scope: Scope, access: Access, as_spectator: ASGIApp | None) -> ASGIApp | None:
         """Return the refusal of a request; None if it is allowed.
 

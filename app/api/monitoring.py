@@ -137,9 +137,6 @@ class _ServicesCollector(Collector):
             "Frames that a viewer got as a part of a later one, because it was behind.",
             sum(one.frames_merged for one in counters),
         )
-        yield GaugeMetricFamily(
-            "hexapods_visitors",
-            "Visitors of a demo of whom something is kept or counted.",
-            services.visitors.count,
-        )
+        for feature in services.features:
+            yield from feature.metrics()
         yield InfoMetricFamily("hexapods", "The server.", {"version": __version__})

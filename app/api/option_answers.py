@@ -240,7 +240,6 @@ class OptionsView(Answer):
         limits: [lowest, highest]; `settings` says which of them are not valid themselves.
         leg_fields: numbers of a leg that the editor of bodies offers.
         torso_fields: those of the rest of the robot.
-        tournament_fields: numbers of a new tournament, beside those of its walking problem.
         robots_version: increases with each change of the stored robots.
         titles: names of fields that are no declared settings.
         exports: files of a recorded walk.
@@ -252,7 +251,6 @@ class OptionsView(Answer):
     robots: list[RobotOption]
     leg_fields: dict[str, SettingOption]
     torso_fields: dict[str, SettingOption]
-    tournament_fields: dict[str, SettingOption]
     agents: list[AgentOption]
     worlds: list[WorldOption]
     disturbances: list[DisturbanceOption]

@@ -1,12 +1,13 @@
 """Route of the options: names, defaults, limits and help texts of all forms."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import MISSING, fields
 from functools import lru_cache
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
-from fastapi import Request
+from fastapi import APIRouter, Request
+from pydantic import create_model
 from starlette.responses import JSONResponse, Response
 
 from app.api.body_fields import leg_fields, torso_fields
@@ -25,8 +26,8 @@ from app.api.option_texts import (
 )
 from app.api.policy import ANY_PAGE, api_router, policy
 from app.api.robot_options import built_in_options, gait_options, stored_options
-from app.api.tournament_bodies import tournament_fields
 from app.archive.transfer import MAX_RUNS
+from app.feature import Feature
 from app.jobs.submissions import MAX_SETTINGS
 from app.storage.database.robots import RobotStore
 from app.storage.stored_robot import StoredRobot
@@ -77,32 +78,53 @@ from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from hexapods.shows.scene_spec import PAPERS_LANES
 
-router = api_router(prefix="/options", tags=["options"])
+
+def options_view(features: Iterable[type[Feature]]) -> type[OptionsView]:
+    """Return the model of the options, with what features add to them."""
+    added: dict[str, Any] = {
+        name: (kind, ...) for feature in features for name, kind in feature.option_types.items()
+    }
+    return create_model("OptionsView", __base__=OptionsView, __doc__=OptionsView.__doc__, **added)
 
 
-@router.get(
-    "",
-    response_model=OptionsView,
-    summary="List gaits, robots, agents and clocks; defaults, limits and help",
-)
-@policy(access=ANY_PAGE)
-def get_options(services: ServicesDep, request: Request) -> Response:
-    """Return the options, defaults, limits and help texts of all forms."""
-    robots = services.store.robots
-    content = _content(tuple(services.agents), robots, robots.version)
-    return content.response(request.scope)
+def option_routes(features: Sequence[type[Feature]]) -> APIRouter:
+    """Return the route of the options, with what features add to them."""
+    router = api_router(prefix="/options", tags=["options"])
+    view = options_view(features)
+
+    @router.get(
+        "",
+        response_model=view,
+        summary="List gaits, robots, agents and clocks; defaults, limits and help",
+    )
+    @policy(access=ANY_PAGE)
+    def get_options(services: ServicesDep, request: Request) -> Response:
+        """Return the options, defaults, limits and help texts of all forms."""
+        robots, features = services.store.robots, services.features.classes
+        content = _content(services.agents, features, robots, robots.version)
+        return content.response(request.scope)
+
+    return router
 
 
 @lru_cache(maxsize=2)
-def _content(agents: tuple[str, ...], robots: RobotStore, version: int) -> CompressedContent:
+def _content(
+    agents: tuple[str, ...],
+    features: tuple[type[Feature], ...],
+    robots: RobotStore,
+    version: int,
+) -> CompressedContent:
     """Return the answer compressed: it is most of what a first visit transfers, and no secret.
 
     Args:
         agents: names of the agents that were registered at server start.
+        features: those of the server.
         robots: the stored ones.
         version: of their list.
     """
     answer = catalogue(agents, robots.readable(hidden=True), version)
+    for feature in features:
+        answer |= feature.options()
     return CompressedContent(bytes(JSONResponse(answer).body), "application/json")
 
 
@@ -136,9 +158,8 @@ def catalogue(
         "robots_version": robots_version,
         "gaits": [gait_options(name) for name in NAMED_GAITS],
         "robots": [*map(built_in_options, CREATURES.values()), *map(stored_options, robots)],
-        "leg_fields": {name: _setting(setting) for name, setting in leg_fields().items()},
-        "torso_fields": {name: _setting(setting) for name, setting in torso_fields().items()},
-        "tournament_fields": {name: _setting(one) for name, one in tournament_fields().items()},
+        "leg_fields": {name: setting_option(setting) for name, setting in leg_fields().items()},
+        "torso_fields": {name: setting_option(setting) for name, setting in torso_fields().items()},
         "agents": _agents(agents),
         "worlds": _worlds(),
         "disturbances": _disturbances(),
@@ -151,7 +172,7 @@ def catalogue(
             "race": _race_defaults(),
             "what_if": {"seeds": WHAT_IF_SEEDS},
         },
-        "settings": {name: _setting(setting) for name, setting in settings.items()},
+        "settings": {name: setting_option(setting) for name, setting in settings.items()},
         "limits": _limits(settings),
         "help": {name: setting.about.help for name, setting in settings.items()} | FIELD_HELP,
         "titles": FIELD_TITLES,
@@ -182,9 +203,9 @@ def _agents(names: Collection[str]) -> list[dict[str, Any]]:
             "keeps_learning": keeps_learning(name),
             "steps_ahead": getattr(find(name), "steps_ahead", None),
             "color": color,
-            "settings": {n: _setting(one) for n, one in agent_settings(name).items()},
+            "settings": {n: setting_option(one) for n, one in agent_settings(name).items()},
             "live_settings": {
-                n: _setting(one)
+                n: setting_option(one)
                 for n, one in changeable_settings(name).items()
                 if n not in _SETTINGS
             },
@@ -241,7 +262,7 @@ def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]
         is_list, is_required = setting is _LEGS, one.default is MISSING
         ranges = kind.ranges.get(one.name)
         options[one.name] = {
-            **_setting(setting),
+            **setting_option(setting),
             **_usual_choices(kind, one.name),
             "short": short.get(one.name, one.name),
             "is_list": is_list,
@@ -345,7 +366,8 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
     }
 
 
-def _setting(setting: DeclaredSetting) -> dict[str, Any]:
+def setting_option(setting: DeclaredSetting) -> dict[str, Any]:
+    """Return a declared setting as the options have it."""
     about = setting.about
     return {
         "title": about.title,

@@ -7,16 +7,22 @@ import mimetypes
 import os
 import posixpath
 import re
+from collections.abc import Callable, Mapping
+from datetime import timedelta
 from pathlib import Path
 
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import PlainTextResponse, Response
 from starlette.routing import BaseRoute
 from starlette.staticfiles import PathLike, StaticFiles
 from starlette.types import Scope
 
 from app.api.compression import CompressedContent
-from app.api.policy import ANY_PAGE, PUBLIC, GuardedFiles, GuardedPage, Policy, policy
+from app.api.deps import Services
+from app.api.policy import ANY_PAGE, PUBLIC, WATCH, GuardedFiles, GuardedPage, Policy, policy
+from app.api.problem_pages import prefers_html
+from app.api.problems import as_sentence, problem
+from app.storage.errors import NotFound
 
 _INLINE_SCRIPT = re.compile(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", re.DOTALL)
 _INDEX = "index.html"
@@ -48,6 +54,7 @@ def page_routes(folder: Path) -> list[BaseRoute]:
     return [
         GuardedPage("/", show, name="dashboard"),
         GuardedPage("/favicon.ico", favicon, name="favicon"),
+        GuardedPage("/robots.txt", robots_txt, name="robots_txt"),
         # The page's files are public; the data they show is not.
         GuardedFiles("/static", files, Policy(access=PUBLIC), name="static"),
     ]
@@ -116,6 +123,40 @@ def imported_modules(entry: str, folder: Path) -> list[str]:
             if imported not in found:
                 found.append(imported)
     return found
+
+
+@policy(access=WATCH)
+def robots_txt(request: Request) -> Response:
+    """Return what crawlers may read: nothing, unless a feature has something to be found."""
+    services: Services = request.app.state.services
+    texts = (feature.robots_txt() for feature in services.features)
+    text = next((one for one in texts if one is not None), "User-agent: *\nDisallow: /\n")
+    age_s = int(timedelta(days=1).total_seconds())
+    return PlainTextResponse(text, headers={"Cache-Control": f"max-age={age_s}"})
+
+
+def page_of(
+    page: CompressedContent, find: Callable[[Services, Mapping[str, str]], object]
+) -> Callable[[Request], Response]:
+    """Return the endpoint of a page about something that may not be there.
+
+    Args:
+        page: the same for all.
+        find: finds it by the parameters of the path; where it raises `NotFound` the status is 404.
+    """
+
+    def show(request: Request) -> Response:
+        response = page.response(request.scope)
+        try:
+            find(request.app.state.services, request.path_params)
+        except NotFound as error:
+            if not prefers_html(request.headers):
+                return problem(404, as_sentence(str(error)))
+            # The page itself asks again, and tells what came of that.
+            response.status_code = 404
+        return response
+
+    return show
 
 
 class _Files(StaticFiles):

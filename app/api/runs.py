@@ -4,7 +4,6 @@
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request
@@ -25,8 +24,7 @@ from app.api.answers import (
     TrainingView,
 )
 from app.api.contract import LOCATION, answers
-from app.api.cookies import SessionCookie
-from app.api.deps import ReaderDep, Services, ServicesDep, StartRequest, StartRequestDep
+from app.api.deps import IdentityDep, RoleDep, Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
 from app.api.explanation_answers import ExplanationView
 from app.api.fields import RunId
@@ -37,11 +35,10 @@ from app.api.schemas import AnnotationBody
 from app.archive.transfer import MAX_RUNS
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import CopyStart, Start
-from app.limits.addresses import client_of
 from app.storage.database.listing import Listing
 from app.storage.errors import Conflict, Damaged, NotFound
 from app.storage.json_text import finite
-from app.storage.run import AnyRun, DamagedRun, IdempotencyKey, Kind, Run, Sort, State
+from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
 from hexapods.domain.text import MAX_TAG
 
 MAX_POINTS = 40
@@ -55,7 +52,9 @@ RunIdsQuery = Annotated[
 
 def _listing(
     *,
-    reader: ReaderDep,
+    services: ServicesDep,
+    role: RoleDep,
+    identity: IdentityDep,
     state: Annotated[State | None, Query(description=VALID["state"])] = None,
     search: Annotated[str | None, Query(max_length=MAX_SEARCH, description=VALID["search"])] = None,
     limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 50,
@@ -63,7 +62,8 @@ def _listing(
     tag: Annotated[str | None, Query(max_length=MAX_TAG, description=VALID["tag"])] = None,
     sort: Annotated[Sort, Query(description=VALID["sort"])] = "newest",
 ) -> Listing:
-    return Listing(None, state, limit, cursor, search, tag, sort, reader)
+    condition = None if role == "operator" else services.features.visible_runs(identity)
+    return Listing(None, state, limit, cursor, search, tag, sort, condition)
 
 
 ListingDep = Annotated[Listing, Depends(_listing)]
@@ -100,31 +100,13 @@ def find_any(services: Services, kind: Kind, run_id: str) -> AnyRun:
 def start_run(
     services: Services, request: Request, start_request: StartRequest, start: Start
 ) -> Response:
-    """Queue a run, unless this request did before; return the response with its Location.
-
-    A visitor of a demo starts within the allowance, and is known by a cookie from then on. Of the
-    visitor's idempotency key a hash is stored: who has the key of a first start owns its run.
-    """
-    visitor: SessionCookie | None = getattr(request.state, "visitor", None)
-    if visitor is None:
-        (run,) = start_request.runs(services, lambda key: [services.jobs.start(start, key)])
-        return located(services, request, run, 202)
-    visitors, address = services.visitors, client_of(request.scope)
-    visitor_key, request_key = "", start_request.key
-
-    def create(key: IdempotencyKey | None) -> list[Run]:
-        nonlocal visitor_key
-        queue = partial(services.jobs.start, key=key)
-        started, visitor_key = visitors.start(visitor.value, address, start, queue, request_key)
-        return [started]
-
-    (run,) = start_request.with_hashed_key().runs(services, create)
-    visitor_key = visitor_key or visitors.claim(visitor.value, request_key, run.id)
-    response = located(services, request, run, 202)
-    if visitor_key:
-        age_s = int(visitors.allowance.lifetime.total_seconds())
-        response.headers.append("Set-Cookie", visitor.set_header(visitor_key, age_s))
-    return response
+    """Queue a run, unless this request did before; return the response with its Location."""
+    for feature in services.features:
+        response = feature.start_run(request, start_request, start)
+        if response is not None:
+            return response
+    (run,) = start_request.runs(services, lambda key: [services.jobs.start(start, key)])
+    return located(services, request, run, 202)
 
 
 def located(services: Services, request: Request, run: Run, status: int) -> Response:

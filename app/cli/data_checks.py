@@ -5,13 +5,13 @@ import shutil
 import socket
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 
-from app.classroom.lessons import Lessons
-from app.classroom.rooms import Rooms
 from app.cli.machine_checks import CheckFailed
 from app.events.damage import damaged_rows, damaged_runs
+from app.feature import Feature, load
 from app.settings import PREFIX, ROBOTS_FOLDER, Settings
 from app.storage.database.opening import ENTRIES
 from app.storage.database.read_only import open_read_only
@@ -20,14 +20,13 @@ from app.storage.database.stored_rows import MAX_NAMED
 from app.storage.disk_space import MB, DiskSpace
 from app.storage.private_folder import exposed_paths
 from app.storage.server_lock import LOCK_FILE, FolderInUse, lock_folder, read_address_file
-from app.tournaments.tournaments import Tournaments
+from hexapods.domain.errors import HexapodError
 from hexapods.domain.text import counted
 
 WANTED_FREE_MB = 200
 _NEARLY_FULL = 0.9
 _MAX_NAMED = 10
-_BACKUP = "put a backup of the database back; without one the server goes on, and leaves them out"
-ADVICE: Mapping[str, str] = {
+_ADVICE: Mapping[str, str] = {
     "about": "the next start of a server mends it",
     "runs": "delete these runs, or put a backup back",
     "evaluations": "delete these trainings, or put a backup back",
@@ -36,20 +35,9 @@ ADVICE: Mapping[str, str] = {
     "idempotency_keys": "nothing needs to be done: a repeated request with such a key is refused",
     "sessions": "nothing needs to be done: the next start of a server with a token deletes them, "
     "and who had one opens the address with the token again",
-    "lessons": "store these lessons again, or delete them",
-    "rooms": _BACKUP,
-    "participants": f"{_BACKUP}; these participants can join again",
-    "predictions": f"{_BACKUP}; these participants can answer again",
-    "room_runs": f"{_BACKUP}, and shows these runs to operators alone",
-    "tournaments": _BACKUP,
-    "tournament_entries": f"{_BACKUP}; where a tournament is open, enter again",
-    "tournament_judgements": f"{_BACKUP}; where a tournament has not ended, they are judged again",
-    "tournament_tables": f"{_BACKUP}; an entry that is not judged yet fails",
-    "visitor_runs": "nothing needs to be done: the next start of a server deletes these runs in "
-    "time",
     "robots": "import the files of these robots again, or put a backup back",
 }
-"""By table of the database what helps against its damaged rows."""
+"""By table of the core what helps against its damaged rows."""
 
 
 def _folder(settings: Settings) -> str:
@@ -135,27 +123,27 @@ def _robots(settings: Settings) -> str:
 
 def _rows(settings: Settings) -> str:
     """Check that every row of every table can be read."""
-    with open_read_only(settings) as store:
+    features = load(settings.without)
+    tables = [feature.tables for feature in features if feature.tables is not None]
+    with open_read_only(settings, *tables) as store:
         # What the rows stand for is known to those who read them.
-        Rooms(store), Tournaments(store), Lessons(store.lessons).all(), store.visitors.all()
+        for feature in features:
+            feature.read_rows(store)
         damaged = {table: rows for table, rows in damaged_rows(store).items() if rows}
     if damaged:
         raise CheckFailed(
             ". ".join(
                 f"{counted(len(rows), 'row')} of {table} cannot be read: "
-                f"{'; '.join(map(str, rows[:MAX_NAMED]))}: {ADVICE[table]}"
+                f"{'; '.join(map(str, rows[:MAX_NAMED]))}: {advice(features)[table]}"
                 for table, rows in damaged.items()
             )
         )
     return "those of all tables can be read"
 
 
-def _visitors(settings: Settings) -> str:
-    with open_read_only(settings) as store:
-        count = len(store.visitors.all())
-    return (
-        f"{counted(count, 'run')} of a demo's visitors" if count else "no run of a demo's visitor"
-    )
+def advice(features: Iterable[type[Feature]]) -> Mapping[str, str]:
+    """Return by table of the database what helps against its damaged rows."""
+    return {**_ADVICE, **{t: text for one in features for t, text in one.damage_advice.items()}}
 
 
 def _address(settings: Settings) -> str:
@@ -196,13 +184,27 @@ def _is_locked(folder: Path) -> bool:
         return True
 
 
-CHECKS: Mapping[str, Callable[[Settings], str]] = {
+_CHECKS: Mapping[str, Callable[[Settings], str]] = {
     "data folder": _folder,
     "room": _disk_space,
     "lock": _lock,
     "database": _database,
     "rows": _rows,
     "robots": _robots,
-    "visitors": _visitors,
     "address": _address,
 }
+
+
+def data_checks(settings: Settings) -> Mapping[str, Callable[[Settings], str]]:
+    """Return the checks by their titles, with those of the features that can be loaded."""
+    checks = {"features": _features, **_CHECKS}
+    with suppress(HexapodError):
+        for feature in load(settings.without):
+            checks |= feature.checks()
+    return checks
+
+
+def _features(settings: Settings) -> str:
+    names = [feature.name for feature in load(settings.without)]
+    without = f"; left out: {', '.join(settings.without)}" if settings.without else ""
+    return f"{', '.join(names) or 'none'}{without}"

@@ -57,9 +57,9 @@ def examine(data: str | None) -> Iterator[CheckResult]:
 
     yield _run_check("settings", read)
     # Imported here, as the database modules would slow the start of other commands.
-    from app.cli.data_checks import CHECKS  # noqa: PLC0415
+    from app.cli.data_checks import data_checks  # noqa: PLC0415
 
-    for name, check_data in CHECKS.items() if settings else ():
+    for name, check_data in data_checks(settings[0]).items() if settings else ():
         yield _run_check(name, lambda check_data=check_data: check_data(settings[0]))  # type: ignore[misc]
 
 

@@ -20,10 +20,6 @@ RING_EVENTS = 4096
 """Capacity of the replay buffer in events."""
 MAX_PENDING = 2048
 """Most pending events of a slow subscription."""
-_STATE_EVENTS = frozenset(
-    {"robots", "room", "run", "scene", "stage", "summary", "tournament", "viewers"}
-)
-"""Names of events that carry a full state: a newer one supersedes pending older ones."""
 
 
 class Event(NamedTuple):
@@ -33,9 +29,10 @@ class Event(NamedTuple):
         id: increasing number, for `Last-Event-ID`.
         event: its name.
         data: JSON, encoded once for all subscribers.
-        run_id: id of the run, or of the tournament, that it is about, or None.
+        run_id: id of the run, or of what else it is about, or None.
         run: of a `run` event the run itself, for subscribers in this process.
         channel: the channel to whose subscribers alone it goes; None for all channels.
+        is_state: whether it carries a full state.
     """
 
     id: int
@@ -44,20 +41,21 @@ class Event(NamedTuple):
     run_id: str | None
     run: AnyRun | None = None
     channel: "Channel | None" = None
+    is_state: bool = False
 
     @property
     def key(self) -> Any:
         """Coalescing key: a new event replaces a pending one with the same key."""
         if self.event == "run-deleted":
             return ("run", self.run_id)
-        return (self.event, self.run_id) if self.event in _STATE_EVENTS else self.id
+        return (self.event, self.run_id) if self.is_state else self.id
 
 
 class Subscription:
     """Buffer of one subscriber: `drain()` it, or iterate: `async for event in subscription`.
 
-    A slow subscriber receives only the newest of each `robots`, `scene`, `stage`, `summary` and
-    `viewers` event, of `run` or `run-deleted` for each run, and of `tournament` for each of those.
+    A slow subscriber receives only the newest of each event that carries a full state, and of `run`
+    or `run-deleted` for each run.
     It is closed when it has `MAX_PENDING` pending events and another comes; the client then
     reconnects with `Last-Event-ID`.
 
@@ -136,9 +134,15 @@ class Subscription:
 
 
 class EventBus:
-    """Publishes events to all subscriptions, with a bounded replay buffer. Thread-safe."""
+    """Publishes events to all subscriptions, with a bounded replay buffer. Thread-safe.
+
+    Attributes:
+        state_events: names of events that carry a full state: a newer one of the same run, or of
+            what else it is about, supersedes pending older ones.
+    """
 
     def __init__(self) -> None:
+        self.state_events = {"robots", "run", "scene", "stage", "summary", "viewers"}
         # Starts at the time [ms], so that ids keep increasing across restarts of the server.
         self._last_id = time.time_ns() // 1_000_000
         self._ids = itertools.count(self._last_id + 1)
@@ -169,7 +173,7 @@ class EventBus:
             event: its name.
             data: plain types. A NaN or an infinity is sent as null, so that one run's number
                 does not break every stream.
-            run_id: the run or the tournament that it is about, if any.
+            run_id: the run, or what else it is about, if any.
             channel: the channel to whose subscribers alone it goes; None for all.
         """
         self._send(event, data, run_id, channel=channel)
@@ -184,9 +188,10 @@ class EventBus:
     ) -> None:
         text = json_text(data)
         with self._lock:
-            published = Event(next(self._ids), event, text, run_id, run, channel)
+            is_state = event in self.state_events
+            published = Event(next(self._ids), event, text, run_id, run, channel, is_state)
             self._last_id = published.id
-            if event not in _STATE_EVENTS:
+            if not is_state:
                 self._ring.append(published)
             for subscription in list(self._subscriptions):
                 subscription.push(published)

@@ -7,7 +7,7 @@ from typing import Any
 from cachetools import TTLCache, cached
 
 from app.storage.database import stored_rows
-from app.storage.database.schema import ARTIFACTS, EVALUATIONS, METADATA, RUNS, TRIALS
+from app.storage.database.schema import ARTIFACTS, EVALUATIONS, RUNS, TRIALS
 from app.storage.database.store import RunStore
 from app.storage.database.stored_rows import DamagedRow
 from app.storage.run import DamagedRun
@@ -45,7 +45,7 @@ def damaged_rows(store: RunStore) -> Mapping[str, list[DamagedRow]]:
     """
     return {
         table.name: stored_rows.damaged_rows(store.database, table)
-        for table in METADATA.sorted_tables
+        for table in store.database.tables
     }
 
 
@@ -61,7 +61,7 @@ def damage_counts(store: RunStore) -> Callable[[], Mapping[str, int]]:
             RUNS.name: len(damaged_runs(store)),
             **{
                 table.name: len(stored_rows.damaged_rows(store.database, table))
-                for table in METADATA.sorted_tables
+                for table in store.database.tables
                 if table not in (RUNS, *OF_RUNS)
             },
         }

@@ -1,7 +1,8 @@
 """The queue: runs in order of submission, each with the trainings that it depends on.
 
-Of runs that participants of rooms have started, that of whom has had the fewest turns comes first.
-Runs of a demo's visitors come after all others, fairly among addresses and then among visitors.
+Runs that operators have started keep their order. Of those that others own, that of the owner who
+has had the fewest turns comes first. Runs of guests come after all others, fairly among the groups
+of guests and then among the guests.
 """
 
 from collections import Counter
@@ -17,17 +18,17 @@ from app.storage.run import QUEUED, RESUMABLE, RUNNING, IdempotencyKey, Run, Sta
 from hexapods.domain.errors import HexapodError
 
 MAX_QUEUED = 32
-"""Runs that wait, besides those of participants, of which each has one at a time."""
-MAX_OF_PARTICIPANTS = 2048
-MAX_OF_VISITORS = 256
+"""Runs of operators that wait."""
+MAX_OF_OWNERS = 2048
+MAX_OF_GUESTS = 256
 RETRY_AFTER_S = 10
 _MAX_TURNS_KEPT = 20_000
 """Owners and groups whose turns are known; of others it is forgotten that they had any."""
-_Class = Literal["operator", "participant", "visitor"]
+_Class = Literal["operator", "owner", "guest"]
 _PLACES: dict[_Class, int] = {
     "operator": MAX_QUEUED,
-    "participant": MAX_OF_PARTICIPANTS,
-    "visitor": MAX_OF_VISITORS,
+    "owner": MAX_OF_OWNERS,
+    "guest": MAX_OF_GUESTS,
 }
 
 
@@ -36,14 +37,14 @@ class Owner(NamedTuple):
 
     Attributes:
         name: of the owner; nobody else has it.
-        group: owners who take turns together before each takes their own: visitors of one address,
-            which could pose as many.
-        is_visitor: whether it is a visitor of a demo, else a participant of a room.
+        group: owners who take turns together before each takes their own, such as those of one
+            address, which could pose as many.
+        is_guest: whether the owner's runs wait until nobody else's do.
     """
 
     name: str
     group: str = ""
-    is_visitor: bool = False
+    is_guest: bool = False
 
 
 class RunQueue:
@@ -125,7 +126,7 @@ class RunQueue:
         owner = self._owner_of(run_id)
         if owner is None:
             return "operator"
-        return "visitor" if owner.is_visitor else "participant"
+        return "guest" if owner.is_guest else "owner"
 
     def _requeue(self, run: Run) -> Run:
         """Store a resumed run as queued and delete the evaluations that it will repeat."""
@@ -164,12 +165,12 @@ class RunQueue:
     def pop_ready(self) -> Run | None:
         """Remove and return the first run that waits for nothing but a core, None if none does.
 
-        If it is a participant's, the first of the participant who has had the fewest turns; both
-        exchange their places, so that the runs of others keep theirs. A visitor's only if there is
-        no other, the first of the address, and there of the visitor, with the fewest turns.
+        If somebody owns it, the first of the owner who has had the fewest turns; both exchange
+        their places, so that the runs of others keep theirs. A guest's only if there is no other,
+        the first of the group, and there of the guest, with the fewest turns.
         """
         ready = [run for run in self._runs.values() if not run.waiting_for]
-        ready = [run for run in ready if self._class_of(run.id) != "visitor"] or ready
+        ready = [run for run in ready if self._class_of(run.id) != "guest"] or ready
         if not ready:
             return None
         first = ready[0]
@@ -179,7 +180,7 @@ class RunQueue:
         owner, run = min(owned, key=lambda pair: self._turns_of(pair[0]))
         for name in (owner.name, _group_key(owner)):
             self._turns[name] = self._turns.get(name, 0) + 1
-        if owner.is_visitor:  # only theirs wait
+        if owner.is_guest:  # only theirs wait
             return self._runs.pop(run.id)
         places = {run.id: first, first.id: run}
         self._runs = {one.id: one for one in (places.get(i, r) for i, r in self._runs.items())}
@@ -207,8 +208,8 @@ class RunQueue:
 
     def _order(self, ids: Sequence[str]) -> list[str]:
         """Return ids in the order in which runs are started if none is added."""
-        others = [one for one in ids if self._class_of(one) != "visitor"]
-        owners = {one: owner for one in ids if (owner := self._owner_of(one)) and owner.is_visitor}
+        others = [one for one in ids if self._class_of(one) != "guest"]
+        owners = {one: owner for one in ids if (owner := self._owner_of(one)) and owner.is_guest}
         ahead: Counter[str] = Counter()
         own_turns: dict[str, int] = {}
         for run_id, owner in owners.items():

@@ -1,4 +1,4 @@
-"""State of presenters' windows beside the stage: the card of the lesson, and how it is shown."""
+"""State of presenters' windows beside the stage: the card that is shown, and how."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -17,7 +17,7 @@ class Presentation(Record):
 
     card: Annotated[
         Annotated[int, Ge(1), Le(MAX_CARDS)] | None,
-        Field(description="number of the lesson's card, from 1; null before the first"),
+        Field(description="number of the card that is shown, from 1; null before the first"),
     ] = None
     shows_why: Annotated[
         bool, Field(strict=True, description="whether the step that is shown is explained")

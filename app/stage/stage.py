@@ -93,8 +93,9 @@ class Stage:
                 self._begin()
 
     def _restore(self) -> None:
-        newest = self._store.list(limit=_RECENT_RUNS, reader=()).runs
-        interrupted = self._store.list(state="interrupted", limit=_RECENT_RUNS, reader=()).runs
+        store, is_public = self._store, self._store.is_public
+        newest = store.list(limit=_RECENT_RUNS, condition=is_public).runs
+        interrupted = store.list(state="interrupted", limit=_RECENT_RUNS, condition=is_public).runs
         known = {run.id: run for run in (*newest, *interrupted) if run.kind != "experiment"}
         by_end = sorted(known.values(), key=_last_activity, reverse=True)
         last = [
@@ -324,9 +325,9 @@ class Stage:
 
     def _announce(self) -> None:
         """Announce a replay of the newest finished race that is recorded, if there is one."""
-        # None of a room that is hidden from those who watch.
-        finished = self._store.list(
-            kind="race", state="finished", limit=_RECENT_RUNS, reader=()
+        store = self._store
+        finished = store.list(
+            kind="race", state="finished", limit=_RECENT_RUNS, condition=store.is_public
         ).runs
         run = next((run for run in finished if self._is_recorded(run)), None)
         if run is None:

@@ -16,7 +16,7 @@ class Conflict(HexapodError):
 
 
 class Forbidden(HexapodError):
-    """A participant of a room, or a visitor of a demo, may not do this."""
+    """Who asks may not do this."""
 
 
 class Damaged(Conflict):

@@ -1080,7 +1080,7 @@ export interface EvaluationEvent {
   run_id: string;
 }
 /**
- * Data of each server-sent event, by the event's name.
+ * Data of each server-sent event of the core, by the event's name.
  */
 export interface EventBodies {
   snapshot: SnapshotView;
@@ -3025,12 +3025,6 @@ export interface OptionsView {
   torso_fields: {
     [k: string]: SettingOption;
   };
-  /**
-   * numbers of a new tournament, beside those of its walking problem.
-   */
-  tournament_fields: {
-    [k: string]: SettingOption;
-  };
   agents: AgentOption[];
   worlds: WorldOption[];
   disturbances: DisturbanceOption[];
@@ -3061,6 +3055,9 @@ export interface OptionsView {
    * files of a recorded walk.
    */
   exports: ExportOption[];
+  tournament_fields: {
+    [k: string]: SettingOption;
+  };
 }
 /**
  * A robot: built in, or stored, which has its id as its name too.

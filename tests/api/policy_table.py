@@ -26,17 +26,21 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.types import Message, Receive, Scope, Send
 
 from app.api import memory_limit
-from app.api.cookies import NAME, ROOM_NAME, VISITOR_NAME
+from app.api.cookies import NAME
 from app.api.deps import Services
-from app.classroom.lesson import read_lesson
-from app.classroom.rooms import Rooms
-from app.demo.visitors import _sha256
+from app.features.classroom.access import ROOM_NAME
+from app.features.classroom.lesson import read_lesson
+from app.features.classroom.room_rows import RoomRows, RoomRun
+from app.features.classroom.room_stages import RoomStages
+from app.features.classroom.rooms import Rooms
+from app.features.demo.access import VISITOR_NAME
+from app.features.demo.rows import VisitorRows, VisitorRun
+from app.features.demo.visitors import _sha256
+from app.features.tournaments.tournaments import Tournaments
 from app.limits.fair_semaphore import FairSemaphore
 from app.limits.token_bucket import RateLimiter
 from app.server import create_app
 from app.settings import Settings
-from app.storage.database.room_rows import RoomRun
-from app.storage.database.visitor_rows import VisitorRun
 from hexapods.tournaments.rules import TournamentRules
 from tests.storage.stores import temporary_store, training
 
@@ -125,8 +129,9 @@ def recorded() -> dict[str, Any]:
                 store.create(training(run_id, state="finished"))
             now = datetime.now(UTC)
             for run_id, seed in (("own", 0), ("hidden", 1)):
-                store.rooms.add_runs([RoomRun(run_id, room, seed, 1, {}, True, False, now)])
-            store.visitors.add(
+                run = RoomRun(run_id, room, seed, 1, {}, True, False, now)
+                RoomRows(store.database).add_runs([run])
+            VisitorRows(store.database).add(
                 [
                     VisitorRun("mine", _sha256("visitor"), 1, True, now),
                     VisitorRun("strange", _sha256("another"), 1, True, now),
@@ -144,7 +149,7 @@ def recorded() -> dict[str, Any]:
             services: Services = app.state.services
             session = services.stages[0].roles.open_session()
             rules = TournamentRules(gait="left-right-origin", simulator="kinematic", draws=5)
-            tournament = services.tournaments.create(rules, "", room, 6).id
+            tournament = services.of(Tournaments).create(rules, "", room, 6).id
             fill = {"code": room, "tournament_id": tournament}
             asyncio.run(
                 _record_server(app, server, _roles(server, session, room, other, keys), fill, cases)
@@ -194,21 +199,21 @@ async def _record_server(
     cases: dict[str, dict[Outcome, list[str]]],
 ) -> None:
     services: Services = app.state.services
-    await services.room_stages.open(services.rooms.get(fill["code"]))
+    await services.of(RoomStages).open(services.of(Rooms).get(fill["code"]))
     if services.stages[0].roles.needs_token:
         session = services.stages[-1].roles.open_session()
         cookie = {"cookie": f"{NAME}_8000_r_{fill['code']}={session}"}
         roles = {**roles, "operator by the room's cookie": Role(cookie, "operators")}
     try:
         for name, role in roles.items():
-            services.rooms.show_card(fill["code"], list(CARDS).index(role.card))
+            services.of(Rooms).show_card(fill["code"], list(CARDS).index(role.card))
             for prefix in ("", f"/r/{fill['code']}") if server in WITH_PREFIX else ("",):
                 for operation in operations(app):
                     outcome = await _send(app, operation, prefix, role, fill)
                     where = "room" if prefix else ""
                     cases[" ".join(operation)][outcome].append(f"{server}: {name} @{where}")
     finally:
-        await services.room_stages.close_all()
+        await services.of(RoomStages).close_all()
 
 
 def operations(app: FastAPI) -> list[tuple[str, str]]:

@@ -23,14 +23,15 @@ from app.api.answers import (
 )
 from app.api.contract import operations, problems_of
 from app.api.deps import EventListener, Services
-from app.api.event_answers import EventBodies
+from app.api.event_answers import event_bodies
 from app.api.events import get_events
 from app.api.experiment_answers import SummaryView, TrialsView
-from app.api.option_answers import OptionsView
+from app.api.options import options_view
 from app.api.policy import OPERATOR, MissingPolicy, policies, policy
 from app.api.problems import STATUSES
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.api.robot_answers import StoredRobotsView, StoredRobotView, WholeRobotView
+from app.feature import load
 from app.server import create_app
 from app.settings import Settings
 from hexapods.domain.errors import HexapodError
@@ -228,7 +229,7 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     yield StoredRobotView, stored
     yield WholeRobotView, api.get(f"/robots/{stored['id']}")
     yield StoredRobotsView, api.get("/robots")
-    yield OptionsView, api.get("/options")
+    yield options_view(load()), api.get("/options")
     api.call("DELETE", f"/robots/{stored['id']}")
     yield ExperimentView, api.finished(experiment)
     yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
@@ -268,7 +269,7 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
         return await anext(get_events(services, services.stages[0], None, listener))
 
     snapshot = asyncio.run(first_event())
-    bodies = EventBodies.model_fields.items()
+    bodies = event_bodies(load()).model_fields.items()
     models: dict[str, Any] = {field.alias or name: field.annotation for name, field in bodies}
     events = subscription.drain()
     subscription.close()

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, expect
 
-from app.classroom.names import in_groups, normalized
+from app.features.classroom.names import in_groups, normalized
 from tests.browser.dashboard import Dashboard
 from tests.browser.rooms import PUBLIC_URL, TOKEN, RoomPage, phone
 from tests.browser.serving import Serving, serving

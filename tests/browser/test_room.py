@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, expect
 
-from app.classroom.names import in_groups
+from app.features.classroom.names import in_groups
 from tests.browser.rooms import (
     PHONE,
     PUBLIC_URL,

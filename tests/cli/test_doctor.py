@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from app.cli import machine_checks
+from app.features.demo.rows import VisitorRows, VisitorRun
 from app.storage.database.opening import DATABASE_FILE
-from app.storage.database.visitor_rows import VisitorRun
 from app.storage.server_lock import lock_folder, write_address_file
 from hexapods.domain.robot import document_of, robot
 from tests.cli.running import hexapods, in_process, output
@@ -57,7 +57,8 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     names = [line[2:].partition(":")[0] for line in lines]
     assert names[:5] == ["python", "packages", "engine", "physics", "browser"]
     assert names[5:8] == ["cores", "exports", "settings"]
-    checked = ["data folder", "room", "lock", "database", "rows", "robots", "visitors", "address"]
+    checked = ["features", "data folder", "room", "lock", "database", "rows", "robots", "address"]
+    checked.append("visitors")
     assert names[8:] == checked
     assert list(tmp_path.iterdir()) == []
 
@@ -117,7 +118,7 @@ def test_runs_of_visitors_whose_rows_are_damaged_are_named(tmp_path: Path) -> No
     assert examined(tmp_path)["visitors"] == (True, "no run of a demo's visitor")
     with opened(tmp_path / "data", None) as store:
         row = VisitorRun("1m8agbvj657z5", 64 * "a", 100, True, datetime.now(UTC))
-        store.visitors.add([row])
+        VisitorRows(store.database).add([row])
     assert examined(tmp_path)["visitors"] == (True, "1 run of a demo's visitors")
     with closing(sqlite3.connect(tmp_path / "data" / DATABASE_FILE)) as database, database:
         database.execute("UPDATE visitor_runs SET created_at = 'yesterday', visitor = 'x'")

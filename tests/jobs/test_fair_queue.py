@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.jobs.queue import MAX_OF_VISITORS, MAX_QUEUED, Owner, RunQueue
+from app.jobs.queue import MAX_OF_GUESTS, MAX_QUEUED, Owner, RunQueue
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy
 from app.storage.run import Run
@@ -19,7 +19,7 @@ def queue_of(store: RunStore) -> RunQueue:
     def owner_of(run_id: str) -> Owner | None:
         name = run_id[0]
         if name.isupper():
-            return Owner(name, run_id[1], is_visitor=True)
+            return Owner(name, run_id[1], is_guest=True)
         return None if name == "o" else Owner(name)
 
     return RunQueue(store, lambda run, position: None, owner_of)
@@ -95,8 +95,8 @@ def test_turns_of_visitors_are_remembered(store: RunStore) -> None:
 def test_full_places_of_visitors_leave_those_of_others(store: RunStore) -> None:
     queue = queue_of(store)
     letters = "ABCDEFGH"
-    add(queue, *(f"{letter}x{n}" for letter in letters for n in range(MAX_OF_VISITORS // 8)))
+    add(queue, *(f"{letter}x{n}" for letter in letters for n in range(MAX_OF_GUESTS // 8)))
     add(queue, "o1", "p1")
-    with pytest.raises(Busy, match=f"{MAX_OF_VISITORS} runs are waiting"):
+    with pytest.raises(Busy, match=f"{MAX_OF_GUESTS} runs are waiting"):
         add(queue, "Ixx")
     assert popped(queue)[:2] == ["o1", "p1"]

@@ -35,7 +35,7 @@ def cost_of(store: RunStore, length: int, do: Callable[[RunQueue], Any]) -> Cost
 
     def owner_of(run_id: str) -> Owner:
         looks.append(run_id)
-        return Owner(run_id, run_id[-1], is_visitor=True)
+        return Owner(run_id, run_id[-1], is_guest=True)
 
     queue = RunQueue(store, lambda run, position: events.append((run, position)), owner_of)
     config = training().config

@@ -2,18 +2,19 @@
 
 from typing import Any
 
-from app.classroom.lesson import Lesson, read_lesson
-from app.classroom.lessons import Lessons
-from app.classroom.rooms import Rooms
-from app.storage.database.room_rows import RoomRun
+from app.features.classroom.lesson import Lesson, read_lesson
+from app.features.classroom.lesson_rows import LessonRows
+from app.features.classroom.lessons import Lessons
+from app.features.classroom.room_rows import RoomRows, RoomRun
+from app.features.classroom.rooms import Rooms
+from app.features.demo.rows import VisitorRows, VisitorRun
+from app.features.tournaments.judge import outcome_of
+from app.features.tournaments.tournament import EnteredTable, Entrant
+from app.features.tournaments.tournaments import Tournaments
 from app.storage.database.store import RunStore
-from app.storage.database.visitor_rows import VisitorRun
 from app.storage.run import TABLE, IdempotencyKey
 from app.storage.sessions import Sessions
 from app.storage.stored_robot import StoredRobot
-from app.tournaments.judge import outcome_of
-from app.tournaments.tournament import EnteredTable, Entrant
-from app.tournaments.tournaments import Tournaments
 from hexapods.domain.gait import GaitSpec
 from hexapods.domain.robot import document_of, robot
 from hexapods.domain.robot_documents import id_of
@@ -70,11 +71,11 @@ def fill(store: RunStore, copies: int) -> None:
     store.change("00000000000k1", {"queued"}, "stopped")
     Sessions(store.sessions, TOKEN).open()
     _add_robots(store, copies)
-    Lessons(store.lessons).add(lesson("A lesson"))
+    Lessons(LessonRows(store.database)).add(lesson("A lesson"))
     code = _fill_rooms(store, copies)
     _fill_tournaments(store, code)
     created_at = store.get(OF_VISITOR).created_at
-    store.visitors.add([VisitorRun(OF_VISITOR, VISITOR, 20, True, created_at)])
+    VisitorRows(store.database).add([VisitorRun(OF_VISITOR, VISITOR, 20, True, created_at)])
 
 
 def _add_robots(store: RunStore, count: int) -> None:
@@ -106,7 +107,7 @@ def _fill_rooms(store: RunStore, ended: int) -> str:
     rooms.show_card(code, 0)
     (asked,) = rooms.get(code).runs.values()
     of_room: RoomRun = asked._replace(run_id=OF_ROOM, card=0, answer=None)
-    store.rooms.add_runs([of_room])
+    RoomRows(store.database).add_runs([of_room])
     return code
 
 

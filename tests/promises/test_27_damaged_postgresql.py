@@ -15,7 +15,7 @@ from app.events.damage import damaged_rows
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
-from app.storage.database.schema import ABOUT, METADATA
+from app.storage.database.schema import ABOUT
 from app.storage.database.store import RunStore
 from tests.api.calls import ADDRESS
 from tests.postgresql import PostgresServer
@@ -23,9 +23,10 @@ from tests.promises import full_folder
 from tests.promises.full_folder import TOKEN
 from tests.promises.length import at_length
 from tests.promises.raw import every_route
+from tests.storage.all_tables import ALL_TABLES
 from tests.storage.stores import opened
 
-TABLES = [table for table in METADATA.sorted_tables if table is not ABOUT]
+TABLES = [table for table in ALL_TABLES.values() if table is not ABOUT]
 _TEXTS = ["''", "'../x'", "E'a\\x1b[2Jb'", "repeat('x', 100000)"]
 VALUES: dict[type, list[str]] = {
     PortableText: _TEXTS,

@@ -18,11 +18,12 @@ import httpx2
 import pytest
 from sqlalchemy import Column, Table
 
-from app.cli.data_checks import ADVICE
+from app.cli.data_checks import advice
 from app.events.damage import OF_RUNS
+from app.feature import load
 from app.storage.database.engine import decode_leniently
 from app.storage.database.opening import DATABASE_FILE
-from app.storage.database.schema import ABOUT, METADATA
+from app.storage.database.schema import ABOUT
 from tests.cli.running import in_process
 from tests.promises import full_folder
 from tests.promises.full_folder import TAUGHT, TOKEN
@@ -30,9 +31,10 @@ from tests.promises.length import at_length
 from tests.promises.raw import every_route
 from tests.promises.worst_values import BROKEN_TEXT, STORED, is_certain_damage
 from tests.served import Served
+from tests.storage.all_tables import ALL_TABLES
 from tests.storage.stores import opened
 
-TABLES = [table for table in METADATA.sorted_tables if table is not ABOUT]
+TABLES = [table for table in ALL_TABLES.values() if table is not ABOUT]
 """All but that of which a database has one row; that one is damaged in a test of its own."""
 MADE_SEPARATELY = {"rooms", "robots"}
 """Tables of which the folder has a row for each column; rows of others are copied."""
@@ -53,9 +55,9 @@ def template(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A data folder with rows in every table; only to be read."""
     folder = tmp_path_factory.mktemp("template")
     with opened(folder, None) as store:
-        full_folder.fill(store, max(len(METADATA.tables[name].c) for name in MADE_SEPARATELY))
+        full_folder.fill(store, max(len(ALL_TABLES[name].c) for name in MADE_SEPARATELY))
     with closing(sqlite3.connect(folder / DATABASE_FILE)) as file:
-        for table in METADATA.tables:
+        for table in ALL_TABLES:
             assert file.execute(f"SELECT count(*) FROM {table}").fetchone() != (0,), table
     return folder
 
@@ -224,7 +226,7 @@ def damaged_rows_of(server: Served) -> int:
     """Return how many damaged rows of all tables the metrics tell."""
     lines = server.client.get("/metrics", headers=OPERATOR).text.splitlines()
     told = [line for line in lines if line.startswith("hexapods_rows_damaged{")]
-    assert len(told) == len(METADATA.tables) - len(OF_RUNS)
+    assert len(told) == len(ALL_TABLES) - len(OF_RUNS)
     return round(sum(float(line.split()[-1]) for line in told))
 
 
@@ -316,7 +318,7 @@ def test_what_a_row_cannot_stand_for_is_damage_too(
     ids = ids_of(data_folder)
     damages: list[Damage | None] = []
     with closing(sqlite3.connect(data_folder / DATABASE_FILE, isolation_level=None)) as file:
-        for table in METADATA.sorted_tables:
+        for table in ALL_TABLES.values():
             cases = [case for case in MEANING if case[0] == table.name]
             rows = rows_to_damage(file, table) if cases else []
             for (_, column, value), rowid in zip(cases, rows, strict=False):
@@ -331,4 +333,4 @@ def test_what_a_row_cannot_stand_for_is_damage_too(
 
 
 def test_every_table_has_an_advice() -> None:
-    assert ADVICE.keys() == METADATA.tables.keys()
+    assert advice(load()).keys() == ALL_TABLES.keys()

@@ -22,13 +22,13 @@ import pytest
 from starlette.testclient import TestClient
 from starlette.types import Receive, Scope, Send
 
-from app.api.cookies import NAMES
 from app.api.request_headers import MAX_BYTES, READ, READ_BEFORE, DeclaredHeaders
 from tests.promises.length import at_length, only_whole
 from tests.promises.raw import Route, every_route
 from tests.promises.worst_requests import (
     ADMITTED_BYTES,
     LARGE_BYTES,
+    NAMES,
     Strangers,
     addresses,
     bodies,

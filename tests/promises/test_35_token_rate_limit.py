@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 from starlette.testclient import TestClient
 
-from app.classroom.names import ALPHABET, CODE_LENGTH
-from app.classroom.rooms import MAX_OPEN
-from app.classroom.seats import MAX_PARTICIPANTS
+from app.features.classroom.names import ALPHABET, CODE_LENGTH
+from app.features.classroom.rooms import MAX_OPEN
+from app.features.classroom.seats import MAX_PARTICIPANTS
 from app.server import create_app
 from app.settings import Settings
 from tests.api.calls import ADDRESS

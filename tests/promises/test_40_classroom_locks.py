@@ -13,9 +13,10 @@ from typing import Any, NamedTuple
 import httpx2
 import pytest
 
-from app.api.room_access import ENTER_TOURNAMENT, ParticipantAccess
-from app.classroom.lesson import Card
-from app.classroom.lessons import built_in
+from app.features.classroom.access import ParticipantAccess
+from app.features.classroom.lesson import Card
+from app.features.classroom.lessons import built_in
+from app.features.tournaments.access import ENTER_TOURNAMENT
 from tests.browser.serving import Serving, serving
 from tests.promises.length import at_length
 from tests.promises.raw import Route, accesses, every_route, request_lines, send, status_of

@@ -15,7 +15,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.api.cookies import ROOM_NAME
+from app.features.classroom.access import ROOM_NAME
 from tests.promises.length import at_length
 from tests.served import Served
 from tests.timeouts import LONG_S, ProgressTimeout

@@ -8,10 +8,14 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 from urllib.parse import quote
 
-from app.api.cookies import NAME, NAMES, ROOM_NAME
+from app.api.cookies import NAME
 from app.api.request_headers import READ, READ_BEFORE
-from app.classroom.names import ALPHABET, CODE_LENGTH
+from app.features.classroom.access import ROOM_NAME
+from app.features.classroom.names import ALPHABET, CODE_LENGTH
+from app.features.demo.access import VISITOR_NAME
 
+NAMES = (NAME, ROOM_NAME, VISITOR_NAME)
+"""The beginnings of the names of all cookies."""
 HEAD_BYTES = 60_000
 """As much as arrives at once on loopback."""
 LARGE_BYTES = 60_000

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.tournaments.tournaments import MAX_ROBOTS_BYTES, MAX_TABLES_BYTES
+from app.features.tournaments.tournaments import MAX_ROBOTS_BYTES, MAX_TABLES_BYTES
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.robot import PRESETS, document_of, read_document, robot

@@ -13,12 +13,12 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
-from sqlalchemy import URL, Connection, Engine, create_engine, event, make_url, select, text
+from sqlalchemy import URL, Connection, Engine, Table, create_engine, event, make_url, select, text
 from sqlalchemy.exc import DBAPIError, IntegrityError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from app.storage.database.fifo_semaphore import FifoSemaphore
-from app.storage.database.schema import ABOUT
+from app.storage.database.schema import ABOUT, METADATA
 from app.storage.errors import OwnershipLost, StorageFailed, StorageFull
 from hexapods.domain.errors import HexapodError
 
@@ -75,6 +75,7 @@ class Database:
         fencing_token: number of this server's ownership, which every write compares with the one
             in the database; None, before the database is claimed, skips the check.
         write_problem: why the last write or probe failed; None if it succeeded.
+        tables: all that this process knows, those that others need first.
         decoders: by table, what its rows stand for; see `stored_rows`.
         logged_damage: the damaged rows that were logged.
         check_available: circuit breaker; while it raises `StorageFailed` every call fails at once,
@@ -85,6 +86,7 @@ class Database:
         self.engine, self.on_disk_full = engine, on_disk_full
         self.fencing_token: int | None = None
         self.write_problem: HexapodError | None = None
+        self.tables: list[Table] = list(METADATA.sorted_tables)
         self.decoders: dict[str, Callable[..., Any]] = {}
         self.logged_damage: set[str] = set()
         self.check_available: Callable[[], None] = lambda: None

@@ -21,7 +21,6 @@ from app.storage.database.queries import (
     sorts_after,
     sorts_before,
 )
-from app.storage.database.room_rows import Seat, is_seen_by
 from app.storage.database.schema import RUNS
 from app.storage.run import KINDS, Kind, Sort, State
 from hexapods.domain.errors import InvalidInput
@@ -43,7 +42,7 @@ class Listing(NamedTuple):
             in the order of names the letters A to Z match in upper and lower case.
         tag: only runs with this tag; None for all.
         sort: `newest` or `oldest` first, by `name` from A to Z, or by `distance`, longest first.
-        reader: only runs that these participants of rooms see; None for all.
+        condition: only runs that meet it; None for all.
     """
 
     kind: Kind | None
@@ -53,7 +52,7 @@ class Listing(NamedTuple):
     search: str | None
     tag: str | None
     sort: Sort
-    reader: Sequence[Seat] | None = None
+    condition: ColumnElement[bool] | None = None
 
 
 class RowPage(NamedTuple):
@@ -91,8 +90,8 @@ def _filters(connection: Connection, listing: Listing) -> list[ColumnElement[boo
     conditions = []
     if listing.kind is not None:
         conditions.append(_is_of_kind(connection, listing.kind))
-    if listing.reader is not None:
-        conditions.append(is_seen_by(listing.reader))
+    if listing.condition is not None:
+        conditions.append(listing.condition)
     if listing.state is not None:
         conditions.append(RUNS.c.state == listing.state)
     if listing.tag is not None:

@@ -1,19 +1,23 @@
 """Schema migration: upgrade a database to the schema of this version with Alembic."""
 
 import logging
+from pathlib import Path
 
 from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection
+from sqlalchemy import Connection, MetaData, inspect
 
 from app.storage.database.engine import Database
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import DamagedFile, InvalidInput
 
 SCRIPT_LOCATION = "app.storage.database:migrations"
 CONNECTION = "connection"
 """Key of the open connection among the attributes of Alembic's config (see `migrations/env`)."""
+VERSION_TABLE = "version_table"
+"""Likewise of the name of the table that has the revision."""
+_OWN_VERSION_TABLE = "alembic_version"
 
 
 def migrate(database: Database) -> None:
@@ -33,6 +37,51 @@ def migrate(database: Database) -> None:
         command.upgrade(config, "head")
 
     database.write(work)
+
+
+def migrate_feature(database: Database, name: str, folder: Path, tables: MetaData) -> None:
+    """Upgrade the tables of a feature in one transaction, and let the database know them.
+
+    The revision is in a table of the feature's own: one that is left out is left as it is.
+
+    Args:
+        database: with the core's schema of this version.
+        name: of the feature.
+        folder: with the revisions of its tables, a chain of Alembic scripts.
+        tables: the tables of this version.
+
+    Raises:
+        InvalidInput: if a newer version of the feature made its tables.
+        DamagedFile: if one of them is missing.
+        StorageFailed: if the database is unavailable.
+    """
+    logging.getLogger("alembic").setLevel(logging.WARNING)
+
+    def work(connection: Connection) -> None:
+        version_table = f"{_OWN_VERSION_TABLE}_{name}"
+        config = _config()
+        config.set_main_option("version_locations", str(folder))
+        config.attributes |= {CONNECTION: connection, VERSION_TABLE: version_table}
+        options = {"version_table": version_table}
+        heads = set(MigrationContext.configure(connection, opts=options).get_current_heads())
+        known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
+        if unknown := heads - known:
+            raise InvalidInput(
+                f"a newer version of the feature {name} made its tables (their schema is "
+                f"{', '.join(sorted(unknown))}); install that version, or leave the feature out by "
+                f"HEXAPODS_WITHOUT={name}"
+            )
+        command.upgrade(config, "head")
+        there = set(inspect(connection).get_table_names())
+        if missing := sorted(tables.tables.keys() - there):
+            raise DamagedFile(
+                f"the database has lost {', '.join(missing)} of the feature {name}; put a backup "
+                f"back, or start without the feature by HEXAPODS_WITHOUT={name}, which loses "
+                "nothing else"
+            )
+
+    database.write(work)
+    database.tables += tables.sorted_tables
 
 
 def check_current(connection: Connection) -> bool:

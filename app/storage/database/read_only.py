@@ -1,12 +1,12 @@
 """Open the store of a data folder read-only, also while its server runs."""
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
-from sqlalchemy import Connection, Engine, create_engine, event, select
+from sqlalchemy import Connection, Engine, MetaData, create_engine, event, select
 from sqlalchemy.pool import NullPool, StaticPool
 
 from app.settings import ROBOTS_FOLDER, Settings
@@ -23,8 +23,12 @@ from app.storage.disk_space import DiskSpace
 
 
 @contextmanager
-def open_read_only(settings: Settings) -> Iterator[RunStore]:
+def open_read_only(settings: Settings, *tables: MetaData) -> Iterator[RunStore]:
     """Open the store read-only; an empty one if no server has ever used this data folder.
+
+    Args:
+        settings: of the server.
+        tables: those of features that are to be read, too.
 
     Raises:
         InvalidInput: if it has the schema of another version.
@@ -32,10 +36,11 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         StorageFailed: if it is damaged, or cannot be read.
     """
     with ExitStack() as stack:
-        database = stack.enter_context(closing(Database(_engine(settings))))
+        database = stack.enter_context(closing(Database(_engine(settings, tables))))
         database_id = database.read(_id)
         if database_id is None:
-            database = stack.enter_context(closing(Database(_empty_engine())))
+            database = stack.enter_context(closing(Database(_empty_engine(tables))))
+        database.tables += [table for metadata in tables for table in metadata.sorted_tables]
         disk_space, artifacts = DiskSpace(settings.data), settings.data / ARTIFACTS_FOLDER
         name = id_of_files(database_id, artifacts) or "none"
         files = ArtifactFiles(artifacts / name, disk_space)
@@ -44,20 +49,21 @@ def open_read_only(settings: Settings) -> Iterator[RunStore]:
         yield RunStore(database, files, robots)
 
 
-def _engine(settings: Settings) -> Engine:
+def _engine(settings: Settings, tables: Sequence[MetaData]) -> Engine:
     if settings.database_url is not None:
         engine = postgresql_engine(settings.database_url)
         event.listen(engine, "connect", _set_read_only)
         return engine
     path = settings.data / DATABASE_FILE
     check_file(path, settings.data / ARTIFACTS_FOLDER)
-    return _sqlite_engine(path) if path.is_file() else _empty_engine()
+    return _sqlite_engine(path) if path.is_file() else _empty_engine(tables)
 
 
-def _empty_engine() -> Engine:
+def _empty_engine(tables: Sequence[MetaData]) -> Engine:
     """Create an engine for a database in memory, with tables but no rows."""
     engine = create_engine("sqlite://", poolclass=StaticPool)
-    METADATA.create_all(engine)
+    for metadata in (METADATA, *tables):
+        metadata.create_all(engine)
     return engine
 
 

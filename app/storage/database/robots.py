@@ -10,11 +10,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, String, cast, delete, func, or_, select, update
+from sqlalchemy import Column, Connection, String, Table, cast, delete, func, or_, select, update
 
 from app.storage.database.engine import Database
 from app.storage.database.rows import forget_configs
-from app.storage.database.schema import ROBOTS, RUNS, TOURNAMENTS
+from app.storage.database.schema import ROBOTS, RUNS
 from app.storage.database.stored_rows import DecodedRows, put_rows, read_rows, rows_in
 from app.storage.disk_space import DiskSpace
 from app.storage.errors import Conflict, NotFound, StorageFailed, StorageFull
@@ -56,6 +56,7 @@ class RobotStore:
     without a row, which the next start deletes.
 
     Attributes:
+        users: by noun, the table of what may name robots, and the columns in which it does.
         version: of the list of robots; a greater one after each change.
     """
 
@@ -70,6 +71,9 @@ class RobotStore:
         self._database, self._folder, self._disk_space = database, folder, disk_space
         # Of changes: a robot must not be deleted between its document's writing and its row's.
         self.lock = threading.RLock()
+        self.users: dict[str, tuple[Table, Sequence[Column[Any]]]] = {
+            "run": (RUNS, (RUNS.c.config, RUNS.c.result))
+        }
         self._told: set[str] = set()
         self.version = next(_versions)
 
@@ -291,7 +295,7 @@ class RobotStore:
 
             def work(connection: Connection) -> None:
                 nonlocal is_used
-                is_used = bool(_users(connection, old.id))
+                is_used = bool(self._users_of(connection, old.id))
                 is_old = ROBOTS.c.id == old.id
                 if is_used:
                     connection.execute(update(ROBOTS).where(is_old).values(name=earlier, hidden=1))
@@ -316,11 +320,11 @@ class RobotStore:
 
         Raises:
             NotFound: if there is no such robot.
-            Conflict: if runs or tournaments use it.
+            Conflict: if runs, or something else, use it.
         """
 
         def work(connection: Connection) -> None:
-            rows, users = _rows(connection, robot_id), _users(connection, robot_id)
+            rows, users = _rows(connection, robot_id), self._users_of(connection, robot_id)
             if not (rows.sound or rows.damaged):
                 raise _not_here(robot_id)
             name = rows.sound[0].name if rows.sound else robot_id
@@ -372,6 +376,15 @@ class RobotStore:
         """Return the names of all robots, or of all others."""
         return [one.name for one in self.stored(hidden=True) if one.id != robot_id]
 
+    def _users_of(self, connection: Connection, robot_id: str) -> dict[str, int]:
+        """Return the numbers, by noun, of what names a robot; only of some."""
+        counts = {}
+        for noun, (table, columns) in self.users.items():
+            named = (cast(column, String).contains(robot_id) for column in columns)
+            query = select(func.count()).select_from(table).where(or_(*named))
+            counts[noun] = int(connection.execute(query).scalar_one())
+        return {noun: count for noun, count in counts.items() if count}
+
     def _path(self, robot_id: str, ending: str) -> Path:
         if not robot_documents.is_id(robot_id):
             raise NotFound(f"there is no robot {robot_id!r}")
@@ -407,20 +420,6 @@ def _rows(connection: Connection, robot_id: str) -> DecodedRows:
 
 def _not_here(robot_id: str) -> NotFound:
     return NotFound(f"there is no robot {robot_id!r} (any more)")
-
-
-def _users(connection: Connection, robot_id: str) -> dict[str, int]:
-    """Return the numbers, by noun, of runs and tournaments that name a robot; only of some."""
-    users = {
-        "run": (RUNS, (RUNS.c.config, RUNS.c.result)),
-        "tournament": (TOURNAMENTS, (TOURNAMENTS.c.rules,)),
-    }
-    counts = {}
-    for noun, (table, columns) in users.items():
-        told = (cast(column, String).contains(robot_id) for column in columns)
-        query = select(func.count()).select_from(table).where(or_(*told))
-        counts[noun] = int(connection.execute(query).scalar_one())
-    return {noun: count for noun, count in counts.items() if count}
 
 
 def _encode(robot: StoredRobot) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import (
+    ColumnElement,
     Connection,
     String,
     Update,
@@ -27,7 +28,6 @@ from app.storage.database.columns import UtcTime
 from app.storage.database.curves import Curves
 from app.storage.database.engine import Database
 from app.storage.database.keys import Keys
-from app.storage.database.lesson_rows import LessonRows
 from app.storage.database.listing import Listing, fetch_page
 from app.storage.database.progress import ProgressCache
 from app.storage.database.queries import (
@@ -39,12 +39,9 @@ from app.storage.database.queries import (
     select_runs,
 )
 from app.storage.database.robots import RobotStore
-from app.storage.database.room_rows import RoomRows, Seat
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import RUNS
-from app.storage.database.tournament_rows import TournamentRows
 from app.storage.database.trials import Trials
-from app.storage.database.visitor_rows import VisitorRows
 from app.storage.disk_space import START_BYTES
 from app.storage.errors import Conflict, Damaged, StorageFailed
 from app.storage.run import (
@@ -83,10 +80,7 @@ class RunStore:
         keys: idempotency keys.
         robots: stored robots.
         sessions: storage of operators' browser sessions, in the same database.
-        lessons: those that were stored.
-        rooms: rooms of classes, with their participants, predictions and runs.
-        tournaments: with their entries, judgements and tables.
-        visitors: runs of visitors of a demo.
+        is_public: condition that a run may be shown to everybody; None for all.
     """
 
     def __init__(self, database: Database, files: ArtifactFiles, robots: RobotStore) -> None:
@@ -95,9 +89,7 @@ class RunStore:
         self._artifacts = Artifacts(database, files)
         self.curves, self.trials, self.keys = Curves(database), Trials(database), Keys(database)
         self.sessions = SessionRows(database)
-        self.lessons, self.rooms = LessonRows(database), RoomRows(database)
-        self.tournaments = TournamentRows(database)
-        self.visitors = VisitorRows(database)
+        self.is_public: ColumnElement[bool] | None = None
 
     def check_disk_space(self, size: int = START_BYTES) -> None:
         """Check that there is disk space, before the work whose result needs it.
@@ -246,7 +238,7 @@ class RunStore:
         search: str | None = None,
         tag: str | None = None,
         sort: Sort = "newest",
-        reader: Sequence[Seat] | None = None,
+        condition: ColumnElement[bool] | None = None,
     ) -> ListedRuns:
         """Return one page of runs; the arguments are those of a `Listing`.
 
@@ -255,7 +247,7 @@ class RunStore:
         Raises:
             InvalidInput: if the cursor is not one of a list in this order.
         """
-        listing = Listing(kind, state, limit, cursor, search, tag, sort, reader)
+        listing = Listing(kind, state, limit, cursor, search, tag, sort, condition)
         progress = self._progress.snapshot()
         rows, cursor = self.database.read(lambda connection: fetch_page(connection, listing))
         return ListedRuns(

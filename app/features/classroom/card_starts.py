@@ -1,0 +1,204 @@
+"""Starts of a lesson's cards: the form of a card with the settings that a participant gives."""
+
+import json
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from app.api.agent_bodies import AgentBodies, agent_bodies
+from app.api.descriptions import field_errors
+from app.features.classroom.card_settings import RACE_STEPS, check_given, declared, names_of
+from app.features.classroom.lesson import Card, Lesson
+from app.jobs.submissions import RaceStart, Start, TrainingStart, check_training
+from app.storage.database.store import RunStore
+from hexapods.agents.registry import find, learns
+from hexapods.domain.disturbance_documents import as_mapping, parse_disturbance
+from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
+from hexapods.domain.records import refusal_in
+from hexapods.runs.config import TrainingConfig, agent_settings
+from hexapods.runs.lane import LANE_FIELDS
+from hexapods.shows.scene_spec import PAPERS_LANES
+
+_WALK = ("gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "reward", "world")
+_PRACTICE = ("steps", "observation", "steps_per_episode", "evaluate_every")
+_LEFT_OUT = ("seed", "name", "pace")
+"""Fields of a page's form that are ignored: the room sets seed, name and the highest pace."""
+_GAIT = "left-right-origin"
+
+
+class CardStarts:
+    """Makes starts of cards, by the request bodies that the page sends elsewhere."""
+
+    def __init__(self, agents: tuple[str, ...]) -> None:
+        """Use the registered agents."""
+        self._agents = agents
+
+    def given(self, card: Card, settings: Mapping[str, Any]) -> dict[str, Any]:
+        """Check what a participant gives against what the card lets be changed.
+
+        Args:
+            card: the card.
+            settings: values by name.
+
+        Raises:
+            InvalidInput: if a setting is not open, or its value out of the card's bounds.
+        """
+        checked: dict[str, Any] = {}
+        form = {**card.form, **{k: v for k, v in settings.items() if k == "agent"}}
+        for name, value in settings.items():
+            if name not in card.may:
+                opened = ", ".join(card.may) or "none"
+                raise InvalidInput(
+                    f"{name[:60]} cannot be changed on this card; open are: {opened}"
+                )
+            checked[name] = check_given(name, value, card.may[name], form)
+        return checked
+
+    def start(self, card: Card, given: Mapping[str, Any], seed: int, name: str) -> Start:
+        """Return the start of a card that runs a training or a race.
+
+        Args:
+            card: the card.
+            given: what a participant gives, as it was checked.
+            seed: of the run.
+            name: of the run.
+
+        Raises:
+            InvalidInput: if the form is not valid with what is given.
+        """
+        fields = _Fields({**card.form, **given})
+        body = fields.race(seed) if card.go == "race" else {**fields.training(), "seed": seed}
+        return self._read("race" if card.go == "race" else "training", {**body, "name": name})
+
+    def what_if(self, card: Card, given: Mapping[str, Any]) -> TrainingConfig:
+        """Return the settings of a card that asks a what-if; errors as `start`."""
+        start = self._read("training", _Fields({**card.form, **given}).training())
+        assert isinstance(start, TrainingStart)  # noqa: S101 - by the body
+        return start.config
+
+    def check(self, lesson: Lesson, store: RunStore) -> None:
+        """Check that what the cards of a lesson run can be started.
+
+        Raises:
+            InvalidInput: naming the card, if it cannot.
+        """
+        for number, card in enumerate(lesson.cards):
+            if card.go is None:
+                continue
+            try:
+                if card.go == "what-if":
+                    check_training(self.what_if(card, {}))
+                else:
+                    self.start(card, {}, 0, "").runs(store, lambda: "0")
+            except HexapodError as error:
+                raise InvalidInput(f"cards.{number}.state.form: {error}") from error
+
+    def _read(self, kind: str, body: Mapping[str, Any]) -> TrainingStart | RaceStart:
+        try:
+            start: TrainingStart | RaceStart = _reader(self._agents, kind)(body).start()
+        except ValidationError as error:
+            errors = error.errors()
+            if (refusal := refusal_in(errors)) is not None:
+                raise refusal from refusal.__cause__
+            told = field_errors(errors)
+            raise InvalidInput(" ".join(one["detail"] for one in told[:3])) from error
+        return start
+
+
+@cache
+def _reader(agents: tuple[str, ...], kind: str) -> Callable[[Any], Any]:
+    bodies: AgentBodies = agent_bodies(agents)
+    return TypeAdapter(getattr(bodies, kind)).validate_python
+
+
+class _Fields:
+    """Fields of a form by where a request body has them."""
+
+    def __init__(self, form: Mapping[str, Any]) -> None:
+        """Sort the fields; the settings of an agent may be in `settings`, or by themselves.
+
+        Raises:
+            UnknownName: if there is no such field.
+            InvalidInput: if a text is no value of its field.
+        """
+        flat = {name: value for name, value in form.items() if name not in ("settings", *_LEFT_OUT)}
+        settings = form.get("settings") or {}
+        if not isinstance(settings, Mapping):
+            raise InvalidInput("settings must be an object with the agent's settings, by name")
+        agent = flat.pop("agent", TrainingConfig.agent)
+        if not isinstance(agent, str) or agent not in (known := names_of("agent") or []):
+            raise UnknownName("agent", agent, known)
+        self.agent, self._lanes = agent, flat.pop("lanes", None)
+        own, known_settings = agent_settings(agent), declared(form)
+        self._walk: dict[str, Any] = {"gait": _GAIT}
+        self._practice: dict[str, Any] = {}
+        self._settings = {name: _value(value, own.get(name)) for name, value in settings.items()}
+        self._of_lanes: dict[str, dict[str, Any]] = {}
+        self._race_steps: dict[str, Any] = {}
+        for name, text in flat.items():
+            value = _value(text, known_settings.get(name))
+            if name in _WALK:
+                self._walk[name] = value
+            elif name in _PRACTICE:
+                self._practice[name] = value
+            elif name == RACE_STEPS:
+                self._race_steps = {"steps": value}
+            elif name in own:
+                self._settings[name] = value
+            elif name in ("disturb", "disturbances"):
+                self._walk.setdefault("disturbances", []).extend(_disturbances(value))
+            elif "." in name:
+                lane, _, setting = name.rpartition(".")
+                self._of_lanes.setdefault(lane, {})[setting] = value
+            else:
+                valid = ["agent", "settings", *_WALK, "disturb", *_PRACTICE, *own]
+                raise UnknownName("field", name[:60], [*valid, "lanes", RACE_STEPS])
+
+    def training(self) -> dict[str, Any]:
+        """Return the body of a training."""
+        return {
+            "agent": self.agent, **self._walk, **self._practice, "settings": self._settings
+        }  # fmt: skip
+
+    def race(self, seed: int) -> dict[str, Any]:
+        """Return the body of a race, whose learners practise first."""
+        default = [self.agent if one == TrainingConfig.agent else one for one in PAPERS_LANES]
+        names = self._lanes if self._lanes is not None else default
+        if isinstance(names, str):
+            names = [one.strip() for one in names.split(",") if one.strip()]
+        if not isinstance(names, list) or not all(isinstance(one, str) for one in names):
+            raise InvalidInput("lanes must be a list of agents' names")
+        lanes = [self._lane(name) for name in names]
+        return {**self._walk, **self._race_steps, "lanes": lanes, "seed": seed}
+
+    def _lane(self, agent: str) -> dict[str, Any]:
+        find(agent)
+        own = self._of_lanes.get(agent, {})
+        settings = {k: _value(v, agent_settings(agent).get(k)) for k, v in own.items()}
+        of_lane = {name: settings.pop(name) for name in LANE_FIELDS if name in settings}
+        if not learns(agent):
+            return {"agent": agent, **of_lane, "settings": settings}
+        practised = self._settings if agent == self.agent else {}
+        training = {**self._practice, "settings": {**practised, **settings}}
+        return {"agent": agent, **of_lane, "training": training}
+
+
+def _value(given: Any, setting: Any) -> Any:
+    """Return a value of a form, which a page has as it was typed."""
+    if not isinstance(given, str):
+        return given
+    if setting is not None:
+        return setting.parse(given)
+    if given.startswith("{"):
+        try:
+            return json.loads(given)
+        except (ValueError, RecursionError) as error:
+            raise InvalidInput(f"{given[:40]!r} is no JSON object") from error
+    return given
+
+
+def _disturbances(given: Any) -> list[Any]:
+    several = given if isinstance(given, list) else [given]
+    return [as_mapping(parse_disturbance(x)) if isinstance(x, str) else x for x in several]

@@ -1,0 +1,292 @@
+"""Lessons: a lesson is one document of cards, each with what it shows, asks and lets be changed."""
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any, Literal
+
+from annotated_types import MaxLen, MinLen
+from pydantic import Field, TypeAdapter, ValidationError
+
+from app.features.classroom.card_settings import check_bounds
+from app.features.classroom.markdown import as_html, check_markdown
+from app.features.classroom.page_state import PageState, Tab
+from app.storage.json_text import is_finite
+from hexapods.domain.errors import InvalidInput, UnknownName
+from hexapods.domain.records import Record
+from hexapods.domain.settings import MAX_SETTING_NAME
+from hexapods.domain.text import MAX_NAME, visible
+
+_GIVEN_REFERENCE = "#/components/schemas/Given{model}"
+GIVEN_LESSON: dict[str, Any] = {"$ref": _GIVEN_REFERENCE.format(model="Lesson")}
+"""Schema of a lesson as it is sent."""
+MAX_CARDS = 60
+MAX_AIMS = 12
+MAX_TEXT = 8_000
+"""Characters of a text of a card."""
+MAX_SHORT = 300
+"""Characters of a title, an aim or a choice of an answer."""
+MAX_CHOICES = 20
+MAX_MAY = 30
+LANGUAGE = r"^[a-z]{2,3}(-[A-Za-z0-9]{2,8}){0,3}$"
+Title = Annotated[str, MinLen(1), MaxLen(MAX_SHORT)]
+Markdown = Annotated[str, MaxLen(MAX_TEXT)]
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Go = Literal["training", "race", "what-if"]
+Kind = Literal["choice", "number", "point", "curve"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bounds(Record):
+    """Allowed values of a setting; without any bound, all that are valid.
+
+    Attributes:
+        minimum: least number, inclusive.
+        maximum: greatest number, inclusive.
+        choices: the values of which one may be chosen.
+    """
+
+    minimum: Number | None = None
+    maximum: Number | None = None
+    choices: Annotated[tuple[Number | str | bool, ...], MinLen(1), MaxLen(MAX_CHOICES)] | None = (
+        None
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ask(Record):
+    """A question, to which each participant gives one answer before the reveal.
+
+    Attributes:
+        kind: of answer: one of the choices, a number, a point on a chart, or a curve.
+        text: the question, in Markdown.
+        choices: of which one is the answer, of kind `choice` alone; a name of an agent stands for
+            the race that it wins.
+        minimum, maximum: between which a number is.
+        unit: of the number; `m` and `cm` are compared with distances.
+    """
+
+    kind: Kind
+    text: Markdown
+    choices: Annotated[tuple[Title, ...], MaxLen(MAX_CHOICES)] = ()
+    minimum: Number | None = None
+    maximum: Number | None = None
+    unit: Annotated[str, MaxLen(20)] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reveal(Record):
+    """Text and answer that are revealed after the answers.
+
+    Attributes:
+        text: in Markdown.
+        answer: the right choice or number, where it does not follow from the runs.
+    """
+
+    text: Markdown = ""
+    answer: Number | Title | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Card(Record):
+    """A page of a lesson.
+
+    Attributes:
+        text: in Markdown.
+        state: what it opens of the page.
+        show: the tabs of the panel that are shown; null for those of the depth.
+        may: by name the settings that may be changed, each with its bounds.
+        ask: its question.
+        go: what the button runs, from the form of the state; null for nothing.
+        reveal: what is revealed afterwards, or its text alone.
+    """
+
+    title: Title | None = None
+    text: Markdown
+    state: PageState | None = None
+    show: Annotated[tuple[Tab, ...], MaxLen(7)] | None = None
+    may: Annotated[Mapping[str, Bounds], MaxLen(MAX_MAY)] = Field(default_factory=dict)
+    ask: Ask | None = None
+    go: Go | None = None
+    reveal: Reveal | Markdown | None = None
+
+    @property
+    def form(self) -> Mapping[str, Any]:
+        """Fields of the start that the card offers."""
+        return {} if self.state is None or self.state.form is None else self.state.form
+
+    @property
+    def revealed(self) -> Reveal:
+        """Text and answer that are revealed afterwards."""
+        given = self.reveal
+        return given if isinstance(given, Reveal) else Reveal(text=given or "")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lesson(Record):
+    """A lesson.
+
+    Attributes:
+        title: in plain text.
+        language: of its texts, such as `en` or `de-AT`.
+        aims: what is learned, each a line of plain text.
+        cards: its pages, in order.
+    """
+
+    title: Title
+    language: Annotated[str, MaxLen(40), Field(pattern=LANGUAGE)] = "en"
+    aims: Annotated[tuple[Title, ...], MaxLen(MAX_AIMS)] = ()
+    cards: Annotated[tuple[Card, ...], MinLen(1), MaxLen(MAX_CARDS)]
+
+
+CardNumber = Annotated[int, Field(ge=0, le=MAX_CARDS - 1)]
+_RECORDS: Mapping[str, type[Any]] = {
+    "state": PageState,
+    "ask": Ask,
+    "reveal": Reveal,
+    "Reveal": Reveal,
+}
+"""Records by the field that has one."""
+
+
+@cache
+def adapter() -> TypeAdapter[Lesson]:
+    """Return Pydantic's adapter of lessons."""
+    return TypeAdapter(Lesson)
+
+
+def add_given_schemas(schemas: dict[str, Any]) -> None:
+    """Add the schemas of lessons as they are sent, in which more may be left out than in answers.
+
+    Args:
+        schemas: those of the description of the API, by name.
+    """
+    given = adapter().json_schema(ref_template=_GIVEN_REFERENCE)
+    parts = given.pop("$defs") | {"Lesson": given}
+    schemas |= {f"Given{name}": part for name, part in parts.items()}
+
+
+def read_lesson(data: Any) -> Lesson:
+    """Read a lesson from plain values, as they come from JSON or YAML.
+
+    Raises:
+        InvalidInput: naming the field, and what is valid: for unknown fields, values of another
+            type or size, HTML in a text, and bounds outside of the setting's.
+    """
+    try:
+        if not is_finite(data):
+            raise InvalidInput("a lesson has no NaN and no infinite numbers; give finite ones")
+        # As JSON, where strict types have lists for tuples.
+        lesson = adapter().validate_json(json.dumps(data), strict=True)
+    except (TypeError, RecursionError):
+        raise InvalidInput("a lesson is plain values: texts, numbers, lists, objects") from None
+    except ValidationError as error:
+        raise InvalidInput(_sentence(error)) from None
+    _check_line("title", lesson.title)
+    for number, aim in enumerate(lesson.aims):
+        _check_line(f"aims.{number}", aim)
+    for number, card in enumerate(lesson.cards):
+        _check_card(card, f"cards.{number}")
+    return lesson
+
+
+def plain(lesson: Lesson) -> dict[str, Any]:
+    """Return a lesson as plain values without what is null or empty, as a person would write it."""
+    whole = adapter().dump_python(lesson, mode="json")
+    found: dict[str, Any] = _without_nothing(whole)
+    for card, short in zip(whole["cards"], found["cards"], strict=True):
+        if card["may"]:
+            # The bounds of a setting may be empty: all that is valid.
+            short["may"] = {name: _without_nothing(one) for name, one in card["may"].items()}
+    return found
+
+
+def html_of(card: Card) -> dict[str, str]:
+    """Return the texts of a card as HTML that a page may show as it is."""
+    return {
+        "text": as_html(card.text),
+        "ask": "" if card.ask is None else as_html(card.ask.text),
+        "reveal": as_html(card.revealed.text),
+    }
+
+
+def _without_nothing(value: Any) -> Any:
+    if isinstance(value, dict):
+        kept = {name: _without_nothing(one) for name, one in value.items() if one is not None}
+        return {name: one for name, one in kept.items() if one not in ([], {})}
+    return [_without_nothing(one) for one in value] if isinstance(value, list) else value
+
+
+def _check_card(card: Card, where: str) -> None:
+    if card.title is not None:
+        _check_line(f"{where}.title", card.title)
+    check_markdown(card.text, f"{where}.text")
+    check_markdown(card.revealed.text, f"{where}.reveal")
+    if card.ask is not None:
+        _check_ask(card.ask, f"{where}.ask")
+    for name, bounds in card.may.items():
+        try:
+            check_bounds(name, bounds, card.form)
+        except InvalidInput as error:
+            raise InvalidInput(f"{where}.may.{name[:MAX_SETTING_NAME]}: {error}") from error
+    answer, ask = card.revealed.answer, card.ask
+    if answer is not None and ask is not None:
+        if ask.kind == "choice" and answer not in ask.choices:
+            raise UnknownName(f"answer of {where}.reveal", answer, ask.choices)
+        if ask.kind == "number" and isinstance(answer, str):
+            raise InvalidInput(f"{where}.reveal.answer must be a number, as the question asks one")
+
+
+def _check_ask(ask: Ask, where: str) -> None:
+    check_markdown(ask.text, f"{where}.text")
+    for number, choice in enumerate(ask.choices):
+        _check_line(f"{where}.choices.{number}", choice)
+    if ask.kind == "choice" and len(set(ask.choices)) < max(2, len(ask.choices)):
+        raise InvalidInput(f"{where}.choices must be a list of 2 to {MAX_CHOICES} different texts")
+    if ask.kind != "choice" and ask.choices:
+        raise InvalidInput(f"{where}.choices are of the kind choice alone, not of {ask.kind}")
+    low, high = ask.minimum, ask.maximum
+    if ask.kind != "number" and (low is not None or high is not None):
+        raise InvalidInput(f"{where}.minimum and maximum are of the kind number alone")
+    if low is not None and high is not None and low >= high:
+        raise InvalidInput(f"{where}.minimum must be less than its maximum, {high:g}")
+
+
+def _check_line(where: str, text: str) -> None:
+    if visible(text) != text or not text.strip():
+        raise InvalidInput(
+            f"{where} must be one line of text of at most {MAX_SHORT} characters, without control "
+            "characters or other invisible characters"
+        )
+
+
+def _sentence(error: ValidationError) -> str:
+    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    path, message = first["loc"], first["msg"]
+    if first["type"] == "unexpected_keyword_argument":
+        where = ".".join(map(str, path[:-1]))
+        unknown = UnknownName("field", str(path[-1])[:MAX_NAME], _fields_at(path[:-1]))
+        return f"{where}: {unknown}" if where else str(unknown)
+    where = ".".join(str(one) for one in path if re.fullmatch(r"[\w.-]{1,60}", str(one)))
+    if not where:
+        return "a lesson is an object with title and cards"
+    message = message.replace("Input should be", "must be").replace("Value should have", "has")
+    if first["type"] == "missing":
+        return f"{where} is missing"
+    if first["type"] == "string_pattern_mismatch":
+        return f"{where} must be the code of a language, such as en or de-AT"
+    return f"{where}: {message[0].lower()}{message[1:]}"
+
+
+def _fields_at(path: tuple[int | str, ...]) -> list[str]:
+    """Return the names of the fields of the record at a path."""
+    last = path[-1] if path else ""
+    if isinstance(last, int):
+        record: type[Any] = Card
+    elif len(path) >= 2 and path[-2] == "may":
+        record = Bounds
+    else:
+        record = _RECORDS.get(last, Lesson)
+    return list(record.__dataclass_fields__)

@@ -1,0 +1,157 @@
+"""Routes of lessons: documents of cards, as JSON and as YAML files."""
+
+import json
+from dataclasses import replace
+from typing import Annotated, Any, Literal
+
+from fastapi import Depends, Path, Query, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.contract import TEXT, answers
+from app.api.deps import BodyDep, Services, ServicesDep
+from app.api.formats import attachment, negotiated
+from app.api.policy import OPERATOR, api_router, policy
+from app.api.spectators import link_of
+from app.features.classroom.access import LESSONS, ReaderDep
+from app.features.classroom.card_starts import CardStarts
+from app.features.classroom.lesson import GIVEN_LESSON, Lesson, adapter, html_of
+from app.features.classroom.lesson_file import (
+    MAX_BYTES,
+    MEDIA_TYPE,
+    read_file,
+    read_plain_values,
+    write_file,
+)
+from app.features.classroom.lessons import FoundLesson, Lessons
+from app.features.classroom.response_models import LessonList, LessonView, NewLesson
+from app.features.classroom.rooms import Rooms
+from hexapods.domain.errors import InvalidInput
+
+YAML_TYPES = (MEDIA_TYPE, "text/yaml", "application/x-yaml", "text/x-yaml")
+_TYPES = {"application/json": "json", **dict.fromkeys(YAML_TYPES, "yaml")}
+LessonPath = Annotated[str, Path(description="id of the lesson", max_length=100)]
+
+router = api_router(prefix="/lessons", tags=["lessons"])
+
+
+def _lesson(services: ServicesDep, request: Request, body: BodyDep) -> Lesson:
+    """Return the lesson of a request's body, in JSON or YAML by its media type."""
+    services.store.check_disk_space(len(body))
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if len(body) > MAX_BYTES:
+        raise InvalidInput(f"a lesson has at most {MAX_BYTES // 1024} kB")
+    if media_type in YAML_TYPES:
+        return read_file(body, "the lesson")
+    try:
+        data = json.loads(body)
+    except (ValueError, RecursionError) as error:
+        raise InvalidInput(
+            f"the body is no JSON; send a lesson as application/json, or as {MEDIA_TYPE}"
+        ) from error
+    return read_plain_values(data)
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Store a lesson",
+    response_model=NewLesson,
+    responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
+    openapi_extra={
+        "requestBody": {
+            "content": {
+                "application/json": {"schema": GIVEN_LESSON},
+                MEDIA_TYPE: {"schema": GIVEN_LESSON},
+            },
+            "required": True,
+        }
+    },
+)
+@policy(access=OPERATOR)
+def add_lesson(
+    services: ServicesDep, request: Request, lesson: Annotated[Lesson, Depends(_lesson)]
+) -> Response:
+    """Store the lesson; the same content has the same id, on every server.
+
+    What its cards run must be possible to start, and what they open be within the setting's own
+    bounds. Texts are Markdown without HTML, pictures and scripts.
+    """
+    services.of(CardStarts).check(lesson, services.store)
+    found = services.of(Lessons).add(lesson)
+    path = request.url_for("get_lesson", lesson_id=found.id).path
+    link = link_of(request, services.settings, f"/l/{found.id}")
+    added = {"id": found.id, "link": link["address"], "qr_code": link["qr_code"]}
+    return JSONResponse(added, 201, {"Location": path})
+
+
+@router.get("", summary="List lessons", response_model=LessonList)
+@policy(access=LESSONS)
+def list_lessons(services: ServicesDep) -> Response:
+    """Return the lessons that are built in, and those that were stored."""
+    items = [
+        {
+            "id": one.id,
+            "title": one.lesson.title,
+            "language": one.lesson.language,
+            "aims": list(one.lesson.aims),
+            "cards": len(one.lesson.cards),
+            "is_built_in": one.is_built_in,
+        }
+        for one in services.of(Lessons).all()
+    ]
+    return JSONResponse({"items": items})
+
+
+@router.get(
+    "/{lesson_id}",
+    summary="Get a lesson (JSON, YAML)",
+    response_model=LessonView,
+    responses=answers(200, {MEDIA_TYPE: GIVEN_LESSON}),
+)
+@policy(access=LESSONS)
+def get_lesson(
+    services: ServicesDep,
+    request: Request,
+    lesson_id: LessonPath,
+    reader: ReaderDep,
+    format: Annotated[Literal["json", "yaml"] | None, Query()] = None,  # noqa: A002
+) -> Response:
+    """Return a lesson; as YAML it is the file that `POST /lessons` takes, on any server.
+
+    While an open room teaches it, it is for operators alone whole: for others it has neither what
+    is revealed nor the cards after the one that the room shows.
+    """
+    found, is_taught = services.of(Lessons).get(lesson_id), False
+    if reader is not None:
+        found, is_taught = _while_taught(services, found)
+    if negotiated(request, format, ("json", "yaml"), _TYPES) == "yaml":
+        text = write_file(found.lesson).encode()
+        return attachment(text, MEDIA_TYPE, f"lesson-{found.id}.yaml")
+    return JSONResponse(lesson_view(found, is_taught=is_taught))
+
+
+def _while_taught(services: Services, found: FoundLesson) -> tuple[FoundLesson, bool]:
+    """Return what all may read of a lesson, and whether that is not all of it."""
+    shown = services.of(Rooms).taught(found.lesson)
+    if shown is None:
+        return found, False
+    cards = tuple(replace(card, reveal=None) for card in found.lesson.cards[: shown + 1])
+    return replace(found, lesson=replace(found.lesson, cards=cards)), True
+
+
+@router.delete("/{lesson_id}", status_code=204, summary="Delete a stored lesson")
+@policy(access=OPERATOR)
+def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> None:
+    """Delete it; rooms that have it keep it."""
+    services.of(Lessons).delete(lesson_id)
+
+
+def lesson_view(found: FoundLesson, *, is_taught: bool = False) -> dict[str, Any]:
+    """Return a lesson as `GET /lessons/{lesson_id}` responds; `is_taught` if parts are left out."""
+    return {
+        **adapter().dump_python(found.lesson, mode="json"),
+        "id": found.id,
+        "is_built_in": found.is_built_in,
+        "is_taught": is_taught,
+        "html": [html_of(card) for card in found.lesson.cards],
+    }

@@ -1,0 +1,105 @@
+"""Finds lessons: those that come with the server, and those that were stored on it."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from app.features.classroom.lesson import Lesson, plain, read_lesson
+from app.features.classroom.lesson_file import read_file
+from app.features.classroom.lesson_rows import LessonRows
+from app.storage.errors import Busy, NotFound
+
+MAX_LESSONS = 500
+"""Lessons stored at most."""
+ID_DIGITS = 12
+_FOLDER = Path(__file__).with_name("built_in")
+_RETRY_S = 60
+
+
+@dataclass(frozen=True)
+class FoundLesson:
+    """A lesson by its id.
+
+    Attributes:
+        id: of a built-in lesson its name; else a hash of its content, the same on every server.
+        lesson: the document.
+        is_built_in: whether it comes with the server, so that it cannot be deleted.
+    """
+
+    id: str
+    lesson: Lesson
+    is_built_in: bool
+
+
+class Lessons:
+    """The lessons of a server. Thread-safe."""
+
+    def __init__(self, rows: LessonRows) -> None:
+        """Use the rows of a database."""
+        self._rows = rows
+
+    def add(self, lesson: Lesson) -> FoundLesson:
+        """Store a lesson, unless it is stored already.
+
+        Raises:
+            Busy: if there are too many.
+            StorageFull, StorageFailed: if it cannot be stored.
+        """
+        document = plain(lesson)
+        found = FoundLesson(_content_id(document), lesson, is_built_in=False)
+        is_stored = bool(self._rows.read(_stored, found.id).sound)
+        if not is_stored and not self._rows.put(found.id, lesson.title, document, MAX_LESSONS):
+            raise Busy(f"{MAX_LESSONS} lessons are stored, which is the most; delete one", _RETRY_S)
+        return found
+
+    def get(self, lesson_id: str) -> FoundLesson:
+        """Return a lesson.
+
+        Raises:
+            NotFound: if there is none of this id, or it cannot be read.
+        """
+        known = built_in().get(lesson_id)
+        if known is not None:
+            return FoundLesson(lesson_id, known, is_built_in=True)
+        rows = self._rows.read(_stored, lesson_id)
+        for row in rows.damaged:
+            raise NotFound(f"the lesson {lesson_id} is damaged: {row.damaged}; delete it")
+        if not rows.sound:
+            raise NotFound(f"there is no lesson {lesson_id!r}; GET /api/v1/lessons lists all")
+        found: FoundLesson = rows.sound[0]
+        return found
+
+    def all(self) -> list[FoundLesson]:
+        """Return all lessons that can be read: the built-in ones, then the stored, newest first."""
+        found = [FoundLesson(one, lesson, is_built_in=True) for one, lesson in built_in().items()]
+        return found + self._rows.read(_stored).sound
+
+    def delete(self, lesson_id: str) -> None:
+        """Delete a stored lesson; rooms that have it keep it.
+
+        Raises:
+            NotFound: if there is no stored lesson of this id.
+        """
+        if not self._rows.delete(lesson_id):
+            raise NotFound(f"there is no stored lesson {lesson_id!r}; those built in stay")
+
+
+@cache
+def built_in() -> Mapping[str, Lesson]:
+    """Return the lessons that come with the server, by id."""
+    return {
+        one.stem: read_file(one.read_bytes(), one.name) for one in sorted(_FOLDER.glob("*.yaml"))
+    }
+
+
+def _stored(**row: Any) -> FoundLesson:
+    return FoundLesson(row["id"], read_lesson(row["document"]), is_built_in=False)
+
+
+def _content_id(document: Mapping[str, object]) -> str:
+    text = json.dumps(document, sort_keys=True, ensure_ascii=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()[:ID_DIGITS]

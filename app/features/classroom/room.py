@@ -1,0 +1,200 @@
+"""A room: a class that goes through a lesson together, and what its participants may do."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from typing import Any, Literal
+
+from app.features.classroom.lesson import Card, Lesson
+from app.features.classroom.room_rows import ParticipantRow, RoomRun
+from app.storage.errors import Conflict, Forbidden, NotFound
+
+Phase = Literal["open", "frozen", "ended"]
+Deed = Literal["predict", "run"]
+"""Actions of a participant that the card may allow."""
+_ASKS_NOTHING = "card {number} asks nothing; wait for one with a question"
+_RUNS_NOTHING = "card {number} runs nothing; wait for one with a button to go"
+
+
+@dataclass
+class Room:
+    """A room, as it is in the database.
+
+    Attributes:
+        code: by which one joins it.
+        lesson_id: of the lesson that was chosen; None for none.
+        lesson: what is taught.
+        card: number of the card that is shown, from 0.
+        revealed: numbers of the cards that are revealed.
+        is_frozen: whether nothing can be answered or started.
+        needs_approval: whether others see of a participant only what was approved.
+        spotlight: id of the run on the room's stage; None for none.
+        created_at, ended_at: in UTC; it is open while `ended_at` is None.
+        participants: by seed, those too who left and had answered or started something.
+        predictions: by seed and card.
+        runs: by id, oldest first.
+        next_seed: of the next participant; no seed is given twice.
+        used_at: when something was last done in it, as far as that is known, in UTC.
+        finished: of runs that have finished, what came of them, by id; it is filled as it is asked.
+    """
+
+    code: str
+    lesson_id: str | None
+    lesson: Lesson
+    card: int
+    revealed: frozenset[int]
+    is_frozen: bool
+    needs_approval: bool
+    spotlight: str | None
+    created_at: datetime
+    ended_at: datetime | None
+    participants: dict[int, ParticipantRow] = field(default_factory=dict)
+    predictions: dict[tuple[int, int], Any] = field(default_factory=dict)
+    runs: dict[str, RoomRun] = field(default_factory=dict)
+    next_seed: int = field(default=0, compare=False)
+    used_at: datetime = field(default=datetime.min.replace(tzinfo=UTC), compare=False)
+    finished: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it has not ended."""
+        return self.ended_at is None
+
+    @property
+    def shown(self) -> Card:
+        """The card that is shown."""
+        return self.lesson.cards[self.card]
+
+    @property
+    def present(self) -> list[ParticipantRow]:
+        """The participants who have not left, by seed."""
+        # Copied first, as others may join meanwhile.
+        return [one for _, one in sorted({**self.participants}.items()) if one.left_at is None]
+
+    @property
+    def phase(self) -> Phase:
+        """Whether it is open, frozen or ended."""
+        if not self.is_open:
+            return "ended"
+        return "frozen" if self.is_frozen else "open"
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """State that all in the room may know, in plain types, as its `room` event has it."""
+        runs = list(self.runs.values())
+        started = {one.seed for one in runs if one.is_main and one.card == self.card}
+        return {
+            "code": self.code,
+            "title": self.lesson.title,
+            "language": self.lesson.language,
+            "lesson_id": self.lesson_id,
+            "state": self.phase,
+            "card": self.card,
+            "cards": len(self.lesson.cards),
+            "revealed": sorted(self.revealed),
+            "participants": len(self.present),
+            "predicted": sum(card == self.card for _, card in list(self.predictions)),
+            "started": len(started),
+            "spotlight": self.spotlight,
+            "needs_approval": self.needs_approval,
+        }
+
+    def snapshot(self) -> "Room":
+        """Return a copy whose participants, predictions and runs do not change meanwhile."""
+        return replace(
+            self,
+            participants={**self.participants},
+            predictions={**self.predictions},
+            runs={**self.runs},
+        )
+
+    def refusal(self, deed: Deed) -> str | None:
+        """Return why the card that is shown forbids a deed; None if it allows it."""
+        card = self.shown
+        if deed == "predict" and card.ask is None:
+            return _ASKS_NOTHING.format(number=self.card)
+        if deed == "run" and card.go is None:
+            return _RUNS_NOTHING.format(number=self.card)
+        return None
+
+    def check_open(self) -> None:
+        """Check that it has not ended.
+
+        Raises:
+            Conflict: if it has.
+        """
+        if not self.is_open:
+            raise Conflict(
+                f"the room {self.code} has ended; ask for the code of a new one", "ended"
+            )
+
+    def check_going_on(self) -> None:
+        """Check that it has neither ended nor is frozen.
+
+        Raises:
+            Conflict: if it is either.
+        """
+        self.check_open()
+        if self.is_frozen:
+            raise Conflict("the teacher has stopped the class for a moment; wait", "frozen")
+
+    def check_card(self, number: int) -> None:
+        """Check that the lesson has a card.
+
+        Raises:
+            NotFound: if it has not.
+        """
+        if not 0 <= number < len(self.lesson.cards):
+            raise NotFound(
+                f"the lesson has no card {number}; its cards are 0 to {len(self.lesson.cards) - 1}"
+            )
+
+    def check_seated(self, seed: int) -> None:
+        """Check that a participant has a seat: was not removed, and has not left.
+
+        Raises:
+            Forbidden: if not.
+        """
+        if seed not in self.participants or self.participants[seed].left_at is not None:
+            raise Forbidden(f"you are not in the room {self.code} any more; join it again")
+
+    def has_acted(self, seed: int) -> bool:
+        """Whether a participant has answered or started anything, on any card."""
+        answered = any(one == seed for one, _ in list(self.predictions))
+        return answered or any(run.seed == seed for run in list(self.runs.values()))
+
+    def participant(self, seed: int) -> ParticipantRow:
+        """Return the participant with a seed.
+
+        Raises:
+            NotFound: if there is none.
+        """
+        if seed not in self.participants:
+            raise NotFound(f"the room {self.code} has no participant with the seed {seed}")
+        return self.participants[seed]
+
+    def runs_of(self, seed: int, card: int) -> list[RoomRun]:
+        """Return what a participant started on a card, oldest first."""
+        return [
+            one
+            for one in list(self.runs.values())
+            if one.is_main and (one.seed, one.card) == (seed, card)
+        ]
+
+    def has_shown(self, card: int) -> bool:
+        """Whether a card is shown, is before the one that is, or is revealed."""
+        return card <= self.card or card in self.revealed
+
+    def shows(self, seed: int, card: int) -> bool:
+        """Whether others see what a participant answered and ran on a card."""
+        return card in self.revealed and self.participants[seed].is_approved
+
+    def name_for_others(self, seed: int) -> str | None:
+        """Return the name of a participant as others see it; None if it is hidden."""
+        one = self.participants[seed]
+        return None if one.is_name_hidden or not one.is_approved else one.name
+
+
+def given_key(given: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    """Return settings that were given as what is equal where they are."""
+    return tuple(sorted((name, repr(value)) for name, value in given.items()))

@@ -1,0 +1,448 @@
+"""Routes of rooms, in which a class goes through a lesson together."""
+
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from typing import Annotated, Any, Literal
+
+from fastapi import Depends, Header, Path, Query, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.sse import ServerSentEvent
+from starlette.responses import JSONResponse, Response
+
+from app.api.answers import AnyRunView, DeletedView, WhatIfView
+from app.api.contract import LOCATION, TEXT, Schema, answers
+from app.api.cookies import SessionCookie, is_secure
+from app.api.deps import EventListener, IdempotencyKeyHeader, Services, ServicesDep
+from app.api.events import EVENT_STREAM, client_slot, stream_events
+from app.api.formats import attachment, negotiated
+from app.api.policy import OPERATOR, WATCH, api_router, policy
+from app.api.rate_limit import asker_of
+from app.api.runs import delete_each, located
+from app.api.spectators import address_for_others, link_of
+from app.api.starts import spectators_asker
+from app.features.classroom.access import (
+    BY_CODE,
+    JOIN,
+    WATCH_ROOM,
+    ReaderDep,
+    participant,
+    room_cookie,
+    work_of_card,
+)
+from app.features.classroom.card_starts import CardStarts
+from app.features.classroom.lesson import CardNumber, read_lesson
+from app.features.classroom.lessons import Lessons
+from app.features.classroom.names import in_groups, normalized
+from app.features.classroom.request_bodies import (
+    CardBody,
+    FreezeBody,
+    JoinBody,
+    ParticipantBody,
+    PredictionBody,
+    RevealBody,
+    RoomBody,
+    RunBody,
+    SpotlightBody,
+)
+from app.features.classroom.response_models import (
+    JoinedView,
+    NewRoom,
+    PredictionView,
+    ResultsView,
+    RoomList,
+    RoomView,
+)
+from app.features.classroom.results import MEDIA_TYPE, Reader, as_csv, results_of
+from app.features.classroom.room import Room
+from app.features.classroom.room_stages import RoomStages, path_of_room
+from app.features.classroom.room_views import results_view, room_view
+from app.features.classroom.rooms import Rooms
+from app.storage.errors import Conflict, Forbidden, NotFound
+from app.storage.json_text import finite
+from app.viewer.shared_stage import SharedStage
+from hexapods.domain.errors import InvalidInput
+from hexapods.domain.text import MAX_NAME, check_name
+
+CodePath = Annotated[str, Path(description="code of the room", max_length=20)]
+SeedPath = Annotated[int, Path(description="seed of the participant", ge=0)]
+MIN_JOIN_KEY = 16
+"""Characters of the Idempotency-Key of a request to join, which is a secret."""
+_SETS_COOKIE: Schema = {"Set-Cookie": {"required": True, "schema": TEXT}}
+
+router = api_router(prefix="/rooms", tags=["rooms"])
+
+
+def _seat(services: ServicesDep, code: CodePath, reader: ReaderDep) -> int:
+    """Return the seed of the participant who asks, in the room of the path.
+
+    Raises:
+        Forbidden: if it is none of this room.
+    """
+    room = services.of(Rooms).get(code)
+    seed = dict(reader or ()).get(room.code)
+    if seed is None:
+        raise Forbidden(
+            f"this is for participants of the room {room.code}; join it first with "
+            f"POST /api/v1/rooms/{room.code}/participants"
+        )
+    return seed
+
+
+SeatDep = Annotated[int, Depends(_seat)]
+"""Seed of the participant who asks."""
+
+
+@router.post(
+    "",
+    status_code=201,
+    summary="Open a room",
+    response_model=NewRoom,
+    responses=answers(201, headers={"Location": {"required": True, "schema": TEXT}}),
+)
+@policy(access=OPERATOR, starts=True)
+async def open_room(
+    services: ServicesDep, request: Request, body: RoomBody | None = None
+) -> Response:
+    """Open a room with a stage of its own; its code is all that pupils need to join."""
+    body = body or RoomBody()
+
+    def create() -> Room:
+        lesson: Any = None
+        if isinstance(body.lesson, str):
+            lesson = services.of(Lessons).get(body.lesson)
+        elif body.lesson is not None:
+            lesson = read_lesson(body.lesson)
+            services.of(CardStarts).check(lesson, services.store)
+        for idle in services.of(Rooms).idle_rooms():
+            services.of(Rooms).end(idle.code)
+        return services.of(Rooms).create(lesson, needs_approval=body.needs_approval)
+
+    room = await run_in_threadpool(create)
+    await services.of(RoomStages).open(room)
+    for ended in services.of(Rooms).all():
+        if not ended.is_open:
+            await services.of(RoomStages).close(ended.code)
+    link = link_of(request, services.settings, path_of_room(in_groups(room.code)))
+    shown = {"code": room.code, **link}
+    location = request.url_for("get_room", code=room.code).path
+    return JSONResponse(shown, 201, {"Location": location})
+
+
+@router.get("", summary="List the rooms that who asks may know", response_model=RoomList)
+@policy(access=WATCH)
+def list_rooms(services: ServicesDep, request: Request, reader: ReaderDep) -> Response:
+    """Return all rooms to operators, and to participants those in which they are."""
+    codes = None if reader is None else set(dict(reader))
+    items = [
+        {
+            "code": room.code,
+            "title": room.lesson.title,
+            "state": room.phase,
+            "participants": len(room.present),
+            "created_at": room.created_at.isoformat(),
+        }
+        for room in services.of(Rooms).all()
+        if codes is None or room.code in codes
+    ]
+    is_reachable = address_for_others(request, services.settings) is not None
+    return JSONResponse({"items": items, "is_reachable": is_reachable})
+
+
+@router.get("/{code}", summary="Get a room", response_model=RoomView)
+@policy(access=BY_CODE)
+def get_room(
+    services: ServicesDep, request: Request, code: CodePath, reader: ReaderDep
+) -> Response:
+    """Return the room as who asks may see it: teacher, participant, or anyone with the code."""
+    room = services.of(Rooms).get(code)
+    return JSONResponse(room_view(request, services, room, dict(reader or ()).get(room.code)))
+
+
+@router.post(
+    "/{code}/participants",
+    status_code=201,
+    summary="Join a room",
+    response_model=JoinedView,
+    responses={
+        **answers(201, headers=_SETS_COOKIE),
+        200: {"model": JoinedView, "description": "who is in the room already"},
+    },
+)
+@policy(access=JOIN)
+def join_room(
+    services: ServicesDep,
+    request: Request,
+    code: CodePath,
+    body: JoinBody | None = None,
+    idempotency_key: IdempotencyKeyHeader = None,
+) -> Response:
+    """Join by the code, with neither account nor data: the name is from a list of words.
+
+    A cookie keeps name and seed; who has it gets both again, with 200, as does who repeats the
+    request with the same Idempotency-Key, since the answer was lost on the way.
+    """
+    del body
+    if idempotency_key is not None and len(idempotency_key) < MIN_JOIN_KEY:
+        raise InvalidInput(
+            f"the Idempotency-Key must have at least {MIN_JOIN_KEY} characters here: who has it "
+            "is the participant"
+        )
+    rooms, cookie = services.of(Rooms), _cookie(services, request, code)
+    joined = rooms.join(code, cookie.value, idempotency_key)
+    shown = {"name": joined.participant.name, "seed": joined.participant.seed}
+    response = JSONResponse(shown, 201 if joined.is_new else 200)
+    response.headers.append("Set-Cookie", cookie.set_header(joined.key))
+    return response
+
+
+@router.delete("/{code}/me", status_code=204, summary="Leave a room")
+@policy(access=participant("leave"))
+def leave_room(
+    services: ServicesDep, request: Request, code: CodePath, seed: SeatDep, response: Response
+) -> None:
+    """Leave; answers and runs stay in the results."""
+    services.of(Rooms).leave(code, seed)
+    cookie = _cookie(services, request, code)
+    response.headers.append("Set-Cookie", cookie.expire_header())
+
+
+def _cookie(services: Services, request: Request, code: str) -> SessionCookie:
+    secure = is_secure(request.scope, services.settings)
+    return room_cookie(request.scope, normalized(code), is_secure=secure)
+
+
+@router.patch(
+    "/{code}/participants/{seed}",
+    summary="Hide the name of a participant, or approve",
+    response_model=RoomView,
+)
+@policy(access=OPERATOR)
+def change_participant(
+    services: ServicesDep, request: Request, code: CodePath, seed: SeedPath, body: ParticipantBody
+) -> Response:
+    """Change what others see of a participant."""
+    room = services.of(Rooms).change_participant(code, seed, **dict(body))
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.delete(
+    "/{code}/participants/{seed}", summary="Remove a participant", response_model=RoomView
+)
+@policy(access=OPERATOR)
+def remove_participant(
+    services: ServicesDep, request: Request, code: CodePath, seed: SeedPath
+) -> Response:
+    """Remove a participant: seat, name and answers; runs that wait or go on are stopped.
+
+    Runs that have ended are in no results any more, and stay for operators. Who was removed may
+    join again, as somebody else.
+    """
+    for run_id in services.of(Rooms).remove_participant(code, seed):
+        with suppress(Conflict, NotFound):  # it has ended, or is being stopped
+            services.jobs.stop(run_id)
+    return JSONResponse(room_view(request, services, services.of(Rooms).get(code), None))
+
+
+@router.put("/{code}/card", summary="Show a card", response_model=RoomView)
+@policy(access=OPERATOR)
+def show_card(services: ServicesDep, request: Request, code: CodePath, body: CardBody) -> Response:
+    """Show a card to all, and lock what it does not open."""
+    room = services.of(Rooms).show_card(code, body.card)
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.post("/{code}/freeze", summary="Freeze all, or go on", response_model=RoomView)
+@policy(access=OPERATOR)
+def freeze_room(
+    services: ServicesDep, request: Request, code: CodePath, body: FreezeBody | None = None
+) -> Response:
+    """Let nothing be answered or started; with `frozen` false let it be again."""
+    room = services.of(Rooms).freeze(code, (body or FreezeBody()).frozen)
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.post("/{code}/reveal", summary="Reveal a card", response_model=RoomView)
+@policy(access=OPERATOR)
+def reveal_card(
+    services: ServicesDep, request: Request, code: CodePath, body: RevealBody | None = None
+) -> Response:
+    """Show all answers and runs of a card to all participants; it takes no more answers."""
+    number = None if body is None else body.card
+    shown = services.of(Rooms).get(code).card
+    room = services.of(Rooms).reveal(code, shown if number is None else number)
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.post("/{code}/end", summary="End a room", response_model=RoomView)
+@policy(access=OPERATOR)
+async def end_room(services: ServicesDep, request: Request, code: CodePath) -> Response:
+    """Close the room and its stage; its results stay."""
+    room = await run_in_threadpool(services.of(Rooms).end, code)
+    await services.of(RoomStages).close(room.code)
+    view = await run_in_threadpool(room_view, request, services, room, None)
+    return JSONResponse(view)
+
+
+@router.delete("/{code}", summary="Delete a room that has ended", response_model=DeletedView)
+@policy(access=OPERATOR)
+def delete_room(
+    services: ServicesDep,
+    code: CodePath,
+    *,
+    runs: Annotated[bool, Query(description="delete its runs, too")] = False,
+) -> Response:
+    """Delete a room with its participants, answers and results.
+
+    Its runs stay without `runs`, as ordinary runs that all may see. The answer names the runs that
+    were deleted, and why others were kept.
+    """
+    room = services.of(Rooms).ended(code)
+    deleted = delete_each(services, services.of(Rooms).runs_in(room.code) if runs else [])
+    services.of(Rooms).delete(code)
+    return JSONResponse(deleted)
+
+
+@router.put(
+    "/{code}/spotlight", summary="Show a participant's run on the stage", response_model=RoomView
+)
+@policy(access=OPERATOR)
+def put_spotlight(
+    services: ServicesDep, request: Request, code: CodePath, body: SpotlightBody
+) -> Response:
+    """Show a run of the room on its stage, to all who watch; all participants may see it then."""
+    room = services.of(Rooms).spotlight(code, body.run_id)
+    shared = services.of(RoomStages).of(room.code)
+    if shared is not None and body.run_id is not None:
+        shared.stage.set(run_id=body.run_id, playing=True)
+    return JSONResponse(room_view(request, services, room, None))
+
+
+@router.post(
+    "/{code}/predictions", status_code=201, summary="Answer a card", response_model=PredictionView
+)
+@policy(access=participant("predict"))
+def predict(services: ServicesDep, code: CodePath, seed: SeatDep, body: PredictionBody) -> Response:
+    """Keep the answer of the participant who asks; it can be given once, before the reveal."""
+    value = services.of(Rooms).predict(code, seed, body.card, body.value)
+    return JSONResponse({"card": body.card, "value": value}, 201)
+
+
+@router.post(
+    "/{code}/runs",
+    status_code=202,
+    summary="Run what the card runs",
+    response_model=AnyRunView,
+    responses={
+        **answers(202, headers=LOCATION),
+        200: {"model": WhatIfView, "description": "the answer of a what-if"},
+    },
+)
+@policy(access=participant("run"), work=work_of_card, starts=True)
+def start_run(
+    services: ServicesDep,
+    request: Request,
+    code: CodePath,
+    seed: SeatDep,
+    body: RunBody | None = None,
+) -> Response:
+    """Start the training or race of the card with the seed of the participant who asks.
+
+    Only the settings that the card opens may be given, within its bounds. What was started alike is
+    returned again; one run of a participant goes on at a time. A what-if is answered at once, with
+    200, and is kept as a result of the card.
+    """
+    card, settings = (body := body or RunBody()).card, body.settings
+    starts, room = services.of(CardStarts), services.of(Rooms).check_run(code, card)
+    number, shown = (room.card, room.shown) if card is None else (card, room.lesson.cards[card])
+    given = starts.given(shown, settings)
+    if shown.go == "what-if":
+        what_if, asker = starts.what_if(shown, given), asker_of(request.scope)
+
+        def compute() -> dict[str, Any]:
+            return services.what_if.ask(what_if, spectators_asker(services, asker))
+
+        return JSONResponse(services.of(Rooms).ask(code, seed, given, compute, card=number))
+    run = services.of(Rooms).start(
+        code,
+        seed,
+        given,
+        lambda now: starts.start(
+            now.shown, starts.given(now.shown, settings), seed, _name(now, seed)
+        ),
+        services.jobs.start,
+        card=number,
+    )
+    return located(services, request, run, 202)
+
+
+def _name(room: Room, seed: int) -> str:
+    title = room.shown.title or room.lesson.title
+    return check_name(f"Seed {seed} · {title}"[:MAX_NAME])
+
+
+@router.get(
+    "/{code}/results",
+    summary="Get the results of a room (JSON, CSV)",
+    response_model=ResultsView,
+    responses=answers(200, {MEDIA_TYPE: TEXT}),
+)
+@policy(access=WATCH_ROOM)
+def get_results(
+    services: ServicesDep,
+    request: Request,
+    code: CodePath,
+    reader: ReaderDep,
+    *,
+    card: Annotated[CardNumber | None, Query(description="of one card; of all if absent")] = None,
+    projector: Annotated[
+        bool, Query(description="as the class sees it: without those who are not approved")
+    ] = False,
+    format: Annotated[Literal["json", "csv"] | None, Query()] = None,  # noqa: A002
+) -> Response:
+    """Return by card what was predicted, what came of the runs, and how both compare.
+
+    A participant gets their own until the reveal; others get counts alone. But for a teacher, cards
+    that are still to come have no results. CSV has no names.
+    """
+    room = services.of(Rooms).get(code)
+    if card is not None:
+        room.check_card(card)
+    cards = range(len(room.lesson.cards)) if card is None else [card]
+    if reader is not None:
+        cards = [number for number in cards if room.has_shown(number)]
+        if card is not None and not cards:
+            raise Forbidden(f"card {card} was not shown yet; the class is at card {room.card}")
+    own = dict(reader or ()).get(room.code)
+    who = Reader(own, is_teacher=reader is None, is_projector=projector)
+    results = results_of(room, services.store, cards, who)
+    if negotiated(request, format, ("json", "csv")) == "csv":
+        return attachment(
+            as_csv(results).encode(), f"{MEDIA_TYPE}; charset=utf-8", f"{room.code}.csv"
+        )
+    return JSONResponse(finite(results_view(room, results)))
+
+
+def _room_stage(services: ServicesDep, code: CodePath) -> SharedStage:
+    room = services.of(Rooms).get(code)
+    shared = services.of(RoomStages).of(room.code)
+    if shared is None:
+        room.check_open()
+        raise NotFound(f"the room {room.code} has no stage")
+    return shared
+
+
+@router.get(
+    "/{code}/events",
+    summary="Stream the events of a room and of its stage",
+    **EVENT_STREAM,
+)
+@policy(access=WATCH_ROOM)
+async def get_room_events(
+    services: ServicesDep,
+    shared: Annotated[SharedStage, Depends(_room_stage)],
+    listener: Annotated[EventListener, Depends(client_slot)],
+    last_event_id: Annotated[str | None, Header()] = None,
+) -> AsyncIterator[ServerSentEvent]:
+    """Stream a `snapshot` event, then changes, as `/r/CODE/api/v1/events` does."""
+    async for event in stream_events(services, shared, None, listener, last_event_id):
+        yield event

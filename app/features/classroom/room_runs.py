@@ -1,0 +1,241 @@
+"""The runs of participants: whose they are, who may see them, and how one is started."""
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
+from datetime import datetime
+from typing import Any
+
+from app.features.classroom.room import Room, given_key
+from app.features.classroom.room_rows import RoomRows, RoomRun, Seat
+from app.features.classroom.seats import reserve_seed
+from app.jobs.linked_start import LinkedStart
+from app.jobs.submissions import Start
+from app.storage.database.store import RunStore
+from app.storage.errors import Busy, Conflict, NotFound
+from app.storage.json_text import is_finite
+from app.storage.run import NOT_ENDED, Run
+from hexapods.domain.errors import HexapodError
+
+MAX_RUNS = 20
+"""Runs of a participant on a card."""
+_RETRY_S = 60
+_FAILED = ("failed", "stopped")
+
+
+class RoomRuns:
+    """Runs of all participants by id. Reads from any thread; `Rooms` holds its lock for changes."""
+
+    def __init__(self, store: RunStore) -> None:
+        """Create it without a run.
+
+        Args:
+            store: of the runs.
+        """
+        self._store, self._rows = store, RoomRows(store.database)
+        self._runs: dict[str, RoomRun] = {}
+        self._unread: set[str] = set()
+        """Ids of the runs whose rows are damaged: it is not known to whom they are shown."""
+
+    def load(self, rooms: Mapping[str, Room]) -> None:
+        """Load the runs of the participants of rooms, by code; those of other rooms stay hidden."""
+        for run in self._rows.runs(lambda run: _sound(run, rooms)):
+            self._runs[run.run_id] = run
+            if run.room not in rooms:
+                continue
+            room = rooms[run.room]
+            # Those of who was removed stay, and stay hidden: no newcomer has their seed.
+            reserve_seed(room, run.seed)
+            room.used_at = max(room.used_at, run.created_at)
+            if run.seed in room.participants:
+                room.runs[run.run_id] = run
+        self._unread = self._rows.run_ids() - self._runs.keys()
+
+    def forget(self, room: Room) -> None:
+        """Leave the runs of a room to all: they are ordinary ones from then on."""
+        self._runs = {k: run for k, run in self._runs.items() if run.room != room.code}
+
+    def ids_of(self, room: Room) -> list[str]:
+        """Return the ids of all runs of a room, also of who was removed, the oldest first."""
+        runs = [run for run in list(self._runs.values()) if run.room == room.code]
+        return [run.run_id for run in runs if run.answer is None]
+
+    def remove(self, room: Room, seed: int) -> list[str]:
+        """Leave the runs of a participant out of the room, and return the ids of those that go on.
+
+        They stay hidden from all but operators, but for those that were shown before. Races are
+        before their trainings.
+        """
+        runs = [run for run in room.runs.values() if run.seed == seed]
+        for run in runs:
+            del room.runs[run.run_id]
+        found = [self._find(run) for run in reversed(runs)]
+        return [run.id for run in found if run is not None and run.state in NOT_ENDED]
+
+    def owner_of(self, run_id: str) -> str | None:
+        """Return the participant who waits for a run, as a text; None if there is none."""
+        run = self._runs.get(run_id)
+        return None if run is None else f"{run.room} {run.seed}"
+
+    def is_hidden(self, run_id: str | None, reader: Iterable[Seat]) -> bool:
+        """Whether a run is hidden from a reader who is no operator.
+
+        Args:
+            run_id: of the run; None for none.
+            reader: the participants that the reader is.
+        """
+        if run_id in self._unread:
+            return True
+        run = self._runs.get(run_id or "")
+        return run is not None and not run.is_shown and (run.room, run.seed) not in reader
+
+    def note_shown(self, room: Room, runs: Iterable[RoomRun]) -> None:
+        """Show runs of a room to others; the database has been told before."""
+        for one in runs:
+            self._runs[one.run_id] = room.runs[one.run_id] = one._replace(is_shown=True)
+
+    def interrupted(self, room: Room) -> list[str]:
+        """Return the ids of the runs of a room that were asked for, and are interrupted."""
+        mains = [one for one in room.runs.values() if one.is_main]
+        found = [(one.run_id, self._find(one)) for one in mains]
+        return [run_id for run_id, run in found if run is not None and run.state == "interrupted"]
+
+    def start(
+        self,
+        room: Room,
+        seed: int,
+        given: Mapping[str, Any],
+        make: Callable[[Room], Start],
+        queue: Callable[[Start], Run],
+    ) -> Run:
+        """Start a run of a participant on the card that is shown; see `Rooms.start`.
+
+        Raises:
+            Conflict: if a run of the participant has not ended.
+            Busy: if there were too many.
+        """
+        for one in _alike(room, seed, room.card, given):
+            run = self._find(one)
+            if run is not None and run.state not in _FAILED:
+                return run
+        self._check_none_goes_on(room, seed)
+        _check_few(room, seed, room.card)
+        start = LinkedStart(make(room), lambda runs: self._link(room, seed, given, runs))
+        try:
+            return queue(start)
+        except BaseException:
+            self._unlink(room, start.links)
+            raise
+
+    def answer_of(
+        self, room: Room, seed: int, card: int, given: Mapping[str, Any]
+    ) -> Mapping[str, Any] | None:
+        """Return what the same what-if of a participant gave; None if it was not asked yet.
+
+        Raises:
+            Busy: if it was not, and too much was started on the card.
+        """
+        for one in _alike(room, seed, card, given):
+            if one.answer is not None:
+                return one.answer
+        _check_few(room, seed, card)
+        return None
+
+    def keep_answer(
+        self,
+        room: Room,
+        seed: int,
+        card: int,
+        given: Mapping[str, Any],
+        *,
+        answer: Mapping[str, Any],
+        now: datetime,
+    ) -> None:
+        """Keep what a what-if of a participant gave; others see it as they would see a run."""
+        number = len(room.runs_of(seed, card))
+        row = RoomRun(
+            run_id=f"what-if-{room.code}-{seed}-{card}-{number}",
+            room=room.code,
+            seed=seed,
+            card=card,
+            given=given,
+            is_main=True,
+            is_shown=room.shows(seed, card),
+            created_at=now,
+            answer=answer,
+        )
+        self._keep(room, [row])
+
+    def _link(self, room: Room, seed: int, given: Mapping[str, Any], runs: Sequence[Run]) -> None:
+        """Note whose runs these are before they are stored; a link to none has no effect."""
+        is_shown = room.shows(seed, room.card)
+        links = [
+            RoomRun(
+                run_id=run.id,
+                room=room.code,
+                seed=seed,
+                card=room.card,
+                given=given,
+                is_main=run is runs[-1],
+                is_shown=is_shown,
+                created_at=run.created_at,
+            )
+            for run in runs
+        ]
+        self._keep(room, links)
+
+    def _keep(self, room: Room, links: Sequence[RoomRun]) -> None:
+        self._rows.add_runs(links)
+        for one in links:
+            self._runs[one.run_id] = room.runs[one.run_id] = one
+
+    def _unlink(self, room: Room, run_ids: Collection[str]) -> None:
+        if run_ids:
+            with suppress(HexapodError):  # a link to no run has no effect
+                self._rows.remove_runs(run_ids)
+        for one in run_ids:
+            self._runs.pop(one, None)
+            room.runs.pop(one, None)
+
+    def _check_none_goes_on(self, room: Room, seed: int) -> None:
+        for one in room.runs.values():
+            run = self._find(one) if one.is_main and one.seed == seed else None
+            if run is not None and run.state in NOT_ENDED:
+                raise Conflict(f"your {run.kind} is {run.state}; wait for its end", run.state)
+
+    def _find(self, one: RoomRun) -> Run | None:
+        if one.answer is not None:
+            return None
+        try:
+            run = self._store.find(one.run_id)
+        except NotFound:
+            return None
+        return run if isinstance(run, Run) else None
+
+
+def _sound(run: RoomRun, rooms: Mapping[str, Room]) -> RoomRun:
+    """Return a stored run, or what-if.
+
+    Raises:
+        ValueError, NotFound: if the row is damaged.
+    """
+    given: Any = run.given
+    if not isinstance(given, Mapping) or not is_finite(given):
+        raise ValueError("given: it is no object of settings")
+    if run.answer is not None:
+        distance_m = run.answer["chosen"]["iqm_m"]
+        if not isinstance(distance_m, int | float) or not is_finite(run.answer):
+            raise ValueError("answer: its distance is no number")
+    if run.room in rooms:
+        rooms[run.room].check_card(run.card)
+    return run
+
+
+def _alike(room: Room, seed: int, card: int, given: Mapping[str, Any]) -> list[RoomRun]:
+    """Return what a participant started on a card with the same settings."""
+    key = given_key(given)
+    return [one for one in room.runs_of(seed, card) if given_key(one.given) == key]
+
+
+def _check_few(room: Room, seed: int, card: int) -> None:
+    if len(room.runs_of(seed, card)) >= MAX_RUNS:
+        raise Busy(f"you have started {MAX_RUNS} runs on this card, the most", _RETRY_S)

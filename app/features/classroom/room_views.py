@@ -1,0 +1,138 @@
+"""Rooms and their results as the API responds with them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Literal
+
+from fastapi import Request
+
+from app.api.deps import Services
+from app.api.spectators import link_of
+from app.features.classroom.lesson import Card, html_of
+from app.features.classroom.lesson_routes import lesson_view
+from app.features.classroom.lessons import FoundLesson
+from app.features.classroom.names import in_groups
+from app.features.classroom.results import CardResults, Entry, RunResult
+from app.features.classroom.room import Room
+from app.features.classroom.room_stages import path_of_room
+from app.features.classroom.rooms import Rooms
+from app.storage.database.store import RunStore
+from app.storage.errors import NotFound
+from hexapods.domain.records import to_json
+
+RoomRole = Literal["teacher", "participant", "spectator"]
+
+
+def room_view(request: Request, services: Services, room: Room, seed: int | None) -> dict[str, Any]:
+    """Return a room as who asks may see it.
+
+    Args:
+        request: of who asks.
+        services: of the server.
+        room: the room.
+        seed: of the participant who asks; None for others.
+    """
+    room = room.snapshot()
+    is_teacher = request.state.role == "operator"
+    if seed not in room.participants:
+        seed = None  # removed meanwhile
+    role: RoomRole = "spectator" if seed is None else "participant"
+    shown: Card = room.shown
+    if not is_teacher and room.card not in room.revealed:
+        shown = replace(shown, reveal=None)
+    lesson = FoundLesson(room.lesson_id or "", room.lesson, is_built_in=False)
+    return {
+        **room.state,
+        "role": "teacher" if is_teacher else role,
+        "shown": to_json(shown),
+        "html": html_of(shown),
+        "me": None if seed is None else _me(room, seed),
+        "people": _people(room, services.store) if is_teacher else [],
+        "lesson": lesson_view(lesson) if is_teacher else None,
+        "tournaments": services.of(Rooms).tournaments_of(room.code),
+        **link_of(request, services.settings, path_of_room(in_groups(room.code))),
+    }
+
+
+def results_view(room: Room, results: Sequence[CardResults]) -> dict[str, Any]:
+    """Return results as JSON."""
+    return {"code": room.code, "cards": [_card(one) for one in results]}
+
+
+def _me(room: Room, seed: int) -> dict[str, Any]:
+    return {
+        "name": room.participants[seed].name,
+        "seed": seed,
+        "predictions": [
+            {"card": card, "value": value}
+            for (one, card), value in sorted(room.predictions.items(), key=lambda item: item[0])
+            if one == seed
+        ],
+        "runs": [
+            {"run_id": one.run_id, "card": one.card}
+            for one in room.runs.values()
+            if one.is_main and one.seed == seed and one.answer is None
+        ],
+    }
+
+
+def _people(room: Room, store: RunStore) -> list[dict[str, Any]]:
+    people = []
+    for seed, one in sorted(room.participants.items()):
+        newest = next(iter(reversed(room.runs_of(seed, room.card))), None)
+        run, is_answered = None, newest is not None and newest.answer is not None
+        if newest is not None and not is_answered:
+            try:
+                run = store.find(newest.run_id)
+            except NotFound:
+                run = None  # deleted, or never stored
+        people.append(
+            {
+                "seed": seed,
+                "name": one.name,
+                "is_present": one.left_at is None,
+                "is_name_hidden": one.is_name_hidden,
+                "is_approved": one.is_approved,
+                "joined_at": one.joined_at.isoformat(),
+                "has_predicted": (seed, room.card) in room.predictions,
+                "run_id": None if run is None else run.id,
+                "run_state": "finished" if is_answered else None if run is None else run.state,
+            }
+        )
+    return people
+
+
+def _card(one: CardResults) -> dict[str, Any]:
+    interval = one.interval
+    return {
+        "card": one.card,
+        "title": one.title,
+        "ask": None if one.ask is None else to_json(one.ask),
+        "is_revealed": one.is_revealed,
+        "participants": one.participants,
+        "predicted": one.predicted,
+        "finished": one.finished,
+        "entries": [_entry(entry) for entry in one.entries],
+        "distances_m": one.distances_m,
+        "interval": None if interval is None else interval.as_json("iqm", "_m"),
+        "answer": one.answer,
+    }
+
+
+def _entry(one: Entry) -> dict[str, Any]:
+    run, score = one.run, one.score
+    shown = {**one._asdict(), "score": None if score is None else score._asdict()}
+    return {**shown, "run": None if run is None else _run(run, is_own=one.is_own)}
+
+
+def _run(run: RunResult, *, is_own: bool) -> dict[str, Any]:
+    return {
+        "id": run.id,
+        "kind": run.kind,
+        "state": run.state,
+        "given": run.given,
+        "distance_m": run.outcome.distance_m,
+        "winners": list(run.outcome.winners),
+        "rank": run.rank,
+        "answer": run.answer if is_own else None,
+    }

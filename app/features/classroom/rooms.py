@@ -1,0 +1,621 @@
+"""The rooms of a server: opens them, lets participants join, answer and start, and keeps them all.
+
+All is written to the database before it counts, so that a server that is killed goes on with it.
+"""
+
+import logging
+import secrets
+import threading
+from collections.abc import Callable, Iterable, Mapping
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from app.feature import DeleteRuns
+from app.features.classroom.answers import check_answer
+from app.features.classroom.lesson import Lesson, plain, read_lesson
+from app.features.classroom.lessons import FoundLesson
+from app.features.classroom.names import Choose, new_code, normalized
+from app.features.classroom.room import Deed, Room
+from app.features.classroom.room_rows import ParticipantRow, PredictionRow, RoomRow, RoomRows, Seat
+from app.features.classroom.room_runs import RoomRuns
+from app.features.classroom.seats import (
+    Joined,
+    Seats,
+    free_seat,
+    key_of,
+    new_key,
+    new_participant,
+    reserve_seed,
+    sound_participant,
+)
+from app.jobs.submissions import Start
+from app.storage.database.store import RunStore
+from app.storage.errors import Busy, Conflict, Forbidden, NotFound
+from app.storage.run import Run
+from hexapods.domain.errors import HexapodError
+
+MAX_OPEN = 16
+"""Rooms that are open at once; each has a stage of its own."""
+IDLE = timedelta(days=1)
+"""A room in which nothing has happened for so long is ended where another needs its place."""
+_RETRY_S = 60
+_logger = logging.getLogger(__name__)
+_EMPTY: Mapping[str, Any] = {
+    "title": "A room",
+    "cards": [{"text": "Watch what the teacher shows."}],
+}
+
+
+class Rooms:
+    """All rooms of a server. Thread-safe."""
+
+    def __init__(
+        self,
+        store: RunStore,
+        *,
+        choose: Choose = secrets.choice,
+        now: Callable[[], datetime] = lambda: datetime.now(UTC),
+        on_changed: Callable[[Room], object] = lambda room: None,  # noqa: ARG005
+    ) -> None:
+        """Load the rooms.
+
+        Args:
+            store: where they are, and their runs.
+            choose: draws codes and names.
+            now: the clock, with time zone.
+            on_changed: called with each room that has changed.
+
+        Raises:
+            StorageFailed: if they cannot be read.
+        """
+        self._store, self._rows = store, RoomRows(store.database)
+        self._choose, self._now = choose, now
+        self._started_at = now()
+        self.on_changed = on_changed
+        self.is_here: Callable[[Seat], bool] = lambda seat: False  # noqa: ARG005
+        """Whether a participant's page is open."""
+        self.has_entered: Callable[[Seat], bool] = lambda seat: False  # noqa: ARG005
+        """Whether a participant has entered a tournament."""
+        self.tournaments_of: Callable[[str], list[dict[str, Any]]] = lambda code: []  # noqa: ARG005
+        """Returns the tournaments of a room by its code, as `RoomTournament`."""
+        self.on_seat_taken: Callable[[Seat], object] = lambda seat: None  # noqa: ARG005
+        """Called for each participant who has lost their seat, or has left."""
+        self._lock = threading.RLock()
+        self._rooms: dict[str, Room] = {}
+        self._seats, self._runs = Seats(), RoomRuns(store)
+        self._load()
+
+    def _load(self) -> None:
+        self._rooms = {room.code: room for room in self._rows.rooms(_room)}
+        for participant in self._rows.participants(sound_participant):
+            if participant.room in self._rooms:
+                room = self._rooms[participant.room]
+                self._seats.add(room, participant)
+                room.used_at = max(
+                    room.used_at, participant.joined_at, participant.left_at or room.used_at
+                )
+        for code, seed in self._rows.seeds():
+            if code in self._rooms:
+                reserve_seed(self._rooms[code], seed)
+        for prediction in self._rows.predictions(self._sound_prediction):
+            if prediction.room in self._rooms:
+                room = self._rooms[prediction.room]
+                room.predictions[prediction.seed, prediction.card] = prediction.value
+                room.used_at = max(room.used_at, prediction.made_at)
+        self._runs.load(self._rooms)
+
+    def _sound_prediction(self, row: PredictionRow) -> PredictionRow:
+        room = self._rooms.get(row.room)
+        if room is None:
+            return row  # its room is left out
+        room.check_card(row.card)
+        ask = room.lesson.cards[row.card].ask
+        if ask is None:
+            raise ValueError(f"card {row.card} asks nothing")
+        return row._replace(value=check_answer(ask, row.value))
+
+    # ---- of the teacher
+
+    def open_rooms(self) -> list[Room]:
+        """Return the rooms that are open, oldest first."""
+        return [room for room in self.all() if room.is_open]
+
+    def all(self) -> list[Room]:
+        """Return all rooms, oldest first."""
+        with self._lock:
+            return list(self._rooms.values())
+
+    def codes(self) -> list[str]:
+        """Return the codes of all rooms, oldest first."""
+        return [room.code for room in self.all()]
+
+    def get(self, code: str) -> Room:
+        """Return a room, which may have ended, by its code as it was typed.
+
+        Raises:
+            NotFound: if there is none.
+        """
+        room = self._rooms.get(normalized(code))
+        if room is None:
+            raise NotFound(
+                f"there is no room {code[:20]!r}; look again at the code on the projector"
+            )
+        return room
+
+    def create(self, found: FoundLesson | Lesson | None, *, needs_approval: bool = False) -> Room:
+        """Open a room.
+
+        Args:
+            found: its lesson, stored or not; None for one without.
+            needs_approval: whether others see of a participant only what was approved.
+
+        Raises:
+            Busy: if too many are open.
+        """
+        lesson = found.lesson if isinstance(found, FoundLesson) else found
+        lesson_id = found.id if isinstance(found, FoundLesson) else None
+        with self._lock:
+            if len(self.open_rooms()) >= MAX_OPEN:
+                raise Busy(f"{MAX_OPEN} rooms are open, which is the most; end one", _RETRY_S)
+            row = RoomRow(
+                code=new_code(self._choose, self._rooms),
+                lesson_id=lesson_id,
+                lesson=_EMPTY if lesson is None else plain(lesson),
+                card=0,
+                revealed=[],
+                is_frozen=False,
+                needs_approval=needs_approval,
+                spotlight=None,
+                created_at=self._now(),
+                ended_at=None,
+            )
+            self._rows.add_room(row)
+            room = self._rooms[row.code] = _room(row)
+        return room
+
+    def idle_rooms(self) -> list[Room]:
+        """Return the open rooms in which nothing has happened for long."""
+        with self._lock:
+            since = self._now() - IDLE
+            # When a card was shown is not stored: after a restart a room may have been used before.
+            return [r for r in self.open_rooms() if max(r.used_at, self._started_at) < since]
+
+    def last_used_before(self, time: datetime) -> list[str]:
+        """Return the codes of the rooms in which nothing has happened since."""
+        return [room.code for room in self.all() if room.used_at <= time]
+
+    def runs_in(self, code: str) -> list[str]:
+        """Return the ids of a room's runs, the newest first: races before their trainings."""
+        return self._runs.ids_of(self.get(code))[::-1]
+
+    def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> list[str]:
+        """Delete the rooms in which nothing has happened since, with their runs.
+
+        One whose runs cannot all be deleted stays until the next time.
+
+        Returns:
+            their codes.
+        """
+        gone = []
+        for code in self.last_used_before(time):
+            ids = self.runs_in(code)
+            if len(delete_runs(ids)) < len(ids):
+                continue
+            try:
+                self.forget(code)
+            except HexapodError as error:
+                _logger.warning("the room %s is deleted later: %s", code, error)
+            else:
+                gone.append(code)
+        return gone
+
+    def forget(self, code: str) -> None:
+        """End a room, and delete all that is known of it but its runs.
+
+        Raises:
+            NotFound: if there is no such room.
+        """
+        with self._lock:
+            room = self.end(code)
+            self._rows.delete_room(room.code)
+            del self._rooms[room.code]
+            self._seats.forget(room)
+            self._runs.forget(room)
+
+    def show_card(self, code: str, number: int) -> Room:
+        """Show a card.
+
+        Raises:
+            NotFound: if there is no such room, or no such card.
+            Conflict: if the room has ended.
+        """
+        return self._change(code, lambda room: room.check_card(number), card=number)
+
+    def freeze(self, code: str, is_frozen: bool) -> Room:
+        """Let nothing be answered or started, or let it be again; errors as `show_card`."""
+        return self._change(code, is_frozen=is_frozen)
+
+    def reveal(self, code: str, number: int) -> Room:
+        """Reveal the answers and runs of a card to all participants; errors as `show_card`."""
+        with self._lock:
+            room = self.get(code)
+            room.check_card(number)
+            room.check_open()
+            approved = {seed for seed, one in room.participants.items() if one.is_approved}
+            runs = [r for r in room.runs.values() if r.card == number and r.seed in approved]
+            self._rows.change_room(
+                room.code,
+                {"revealed": sorted(room.revealed | {number})},
+                [one.run_id for one in runs],
+            )
+            room.revealed |= {number}
+            self._runs.note_shown(room, runs)
+        self._changed(room)
+        return room
+
+    def spotlight(self, code: str, run_id: str | None) -> Room:
+        """Note the run on the room's stage, which others see from then on.
+
+        Raises:
+            NotFound: if it is no run of the room.
+            Conflict: if the room has ended, or the participant is not approved yet.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            runs = []
+            if run_id is not None:
+                if run_id not in room.runs or room.runs[run_id].answer is not None:
+                    raise NotFound(f"the room {room.code} has no run {run_id!r}")
+                runs = [room.runs[run_id]]
+                participant = room.participants[runs[0].seed]
+                if not participant.is_approved:
+                    raise Conflict(f"{participant.name} is not approved yet; approve first", "open")
+            self._rows.change_room(room.code, {"spotlight": run_id}, [one.run_id for one in runs])
+            room.spotlight = run_id
+            self._runs.note_shown(room, runs)
+        self._changed(room)
+        return room
+
+    def change_participant(
+        self, code: str, seed: int, *, is_name_hidden: bool | None, is_approved: bool | None
+    ) -> Room:
+        """Hide or show the name of a participant, and approve; None leaves it as it is.
+
+        Raises:
+            NotFound: if there is no such room or participant.
+            Conflict: if the room has ended.
+        """
+        given: dict[str, Any] = {"is_name_hidden": is_name_hidden, "is_approved": is_approved}
+        changes = {name: value for name, value in given.items() if value is not None}
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            participant = room.participant(seed)._replace(**changes)
+            own = [one for one in room.runs.values() if one.seed == seed]
+            runs = [r for r in own if is_approved and r.card in room.revealed]
+            self._rows.change_participant(room.code, seed, changes, [one.run_id for one in runs])
+            room.participants[seed] = participant
+            self._runs.note_shown(room, runs)
+        self._changed(room)
+        return room
+
+    def remove_participant(self, code: str, seed: int) -> list[str]:
+        """Remove a participant: the seat, the name and all answers; runs stay, and stay hidden.
+
+        Returns:
+            the ids of the runs that go on, which are to be stopped: races before their trainings.
+
+        Raises:
+            NotFound: if there is no such room or participant.
+            Conflict: if the room has ended.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            room.participant(seed)
+            lit = room.runs.get(room.spotlight or "")
+            if lit is not None and lit.seed == seed:
+                self._rows.change_room(room.code, {"spotlight": None})
+                room.spotlight = None
+            going_on = self._remove(room, seed)
+        self._changed(room)
+        return going_on
+
+    def _remove(self, room: Room, seed: int) -> list[str]:
+        self._rows.delete_participant(room.code, seed)
+        self._seats.remove(room, seed)
+        self.on_seat_taken((room.code, seed))
+        return self._runs.remove(room, seed)
+
+    def end(self, code: str) -> Room:
+        """End a room: from then on nobody joins, answers or starts; its results stay.
+
+        Raises:
+            NotFound: if there is no such room.
+        """
+        with self._lock:
+            room = self.get(code)
+            if room.is_open:
+                now = self._now()
+                self._rows.change_room(room.code, {"ended_at": now})
+                room.ended_at = now
+        self._changed(room)
+        return room
+
+    def ended(self, code: str) -> Room:
+        """Return a room that has ended.
+
+        Raises:
+            NotFound: if there is no such room.
+            Conflict: if it is open.
+        """
+        room = self.get(code)
+        if room.is_open:
+            raise Conflict(f"the room {room.code} is open; end it first", "open")
+        return room
+
+    def delete(self, code: str) -> None:
+        """Delete a room that has ended, with its participants, answers and what-ifs.
+
+        Its runs stay, and are nobody's: all may see them. Errors as `ended`.
+        """
+        with self._lock:
+            self.ended(code)
+            self.forget(code)
+
+    def _change(
+        self, code: str, check: Callable[[Room], object] = Room.check_open, **changes: Any
+    ) -> Room:
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            check(room)
+            self._rows.change_room(room.code, changes)
+            for name, value in changes.items():
+                setattr(room, name, value)
+        self._changed(room)
+        return room
+
+    def _changed(self, room: Room) -> None:
+        """Note that something was done in a room, and tell of it."""
+        room.used_at = self._now()
+        self.on_changed(room)
+
+    # ---- of participants
+
+    def join(self, code: str, key: str = "", request_key: str | None = None) -> Joined:
+        """Join a room; who was in it before, by the key, has the same name and seed again.
+
+        Args:
+            code: of the room.
+            key: of who was in it before; "" for none.
+            request_key: idempotency key of the request, a secret: with it the same request, of
+                which the answer was lost, finds the participant of the first again.
+
+        Raises:
+            NotFound: if there is no such room.
+            Conflict: if it has ended.
+            Busy: if it is full.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_open()
+            seated = self._seated(room, key, request_key)
+            if seated is not None:
+                return seated
+            requested = None if request_key is None else key_of(room.code, request_key)
+            if requested is None or self._seats.has(requested):
+                requested = new_key()
+            unused = free_seat(room, lambda seed: self._is_in_use(room, seed))
+            if unused is not None:
+                self._remove(room, unused)
+            joined = new_participant(room, self._choose, self._now(), requested)
+            self._rows.add_participant(joined.participant)
+            self._seats.add(room, joined.participant)
+        self._changed(room)
+        return joined
+
+    def _is_in_use(self, room: Room, seed: int) -> bool:
+        return self._has_acted(room, seed) or self.is_here((room.code, seed))
+
+    def _has_acted(self, room: Room, seed: int) -> bool:
+        return room.has_acted(seed) or self.has_entered((room.code, seed))
+
+    def _seated(self, room: Room, key: str, request_key: str | None) -> Joined | None:
+        requested = "" if request_key is None else key_of(room.code, request_key)
+        for known in (key, requested):
+            seat = self._seats.of(room, known)
+            if seat is not None:
+                return Joined(seat, known, is_new=False)
+        return None
+
+    def leave(self, code: str, seed: int) -> None:
+        """Leave a room; what was answered and run stays.
+
+        Raises:
+            NotFound: if there is no such room.
+            Forbidden: if the participant was removed, or has left.
+        """
+        with self._lock:
+            room, now = self.get(code), self._now()
+            room.check_seated(seed)
+            if self._has_acted(room, seed):
+                self._rows.change_participant(room.code, seed, {"left_at": now})
+                room.participants[seed] = room.participants[seed]._replace(left_at=now)
+                self.on_seat_taken((room.code, seed))
+            else:
+                self._remove(room, seed)
+        self._changed(room)
+
+    def seat(self, code: str, key: str) -> ParticipantRow | None:
+        """Return the participant of a room by the key of the cookie; None if it is none's."""
+        room = self._rooms.get(code)
+        return None if room is None else self._seats.of(room, key)
+
+    def predict(self, code: str, seed: int, card: int, value: Any) -> Any:
+        """Keep a participant's answer to the question of the card that is shown.
+
+        Raises:
+            NotFound: if there is no such card.
+            Forbidden: if the card is not shown, or asks nothing, or the participant was removed.
+            Conflict: if it was answered or revealed before, or the room has ended or is frozen.
+            InvalidInput: if the value is no answer to the question.
+        """
+        with self._lock:
+            room = self.get(code)
+            room.check_seated(seed)
+            _check_shown(room, card)
+            _check_allowed(room, "predict")
+            room.check_going_on()
+            ask = room.lesson.cards[card].ask
+            answer = None if ask is None else check_answer(ask, value)
+            if (seed, card) in room.predictions:
+                raise Conflict(
+                    f"you have answered card {card} already; an answer stays", "answered"
+                )
+            if card in room.revealed:
+                raise Conflict(f"card {card} is revealed; it takes no more answers", "revealed")
+            self._rows.add_prediction(PredictionRow(room.code, seed, card, answer, self._now()))
+            room.predictions[seed, card] = answer
+        self._changed(room)
+        return answer
+
+    def check_run(self, code: str, card: int | None = None) -> Room:
+        """Return the room, if the card that is shown lets its participants start a run.
+
+        Args:
+            code: of the room.
+            card: number of the card that is meant; None for the one that is shown.
+
+        Raises:
+            NotFound: if there is no such card.
+            Forbidden: if another card is shown, or it runs nothing.
+            Conflict: if the room has ended or is frozen.
+        """
+        room = self.get(code)
+        _check_shown(room, card)
+        _check_allowed(room, "run")
+        room.check_going_on()
+        return room
+
+    def start(
+        self,
+        code: str,
+        seed: int,
+        given: Mapping[str, Any],
+        make: Callable[[Room], Start],
+        queue: Callable[[Start], Run],
+        *,
+        card: int | None = None,
+    ) -> Run:
+        """Start what the card that is shown runs; what was started alike is returned again.
+
+        Args:
+            code: of the room.
+            seed: of the participant.
+            given: settings that the participant gave, by name, as they were checked.
+            make: makes the start.
+            queue: queues it.
+            card: number of the card that is meant; None for the one that is shown.
+
+        Raises:
+            NotFound, Forbidden, Conflict: as `check_run`; also if the participant was removed, or a
+                run of theirs has not ended.
+            Busy: if there were too many.
+        """
+        with self._lock:
+            room = self.check_run(code, card)
+            room.check_seated(seed)
+            run = self._runs.start(room, seed, given, make, queue)
+        self._changed(room)
+        return run
+
+    def ask(
+        self,
+        code: str,
+        seed: int,
+        given: Mapping[str, Any],
+        compute: Callable[[], Mapping[str, Any]],
+        *,
+        card: int,
+    ) -> Mapping[str, Any]:
+        """Return what the what-if of the card that is shown gives, and keep it; see `start`.
+
+        Args:
+            code: of the room.
+            seed: of the participant.
+            given: settings that the participant gave, by name, as they were checked.
+            compute: computes the answer, which may take seconds; it is called without a lock.
+            card: number of the card.
+
+        Raises:
+            NotFound, Forbidden, Conflict: as `check_run`.
+            Busy: if there were too many.
+        """
+        with self._lock:
+            known = self._runs.answer_of(self.check_run(code, card), seed, card, given)
+        if known is not None:
+            return known
+        answer = compute()
+        with self._lock:
+            # It was asked while the card was shown, so it is kept whatever is shown now.
+            room = self.get(code)
+            room.check_seated(seed)
+            known = self._runs.answer_of(room, seed, card, given)
+            if known is not None:
+                return known
+            self._runs.keep_answer(room, seed, card, given, answer=answer, now=self._now())
+        self._changed(room)
+        return answer
+
+    # ---- who sees what
+
+    def taught(self, lesson: Lesson) -> int | None:
+        """Return the number of the card up to which all may read a lesson that open rooms teach.
+
+        None if none teaches it, whatever its id there. What is revealed is for nobody meanwhile.
+        """
+        return min((one.card for one in self.open_rooms() if one.lesson == lesson), default=None)
+
+    def owner_of(self, run_id: str) -> str | None:
+        """Return who waits for a run, as a text; None if it is no participant of a room."""
+        return self._runs.owner_of(run_id)
+
+    def is_hidden(self, run_id: str | None, reader: Iterable[Seat]) -> bool:
+        """Whether a run is hidden from a reader who is no operator.
+
+        Args:
+            run_id: of the run; None for none.
+            reader: the participants that the reader is.
+        """
+        return self._runs.is_hidden(run_id, reader)
+
+    def unfinished(self) -> list[str]:
+        """Return the ids of interrupted runs of open rooms, which were asked for."""
+        with self._lock:
+            return [one for room in self.open_rooms() for one in self._runs.interrupted(room)]
+
+
+def _check_shown(room: Room, card: int | None) -> None:
+    if card is not None:
+        room.check_card(card)
+        if card != room.card:
+            raise Forbidden(f"card {card} is not shown; the class is at card {room.card}")
+
+
+def _check_allowed(room: Room, deed: Deed) -> None:
+    if (refusal := room.refusal(deed)) is not None:
+        raise Forbidden(refusal)
+
+
+def _room(row: RoomRow) -> Room:
+    if row.code != normalized(row.code) or not (row.code.isascii() and row.code.isalnum()):
+        raise ValueError("code: it is no code")
+    revealed: Any = row.revealed
+    if not isinstance(revealed, list) or not all(type(one) is int for one in revealed):
+        raise ValueError("revealed: it is no list of numbers")
+    lesson = read_lesson(row.lesson)
+    card = min(max(row.card, 0), len(lesson.cards) - 1)
+    fields = {**row._asdict(), "lesson": lesson, "card": card, "revealed": frozenset(row.revealed)}
+    return Room(**fields, used_at=row.ended_at or row.created_at)

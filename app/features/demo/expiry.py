@@ -1,0 +1,131 @@
+"""Clean-up of a demo: stops visitors' runs that take too long, deletes what was made a day ago."""
+
+import logging
+import time
+from collections.abc import Callable, Collection, Iterable, Sequence
+from datetime import UTC, datetime
+from typing import Protocol
+
+from app.feature import DeleteRuns
+from app.features.demo.visitors import Visitors
+from app.jobs.jobs import Jobs
+from app.storage.database.store import RunStore
+from app.storage.errors import Conflict, NotFound
+from app.storage.run import NOT_ENDED
+from hexapods.domain.errors import HexapodError
+
+EVERY_S = 5.0
+"""Period of the clean-up [s]."""
+_ATTEMPTS, _PAUSE_S = 20, 0.5
+"""Of an operator who ends a visitor: how often, and after how long again [s]."""
+_OVERLONG = "Stopped after {seconds:g} s, for which a run of this demo may compute."
+_logger = logging.getLogger(__name__)
+
+
+class Cleaner(Protocol):
+    """What deletes its own things once they are old, such as a feature."""
+
+    def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> Iterable[str]:
+        """Delete what has not been used since a time; see `Feature.delete_before`."""
+
+
+class Expiry:
+    """Deletes what visitors of a demo have made once it is a day old, with all that belongs to it.
+
+    A run that another needs stays only while that one waits in the queue: when it starts, it has
+    loaded what it needs. What has ended has its own recordings and tables, and loses nothing.
+    """
+
+    def __init__(
+        self,
+        store: RunStore,
+        jobs: Jobs,
+        visitors: Visitors,
+        others: Sequence[Cleaner] = (),
+        *,
+        now: Callable[[], datetime] = lambda: datetime.now(UTC),
+        now_s: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Clean up what is of these.
+
+        Args:
+            store: store of the runs.
+            jobs: stops and deletes runs.
+            visitors: whose runs are whose, and for how long.
+            others: delete what does not outlive a day either, beside the runs.
+            now: the clock, with time zone.
+            now_s: monotonic clock [s].
+        """
+        self._store, self._jobs, self._visitors = store, jobs, visitors
+        self._others = others
+        self._now, self._now_s = now, now_s
+        self._running_since_s: dict[str, float] = {}
+
+    def sweep(self) -> list[list[str]]:
+        """Clean up once, and return for each of the others the names of what is gone.
+
+        What fails is logged, and tried again by the next one.
+        """
+        before = self._now() - self._visitors.allowance.lifetime
+        old = self._visitors.made_before(before)
+        self._visitors.forget(self._deleted(one.run_id for one in old))
+        gone = [list(other.delete_before(before, self._deleted)) for other in self._others]
+        try:
+            self._store.keys.delete_expired()
+            self._stop_overlong()
+        except HexapodError as error:
+            _logger.warning("the clean-up goes on later: %s", error)
+        return gone
+
+    def end_visitor(self, visitor_id: str) -> None:
+        """Stop and delete all runs of a visitor, and forget its key.
+
+        Raises:
+            NotFound: if there is no such visitor.
+            Conflict: if a run is kept, as one of others waits for it.
+        """
+        runs = sorted(self._visitors.runs_of(visitor_id), key=lambda one: one.is_main, reverse=True)
+        left = [one.run_id for one in runs]
+        for _ in range(_ATTEMPTS):
+            gone = self._deleted(left)
+            self._visitors.forget(gone)
+            left = [one for one in left if one not in gone]
+            if not left:
+                return
+            # A training that is stopped with its race has not ended yet.
+            time.sleep(_PAUSE_S)
+        raise Conflict(
+            f"{len(left)} runs of the visitor are kept, as others wait for them or they are still "
+            "ending; try again later",
+            "queued",
+        )
+
+    def _deleted(self, run_ids: Iterable[str]) -> Collection[str]:
+        """Stop and delete runs, and return the ids of those that are gone."""
+        gone = []
+        for run_id in run_ids:
+            try:
+                if self._store.find(run_id).state in NOT_ENDED:
+                    self._jobs.stop(run_id)
+                self._jobs.delete(run_id)
+            except NotFound:
+                pass
+            except HexapodError as error:
+                _logger.warning("a run is deleted later: %s", error, extra={"run_id": run_id})
+                continue
+            gone.append(run_id)
+        return gone
+
+    def _stop_overlong(self) -> None:
+        now_s, running = self._now_s(), self._visitors.running()
+        self._running_since_s = {one: self._running_since_s.get(one, now_s) for one in running}
+        longest_s = self._visitors.allowance.seconds_per_run
+        for run_id, since_s in self._running_since_s.items():
+            if now_s - since_s < longest_s:
+                continue
+            try:
+                notes = self._jobs.stop(run_id).notes
+                told = _OVERLONG.format(seconds=longest_s)
+                self._jobs.annotate(run_id, {"notes": f"{notes}\n{told}".strip()})
+            except (NotFound, Conflict):
+                pass  # it has ended meanwhile

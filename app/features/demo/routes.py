@@ -1,0 +1,88 @@
+"""Routes of a demo: what a visitor may still start, and for operators who has started what."""
+
+from typing import Annotated
+
+from fastapi import Path
+from starlette.responses import JSONResponse, Response
+
+from app.api.deps import IdentityDep, RoleDep, Services, ServicesDep
+from app.api.policy import OPERATOR, WATCH, api_router, policy
+from app.features.demo.access import Visitor
+from app.features.demo.allowance import HOUR
+from app.features.demo.expiry import Expiry
+from app.features.demo.response_models import AllowanceView, VisitorList
+from app.features.demo.visitors import Visitors
+from app.storage.errors import Forbidden, NotFound
+
+VisitorPath = Annotated[str, Path(description="id of the visitor", max_length=64)]
+
+router = api_router(tags=["demo"])
+ROBOTS_TXT = "User-agent: *\nDisallow: /api/\nDisallow: /viewer/\nDisallow: /r/\nDisallow: /t/\n"
+"""The page of a demo may be found."""
+
+
+@router.get(
+    "/allowance",
+    summary="Get what a visitor of a demo may start, and what is left of it",
+    response_model=AllowanceView,
+    responses={404: {}},
+)
+@policy(access=WATCH)
+def get_allowance(services: ServicesDep, identity: IdentityDep) -> Response:
+    """Return the limits of each visitor, what who asks has left, and the ids of their runs."""
+    _check_demo(services)
+    allowance = services.of(Visitors).allowance
+    used = services.of(Visitors).use(identity.cookie.value if isinstance(identity, Visitor) else "")
+    answer = {
+        "steps_per_hour": allowance.steps_per_hour,
+        "steps_left": max(0, allowance.steps_per_hour - used.steps),
+        "steps_per_start": min(allowance.steps_per_start, allowance.steps_per_hour),
+        "least_steps": allowance.least_steps,
+        "max_unended": allowance.unended,
+        "unended": used.unended,
+        "max_kept": allowance.kept,
+        "seconds_per_run": allowance.seconds_per_run,
+        "hours": allowance.hours,
+        "runs": list(used.kept),
+    }
+    return JSONResponse(answer)
+
+
+@router.get(
+    "/visitors",
+    summary="List the visitors of a demo",
+    response_model=VisitorList,
+    responses={404: {}},
+)
+@policy(access=WATCH)
+def list_visitors(services: ServicesDep, role: RoleDep) -> Response:
+    """Return the visitors of whom something is kept or counted; for operators alone."""
+    _check_demo(services)
+    if role != "operator":
+        raise Forbidden("the visitors of a demo are shown to its operators alone")
+    items = []
+    for visitor, runs in services.of(Visitors).by_visitor().items():
+        newest = max(one.created_at for one in runs)
+        items.append(
+            {
+                "id": visitor,
+                "since": min(one.created_at for one in runs).isoformat(),
+                "newest": newest.isoformat(),
+                "steps": sum(one.steps for one in runs if newest - one.created_at < HOUR),
+                "runs": [one.run_id for one in runs],
+            }
+        )
+    return JSONResponse({"items": sorted(items, key=lambda one: str(one["newest"]), reverse=True)})
+
+
+@router.delete("/visitors/{visitor_id}", status_code=204, summary="End a visitor of a demo")
+@policy(access=OPERATOR)
+def end_visitor(services: ServicesDep, visitor_id: VisitorPath) -> None:
+    """Stop and delete all that a visitor has made, and forget the visitor."""
+    _check_demo(services)
+    services.of(Expiry).end_visitor(visitor_id)
+
+
+def _check_demo(services: Services) -> None:
+    if not services.settings.demo:
+        raise NotFound("this server is no demo; `hexapods serve --demo` makes one")

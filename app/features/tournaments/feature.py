@@ -1,0 +1,111 @@
+"""Tournaments as a feature: their services, routes, page and tables."""
+
+from collections.abc import AsyncIterator, Mapping, Sequence
+from contextlib import asynccontextmanager
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+from typing import Any, ClassVar
+
+from fastapi import APIRouter
+from pydantic import BaseModel
+from starlette.routing import BaseRoute
+
+from app.api.deps import Services
+from app.api.option_answers import SettingOption
+from app.api.options import setting_option
+from app.api.pages import page_content
+from app.feature import DeleteRuns, Feature
+from app.features.tournaments import pages, routes
+from app.features.tournaments.access import ENTER_TOURNAMENT, WATCH_TOURNAMENT
+from app.features.tournaments.judge import Judge
+from app.features.tournaments.request_bodies import tournament_fields
+from app.features.tournaments.response_models import TournamentEvent
+from app.features.tournaments.room_directory import RoomDirectory
+from app.features.tournaments.tables import METADATA, TOURNAMENTS
+from app.features.tournaments.tournaments import Tournaments
+from app.features.tournaments.views import publish, tournaments_of_room
+from app.settings import Settings
+from app.storage.database.store import RunStore
+from hexapods import assets
+from hexapods.machine import cores
+
+_BACKUP = "put a backup of the database back; without one the server goes on, and leaves them out"
+
+
+class TournamentFeature(Feature):
+    """Tournaments on secret draws.
+
+    Attributes:
+        tournaments: of the server.
+        judge: judges their entries.
+    """
+
+    name = "tournaments"
+    uses = ("classroom",)
+    tables = METADATA
+    migrations = Path(__file__).with_name("migrations")
+    damage_advice: ClassVar[Mapping[str, str]] = {
+        "tournaments": _BACKUP,
+        "tournament_entries": f"{_BACKUP}; where a tournament is open, enter again",
+        "tournament_judgements": f"{_BACKUP}; where a tournament has not ended, they are judged "
+        "again",
+        "tournament_tables": f"{_BACKUP}; an entry that is not judged yet fails",
+    }
+    state_events = ("tournament",)
+    event_bodies: ClassVar[Mapping[str, type[BaseModel]]] = {"tournament": TournamentEvent}
+    option_types: ClassVar[Mapping[str, Any]] = {"tournament_fields": dict[str, SettingOption]}
+
+    def __init__(self, core: Services) -> None:
+        super().__init__(core)
+        classroom: Any = core.features.get("classroom")
+        self.rooms = core.provide(RoomDirectory(classroom))
+        self.tournaments = core.provide(Tournaments(core.store))
+        self.tournaments.on_changed = partial(publish, core.stages[0], self.rooms)
+        self.judge = Judge(self.tournaments, max(1, cores() // 2), _niceness(core.settings))
+        core.store.robots.users["tournament"] = (TOURNAMENTS, (TOURNAMENTS.c.rules,))
+        if classroom is not None:
+            classroom.rooms.has_entered = self.tournaments.has_entered
+            for access in (WATCH_TOURNAMENT, ENTER_TOURNAMENT):
+                classroom.access.share(
+                    access, lambda params: self.tournaments.room_of(params["tournament_id"])
+                )
+            classroom.rooms.tournaments_of = partial(tournaments_of_room, self.tournaments)
+
+    @classmethod
+    def routers(cls, agents: tuple[str, ...]) -> Sequence[APIRouter]:
+        return routes.router, routes.entry_routes(agents)
+
+    def pages(self) -> Sequence[BaseRoute]:
+        return pages.routes(page_content("tournament.html", assets.static_dir()))
+
+    @classmethod
+    def options(cls) -> Mapping[str, Any]:
+        fields = tournament_fields()
+        return {"tournament_fields": {name: setting_option(s) for name, s in fields.items()}}
+
+    @classmethod
+    def read_rows(cls, store: RunStore) -> None:
+        Tournaments(store)
+
+    @asynccontextmanager
+    async def open(self) -> AsyncIterator[None]:
+        self.judge.start()
+        yield
+
+    def close(self) -> None:
+        self.judge.close()
+
+    def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> tuple[()]:
+        """Delete the tournaments that rooms have left behind: their entrants were in these."""
+        del delete_runs
+        self.tournaments.delete_left_behind(time, self.rooms.codes())
+        return ()
+
+
+def _niceness(settings: Settings) -> int:
+    """Return the lowest priority, as people wait for trainings; that of jobs if they have ours."""
+    return 19 if settings.job_niceness else 0
+
+
+FEATURE = TournamentFeature

@@ -1,0 +1,44 @@
+"""The rooms of classes, as far as tournaments need them; without that feature there are none."""
+
+from typing import Any
+
+from app.feature import Feature
+from app.storage.errors import NotFound
+from app.viewer.shared_stage import SharedStage
+
+
+class RoomDirectory:
+    """Finds rooms, their stages, and whose a run is. Thread-safe."""
+
+    def __init__(self, classroom: Feature | None) -> None:
+        """Create it with the feature that has the rooms; None if it is left out."""
+        # By its attributes alone: importing its classes would make it a part of this feature.
+        self._classroom: Any = classroom
+
+    def get(self, code: str) -> Any:
+        """Return a room by its code as it was typed.
+
+        Raises:
+            NotFound: if there is none.
+        """
+        if self._classroom is None:
+            raise NotFound(f"there is no room {code!r}: this server has no classroom")
+        return self._classroom.rooms.get(code)
+
+    def owner_of(self, run_id: str) -> str | None:
+        """Return the code and the seed of the participant who has started a run, by a space."""
+        if self._classroom is None:
+            return None
+        owner: str | None = self._classroom.rooms.owner_of(run_id)
+        return owner
+
+    def codes(self) -> list[str]:
+        """Return the codes of all rooms."""
+        return [] if self._classroom is None else list(self._classroom.rooms.codes())
+
+    def stage_of(self, code: str) -> SharedStage | None:
+        """Return the stage of a room; None if it is not open."""
+        stage: SharedStage | None = None
+        if self._classroom is not None:
+            stage = self._classroom.stages.of(code)
+        return stage
