@@ -97,7 +97,8 @@ pythons: $(DEV_STAMP) ## Compare results to the last bit in every other Python t
 test-page: check-page-types ## Check the page's JavaScript: linter, types, unit tests
 	$(BIN)/node node_modules/eslint/bin/eslint.js .
 	$(BIN)/node node_modules/typescript/bin/tsc --project tsconfig.json
-	$(BIN)/node --import ./tests/page/browser.js --test --test-reporter=dot "tests/page/test-*.js"
+	$(BIN)/node --import ./tests/page/browser.js --test --test-reporter=dot \
+		"tests/page/test-*.js" "tests/features/*/test-*.js"
 
 # The types of what the page reads, from the models that describe what the server sends.
 PAGE_TYPES := static/js/api-types.d.ts

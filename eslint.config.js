@@ -12,7 +12,7 @@ export default [
   },
   {
     // The page's address and history are read and written in one place.
-    files: ["static/js/**/*.js"],
+    files: ["static/js/**/*.js", "static/features/**/*.js"],
     ignores: ["static/js/page-state.js", "static/js/offline/**"],
     rules: {
       "no-restricted-globals": ["error", "history"],
@@ -27,7 +27,7 @@ export default [
     languageOptions: { sourceType: "script" },
   },
   {
-    files: ["tests/page/**/*.js"],
+    files: ["tests/page/**/*.js", "tests/features/**/*.js"],
     languageOptions: { globals: { ...globals.node, location: "readonly" } },
   },
   {

@@ -7,9 +7,10 @@ import mimetypes
 import os
 import posixpath
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import timedelta
 from pathlib import Path
+from typing import Any
 
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
@@ -24,7 +25,10 @@ from app.api.problem_pages import prefers_html
 from app.api.problems import as_sentence, problem
 from app.storage.errors import NotFound
 
-_INLINE_SCRIPT = re.compile(r"<script(?![^>]*\ssrc=)[^>]*>(.*?)</script>", re.DOTALL)
+_INLINE_SCRIPT = re.compile(
+    r"<script(?![^>]*\ssrc=|[^>]*application/json)[^>]*>(.*?)</script>", re.DOTALL
+)
+_FEATURES = '<script type="application/json" id="features">[]</script>'
 _INDEX = "index.html"
 _COMMON = re.compile(r"<!-- common -->\n(.*?)<!-- /common -->\n", re.DOTALL)
 _COMMON_OF_INDEX = "<!-- common: that of index.html -->\n"
@@ -62,9 +66,35 @@ def page_routes(folder: Path) -> list[BaseRoute]:
 
 def page_content(name: str, folder: Path) -> CompressedContent:
     """Return a page of the dashboard's folder with its preloads and its policy."""
-    page = with_preloads(_with_common_head(name, folder), folder)
+    features = page_features(folder)
+    page = with_preloads(_with_common_head(name, folder), folder, _start_modules(name, features))
+    # As "<" it could end the script that it stands in.
+    declared = json.dumps(features, ensure_ascii=False).replace("<", "\\u003c")
+    page = page.replace(_FEATURES, _FEATURES.replace("[]", declared))
     policy = {"Content-Security-Policy": content_policy(page)}
     return CompressedContent(page.encode(), "text/html", policy)
+
+
+def page_features(folder: Path) -> list[dict[str, Any]]:
+    """Return what each feature adds to the page, as its `feature.json` declares it.
+
+    Args:
+        folder: folder of the dashboard, with a folder `features` of one folder each.
+    """
+    return [
+        {
+            "name": file.parent.name,
+            "hasCode": file.with_name("feature.js").is_file(),
+            **json.loads(file.read_text("utf-8")),
+        }
+        for file in sorted(folder.glob("features/*/feature.json"))
+    ]
+
+
+def _start_modules(name: str, features: list[dict[str, Any]]) -> list[str]:
+    """Return the modules that the dashboard loads at once because a feature has code for it."""
+    has_code = [feature["name"] for feature in features if feature["hasCode"]]
+    return [f"static/features/{feature}/feature.js" for feature in has_code if name == _INDEX]
 
 
 def _with_common_head(name: str, folder: Path) -> str:
@@ -90,20 +120,23 @@ def content_policy(page: str) -> str:
     )
 
 
-def with_preloads(page: str, folder: Path) -> str:
+def with_preloads(page: str, folder: Path, also: Sequence[str] = ()) -> str:
     """Add a preload for each module, so that none waits until another imports it.
 
     Args:
         page: the page's HTML, with an import map and one module as entry point; the module's path
             may begin with `../`, as of a page that is not beside `static`.
         folder: folder of the dashboard, which the page knows as `static`.
+        also: paths of modules that the entry point loads at once without an import, as
+            `imported_modules` has them.
     """
     entry = _ENTRY.search(page)
     packages = _IMPORT_MAP.search(page)
     if entry is None or packages is None:
         raise ValueError("The page has no import map, or no module as its entry point.")
     modules = [posixpath.normpath(path) for path in json.loads(packages[1])["imports"].values()]
-    modules += [entry[1] + path for path in imported_modules(entry[2], folder)]
+    needed = [path for start in (entry[2], *also) for path in imported_modules(start, folder)]
+    modules += [entry[1] + path for path in dict.fromkeys(needed)]
     links = "".join(f'<link rel="modulepreload" href="{path}">\n' for path in modules)
     return page[: entry.start()] + links + page[entry.start() :]
 

@@ -7,7 +7,8 @@ import {
   sharedPart,
 } from "./body.js";
 import { consequencesOf, inOwnWords, objectionsTo, settingFor, unreachedBy } from "./body-words.js";
-import { bodyFields, bodyIsOpen, form, setField } from "./form.js";
+import { bodyFields, form, setField } from "./form.js";
+import { bodyIsOpen } from "./page.js";
 import { parseSetting } from "./parse.js";
 import { isSame, storedRobot } from "./robots.js";
 import { limitsOf } from "./settings.js";

@@ -2,8 +2,8 @@
 import { batch, computed, signal } from "@preact/signals";
 import { robotOf } from "./body.js";
 import { body, cancel, canUse, isTold, told } from "./body-editor.js";
-import { bodyIsOpen, setFields } from "./form.js";
-import { toast } from "./page.js";
+import { setFields } from "./form.js";
+import { bodyIsOpen, toast } from "./page.js";
 import { saveRobot } from "./stored-robots.js";
 import { messageOf } from "./titles.js";
 

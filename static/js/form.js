@@ -5,7 +5,9 @@ import { listed } from "./format.js";
 import { makeTexts, parseChoice, parseChoiceOrParts, parseChoices, parseName, parseSetting } from "./parse.js";
 import { ignored, page } from "./page-state.js";
 import { linkedText, unlinked } from "./robots.js";
-import { agentOf, bounded, isClosed, laneSettings, learners, learns, limitsOf, settingsOf } from "./settings.js";
+import {
+  agentOf, bounded, isClosed, isPreset, laneSettings, learners, learns, limitsOf, settingsOf,
+} from "./settings.js";
 import { options, role, served } from "./store.js";
 
 /** @import { Parsed } from "./parse.js" */
@@ -197,13 +199,13 @@ export const chooseLearner = (agent) => batch(() => {
 });
 
 /**
- * Offer a learner for the body: it is taken unless a person has chosen one, or a lesson's card sets it. Without one it
- * is the server's default.
+ * Offer a learner for the body: it is taken unless a person has chosen one, or a feature sets it. Without one it is the
+ * server's default.
  * @param {string | null} agent
  */
 export function offerLearner(agent) {
   const offered = agent ?? served().defaults.training.agent;
-  const isFree = !learnerIsChosen.value && !isReadOnly.value && page.lesson.value === null && !isClosed("agent");
+  const isFree = !learnerIsChosen.value && !isReadOnly.value && !isPreset.value && !isClosed("agent");
   if (isFree && offered !== form.value.agent && learns(offered)) takeLearner(offered);
 }
 
@@ -278,14 +280,9 @@ export const openForm = () => batch(() => {
   ignored.query.value = [...ignored.query.peek(), ...others];
   page.form.value = new URLSearchParams(given.filter(([field]) => field in known));
   learnerIsChosen.value = page.form.peek().has("agent");
-  // Of a lesson's link what is typed goes before what the card presets, the default too.
-  if (page.lesson.peek() === null) leaveOutDefaults();
+  // What a link says goes before what is preset, the default too.
+  if (!isPreset.peek()) leaveOutDefaults();
 });
-
-/** Whether the editor of the robot's body is open. */
-export const bodyIsOpen = signal(false);
-/** Whether the list of stored robots is open. */
-export const robotsAreOpen = signal(false);
 
 /** Let a spectator change the form. */
 export const tryOwnSettings = () => {

@@ -10,8 +10,9 @@ import { announceExperiments, followExperiments, followSummary } from "./experim
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
 import { followOptions, isLockOut } from "./options.js";
-import { followLesson, followPresentation } from "./lesson.js";
+import { features, installFeatures } from "./features.js";
 import { followHistory, page, reload } from "./page-state.js";
+import { followPresentation } from "./presentation.js";
 import { followPresenter, followTheme } from "./page.js";
 import { announceOutcomes, headline } from "./headline.js";
 import { followTimeline } from "./race.js";
@@ -26,6 +27,7 @@ import { followCurves, trainingsInView } from "./training.js";
 /** Open the forms; the options are there. */
 function openForms() {
   openForm();
+  features.value.forEach(({ withOptions }) => withOptions?.());
   openExperimentForm();
   followAs(() => role.value === "spectator", () => import("./spectators.js"), (own) => own.followStageSettings());
 }
@@ -64,8 +66,9 @@ const followTitle = () => effect(() => {
   document.title = windowTitle(page.view.value, headline.value);
 });
 
+await installFeatures();
 followHistory();
-followLesson();
+features.value.forEach(({ follow }) => follow?.());
 followTheme();
 followPresenter();
 followPresentation();
@@ -82,7 +85,7 @@ followTitle();
 announceExperiments();
 listenForKeys();
 listenForMenus();
-openEvents(eventNames, applyEvent, (state) => {
+openEvents(eventNames(), applyEvent, (state) => {
   connection.value = state;
   if (state === "live") isLockedOut.value = false;
   // The stream does not say why it ended: the server may have come back with a token.

@@ -1,8 +1,9 @@
 // The page's state: one document, which a link carries and "back" restores. Each of its fields is declared once, in
-// `FIELDS`. The only module that reads and writes the address and the history.
+// `FIELDS` or by a feature. The only module that reads and writes the address and the history.
 import { batch, effect, signal } from "@preact/signals";
 
 /** @import { Signal } from "@preact/signals" */
+/** @import { DeclaredField, FieldsOfFeatures } from "./types.js" */
 
 /**
  * How a value stands in an address: `read` is undefined for a text that is none, `write` null for what a link leaves
@@ -49,6 +50,14 @@ const oneOf = (words) => ({
   words,
 });
 /**
+ * None, or one of several words, to which more are added.
+ * @param {string[]} words
+ * @returns {Codec<string | null>}
+ */
+const noneOrOneOf = (words) => ({
+  read: (text) => (words.includes(text) ? text : undefined), write: (word) => word, words,
+});
+/**
  * Several of a few words.
  * @param {string[]} words
  * @returns {Codec<string[]>}
@@ -74,21 +83,26 @@ const WHOLE = {
 };
 const NO_TEXTS = new URLSearchParams();
 const TEXTS = { name: null, initial: NO_TEXTS, read: () => undefined, write: String };
+/** The kinds of fields that a feature can declare. @type {Record<DeclaredField["is"], Codec<any>>} */
+const CODECS = { text: TEXT, list: LIST, flag: FLAG, whole: WHOLE, texts: TEXTS };
 
 /** How much of the page is shown, from little to all. */
 export const DEPTHS = ["watch", "try", "study"];
-/** The tabs of the panel, in their order. */
-export const TABS = ["board", "train", "world", "why", "gait", "table", "what-if"];
+/** The tabs of the panel; features add theirs. */
+const TABS = ["board", "train", "world"];
+/** The views; features add theirs. */
+const VIEWS = ["race", "experiments", "runs", "compare"];
 /** The ways to group the list of runs. */
 export const GROUPINGS = ["sweep", "race", "day", "none"];
-/** Parts of the page that can be hidden. */
-export const HIDEABLE = ["panel", "card"];
+/** @type {Record<string, string>} */
+const earlierPanels = {};
+/** Parts of the page that can be hidden; features add theirs. */
+const HIDEABLE = ["panel"];
 
 /** The fields, in the order in which an address has them. */
 const FIELDS = {
-  /** The open view: race, experiments, runs, compare or lessons. */
-  view: { part: "hash", name: "view", initial: "race", ...oneOf(["race", "experiments", "runs", "compare", "lessons"]),
-    isEntry: true },
+  /** The open view. */
+  view: { part: "hash", name: "view", initial: "race", ...oneOf(VIEWS), isEntry: true },
   /** What was set of the next run, by field, as it was typed. */
   form: { part: "query", ...TEXTS },
   /** Id of the run that this page replays by itself; null for the stage that all share. */
@@ -104,17 +118,13 @@ const FIELDS = {
   /** How much of the page is shown; null where the browser's own choice holds. */
   depth: { part: "query", name: "depth", initial: null, ...oneOf([null, ...DEPTHS]) },
   /** The open tab of the panel; null for the first. */
-  tab: { part: "query", name: "tab", initial: null, ...oneOf([null, ...TABS]), isEntry: true },
+  tab: { part: "query", name: "tab", initial: null, ...noneOrOneOf(TABS), isEntry: true },
   /** A second tab, pinned beside the first where there is room. */
-  pinned: { part: "query", name: "pinned", initial: null, ...oneOf([null, ...TABS]) },
+  pinned: { part: "query", name: "pinned", initial: null, ...noneOrOneOf(TABS) },
   /** Target of the camera: "leader", "free", or the number of a lane, from "1". */
   camera: { part: "query", name: "camera", initial: "leader", ...CAMERA },
   /** What is hidden of the page. */
   hidden: { part: "query", name: "hidden", initial: /** @type {string[]} */ ([]), ...severalOf(HIDEABLE) },
-  /** Id of the lesson whose cards are shown; null for the first lesson. */
-  lesson: { part: "query", name: "lesson", initial: null, ...TEXT },
-  /** The number of the lesson's card, from 1; null where no lesson is open. */
-  card: { part: "query", name: "card", initial: null, ...WHOLE },
   /** Whether the page is presented: full screen, large type. */
   isPresenting: { part: "query", name: "present", initial: false, ...FLAG },
   /** Whether the page is the remote of a presentation. */
@@ -141,20 +151,47 @@ const FIELDS = {
 
 /** @typedef {typeof FIELDS} Fields */
 /** @typedef {{ [Name in keyof Fields]: ReturnType<Fields[Name]["read"]> | Fields[Name]["initial"] }} Loose */
-/** @typedef {{ [Name in keyof Loose]: Exclude<Loose[Name], undefined> }} PageState */
+/** @typedef {{ [Name in keyof Loose]: Exclude<Loose[Name], undefined> } & FieldsOfFeatures} PageState */
 
 const ENTRIES = /** @type {[keyof PageState, Field<any>][]} */ (Object.entries(FIELDS));
-const INITIAL = /** @type {PageState} */ (Object.fromEntries(ENTRIES.map(([name, { initial }]) => [name, initial])));
+/** @type {PageState} */
+const INITIAL = /** @type {any} */ (Object.fromEntries(ENTRIES.map(([name, { initial }]) => [name, initial])));
 
 /** The document: a signal of each field. */
-export const page = /** @type {{ [Name in keyof PageState]: Signal<PageState[Name]> }} */ (
-  Object.fromEntries(ENTRIES.map(([name, { initial }]) => [name, signal(initial)])));
+export const page = /** @type {{ [Name in keyof PageState]: Signal<PageState[Name]> }} */ (/** @type {any} */ (
+  Object.fromEntries(ENTRIES.map(([name, { initial }]) => [name, signal(initial)]))));
 
 /**
  * What a link says that has no effect, as "alhpa=0.5", by the form beside which that is told.
  * @type {Record<string, Signal<string[]>>}
  */
 export const ignored = { query: signal([]), experiments: signal([]) };
+
+/**
+ * Add the fields of a feature, before the address is read.
+ * @param {Record<string, DeclaredField>} fields by name
+ */
+export function declareFields(fields) {
+  for (const [name, { is, ...place }] of Object.entries(fields)) {
+    const field = /** @type {Field<any>} */ ({ initial: null, ...place, ...CODECS[is] });
+    ENTRIES.push([/** @type {keyof PageState} */ (name), field]);
+    Object.assign(INITIAL, { [name]: field.initial });
+    Object.assign(page, { [name]: signal(field.initial) });
+    if (field.name === null) ignored[field.part] ??= signal([]);
+  }
+}
+
+/**
+ * Add words that fields can have.
+ * @param {{ tabs: string[], views: string[], hideable: string[], panels: Record<string, string> }} words `panels`: what
+ *   a link of version 0.1 said of a panel → the tab that it is now
+ */
+export function declareWords({ tabs, views, hideable, panels }) {
+  TABS.push(...tabs);
+  Object.assign(earlierPanels, panels);
+  VIEWS.push(...views);
+  HIDEABLE.push(...hideable);
+}
 
 /** Change fields together. @param {Partial<PageState>} changes */
 export const change = (changes) => batch(() => {
@@ -196,7 +233,7 @@ function written(values) {
 }
 
 const present = () =>
-  /** @type {PageState} */ (Object.fromEntries(ENTRIES.map(([name]) => [name, page[name].value])));
+  /** @type {PageState} */ (/** @type {any} */ (Object.fromEntries(ENTRIES.map(([name]) => [name, page[name].value]))));
 
 /** The document as an address, from its query on. */
 export const write = () => written(present());
@@ -208,13 +245,10 @@ export const addressOf = (values) => written({ ...INITIAL, ...values });
 export const entry = () => queryOf(ENTRIES.flatMap(([name, field]) =>
   (field.isEntry ? pairsOf(field, page[name].value) : [])));
 
-/** What a link of version 0.1 said of a panel → the tab that it is now. @type {Record<string, string>} */
-const EARLIER_PANELS = { "explain": "why", "what-if": "what-if" };
-
 /** A query as this version writes it. @param {string} search */
 function currentQuery(search) {
   const query = new URLSearchParams(search);
-  for (const [panel, tab] of Object.entries(EARLIER_PANELS)) {
+  for (const [panel, tab] of Object.entries(earlierPanels)) {
     if (!query.has(panel)) continue;
     if (query.get(panel) !== "closed" && !query.has("tab")) query.set("tab", tab);
     query.delete(panel);
@@ -281,7 +315,7 @@ export function followHistory() {
 export const linkTo = (values) => `${location.origin}${location.pathname}${values ? addressOf(values) : write()}`;
 
 /**
- * The fields of a card's form as an address has them: lists with commas, of disturbances each by itself.
+ * The fields of a form as an address has them: lists with commas, of disturbances each by itself.
  * @param {Record<string, any>} form
  */
 export function asTexts({ settings = {}, ...form }) {
@@ -293,18 +327,13 @@ export function asTexts({ settings = {}, ...form }) {
   return new URLSearchParams(pairs);
 }
 
-/** The room of the page `/r/CODE`; whether the page is for the projector, or of a pupil whoever looks. */
-export const ofRoom = () => ({
-  code: decodeURIComponent(location.pathname.split("/").at(-1) ?? ""),
-  isProjector: new URLSearchParams(location.search).has("projector"),
-  isPupils: new URLSearchParams(location.search).has("join"),
+/**
+ * What the address says of a page of its own, as `/x/NAME?flag`: the last part of its path, and the names in its query.
+ */
+export const ownAddress = () => ({
+  name: decodeURIComponent(location.pathname.split("/").at(-1) ?? ""),
+  flags: [...new URLSearchParams(location.search).keys()],
 });
-
-/** The id of the tournament of this page's address, and whether the page is for the projector. */
-export const ofTournament = () => {
-  const { code: id, isProjector } = ofRoom();
-  return { id, isProjector };
-};
 
 /** Write a link into the address bar. @param {string} address */
 export const showAddress = (address) => history.replaceState(history.state, "", address);

@@ -300,27 +300,34 @@ export const placeOf = (field, agent) => ({
   isFull: !TRIED_FIELDS.includes(field) && !mainSettings(agent).some(({ name }) => name === field),
 });
 
-// ---- the settings that the open card of a linked lesson lets be changed: courtesy, since the server locks rooms alone
+// ---- a restriction of the settings by a feature: courtesy, since it is the server that locks
 
-/** By name the bounds of the settings that the card opens; null without a card that runs something. */
-export const cardMay = signal(/** @type {Record<string, Partial<Bounds>> | null} */ (null));
-/** Whether the user has opened all settings of the lesson. */
-export const isFreed = signal(false);
+/**
+ * By name the bounds of the settings that can be changed, and who sets the others, as "The example sets"; null without
+ * a restriction.
+ */
+export const restriction = signal(
+  /** @type {{ bounds: Record<string, Partial<Bounds>>, reason: string } | null} */ (null));
+/** Whether the user has opened all settings. */
+export const isLifted = signal(false);
 
-const limits = computed(() => (isFreed.value ? null : cardMay.value));
+/** Whether a feature presets the form. */
+export const isPreset = signal(false);
 
-/** Whether the card closes settings. */
+const limits = computed(() => (isLifted.value ? null : restriction.value?.bounds ?? null));
+
+/** Whether some settings are closed. */
 export const closesSome = computed(() => limits.value !== null);
 
-/** No card opens these: a class has them from its room, and one alone chooses them. */
+/** These are open in any case: they change nothing of what is learned. */
 const ALWAYS_OPEN = ["seed", "pace", "name"];
 
-/** Whether the card keeps a field of the form as it is. @param {string} field */
+/** Whether a field of the form has to stay as it is. @param {string} field */
 export const isClosed = (field) =>
   limits.value !== null && !(field in limits.value) && !ALWAYS_OPEN.includes(field);
 
 /**
- * A setting of the form, within the bounds of the card.
+ * A setting of the form, within the bounds of the restriction.
  * @template {SettingOption | undefined} Setting
  * @param {string} field
  * @param {Setting} setting
@@ -338,7 +345,7 @@ export function bounded(field, setting) {
   };
 }
 
-/** Whether the card lets a choice of a field be chosen. @param {string} field @param {unknown} choice */
+/** Whether a choice of a field can be chosen. @param {string} field @param {unknown} choice */
 export function isAllowed(field, choice) {
   const choices = limits.value?.[field]?.choices ?? null;
   return choices === null || choices.some((one) => one === choice);

@@ -78,7 +78,7 @@ const goneIds = signal(/** @type {Set<string>} */ (new Set()));
 /** Whether there is no such run, or none any more. @param {string} id */
 export const isGone = (id) => goneIds.value.has(id);
 
-/** @type {{ [Name in Exclude<keyof EventBodies, "room" | "tournament">]: (data: EventBodies[Name]) => void }} */
+/** Those of features are added to them. @type {{ [Name in keyof EventBodies]?: (data: EventBodies[Name]) => void }} */
 const handlers = {
   snapshot(data) {
     // It tells of the stage and of the newest runs; an answer about an older run is still news.
@@ -125,7 +125,10 @@ const handlers = {
 };
 
 /** The names of the events that are applied. */
-export const eventNames = Object.keys(handlers);
+export const eventNames = () => Object.keys(handlers);
+
+/** Apply events of a feature, too. @param {Record<string, (data: any) => void>} more handlers by the events' names */
+export const addHandlers = (more) => { Object.assign(handlers, more); };
 
 /**
  * Apply a server-sent event. Unknown names are ignored.

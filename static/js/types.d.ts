@@ -1,5 +1,7 @@
 /** Short names of the API's types, and the few types that only the page has. */
 
+import type { ReadonlySignal } from "@preact/signals";
+import type { FunctionComponent } from "preact";
 import type * as Api from "./api-types.js";
 
 export type {
@@ -232,3 +234,106 @@ export type TournamentRules = Omit<Api.TournamentView["rules"], "robot" | "robot
 export type TournamentEntry = Omit<Api.EntryView, "entry"> & { entry: EnteredAgent | null };
 /** An entry, as it is judged. */
 export type EnteredAgent = Omit<NonNullable<Api.EntryView["entry"]>, "robot"> & { robot?: RobotConfig | null };
+
+// ---- features: what each can add to the page; all members but the name are optional
+
+/** A module of the feature and what it exports, as "components/gait.js#Gait". */
+export type FeatureSource = string;
+
+/** A component that is loaded when it is first seen. */
+export interface LoadedPart {
+  show: FeatureSource;
+  /** What the page calls it while it loads. */
+  loading: string;
+  /** Its style sheet, from the feature's folder. */
+  style?: string;
+}
+export interface TabKind {
+  title: string;
+  /** The least depth that offers it: "watch", "try" or "study". */
+  depth: string;
+  /** Its place among the tabs, from left to right. */
+  order: number;
+  about: string;
+  /** Whether Watch shows it too, with a way back, though it lists no tabs. */
+  isInWatch?: boolean;
+  /** What links of version 0.1 called it. */
+  wasPanel?: string;
+}
+export interface ViewPart extends LoadedPart {
+  title: string;
+  /** Whether the header has a link to it. */
+  isInHeader?: boolean;
+}
+export interface MenuRow {
+  title: string | (() => string);
+  /** Its place among the rows of features. */
+  order?: number;
+  icon?: string;
+  /** Who has it; everybody without one. */
+  for?: "operator";
+  /** Where it leads, or else what it does: loads a dialog, calls a function of a module that it loads, or runs. */
+  href?: string;
+  dialog?: string;
+  call?: FeatureSource;
+  run?: () => unknown;
+}
+/** What is put in a place of the core: a component that is there, or one that is loaded. */
+export type SlotPart = LoadedPart | { component: FunctionComponent<any> };
+/** A field of the page's state; `part`: "query", or the name of a view. */
+export interface DeclaredField {
+  part: string;
+  /** Its name in the address; null for all that no other field of the part has. */
+  name: string | null;
+  is: "text" | "list" | "flag" | "whole" | "texts";
+  initial?: unknown;
+  /** Whether a change is a new entry of the history. */
+  isEntry?: boolean;
+}
+/** The fields that features declare, with their types: each adds its own by an interface of this name. */
+export interface FieldsOfFeatures {}
+/** Cards of a lesson, for whoever presents. */
+export interface Deck {
+  cards: ReadonlySignal<DeckCard[]>;
+  /** The number of the open card, from 1; null without one. */
+  number: ReadonlySignal<number | null>;
+  open: (number: number) => void;
+  /** The question of the open card. */
+  Question: FunctionComponent;
+}
+export interface DeckCard {
+  title: string;
+  text: string;
+  /** Whether it asks something, and of what. */
+  ask?: "lane";
+}
+
+/** A feature, as `feature.json` declares it; `feature.js` adds what cannot be written in JSON. */
+export interface Feature {
+  /** That of its folder. */
+  name: string;
+  /** Whether it has a `feature.js`, which runs from the start. */
+  hasCode?: boolean;
+  /** Names of the features without which it does not work. */
+  needs?: string[];
+  /** Names of the features of which it shows something, where they are there. */
+  uses?: string[];
+  fields?: Record<string, DeclaredField>;
+  /** Parts of the page that a link can hide. */
+  hideable?: string[];
+  tabs?: Record<string, TabKind & LoadedPart>;
+  views?: Record<string, ViewPart>;
+  dialogs?: Record<string, LoadedPart>;
+  menu?: MenuRow[];
+  /** By the name of the place. */
+  slots?: Record<string, SlotPart>;
+
+  /** Runs once, before the page is drawn; the address has been read. */
+  follow?: () => void;
+  /** Runs once, when the server's options are there. */
+  withOptions?: () => void;
+  /** Handlers of events of the server, by their names. */
+  events?: Record<string, (data: any) => void>;
+  hidesTab?: (tab: string) => boolean;
+  deck?: Deck;
+}

@@ -1,23 +1,26 @@
 // The workspace around the stage: its depths and tabs, and the panel. What a depth leaves out is hidden, not undone.
 import { computed } from "@preact/signals";
-import { isShown } from "./lesson.js";
+import { features, partsOf } from "./features.js";
 import { phase } from "./on-stage.js";
-import { change, DEPTHS, page, TABS } from "./page-state.js";
+import { change, DEPTHS, page } from "./page-state.js";
 import { isPhone, isWide, storedText } from "./page.js";
 
 /** "watch", "try" or "study". @typedef {string} Depth */
-/** @typedef {{ title: string, depth: Depth, about: string }} TabKind */
+/** @import { TabKind } from "./types.js" */
 
-/** Tab → its title, the least depth that offers it, and what it is for. @type {Record<string, TabKind>} */
-const KINDS = {
-  "board": { title: "Board", depth: "watch", about: "Ranks, distances and times" },
-  "train": { title: "Train", depth: "try", about: "The next training and race" },
-  "world": { title: "World", depth: "try", about: "The ground, and what happens to the robots" },
-  "why": { title: "Why", depth: "try", about: "Each step, explained" },
-  "gait": { title: "Gait", depth: "study", about: "When each foot is on the ground" },
-  "table": { title: "Table", depth: "study", about: "The values of every state" },
-  "what-if": { title: "What if", depth: "study", about: "Thirty ideal robots, at once" },
+/** The tabs that are always there. @type {Record<string, TabKind>} */
+const OWN_KINDS = {
+  board: { title: "Board", depth: "watch", order: 10, about: "Ranks, distances and times" },
+  train: { title: "Train", depth: "try", order: 20, about: "The next training and race" },
+  world: { title: "World", depth: "try", order: 30, about: "The ground, and what happens to the robots" },
 };
+
+/** Tab → its kind, in the order of the panel. */
+const kinds = computed(() => /** @type {Record<string, TabKind>} */ (Object.fromEntries(
+  Object.entries({ ...OWN_KINDS, ...partsOf("tabs") }).sort(([, a], [, b]) => a.order - b.order))));
+
+/** The names of all tabs, in their order. */
+export const allTabs = computed(() => Object.keys(kinds.value));
 
 /** Depth → its title, and what it shows. @type {Record<Depth, { title: string, about: string }>} */
 export const DEPTH_KINDS = {
@@ -26,8 +29,7 @@ export const DEPTH_KINDS = {
   study: { title: "Study", about: "Every setting, figure and table" },
 };
 
-/** A tab that a shallower depth shows too, with a way back. */
-const SHOWN_IN_WATCH = "why";
+const FIRST_TAB = "board";
 
 const keptDepth = storedText("depth", DEPTHS[0]);
 
@@ -35,7 +37,7 @@ const keptDepth = storedText("depth", DEPTHS[0]);
 const rankOf = (one) => DEPTHS.indexOf(one);
 
 /** The least depth that shows a tab. @param {string} tab */
-const neededFor = (tab) => (tab === SHOWN_IN_WATCH ? DEPTHS[0] : KINDS[tab].depth);
+const neededFor = (tab) => (kinds.value[tab].isInWatch ? DEPTHS[0] : kinds.value[tab].depth);
 
 const chosenDepth = computed(() =>
   page.depth.value ?? (DEPTHS.includes(keptDepth.value) ? keptDepth.value : DEPTHS[0]));
@@ -49,18 +51,22 @@ export const depth = computed(() => {
 /** Whether at least so much is shown. @param {Depth} one */
 export const isAtLeast = (one) => rankOf(depth.value) >= rankOf(one);
 
-/** The tabs that the present depth offers, by name, and the card of a lesson does not hide. */
+/** Whether a feature hides a tab at present. @param {string} tab */
+const isHidden = (tab) => features.value.some(({ hidesTab }) => hidesTab?.(tab));
+
+/** The tabs that the present depth offers, by name, and no feature hides. */
 export const tabs = computed(() => (isAtLeast("try")
-  ? TABS.filter((one) => isAtLeast(KINDS[one].depth) && (isShown(one) || one === page.tab.value)) : [TABS[0]]));
+  ? allTabs.value.filter((name) => isAtLeast(kinds.value[name].depth) && (name === page.tab.value || !isHidden(name)))
+  : [FIRST_TAB]));
 
 /** @param {string} tab */
-export const tabTitle = (tab) => KINDS[tab].title;
+export const tabTitle = (tab) => kinds.value[tab].title;
 /** @param {string} tab */
-export const tabAbout = (tab) => KINDS[tab].about;
+export const tabAbout = (tab) => kinds.value[tab].about;
 
 /** The open tab: before the first run of those who try, the one in which it is set. */
 export const tab = computed(() =>
-  page.tab.value ?? (isAtLeast("try") && phase.value === "empty" ? "train" : TABS[0]));
+  page.tab.value ?? (isAtLeast("try") && phase.value === "empty" ? "train" : FIRST_TAB));
 
 /** Whether a second tab can be pinned beside the first. */
 export const canPin = computed(() => isWide.value && isAtLeast("study"));
@@ -85,7 +91,8 @@ export const togglePin = () => {
 /** Choose a depth, which this browser keeps; a tab that it does not offer gives way to the board. @param {Depth} one */
 export function setDepth(one) {
   keptDepth.value = one;
-  const isOffered = (/** @type {string | null} */ name) => name === null || rankOf(KINDS[name].depth) <= rankOf(one);
+  const isOffered = (/** @type {string | null} */ name) =>
+    name === null || rankOf(kinds.value[name].depth) <= rankOf(one);
   change({
     depth: one,
     tab: isOffered(page.tab.peek()) ? page.tab.peek() : null,

@@ -9,7 +9,13 @@ from starlette.applications import Starlette
 from starlette.testclient import TestClient
 
 from app.api.compression import CompressedContent, accepts_gzip
-from app.api.pages import content_policy, imported_modules, page_routes, with_preloads
+from app.api.pages import (
+    content_policy,
+    imported_modules,
+    page_features,
+    page_routes,
+    with_preloads,
+)
 from hexapods import assets
 from tests.api.calls import Api
 from tests.api.guarding import let_all_pass
@@ -132,21 +138,37 @@ def test_accepted_encodings(header: str, *, expected: bool) -> None:
 def imported_later(script: Path, folder: Path) -> list[str]:
     """Return the modules that a script imports when they are first needed."""
     # In comments stand types of modules.
-    found = re.findall(r'import\("(\.[^"]+)"\)(?:\)?\.then\(|[;,])', script.read_text("utf-8"))
+    found = re.findall(r'import\("(\.[^"]+)"\)(?:\)?\s*\.then\(|[;,])', script.read_text("utf-8"))
     modules = [(script.parent / path).resolve() for path in found]
     return [module.relative_to(folder.resolve().parent).as_posix() for module in modules]
+
+
+def opened_by_features(folder: Path) -> list[str]:
+    """Return the modules that features name, for when they are first needed."""
+    files = [*folder.glob("features/*/feature.json"), *folder.glob("features/*/feature.js")]
+    named = [
+        (file.parent / path).resolve()
+        for file in files
+        for path in re.findall(r'"([\w./-]+\.js)#\w+"', file.read_text("utf-8"))
+    ]
+    return [module.relative_to(folder.resolve().parent).as_posix() for module in named]
 
 
 def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Api) -> None:
     page = api.client.get("/").text
     folder = assets.static_dir()
-    modules = imported_modules("static/js/main.js", folder)
-    scripts = [*(folder / "js").rglob("*.js")]
+    starts = [
+        f"static/features/{f['name']}/feature.js" for f in page_features(folder) if f["hasCode"]
+    ]
+    entries = ["static/js/main.js", *starts]
+    modules = {path for entry in entries for path in imported_modules(entry, folder)}
+    scripts = [*(folder / "js").rglob("*.js"), *(folder / "features").rglob("*.js")]
     opened = {path for script in scripts for path in imported_later(script, folder)}
+    opened |= {*opened_by_features(folder)}
     opened.add("static/js/offline/player.js")  # of files that play a replay offline
-    opened.add("static/js/room/main.js")  # of the page of rooms
-    opened.add("static/js/tournament/main.js")  # of the page of tournaments
-    later = {path for one in opened for path in imported_modules(one, folder)} - {*modules}
+    opened.add("static/features/classroom/room/main.js")  # of the page of rooms
+    opened.add("static/features/tournaments/main.js")  # of the page of tournaments
+    later = {path for one in opened for path in imported_modules(one, folder)} - modules
 
     assert {folder.parent / path for path in (*modules, *later)} == {*scripts}
     assert opened <= later
@@ -160,7 +182,7 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
 def test_page_of_rooms_is_a_folder_deeper_and_preloads_its_own_modules(api: Api) -> None:
     page = api.client.get("/r/NOROOM", headers={"Accept": "text/html"})
     folder = assets.static_dir()
-    modules = imported_modules("static/js/room/main.js", folder)
+    modules = imported_modules("static/features/classroom/room/main.js", folder)
 
     assert page.status_code == 404
     assert page.headers["content-type"].startswith("text/html")

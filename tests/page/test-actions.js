@@ -7,7 +7,7 @@ import {
 } from "../../static/js/actions.js";
 import { form, setField } from "../../static/js/form.js";
 import { practiseAtPaceOfPicture, tune } from "../../static/js/live-changes.js";
-import { cardMay, isFreed } from "../../static/js/settings.js";
+import { isLifted, restriction } from "../../static/js/settings.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
 import { makeRun, OPTIONS } from "./options.js";
 
@@ -144,15 +144,15 @@ test("a change of a training waits for the answer to the one before, which it co
   await passes();
 });
 
-test("no lane is offered where the card of a lesson keeps the lanes as they are", () => {
+test("no lane is offered where a restriction keeps the lanes as they are", () => {
   setField("lanes", ["tracer", "greedy"]);
   assert.equal(missingLane.value?.action?.label, "Add Learner");
-  cardMay.value = { alpha: {} };
+  restriction.value = { bounds: { alpha: {} }, reason: "The example sets" };
   assert.deepEqual([missingLane.value?.words, missingLane.value?.action],
     ["Learner is not in the race; Tracer will learn and race.", null]);
-  isFreed.value = true;
+  isLifted.value = true;
   assert.ok(missingLane.value?.action, "the reader has opened all settings");
-  [cardMay.value, isFreed.value] = [null, false];
+  [restriction.value, isLifted.value] = [null, false];
   setField("lanes", ["learner", "greedy"]);
 });
 

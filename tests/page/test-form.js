@@ -6,6 +6,7 @@ import {
   stageTexts, trainingBody, tryOwnSettings, whatIfBody, wrong,
 } from "../../static/js/form.js";
 import { ignored, page } from "../../static/js/page-state.js";
+import { isPreset } from "../../static/js/settings.js";
 import { options, role } from "../../static/js/store.js";
 import { OPTIONS } from "./options.js";
 
@@ -64,14 +65,14 @@ test("a learner that a person or a link has chosen is never replaced", () => {
   assert.equal(form.value.agent, "tracer");
 });
 
-test("no learner is offered to a spectator, nor in a lesson", () => {
+test("no learner is offered to a spectator, nor where a feature presets the form", () => {
   role.value = "spectator";
   offerLearner("tracer");
   assert.equal(page.form.value.has("agent"), false);
   role.value = "operator";
-  page.lesson.value = "first";
+  isPreset.value = true;
   offerLearner("tracer");
-  page.lesson.value = null;
+  isPreset.value = false;
   assert.equal(page.form.value.has("agent"), false);
 });
 

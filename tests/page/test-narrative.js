@@ -6,7 +6,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { gunzipSync } from "node:zlib";
 import { metres } from "../../static/js/format.js";
-import { participantRunNarrative } from "../../static/js/narrative/participant-run.js";
+import { participantRunNarrative } from "../../static/features/classroom/room/run-sentences.js";
 import { narrativeOf } from "../../static/js/narrative/narrative.js";
 import { isShownToEnd } from "../../static/js/narrative/states.js";
 import { OPTIONS } from "./options.js";

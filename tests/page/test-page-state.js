@@ -4,10 +4,13 @@ import { beforeEach, test } from "node:test";
 import {
   addressOf, change, changeIfStillHere, followHistory, ignored, linkTo, page, read, write,
 } from "../../static/js/page-state.js";
+import { install } from "../../static/js/features.js";
+import { EXAMPLE } from "./features.js";
 import { entries, follow, goBack, visit } from "./browser.js";
 
 visit("/?alpha=0.5&run=opened&t=1.5#runs?kind=race");
 entries.splice(0, 1, "/?alpha=0.5&run=opened&t=1.5#runs?kind=race");
+install([EXAMPLE]);
 followHistory();
 const opened = { run: page.run.value, moment: page.moment.value, view: page.view.value, link: linkTo() };
 
@@ -37,11 +40,11 @@ test("the address that was opened is read first, and stays one entry of the hist
 });
 
 test("a link is read as the state that wrote it, each field of it", () => {
-  /** @type {Partial<import("../../static/js/page-state.js").PageState>} */
+  /** @type {Partial<import("../../static/js/page-state.js").PageState> & { page_number: number }} */
   const changes = {
     form: new URLSearchParams("alpha=0,7&disturb=limp:legs%3D1,4&disturb=slope:degrees%3D8&steps="),
     run: "a", ghost: "b", moment: 2.25, clock: "free", end: "all", depth: "study", tab: "why", pinned: "gait",
-    camera: "2", hidden: ["panel", "card"], lesson: "l", card: 3, isPresenting: true, isRemote: true,
+    camera: "2", hidden: ["panel", "card"], page_number: 3, isPresenting: true, isRemote: true,
   };
   const ofViews = {
     experiments: { experiment: new URLSearchParams("alpha=0.1;0.3&name=A %26 B"), report: "c" },
@@ -108,7 +111,7 @@ test("a value that is none is told, with those that are valid where they are few
   assert.deepEqual(inVain("/?run=a&t=soon"), ["t=soon"]);
   assert.deepEqual([page.run.value, page.moment.value], ["a", null]);
   assert.deepEqual(inVain("/?t=-1"), ["t=-1"]);
-  assert.deepEqual(inVain("/?card=0"), ["card=0"]);
+  assert.deepEqual(inVain("/?page=0"), ["page=0"]);
   assert.deepEqual(inVain("/?depth=deep"), ["depth=deep (valid: watch, try, study)"]);
   assert.deepEqual(inVain("/?tab=chart"), ["tab=chart (valid: board, train, world, why, gait, table, what-if)"]);
   assert.deepEqual(inVain("/?camera=9"), ["camera=9 (valid: leader, free, 1 to 8)"]);

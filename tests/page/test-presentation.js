@@ -2,10 +2,12 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  cards, followPresentation, presentation, tell, toggleBlank, toggleWhy, turnCode, turnPage,
-} from "../../static/js/lesson.js";
+  followPresentation, presentation, tell, toggleBlank, toggleWhy, turnCode, turnPage,
+} from "../../static/js/presentation.js";
+import { deck } from "../../static/js/features.js";
 import { change, page, read } from "../../static/js/page-state.js";
 import { applyEvent, options } from "../../static/js/store.js";
+import { installOnly } from "./features.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
 /** @import { Presentation } from "../../static/js/types.js" */
@@ -18,6 +20,7 @@ globalThis.fetch = (_, { body = "" } = {}) => {
   told.push(asked);
   return Promise.resolve(new Response(JSON.stringify(makeStage({ presentation: asked }))));
 };
+await installOnly("classroom");
 followPresentation();
 
 const settle = () => new Promise((resolve) => {
@@ -49,7 +52,7 @@ test("cards are turned within the lesson, and each begins without an explanation
   turnPage(1);
   await settle();
   assert.deepEqual(told.at(-1), { ...START, card: 2 });
-  showCard({ card: cards.value.length });
+  showCard({ card: deck.value.cards.value.length });
   turnPage(1);
   assert.equal(told.length, 2);
 });

@@ -1,6 +1,7 @@
 // How much of the page is shown: its depths, its tabs, the pinned one, and what is hidden.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
+import { install } from "../../static/js/features.js";
 import { change, page, read, write } from "../../static/js/page-state.js";
 import { isPhone, isWide } from "../../static/js/page.js";
 import { applyEvent, options } from "../../static/js/store.js";
@@ -8,7 +9,10 @@ import {
   canPin, depth, DEPTH_KINDS, isAtLeast, isPanelHidden, nextDepth, openTab, pinnedTab, setDepth, tab, tabs, tabTitle,
   toggleHidden, togglePin,
 } from "../../static/js/workspace.js";
+import { EXAMPLE } from "./features.js";
 import { makeRun, makeStage, OPTIONS } from "./options.js";
+
+install([EXAMPLE]);
 
 /** @param {string} search */
 const open = (search) => read({ search, hash: "" });

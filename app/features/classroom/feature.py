@@ -71,7 +71,7 @@ class Classroom(Feature):
         return lesson_routes.router, room_routes.router
 
     def pages(self) -> Sequence[BaseRoute]:
-        return pages.routes(page_content("room.html", assets.static_dir()))
+        return pages.routes(page_content("features/classroom/room.html", assets.static_dir()))
 
     @classmethod
     def complete_schema(cls, schemas: dict[str, Any]) -> None:

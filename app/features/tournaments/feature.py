@@ -77,7 +77,7 @@ class TournamentFeature(Feature):
         return routes.router, routes.entry_routes(agents)
 
     def pages(self) -> Sequence[BaseRoute]:
-        return pages.routes(page_content("tournament.html", assets.static_dir()))
+        return pages.routes(page_content("features/tournaments/tournament.html", assets.static_dir()))
 
     @classmethod
     def options(cls) -> Mapping[str, Any]:

@@ -1,27 +1,24 @@
 // The page: header, the views and messages.
 import { announcement } from "../headline.js";
-import { effect, signal } from "@preact/signals";
+import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { bodyIsOpen, robotsAreOpen } from "../form.js";
+import { menuRows, partsOf, runRow, wantedDialogs } from "../features.js";
 import { page } from "../page-state.js";
-import { clickedCell, helpIsOpen, isPhone, nextTheme, present, share, theme, toastMessage } from "../page.js";
-import { card, closeLesson, openLesson } from "../lesson.js";
+import {
+  bodyIsOpen, clickedCell, helpIsOpen, isPhone, nextTheme, present, robotsAreOpen, share, theme, toastMessage,
+} from "../page.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
 import { html, Icon, Loaded, loaded, withStyle } from "./elements.js";
+import { loadPart, Part, Slot } from "./feature-parts.js";
 import { toggleHelp } from "./keyboard.js";
-import { LessonCard } from "./lesson.js";
 import { Panel, ThumbTabs } from "./panel.js";
 import { Stage } from "./stage.js";
 import { TimeBar } from "./time-bar.js";
 
 /** @import { FunctionComponent } from "preact" */
-
-/** Whether a room was to be opened. */
-const roomIsWanted = signal(false);
-/** Whether the tournaments were to be seen. */
-const tournamentsAreWanted = signal(false);
+/** @import { MenuRow } from "../types.js" */
 
 export const App = () => html`
   <a class="skip" href="#main" onClick=${focusMain}>Skip to the page</a>
@@ -30,8 +27,7 @@ export const App = () => html`
   <${Help} />
   <${BodyEditor} />
   <${StoredRobots} />
-  <${Room} />
-  <${Tournaments} />
+  <${Dialogs} />
   <${Toast} />
   <p class="sr-only" role="status">${announcement}</p>
 `;
@@ -64,7 +60,7 @@ function focusMain(event) {
   document.getElementById("main")?.focus();
 }
 
-// ---- the view of the race: the stage, its time, the lesson's card, and the panel beside them
+// ---- the view of the race: the stage, its time, what features put below them, and the panel beside them
 
 /**
  * Hidden, not removed, while another view is open, so that the stage does not load again.
@@ -80,7 +76,7 @@ function Workspace({ isHidden }) {
       <${Stage} />
       <${TimeBar} />
       ${page.isPresenting.value && html`<${Loaded} name="presenter's desk" load=${loadDesk} />`}
-      ${!page.isPresenting.value && !page.isRemote.value && html`<${LessonCard} />`}
+      ${!page.isPresenting.value && !page.isRemote.value && html`<${Slot} name="card" />`}
       <${Panel} />
       ${isPhone.value && !page.isRemote.value && html`<${ThumbTabs} />`}
     </div>
@@ -92,59 +88,40 @@ const loadHelp = () => import("./help.js").then(({ HelpDialog }) => HelpDialog);
 /** Loaded when it is first opened, and there since then. */
 const Help = () => (helpIsOpen.value || loaded.value.help) && html`<${Loaded} name="help" load=${loadHelp} />`;
 
-const loadBodyEditor = () => withStyle("body-editor", import("./body-editor.js")).then((own) => own.BodyEditor);
+const loadBodyEditor = () =>
+  withStyle("style/body-editor.css", import("./body-editor.js")).then((own) => own.BodyEditor);
 
 const BodyEditor = () => (bodyIsOpen.value || loaded.value["editor of the body"]) && html`
   <${Loaded} name="editor of the body" load=${loadBodyEditor} />
 `;
 
 const loadStoredRobots = () =>
-  withStyle("stored-robots", import("./stored-robots.js")).then((own) => own.StoredRobots);
+  withStyle("style/stored-robots.css", import("./stored-robots.js")).then((own) => own.StoredRobots);
 
 const StoredRobots = () => (robotsAreOpen.value || loaded.value["list of robots"]) && html`
   <${Loaded} name="list of robots" load=${loadStoredRobots} />
 `;
 
-const loadRoom = () => withStyle("lessons", import("./lessons/open-room.js")).then(({ OpenRoom }) => OpenRoom);
+/** Of features, those that were wanted. */
+const Dialogs = () => Object.entries(partsOf("dialogs"))
+  .filter(([name]) => wantedDialogs.value.includes(name))
+  .map(([name, part]) => html`<${Part} key=${name} part=${part} />`);
 
-/** Open the dialog that opens a room; its modules come with the first time. */
-const askForRoom = () => {
-  roomIsWanted.value = true;
-  import("../lessons/list.js").then((own) => own.askForRoom());
-};
-
-const Room = () => (roomIsWanted.value || loaded.value["dialog of rooms"] || page.view.value === "lessons") && html`
-  <${Loaded} name="dialog of rooms" load=${loadRoom} />
-`;
-
-const loadTournaments = () =>
-  withStyle("tournaments", import("./tournaments/tournaments.js")).then((own) => own.Tournaments);
-
-/** Open the dialog of tournaments; its modules come with the first time. */
-const showTournaments = () => {
-  tournamentsAreWanted.value = true;
-  import("../tournament/list.js").then((own) => own.showList());
-};
-
-const Tournaments = () => (tournamentsAreWanted.value || loaded.value["dialog of tournaments"]) && html`
-  <${Loaded} name="dialog of tournaments" load=${loadTournaments} />
-`;
-
-const loadDesk = () => withStyle("presenter", import("./desk.js")).then(({ Desk }) => Desk);
+const loadDesk = () => withStyle("style/presenter.css", import("./desk.js")).then(({ Desk }) => Desk);
 
 // ---- the views that are loaded when they are first opened: most visits do not
 
 /** With the style that no other view needs. @type {Record<string, () => Promise<FunctionComponent>>} */
 const LOADERS = {
-  experiments: () => withStyle("experiments", import("./experiments/experiments.js")).then((own) => own.Experiments),
-  runs: () => withStyle("runs", import("./runs/runs.js")).then((own) => own.Runs),
-  compare: () => withStyle("runs", import("./compare/compare.js")).then((own) => own.Compare),
-  lessons: () => withStyle("lessons", import("./lessons/lessons.js")).then((own) => own.Lessons),
+  experiments: () =>
+    withStyle("style/experiments.css", import("./experiments/experiments.js")).then((own) => own.Experiments),
+  runs: () => withStyle("style/runs.css", import("./runs/runs.js")).then((own) => own.Runs),
+  compare: () => withStyle("style/runs.css", import("./compare/compare.js")).then((own) => own.Compare),
 };
 
 /** @param {{ name: string }} props */
 function LoadedView({ name }) {
-  const shown = html`<${Loaded} name=${name} load=${LOADERS[name]} />`;
+  const shown = html`<${Loaded} name=${name} load=${LOADERS[name] ?? (() => loadPart(partsOf("views")[name]))} />`;
   return loaded.value[name] ? shown : html`<section class="panel locked">${shown}</section>`;
 }
 
@@ -207,12 +184,9 @@ function Menu() {
         ${isOperator.value && html`
           <button class="quiet" onClick=${item(() => (page.isRemote.value = true))}>Remote of the presentation</button>
         `}
-        <a href="#lessons" onClick=${item(() => {})}>Lessons</a>
-        ${isOperator.value && html`<button class="quiet" onClick=${item(askForRoom)}>Open a room…</button>`}
-        <button class="quiet" onClick=${item(showTournaments)}>Tournaments…</button>
-        ${card.value
-          ? html`<button class="quiet" onClick=${item(closeLesson)}>Hide the lesson</button>`
-          : html`<button class="quiet" onClick=${item(openLesson)}>The first lesson</button>`}
+        ${menuRows.value.filter((row) => !row.for || isOperator.value).map((row) => html`
+          <${Row} key=${row.order} row=${row} item=${item} />
+        `)}
         <button class="quiet wide-only" onClick=${item(() => toggleHidden("panel"))}>
           <${Icon} name="panel" />${isPanelHidden.value ? "Show" : "Hide"} the panel
         </button>
@@ -223,6 +197,16 @@ function Menu() {
       </div>
     </details>
   `;
+}
+
+/**
+ * A row that a feature has added.
+ * @param {{ row: MenuRow & { feature: string }, item: (act: () => unknown) => (event: any) => void }} props
+ */
+function Row({ row, item }) {
+  const title = typeof row.title === "function" ? row.title() : row.title;
+  if (row.href) return html`<a href=${row.href} onClick=${item(() => {})}>${title}</a>`;
+  return html`<button class="quiet" onClick=${item(() => runRow(row))}>${title}</button>`;
 }
 
 function Connection() {

@@ -7,7 +7,7 @@ import {
 } from "../body-editor.js";
 import { bodyName, canSave, followSaving, saveBody, unsaved } from "../body-saving.js";
 import { reachInWords } from "../body-words.js";
-import { bodyIsOpen } from "../form.js";
+import { bodyIsOpen } from "../page.js";
 import { count } from "../format.js";
 import { inWords } from "../preview.js";
 import { isOperator } from "../selectors.js";

@@ -3,13 +3,13 @@ import { useEffect, useState } from "preact/hooks";
 import { getSpectators } from "../api.js";
 import { canStart, primaryAction, runPrimaryAction } from "../actions.js";
 import { narrative } from "../headline.js";
-import { card, cards, presentation, toggleBlank, turnCode, turnPage } from "../lesson.js";
+import { deck } from "../features.js";
+import { presentation, toggleBlank, turnCode, turnPage } from "../presentation.js";
 import { canPlay } from "../on-stage.js";
 import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
 import { isOperator } from "../selectors.js";
 import { connection, isAway, viewers } from "../store.js";
 import { html } from "./elements.js";
-import { Prediction } from "./lesson.js";
 
 /** @import { Spectators } from "../types.js" */
 
@@ -43,14 +43,15 @@ export function useSpectators() {
 /** The card that is shown, and the one that comes next. */
 function Act() {
   const { card: number } = presentation.value;
-  const shown = number === null ? null : cards.value[number - 1] ?? card.value;
-  const next = cards.value[number ?? 0];
+  const { cards: { value: cards }, number: { value: open }, Question } = deck.value;
+  const shown = number === null ? null : cards[number - 1] ?? cards[(open ?? 0) - 1];
+  const next = cards[number ?? 0];
   return html`
     <div class="act">
-      ${number !== null && html`<span class="card-number">Card ${number} of ${cards.value.length}</span>`}
+      ${number !== null && html`<span class="card-number">Card ${number} of ${cards.length}</span>`}
       <h2>${shown ? shown.title : "Racing Hexapods"}</h2>
       <p>${shown ? shown.text : "They learn to walk by trial and error, and race against two that think ahead."}</p>
-      ${shown?.ask && html`<${Prediction} />`}
+      ${shown?.ask && html`<${Question} />`}
       ${next && html`<p class="dim">Next: card ${(number ?? 0) + 1}, “${next.title}”.</p>`}
     </div>
   `;

@@ -1,5 +1,6 @@
 // The buttons that open the editor of the robot's body and the list of stored robots, which are loaded then.
-import { bodyIsOpen, form, isReadOnly, robotsAreOpen } from "../form.js";
+import { form, isReadOnly } from "../form.js";
+import { bodyIsOpen, robotsAreOpen } from "../page.js";
 import { storedRobot } from "../robots.js";
 import { served } from "../store.js";
 import { robotTitle } from "../titles.js";

@@ -216,10 +216,10 @@ export function useWidth() {
 export const loaded = signal({});
 
 /**
- * `load`: imports the module and returns its component.
- * @param {{ name: string, load: () => Promise<FunctionComponent> }} props
+ * `load`: imports the module and returns its component, which is drawn with the other properties.
+ * @param {{ name: string, load: () => Promise<FunctionComponent<any>> } & Record<string, unknown>} props
  */
-export function Loaded({ name, load }) {
+export function Loaded({ name, load, ...props }) {
   const [hasFailed, setFailed] = useState(false);
   const state = connection.value;
   useEffect(() => {
@@ -227,7 +227,7 @@ export function Loaded({ name, load }) {
     load().then((component) => setEntry(loaded, name, component), () => setFailed(true));
   }, [state]);
   const View = loaded.value[name];
-  if (View) return html`<${View} />`;
+  if (View) return html`<${View} ...${props} />`;
   if (state === "reconnecting") return html`<p role="status">Waiting for the server to load the ${name}.</p>`;
   return hasFailed
     ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
@@ -237,11 +237,11 @@ export function Loaded({ name, load }) {
 /**
  * Wait for a module and a style sheet, which the page then keeps.
  * @template Module
- * @param {string} name of the sheet
+ * @param {string} path of the sheet, from the folder of static files
  * @param {Promise<Module>} module
  */
-export async function withStyle(name, module) {
-  const href = `${root()}static/style/${name}.css`;
+export async function withStyle(path, module) {
+  const href = `${root()}static/${path}`;
   if (!document.querySelector(`link[href="${href}"]`)) {
     const link = Object.assign(document.createElement("link"), { rel: "stylesheet", href });
     const isLoaded = new Promise((resolve, reject) => { Object.assign(link, { onload: resolve, onerror: reject }); });

@@ -6,7 +6,7 @@ import { enter, form, setField, wrong } from "../form.js";
 import { parseSetting } from "../parse.js";
 import { shareOf } from "../scale.js";
 import {
-  bounded, choiceTitle, closesSome, fullTitle, isAllowed, isClosed, isFreed, kindOf, settingOf, sliderOf,
+  bounded, choiceTitle, closesSome, fullTitle, isAllowed, isClosed, isLifted, kindOf, restriction, settingOf, sliderOf,
 } from "../settings.js";
 import { options } from "../store.js";
 import { html, Mistake } from "./elements.js";
@@ -14,7 +14,7 @@ import { html, Mistake } from "./elements.js";
 /** @import { Changed, FormValue, SettingOption, SettingValue } from "../types.js" */
 
 /**
- * A field that is disabled where the card of a lesson closes it.
+ * A field that is disabled where a restriction closes it.
  * @param {string} field
  * @param {import("preact").ComponentChildren} drawn
  * @param {boolean} [isOfForm]
@@ -23,11 +23,11 @@ export const closable = (field, drawn, isOfForm = true) => (isOfForm && isClosed
   ? html`<fieldset class="closed" disabled>${drawn}</fieldset>`
   : drawn);
 
-/** What the card of a lesson closes, and the way out. @param {{ what?: string }} props */
-export const OfCard = ({ what = "what is grey" }) => closesSome.value && html`
+/** What a restriction closes, and the way out. @param {{ what?: string }} props */
+export const Restricted = ({ what = "what is grey" }) => closesSome.value && html`
   <div class="steering" role="note">
-    <p>The lesson's card sets ${what}. Nothing is locked here.</p>
-    <button type="button" class="link" onClick=${() => (isFreed.value = true)}>Open all settings</button>
+    <p>${restriction.value?.reason} ${what}. Nothing is locked here.</p>
+    <button type="button" class="link" onClick=${() => (isLifted.value = true)}>Open all settings</button>
   </div>
 `;
 

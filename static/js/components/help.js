@@ -1,6 +1,5 @@
 // The help dialog: keys, what the page shows, and where to read on; and how to cite the run on stage.
 import { useState } from "preact/hooks";
-import { openLesson } from "../lesson.js";
 import { shownRun } from "../on-stage.js";
 import { linkTo } from "../page-state.js";
 import { copy, helpIsOpen, shortcuts } from "../page.js";
@@ -8,6 +7,7 @@ import { getCode } from "../api.js";
 import { version } from "../store.js";
 import { messageOf } from "../titles.js";
 import { Dialog, html } from "./elements.js";
+import { Slot } from "./feature-parts.js";
 
 /** @import { Changed, Run } from "../types.js" */
 
@@ -64,16 +64,11 @@ export const HelpDialog = () => html`
     <${Reading} />
     <${Citation} />
     <form method="dialog">
-      <button type="button" class="secondary" onClick=${startLesson}>Show the first lesson</button>
+      <${Slot} name="help" />
       <button class="secondary">Close</button>
     </form>
   <//>
 `;
-
-function startLesson() {
-  helpIsOpen.value = false;
-  openLesson();
-}
 
 const Reading = () => html`
   <h2>To read on</h2>

@@ -4,7 +4,7 @@ import { page } from "../page-state.js";
 import { helpIsOpen, leavePresenter, present, shortcuts } from "../page.js";
 import { stepReplay } from "../replay.js";
 import { closeLegs, legsAreOpen, openLegs } from "../legs.js";
-import { turnCode, turnPage } from "../lesson.js";
+import { turnCode, turnPage } from "../presentation.js";
 import { isOperator } from "../selectors.js";
 import { scale, seekTo, seekToMark, toggleTime } from "../time.js";
 import { isAtLeast, nextDepth, openTab, toggleHidden } from "../workspace.js";

@@ -11,7 +11,7 @@ import { isAway, scene } from "../store.js";
 import { positionInWords, scale } from "../time.js";
 import { openTab } from "../workspace.js";
 import { html } from "./elements.js";
-import { OfCard } from "./fields.js";
+import { Restricted } from "./fields.js";
 import { Problem } from "./foot.js";
 import { firstWish, legKinds } from "./world-controls.js";
 
@@ -107,7 +107,7 @@ function Offer({ at }) {
   const race = heldRace.value;
   if (!isOperator.value) return html`<p class="dim">The operator disturbs the robots.</p>`;
   if (isAway.value) return html`<p class="dim">Nothing can be disturbed until the server is back.</p>`;
-  if (isClosed("disturb")) return html`<${OfCard} what="what happens to the robots" />`;
+  if (isClosed("disturb")) return html`<${Restricted} what="what happens to the robots" />`;
   if (training) return html`<${OfTraining} run=${training} at=${at} />`;
   if (race) return html`<${OfRace} race=${race} at=${at} />`;
   return html`<p class="dim">Hold a race that has been computed, or start a training: then this can be disturbed.</p>`;

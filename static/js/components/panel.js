@@ -1,5 +1,6 @@
 // The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import { partsOf } from "../features.js";
 import { sentence } from "../format.js";
 import { moveTold, narrative } from "../headline.js";
 import { clock, isStale, phase, shownRun } from "../on-stage.js";
@@ -15,6 +16,7 @@ import {
 } from "../workspace.js";
 import { Board } from "./board.js";
 import { html, Icon, Loaded, withStyle } from "./elements.js";
+import { Part } from "./feature-parts.js";
 import { Foot } from "./foot.js";
 
 /** @import { FunctionComponent } from "preact" */
@@ -125,24 +127,20 @@ export function ThumbTabs() {
 
 // ---- what the open tab shows
 
-const loadRemote = () => withStyle("presenter", import("./remote.js")).then(({ Remote }) => Remote);
+const loadRemote = () => withStyle("style/presenter.css", import("./remote.js")).then(({ Remote }) => Remote);
 const loadTrain = () => import("./train-tab.js").then(({ TrainTab }) => TrainTab);
 const loadWorld = () => import("./world-tab.js").then(({ WorldTab }) => WorldTab);
-const loadWhatIf = () => import("./what-if.js").then(({ WhatIf }) => WhatIf);
-const loadWhy = () => import("./steps/why.js").then(({ Why }) => Why);
-const loadTable = () => import("./steps/table.js").then(({ Table }) => Table);
-const loadGait = () => import("./gait.js").then(({ Gait }) => Gait);
 
-/** @type {Record<string, FunctionComponent>} */
+/** The tabs that are always there. @type {Record<string, FunctionComponent>} */
 const CONTENTS = {
-  "board": Board,
-  "train": () => html`<${Loaded} name="training settings" load=${loadTrain} />`,
-  "world": () => html`<${Loaded} name="world" load=${loadWorld} />`,
-  "why": () => html`<${Loaded} name="explanation" load=${loadWhy} />`,
-  "gait": () => html`<${Loaded} name="gait analysis" load=${loadGait} />`,
-  "table": () => html`<${Loaded} name="table" load=${loadTable} />`,
-  "what-if": () => html`<${Loaded} name="what-if" load=${loadWhatIf} />`,
+  board: Board,
+  train: () => html`<${Loaded} name="training settings" load=${loadTrain} />`,
+  world: () => html`<${Loaded} name="world" load=${loadWorld} />`,
 };
+
+/** What a tab shows. @param {{ name: string }} props */
+const Contents = ({ name }) =>
+  (name in CONTENTS ? html`<${CONTENTS[name]} />` : html`<${Part} part=${partsOf("tabs")[name]} />`);
 
 /** @param {{ name: string }} props */
 function Body({ name }) {
@@ -155,7 +153,7 @@ function Body({ name }) {
   return html`
     <div class=${`body ${followed ? "follows" : ""}`} id="panel-body" ref=${body} tabindex=${followed ? 0 : undefined}
       ...${attributes}>
-      <${CONTENTS[name]} />
+      <${Contents} name=${name} />
     </div>
   `;
 }
@@ -167,7 +165,7 @@ const Pinned = ({ name }) => html`
       <h2>${tabTitle(name)}</h2>
       <button class="quiet square small" aria-label=${`Unpin ${tabTitle(name)}`} onClick=${togglePin}>✕</button>
     </div>
-    <${CONTENTS[name]} />
+    <${Contents} name=${name} />
   </section>
 `;
 

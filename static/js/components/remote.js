@@ -1,7 +1,8 @@
 // The presenter's remote, on a phone: it commands the stage that all share, and every presenter's window of it.
 import { canStart, endAtTimeOut, primaryAction, runPrimaryAction, togglePlaying } from "../actions.js";
-import { cards, CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "../lesson.js";
+import { deck } from "../features.js";
 import { isPlaying } from "../on-stage.js";
+import { CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "../presentation.js";
 import { page } from "../page-state.js";
 import { commonStage } from "../store.js";
 import { html, Icon, Segments } from "./elements.js";
@@ -9,6 +10,7 @@ import { Problem } from "./foot.js";
 
 export function Remote() {
   const { card, shows_why, is_blank, code } = presentation.value;
+  const { cards } = deck.value;
   const shown = card === null ? null : cards.value[card - 1];
   const next = cards.value[card ?? 0];
   const endsAtTimeOut = commonStage.value?.end_at_time_out ?? true;

@@ -1,7 +1,7 @@
 // The robots that are stored: renamed, hidden and deleted, and new ones taken in from files.
 import { useState } from "preact/hooks";
 import { correct, corrected } from "../correction.js";
-import { robotsAreOpen } from "../form.js";
+import { robotsAreOpen } from "../page.js";
 import { isOperator } from "../selectors.js";
 import {
   changeRobot, chooseStored, deleteRobot, dismissFile, fileOf, isChosen, refusals, storedRobots, taken, takeFiles,

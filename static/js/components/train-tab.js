@@ -3,14 +3,14 @@ import { practiseAtPaceOfPicture } from "../live-changes.js";
 import { whole } from "../format.js";
 import { steering } from "../on-stage.js";
 import { html } from "./elements.js";
-import { OfCard } from "./fields.js";
+import { Restricted } from "./fields.js";
 import { LearningChart } from "./learning.js";
 import { TrainSettings } from "./settings.js";
 
 export function TrainTab() {
   return html`
     <div class="train-tab">
-      <${OfCard} />
+      <${Restricted} />
       <${TrainSettings} />
       <${Steering} />
       <${LearningChart} />

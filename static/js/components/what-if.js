@@ -9,7 +9,7 @@ import {
 import { messageOf } from "../titles.js";
 import { DotStrip } from "./dot-strip.js";
 import { html } from "./elements.js";
-import { OfCard } from "./fields.js";
+import { Restricted } from "./fields.js";
 import { PracticeSettings } from "./settings.js";
 
 /** @import { WhatIfAnswer, WhatIfHalf } from "../types.js" */
@@ -24,7 +24,7 @@ export function WhatIf() {
   }
   return html`
     <section class="what-if" aria-label="What if">
-      <${OfCard} />
+      <${Restricted} />
       <${PracticeSettings} />
       <h3>${seeds.value} ideal robots: distance in 50 steps</h3>
       <${Comparison} />

@@ -5,7 +5,7 @@ import { isClosed } from "../settings.js";
 import { isAway } from "../store.js";
 import { markInWords, marks, positionInWords, scale, seekTo } from "../time.js";
 import { html } from "./elements.js";
-import { OfCard } from "./fields.js";
+import { Restricted } from "./fields.js";
 import { WorldSettings } from "./settings.js";
 import { Branch, LiveWorld } from "./world-controls.js";
 
@@ -14,7 +14,7 @@ export function WorldTab() {
   const canDisturb = isOperator.value && (liveTraining.value !== null || heldRace.value !== null);
   return html`
     <div class="world-tab">
-      <${OfCard} />
+      <${Restricted} />
       ${canDisturb && html`<${FromNow} />`}
       <${Happened} />
       <${WorldSettings} />

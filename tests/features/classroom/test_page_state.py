@@ -1,31 +1,38 @@
-"""What a card may open of the page is what the page has: `static/js/page-state.js`."""
+"""What a card may open of the page is what the page has: its own state, and its features'."""
 
 import re
 from dataclasses import fields
 from typing import get_args, get_type_hints
 
+from app.api.pages import page_features
 from app.features.classroom.page_state import Depth, PageState, Tab
 from hexapods import assets
 
 SOURCE = (assets.static_dir() / "js" / "page-state.js").read_text("utf-8")
+FEATURES = page_features(assets.static_dir())
 
 
 def words(name: str) -> list[str]:
     """Return the words of a constant of the page."""
-    found = re.search(rf"export const {name} = \[(.*?)\];", SOURCE)
+    found = re.search(rf"const {name} = \[(.*?)\];", SOURCE)
     assert found is not None
     return re.findall(r'"([^"]+)"', found[1])
+
+
+def added(member: str) -> list[str]:
+    """Return what features add to a member of the page."""
+    return [name for feature in FEATURES for name in feature.get(member, ())]
 
 
 def test_each_field_is_one_of_the_page() -> None:
     block = SOURCE[SOURCE.index("const FIELDS = {") :]
     known = re.findall(r"^  (\w+): \{ part:", block, flags=re.MULTILINE)
     assert len(known) > 20
-    assert {one.name for one in fields(PageState)} <= set(known)
+    assert {one.name for one in fields(PageState)} <= {*known, *added("fields")}
 
 
 def test_words_are_those_of_the_page() -> None:
     assert list(get_args(Depth)) == words("DEPTHS")
-    assert list(get_args(Tab)) == words("TABS")
+    assert sorted(get_args(Tab)) == sorted(words("TABS") + added("tabs"))
     hidden = get_type_hints(PageState)["hidden"]
-    assert set(get_args(get_args(hidden)[0])) == set(words("HIDEABLE"))
+    assert set(get_args(get_args(hidden)[0])) == {*words("HIDEABLE"), *added("hideable")}

@@ -473,7 +473,7 @@ def test_a_room_has_a_page_and_an_end(school: Class) -> None:
     client = school.pupil().client
     door = client.get(f"/r/{code}")
     assert door.status_code == 200
-    assert "static/js/room/main.js" in door.text
+    assert "static/features/classroom/room/main.js" in door.text
     assert client.get(f"/r/{code.lower()}/").headers["location"] == f"../{code}/"
     page = client.get(f"/r/{code}/")
     assert page.status_code == 200

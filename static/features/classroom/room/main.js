@@ -1,0 +1,33 @@
+// Entry point of a room's page: by role the phone of a participant, the teacher's cockpit, or the projector.
+import { effect } from "@preact/signals";
+import { render } from "preact";
+import { html, Loaded, withStyle } from "../../../js/components/elements.js";
+import { followTheme } from "../../../js/page.js";
+import { Phone } from "./phone.js";
+import { followOwnRun } from "./picture.js";
+import { followRoom, isProjector, isTeacher, refusal, room } from "./room.js";
+import { Closed, Waiting } from "./join.js";
+
+function Page() {
+  if (room.value === null) return refusal.value ? html`<${Closed} />` : html`<${Waiting} />`;
+  if (isProjector) return html`<${Loaded} name="projector" load=${loadProjector} />`;
+  return isTeacher.value ? html`<${Loaded} name="cockpit" load=${loadCockpit} />` : html`<${Phone} />`;
+}
+
+// A class of phones needs neither.
+const loadProjector = () =>
+  withStyle("features/classroom/style/room-projector.css", import("./projector.js")).then(({ Projector }) => Projector);
+const loadCockpit = () => import("./cockpit.js").then(({ Cockpit }) => Cockpit);
+
+followTheme();
+document.documentElement.toggleAttribute("data-projector", isProjector);
+effect(() => {
+  const { title, code } = room.value ?? { title: "Room", code: "" };
+  document.title = [code, title, "Racing Hexapods"].filter(Boolean).join(" · ");
+});
+if (!isProjector) followOwnRun();
+followRoom();
+
+const root = /** @type {HTMLElement} */ (document.getElementById("app"));
+root.replaceChildren();
+render(html`<${Page} />`, root);

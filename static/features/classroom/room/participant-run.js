@@ -1,0 +1,48 @@
+// The own robot of a participant: its picture, how far it is, and what came of it.
+import { html, ProgressBar } from "../../../js/components/elements.js";
+import { replayProblem } from "../../../js/replay.js";
+import { participantRunNarrative } from "./run-sentences.js";
+import { isAway } from "../../../js/store.js";
+import { givenInWords } from "./allowed-settings.js";
+import { arrived, Picture, replayed, ReplayBar } from "./picture.js";
+import { ownEntry, ownRun, room } from "./room.js";
+
+export const OwnRobot = () => html`
+  <section class="own-robot" aria-label="Your robot">
+    <${Picture} source="replay" />
+    <${ReplayBar} />
+    <${OwnRun} />
+  </section>
+`;
+
+/** How far the own run is, or what came of it. */
+export function OwnRun() {
+  const run = ownRun.value;
+  if (run === null) return null;
+  const said = participantRunNarrative({
+    run, distance_m: ownEntry.value?.run?.distance_m ?? run.result?.distance_m ?? null, isAway: isAway.value,
+    hasArrived: replayed.value !== run.id || replayProblem.value !== null || arrived.value.has(run.id),
+  });
+  if (said.isBad) return html`<p class="run-words bad" role="alert">${said.words}</p>`;
+  return said.distance === undefined ? html`<${OnItsWay} ...${said} />` : html`<${Arrived} ...${said} />`;
+}
+
+/** @param {{ words: string, share?: number, isBusy?: boolean }} props */
+const OnItsWay = ({ words, share, isBusy }) => html`
+  <div class="run-words" role="status">
+    <p>${isBusy && html`<span class="spinner" aria-hidden="true"></span> `}${words}</p>
+    ${share !== undefined && html`<${ProgressBar} label="Progress of your robot" share=${share} />`}
+  </div>
+`;
+
+/** @param {{ words: string, distance?: string }} props */
+function Arrived({ words, distance }) {
+  const given = ownEntry.value?.run?.given ?? {};
+  return html`
+    <div class="own-distance" role="status">
+      <b class="num">${distance}</b>
+      <span class="dim">${words}
+        ${Object.keys(given).length > 0 && html`<br />${givenInWords(given, room.value?.shown ?? { text: "" })}`}</span>
+    </div>
+  `;
+}

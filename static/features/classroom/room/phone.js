@@ -1,0 +1,171 @@
+// The page of a participant: the card, the own prediction, the own robot, and after the reveal its place in the class.
+import { useEffect, useState } from "preact/hooks";
+import { getCurve } from "../../../js/api.js";
+import { DotStrip } from "../../../js/components/dot-strip.js";
+import { html, Loaded } from "../../../js/components/elements.js";
+import { Slot } from "../../../js/components/feature-parts.js";
+import { Prose } from "../components/prose.js";
+import { codeInGroups, count, metres } from "../../../js/format.js";
+import { Deeds, Next } from "./card-actions.js";
+import { Away, Door } from "./join.js";
+import { May } from "./allowed-settings.js";
+import { CLOSER, closerLink, replayed } from "./picture.js";
+import { Answer } from "./questions.js";
+import { axisOf, scoreInWords } from "./scores.js";
+import {
+  goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, room, shownResults,
+} from "./room.js";
+
+/** @import { Ask, Classroom, LessonCard, WhatIfAnswer } from "../../../js/types.js" */
+
+export function Phone() {
+  const known = /** @type {Classroom} */ (room.value);
+  if (known.role !== "participant") return html`<${Door} />`;
+  const { me } = /** @type {{ me: NonNullable<Classroom["me"]> }} */ (known);
+  return html`
+    <header class="room-header">
+      <p><b>${me.name}</b><span class="dim">seed ${me.seed}</span></p>
+      <p class="dim code">${codeInGroups(known.code)}</p>
+    </header>
+    <${Away} words="Your name and your seed are kept." />
+    ${known.state === "frozen" && html`
+      <p class="strip-note" role="status">The teacher has stopped the class for a moment. Look to the front.</p>
+    `}
+    <main class="phone">
+      ${known.state === "ended" ? html`<${Ended} />` : html`<${Present} key=${known.card} known=${known} />`}
+    </main>
+  `;
+}
+
+const Ended = () => html`
+  <section class="phone-part">
+    <h1>The lesson has ended</h1>
+    <p>What your robots have learned stays with your teacher. Thank you.</p>
+  </section>
+`;
+
+/** What who has not joined does not load. */
+const loadOwnRobot = () => import("./participant-run.js").then(({ OwnRobot }) => OwnRobot);
+const loadOwnRun = () => import("./participant-run.js").then(({ OwnRun }) => OwnRun);
+
+/** The card that is shown. @param {{ known: Classroom }} props */
+function Present({ known }) {
+  const { shown, html: texts, card, cards, state } = known;
+  const isOpen = state === "open";
+  return html`
+    ${replayed.value && html`<${Loaded} name="robot" load=${loadOwnRobot} />`}
+    <article class="phone-part" aria-labelledby="card-title">
+      <p class="dim">Card ${card + 1} of ${cards}</p>
+      ${shown.title && html`<h1 id="card-title">${shown.title}</h1>`}
+      <${Prose} text=${texts.text} />
+    </article>
+    ${!replayed.value && ownRun.value && html`<${Loaded} name="run" load=${loadOwnRun} />`}
+    ${isRevealed.value && html`<${Revealed} known=${known} />`}
+    ${shown.ask && html`<${Question} card=${shown} number=${card} text=${texts.ask} />`}
+    ${shown.go && Object.keys(shown.may ?? {}).length > 0 && html`
+      <${May} card=${shown} number=${card} isDisabled=${!isOpen || goesOn(ownRun.value)} />
+    `}
+    ${ownWhatIf.value && html`<${WhatIfDots} answer=${ownWhatIf.value} />`}
+    <${Closer} card=${shown} />
+    ${known.tournaments.length > 0 && html`<${Slot} name="phone of a room" room=${known} />`}
+    <${Next} card=${shown} />
+    <${Deeds} card=${shown} number=${card} isOpen=${isOpen} />
+  `;
+}
+
+// ---- the question
+
+/** @param {{ card: LessonCard, number: number, text: string }} props */
+function Question({ card, number, text }) {
+  const locked = ownAnswer.value;
+  return html`
+    <section class="phone-part question" aria-label="Question">
+      <${Prose} text=${text} />
+      ${locked === undefined && isRevealed.value
+        ? html`<p class="dim">You gave no prediction before the reveal.</p>`
+        : html`<${Answer} card=${card} number=${number} locked=${locked} actual=${useOwnCurve(card)} />`}
+      ${locked !== undefined && html`<p class="lock-note" role="status">Locked. It cannot be changed any more.</p>`}
+    </section>
+  `;
+}
+
+/** The learning curve of the own run, once it has ended, where the question is a chart. @param {LessonCard} card */
+function useOwnCurve({ ask }) {
+  const [curve, setCurve] = useState(/** @type {number[][]} */ ([]));
+  const isChart = ask?.kind === "curve" || ask?.kind === "point";
+  const id = isChart && ownRun.value?.state === "finished" ? ownRun.value.id : null;
+  useEffect(() => {
+    if (id === null) return;
+    getCurve(id).then(({ evaluations }) =>
+      setCurve(evaluations.map(({ step, distance_m }) => [step, /** @type {number} */ (distance_m)])), () => {});
+  }, [id]);
+  return curve;
+}
+
+// ---- what came of it
+
+/** Thirty ideal robots with these settings, beside the defaults. @param {{ answer: WhatIfAnswer }} props */
+function WhatIfDots({ answer }) {
+  const far = 1.06 * Math.max(answer.greedy_m, ...answer.chosen.distances_m, ...answer.default.distances_m);
+  return html`
+    <section class="phone-part" aria-label="Thirty robots">
+      ${[["With these settings", answer.chosen], ["With the defaults", answer.default]].map(([title, half]) => {
+        const { distances_m, iqm_m } = /** @type {WhatIfAnswer["chosen"]} */ (half);
+        return html`
+          <p><b>${title}</b>: typically ${metres(iqm_m)}</p>
+          <${DotStrip} label=${`${title}: typically ${metres(iqm_m)}`} points=${distances_m} high=${far}
+            low=${Math.min(0, ...distances_m)} typical=${{ iqm: iqm_m }} axis=${metres} />
+        `;
+      })}
+    </section>
+  `;
+}
+
+/** Ways to the tabs of the dashboard that the card shows, with the own run. @param {{ card: LessonCard }} props */
+function Closer({ card }) {
+  const tabs = [...new Set([...(card.show ?? []), card.state?.tab ?? ""])].filter((tab) => tab in CLOSER);
+  if (!lastRunId.value || tabs.length === 0) return null;
+  return html`
+    <nav class="closer" aria-label="Look closer">
+      ${tabs.map((tab) => html`
+        <a key=${tab} class="secondary as-button" href=${closerLink(tab)} target="_blank">${CLOSER[tab]}</a>
+      `)}
+    </nav>
+  `;
+}
+
+// ---- after the reveal
+
+/** @param {{ known: Classroom }} props */
+function Revealed({ known }) {
+  const found = shownResults.value;
+  const own = ownEntry.value;
+  return html`
+    <section class="phone-part revealed" aria-label="The class">
+      ${found && found.distances_m.length > 0 && html`<${ClassDots} />`}
+      ${own?.score && html`
+        <p class="score" role="status">${scoreInWords(own, /** @type {Ask} */ (known.shown.ask))}</p>
+      `}
+      ${known.html.reveal && html`<${Prose} text=${known.html.reveal} />`}
+    </section>
+  `;
+}
+
+function ClassDots() {
+  const { distances_m, interval } = /** @type {NonNullable<typeof shownResults.value>} */ (shownResults.value);
+  const own = ownEntry.value?.run ?? null;
+  const { low, high } = axisOf(distances_m);
+  const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
+  const all = count(distances_m.length, "seed");
+  const rank = own?.rank ? `Rank ${own.rank} of ${all}` : all;
+  return html`
+    <h2>${rank}</h2>
+    <${DotStrip} label=${`${rank}, from ${metres(distances_m[0])} to ${metres(distances_m.at(-1))}`} size=${1.6}
+      points=${distances_m} low=${low} high=${high} typical=${typical} axis=${metres} own=${own?.distance_m ?? null} />
+    <p class="dim">
+      ${own && html`<span class="own-key">your robot</span> ${metres(own.distance_m)}, `}the class typically
+      ${" "}${metres(interval?.iqm_m)}
+      ${interval && interval.low_m !== null && html` (95 %: ${metres(interval.low_m)} to ${metres(interval.high_m)})`}
+    </p>
+  `;
+}

@@ -1,0 +1,118 @@
+// The 3D view of a room's page: a replay of the own run, drawn here, or the room's stage with the run in the spotlight.
+import { computed, effect, signal } from "@preact/signals";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { html, Icon } from "../../../js/components/elements.js";
+import { page } from "../../../js/page-state.js";
+import { shownTheme } from "../../../js/page.js";
+import { isShownToEnd } from "../../../js/narrative/states.js";
+import { isAway, scene } from "../../../js/store.js";
+import {
+  closeReplay, drawIn, endTime, followReplay, isBuffering, openReplay, playReplay, plan, replayProblem, replayTime,
+  setReplaySpeed,
+} from "../../../js/replay.js";
+import { lastRunId, ownRun, ownRunId, room } from "./room.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { Message } from "../../../js/replay-frames.js" */
+
+/** A practice is long, and its steps are much alike. */
+const SPEEDS = { training: 8, race: 2 };
+
+/** The run that the page replays: the own one of this card, else the one that the card names. */
+const wanted = computed(() => {
+  const run = ownRun.value;
+  if (run && (run.state === "finished" || run.progress.done > 0)) return { id: run.id, kind: run.kind };
+  const named = ownRunId.value === null ? room.value?.shown.state?.run : null;
+  return named ? { id: named, kind: "race" } : null;
+});
+
+/** Id of the run that the page replays; null for none. */
+export const replayed = computed(() => wanted.value?.id ?? null);
+
+/** Ids of the runs whose pictures have been where their distances can be told. @type {Signal<Set<string>>} */
+export const arrived = signal(new Set());
+
+/** Replay the own run as soon as it has a step, and that of the next card after it. */
+export function followOwnRun() {
+  followReplay();
+  effect(() => {
+    const id = replayed.value;
+    if (id !== null && isShownToEnd(scene.value, id) && !arrived.peek().has(id)) {
+      arrived.value = new Set(arrived.peek()).add(id);
+    }
+  });
+  effect(() => {
+    const id = replayed.value;
+    if (id === page.run.peek()) return;
+    if (id === null) {
+      closeReplay();
+      return;
+    }
+    setReplaySpeed(/** @type {Record<string, number>} */ (SPEEDS)[wanted.peek()?.kind ?? "race"] ?? 2);
+    openReplay(id);
+  });
+}
+
+/** Steps of a tab of the dashboard in which the own run is looked at closer. @type {Record<string, string>} */
+export const CLOSER = { why: "Why each move", gait: "Its gait", table: "Its table of values" };
+
+/** A link to the dashboard with the own run, in the room's stage. @param {string} tab */
+export const closerLink = (tab) =>
+  `${room.value?.code}/?run=${ownRunId.value ?? lastRunId.value}&depth=study&tab=${tab}&hidden=card`;
+
+/** @param {{ source: "stage" | "replay" }} props */
+export function Picture({ source }) {
+  const frame = useRef(/** @type {HTMLIFrameElement | null} */ (null));
+  const [status, setStatus] = useState("loading");
+  const view = source === "stage" ? "leader" : "elsewhere";
+  const [address] = useState(() => `${room.peek()?.code}/viewer/?view=${view}&theme=${shownTheme.peek()}`);
+  useEffect(() => {
+    const send = (/** @type {Message[]} */ messages) =>
+      frame.current?.contentWindow?.postMessage({ type: "hexapods:draw", messages }, globalThis.origin);
+    const onMessage = (/** @type {MessageEvent} */ { origin, source: from, data }) => {
+      if (origin !== globalThis.origin || from !== frame.current?.contentWindow) return;
+      if (data?.type !== "hexapods:status") return;
+      setStatus(data.status);
+      if (data.status === "connected" && source === "replay") drawIn(send);
+    };
+    addEventListener("message", onMessage);
+    return () => removeEventListener("message", onMessage);
+  }, []);
+  useEffect(() => {
+    const message = { type: "hexapods:show", view, theme: shownTheme.value, isPresenting: source === "stage" };
+    frame.current?.contentWindow?.postMessage(message, globalThis.origin);
+  }, [shownTheme.value, status]);
+  return html`
+    <div class="room-picture" data-status=${status}>
+      <iframe ref=${frame} src=${address} title="The robots on the track, in 3D" tabindex="-1"></iframe>
+      ${status === "loading" && html`<p class="over" role="status">The robot walks to the start line…</p>`}
+      ${status !== "loading" && status !== "connected" && html`
+        <p class="over" role="status">${isAway.value
+          ? "The picture comes back with the connection."
+          : "The picture comes when there is room; all figures are live."}</p>
+      `}
+    </div>
+  `;
+}
+
+/** Play, hold and repeat the own replay. */
+export function ReplayBar() {
+  if (replayProblem.value) return html`<p class="dim" role="status">${replayProblem}</p>`;
+  if (plan.value === null) {
+    return html`<p class="dim" role="status">${isAway.value
+      ? "The picture comes with the connection." : "Loading the picture…"}</p>`;
+  }
+  const isAtEnd = plan.value.complete && replayTime.value >= endTime.value - 1e-6;
+  const isPlaying = page.moment.value === null && !isAtEnd;
+  const share = endTime.value > 0 ? replayTime.value / endTime.value : 0;
+  return html`
+    <div class="replay-bar">
+      <button class="quiet" onClick=${() => playReplay(!isPlaying)}>
+        <${Icon} name=${isPlaying ? "pause" : isAtEnd ? "replay" : "play"} />
+        ${isPlaying ? "Pause" : isAtEnd ? "Again" : "Play"}
+      </button>
+      <span class="replay-share" aria-hidden="true"><i style=${{ width: `${100 * share}%` }}></i></span>
+      ${isBuffering.value && html`<span class="spinner" aria-hidden="true"></span>`}
+    </div>
+  `;
+}

@@ -1,0 +1,107 @@
+// The features of the page: each is a folder of static/features, which the server may leave out. This is their seam:
+// the core asks it what features add, and knows none of them. `feature.json` declares what a feature adds, and is in
+// the page itself, so that it takes no request; its code is loaded when it is first needed. `feature.js` is there for
+// what has to run from the start, and adds to the declaration.
+import { computed, signal } from "@preact/signals";
+import { declareFields, declareWords } from "./page-state.js";
+import { addHandlers } from "./store.js";
+
+/** @import { Deck, Feature, MenuRow, SlotPart } from "./types.js" */
+
+/** What the server has written into the page. @returns {Feature[]} */
+const declared = () => JSON.parse(document.getElementById?.("features")?.textContent || "[]");
+
+/** The features that are there, by name. */
+export const features = signal(declared());
+
+/** Whether a feature is there. @param {string} name */
+export const hasFeature = (name) => features.value.some((feature) => feature.name === name);
+
+/**
+ * Take in features, before the address is read and anything is drawn. One that needs another which is missing is left
+ * out.
+ * @param {Feature[]} all
+ */
+export function install(all) {
+  const names = all.map(({ name }) => name);
+  const isComplete = (/** @type {Feature} */ { needs = [] }) => needs.every((name) => names.includes(name));
+  if (!all.every(isComplete)) {
+    install(all.filter(isComplete));
+    return;
+  }
+  features.value = all;
+  for (const { fields = {}, tabs = {}, views = {}, hideable = [], events = {} } of all) {
+    declareFields(fields);
+    addHandlers(events);
+    const panels = Object.entries(tabs).flatMap(([tab, { wasPanel }]) => (wasPanel ? [[wasPanel, tab]] : []));
+    declareWords({
+      tabs: Object.keys(tabs), views: Object.keys(views), hideable, panels: Object.fromEntries(panels),
+    });
+  }
+}
+
+/**
+ * The declaration of a feature with what its `feature.js` adds.
+ * @param {Feature} feature
+ * @returns {Promise<Feature>}
+ */
+async function withCode(feature) {
+  if (!feature.hasCode) return feature;
+  const { default: code } = await import(`../features/${feature.name}/feature.js`);
+  return { ...feature, ...code };
+}
+
+/** Install the features of the page. */
+export const installFeatures = async () => install(await Promise.all(features.peek().map(withCode)));
+
+/**
+ * What a source names, as "components/gait.js#Gait".
+ * @param {string} feature its name
+ * @param {string} source
+ */
+export async function imported(feature, source) {
+  const [path, name] = source.split("#");
+  return (await import(`../features/${feature}/${path}`))[name];
+}
+
+/**
+ * The named parts of one kind of all features, each with the name of its feature.
+ * @template {"tabs" | "views" | "dialogs"} Kind
+ * @param {Kind} kind
+ * @returns {Record<string, NonNullable<Feature[Kind]>[string] & { feature: string }>}
+ */
+export const partsOf = (kind) => Object.fromEntries(features.value.flatMap(({ name: feature, ...parts }) =>
+  Object.entries(parts[kind] ?? {}).map(([name, part]) => [name, /** @type {any} */ ({ ...part, feature })])));
+
+/**
+ * What features put in a place of the core. @param {string} slot
+ * @returns {(SlotPart & { feature: string })[]}
+ */
+export const fillersOf = (slot) => features.value.flatMap(({ name: feature, slots = {} }) =>
+  (slots[slot] ? [{ ...slots[slot], feature }] : []));
+
+/** The rows that features add to the menu, in their order. @type {{ value: (MenuRow & { feature: string })[] }} */
+export const menuRows = computed(() => features.value
+  .flatMap(({ name: feature, menu = [] }) => menu.map((row) => ({ ...row, feature })))
+  .sort((a, b) => (a.order ?? 0) - (b.order ?? 0)));
+
+/** Do what a row of the menu is for. @param {MenuRow & { feature: string }} row */
+export async function runRow({ feature, dialog, call, run }) {
+  if (dialog) wantDialog(dialog);
+  if (call) (await imported(feature, call))();
+  run?.();
+}
+
+/** @type {Deck} */
+const NO_DECK = { cards: signal([]), number: signal(null), open: () => {}, Question: () => null };
+
+/** The cards that a presenter shows: of the feature that has any. */
+export const deck = computed(() => features.value.find((feature) => feature.deck)?.deck ?? NO_DECK);
+
+/** Dialogs that were wanted, by name: they are loaded then, and stay. @type {{ value: string[] }} */
+export const wantedDialogs = signal([]);
+
+/** Load a dialog, which its own signal opens. @param {string} name */
+export const wantDialog = (name) => {
+  if (!wantedDialogs.value.includes(name)) wantedDialogs.value = [...wantedDialogs.value, name];
+};

@@ -1,0 +1,107 @@
+// The seam between the page and its features: what one adds, what is missing without it, and that the core names none.
+import assert from "node:assert/strict";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { test } from "node:test";
+import { features, fillersOf, hasFeature, imported, install, menuRows, partsOf } from "../../static/js/features.js";
+import { ignored, page, read } from "../../static/js/page-state.js";
+import { applyEvent, eventNames } from "../../static/js/store.js";
+import { allTabs } from "../../static/js/workspace.js";
+import { ALL, EXAMPLE, FOLDER } from "./features.js";
+
+const CORE = new URL("../../static/js/", import.meta.url);
+const NAMES = ALL.map(({ name }) => name);
+/** Features that are not yet behind the seam. */
+const NOT_YET = ["demo", "gait_analysis"];
+
+/** The scripts below a folder, with their texts. @param {URL} folder */
+const scriptsIn = (folder) => readdirSync(folder, { recursive: true, encoding: "utf-8" })
+  .filter((path) => path.endsWith(".js"))
+  .map((path) => ({ path, at: new URL(path, folder), text: readFileSync(new URL(path, folder), "utf-8") }));
+
+/** What a script imports, at once or later, as whole addresses. @param {{ at: URL, text: string }} script */
+const importsOf = ({ at, text }) =>
+  [...text.matchAll(/(?:from |import |import\()"(\.[^"]+)"/g)].map(([, path]) => new URL(path, at).href);
+
+/** The feature in whose folder an address is; null outside of all. @param {string} href */
+const featureOf = (href) =>
+  (href.startsWith(FOLDER.href) ? href.slice(FOLDER.href.length).split("/")[0] : null);
+
+test("no module of the core imports one of a feature", () => {
+  const guilty = scriptsIn(CORE).filter((script) => importsOf(script).some(featureOf));
+  assert.deepEqual(guilty.map(({ path }) => path), []);
+});
+
+test("a feature imports modules of those features alone that it needs, or names as used", () => {
+  for (const { name, needs = [], uses = [] } of ALL) {
+    const others = scriptsIn(new URL(`${name}/`, FOLDER)).flatMap(importsOf).map(featureOf);
+    const undeclared = others.filter((other) => other !== null && ![name, ...needs, ...uses].includes(other));
+    assert.deepEqual(undeclared, [], name);
+  }
+});
+
+test("what is only used is loaded later, so that it may be missing", () => {
+  for (const { name, uses = [] } of ALL) {
+    for (const { path, at, text } of scriptsIn(new URL(`${name}/`, FOLDER))) {
+      const atOnce = [...text.matchAll(/^import [^"]*"(\.[^"]+)"/gm)].map(([, target]) => new URL(target, at).href);
+      assert.deepEqual(atOnce.map(featureOf).filter((other) => other !== null && uses.includes(other)), [], path);
+    }
+  }
+});
+
+/** The words of a feature, where its name alone would not tell it. @type {Record<string, RegExp>} */
+const WORDS = {
+  classroom: /classroom|lesson|pupil|teacher/i,
+  tournaments: /tournament/i,
+  demo: /\bdemos?\b|visitor/i,
+  gait_analysis: /gait.analysis/i,
+};
+
+test("no module of the core names a feature", () => {
+  for (const name of Object.keys(WORDS).filter((one) => !NOT_YET.includes(one))) {
+    const guilty = scriptsIn(CORE).flatMap(({ path, text }) => text.split("\n")
+      .flatMap((line, n) => (WORDS[name].test(line) ? [`${path}:${n + 1}: ${line.trim()}`] : [])));
+    assert.deepEqual(guilty, [], name);
+  }
+});
+
+test("what a feature declares is there", async () => {
+  for (const { name, tabs = {}, views = {}, dialogs = {}, slots = {}, menu = [], needs = [] } of ALL) {
+    assert.deepEqual(needs.filter((other) => !NAMES.includes(other)), [], name);
+    const parts = [tabs, views, dialogs, slots].flatMap((kind) => Object.values(kind));
+    const shown = parts.flatMap((part) => ("show" in part ? [part.show] : []));
+    for (const source of [...shown, ...menu.flatMap(({ call }) => call ?? [])]) {
+      assert.equal(typeof await imported(name, source), "function", `${name}: ${source}`);
+    }
+    const styles = parts.flatMap((part) => ("style" in part && part.style ? [part.style] : []));
+    assert.deepEqual(styles.filter((style) => !existsSync(new URL(`${name}/${style}`, FOLDER))), [], name);
+  }
+});
+
+test("a feature adds tabs, views, fields, places and events; one that needs a missing one is left out", () => {
+  assert.deepEqual([allTabs.value, hasFeature("example")], [["board", "train", "world"], false]);
+  read({ search: "?tab=gait&page=3", hash: "" });
+  assert.deepEqual(ignored.query.value, ["tab=gait (valid: board, train, world)"], "as a link of another server");
+  assert.equal("page_number" in page, false);
+
+  const heard = /** @type {number[]} */ ([]);
+  const Filler = () => null;
+  install([
+    {
+      ...EXAMPLE, menu: [{ title: "B", order: 2 }, { title: "A", order: 1 }], slots: { card: { component: Filler } },
+      events: { example: ({ value }) => heard.push(value) },
+    },
+    { name: "dependent", needs: ["missing"], hideable: ["late"] },
+    { name: "second", needs: ["dependent"] },
+  ]);
+  assert.deepEqual(features.value.map(({ name }) => name), ["example"]);
+  assert.deepEqual(allTabs.value, ["board", "train", "world", "why", "gait", "table", "what-if"]);
+  assert.deepEqual(Object.keys(partsOf("views")), ["lessons"]);
+  assert.deepEqual(menuRows.value.map(({ title, feature }) => [title, feature]), [["A", "example"], ["B", "example"]]);
+  assert.deepEqual([fillersOf("card"), fillersOf("none")], [[{ component: Filler, feature: "example" }], []]);
+  read({ search: "?tab=gait&page=3", hash: "#lessons" });
+  const { tab, view, page_number } = /** @type {any} */ (page);
+  assert.deepEqual([tab.value, view.value, page_number.value], ["gait", "lessons", 3]);
+  assert.ok(eventNames().includes("example"));
+  applyEvent("example", { value: 7 });
+  assert.deepEqual(heard, [7]);
+});
