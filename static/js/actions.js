@@ -11,11 +11,12 @@ import { changeIfStillHere, page } from "./page-state.js";
 import {
   canPlay, isPlaying, isRaceRun, isStale, laneTables, matchingTable, myWork, shownRun, work,
 } from "./on-stage.js";
-import { isActive, isOperator, isVisitor, markAsMine, mayStart } from "./selectors.js";
+import { isActive, isOperator, markAsMine, mayStart } from "./selectors.js";
 import {
   closeReplay, openReplay, plan, playReplay, replayTime, seekReplay, setReplayClock, setReplaySpeed,
 } from "./replay.js";
 import { beginOfStep } from "./replay-frames.js";
+import { features } from "./features.js";
 import { formRobot } from "./robots.js";
 import { agentOf, isClosed, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
@@ -147,12 +148,6 @@ export const canStart = computed(
 export const runPrimaryAction = () => (canStart.value ? primaryAction.value.run() : null);
 
 /**
- * Id of the run that a visitor of a demo has started last, whose picture this page is to show by itself; null once it
- * has, or where another was chosen. @type {Signal<string | null>}
- */
-export const followed = signal(null);
-
-/**
  * Take in a run that this tab starts.
  * @param {() => Promise<Run | null>} send
  */
@@ -161,7 +156,7 @@ export const adopt = async (send) => {
   if (run?.id) {
     markAsMine(run.id);
     closeReplay();
-    if (isVisitor.peek()) followed.value = run.id;
+    features.peek().forEach(({ started }) => started?.(run));
   }
   return run;
 };

@@ -1,7 +1,7 @@
 // Client of the server: its REST API, one function per request.
 import { computed, effect, untracked } from "@preact/signals";
 
-/** @import { Allowance, Annotations, Curve, Curves, Disturbance, Explanation, GaitAnalysis } from "./types.js" */
+/** @import { Annotations, Curve, Curves, Disturbance, Explanation, GaitAnalysis } from "./types.js" */
 /** @import { Kind, Loss, Options } from "./types.js" */
 /** @import { Estimate, Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage, StateTable } from "./types.js" */
 /** @import { Summary, Timeline, Trial, Verb, WhatIfAnswer } from "./types.js" */
@@ -330,9 +330,6 @@ export const getTrials = (id) => call("GET", `${pathOf({ kind: "experiment", id 
 export const startTrial = (id, key) => start(`${pathOf({ kind: "experiment", id })}/trials/run`, { key });
 /** @type {(id: string) => Promise<Summary>} */
 export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
-
-/** What a visitor of a demo may start, and what is left of it. @returns {Promise<Allowance>} */
-export const getAllowance = () => call("GET", "allowance");
 
 /** @returns {Promise<Spectators>} */
 export const getSpectators = () => call("GET", "spectators");

@@ -8,7 +8,7 @@ import { page } from "./page-state.js";
 import { knownRace } from "./race.js";
 import { isBuffering, replayProblem } from "./replay.js";
 import { narrativeOf } from "./narrative/narrative.js";
-import { isOperator, visitorRuns } from "./selectors.js";
+import { isOperator, guestRuns } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { connection, isAway, runs, scene, stage } from "./store.js";
 import { scale } from "./time.js";
@@ -54,7 +54,7 @@ const known = computed(() => {
     recordedStep: run?.kind === "training" ? scale.value?.computed ?? null : null,
     goesOnWith: resumableOnStage.value, ghosts: ghostsInWords(), problem: replayProblem.value,
     isAway: isAway.value, isOwn: page.run.value !== null,
-    isOfVisitor: visitorRuns.value.includes(page.run.value ?? ""), isBuffering: isBuffering.value,
+    isOfGuest: guestRuns.value.includes(page.run.value ?? ""), isBuffering: isBuffering.value,
     canPlay: canPlay.value, canResume: isOperator.value,
   };
 });

@@ -1,5 +1,5 @@
 // Entry point: loads the options, opens the event stream, renders the page.
-import { effect, signal, untracked } from "@preact/signals";
+import { effect } from "@preact/signals";
 import { render } from "preact";
 import { getStage } from "./api.js";
 import { App } from "./components/app.js";
@@ -18,7 +18,7 @@ import { announceOutcomes, headline } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
-import { isVisitor } from "./selectors.js";
+import { loadFor } from "./roles.js";
 import {
   applyEvent, connection, eventNames, isLockedOut, openEvents, role, version,
 } from "./store.js";
@@ -29,26 +29,7 @@ function openForms() {
   openForm();
   features.value.forEach(({ withOptions }) => withOptions?.());
   openExperimentForm();
-  followAs(() => role.value === "spectator", () => import("./spectators.js"), (own) => own.followStageSettings());
-}
-
-/**
- * Load the module of pages of a role; if that fails, again once the connection is back.
- * @template Module
- * @param {() => boolean} isRole
- * @param {() => Promise<Module>} load
- * @param {(own: Module) => void} follow called whenever the page becomes one of the role
- */
-function followAs(isRole, load, follow) {
-  const loaded = signal(/** @type {Module | null} */ (null));
-  effect(() => {
-    const isMissing = isRole() && connection.value === "live" && loaded.value === null;
-    if (isMissing) load().then((own) => (loaded.value = own), () => {});
-  });
-  effect(() => {
-    const own = loaded.value;
-    if (isRole() && own) untracked(() => follow(own));
-  });
+  loadFor(() => role.value === "spectator", () => import("./spectators.js"), (own) => own.followStageSettings());
 }
 
 /** Reload when the server comes back in another version, which these scripts may not fit. */
@@ -77,7 +58,6 @@ followRuns(stageIds);
 followCurves(trainingsInView);
 followTimeline();
 followReplay();
-followAs(() => isVisitor.value, () => import("./demo.js"), (own) => own.followDemo());
 followExperiments();
 followSummary();
 announceOutcomes();

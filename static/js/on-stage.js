@@ -8,7 +8,7 @@ import { count, duration, sentence, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
 import { earlyEndOf } from "./narrative/states.js";
 import {
-  hasTable, isActive, isKnown, isOperator, isVisitor, myRuns, runOf, stageableRuns, trainingIds,
+  hasTable, isActive, isKnown, isOperator, isGuest, myRuns, runOf, stageableRuns, trainingIds,
 } from "./selectors.js";
 import { learns } from "./settings.js";
 import { commonStage, isAway, isLockedOut, ownStage, scene, stage } from "./store.js";
@@ -96,8 +96,8 @@ export const myWork = computed(() => {
 
 /** The work that Pause and Stop act on: this tab's, else the one on stage, else any. */
 export const work = computed(() => {
-  // Strangers see each other's work in the list of runs alone.
-  if (myWork.value || isVisitor.value) return myWork.value;
+  // Guests see each other's work in the list of runs alone.
+  if (myWork.value || isGuest.value) return myWork.value;
   const candidates = isActive(shownRun.value) ? [raceInView.value, shownRun.value] : stageableRuns.value;
   const run = candidates.find(isActive);
   return run ? workOf(run) : null;
@@ -113,7 +113,7 @@ export const liveTraining = computed(() => {
 export const offStage = computed(() => {
   const { requested, current } = myWork.value ?? {};
   const onStage = commonStage.value?.run_id;
-  if (!requested || !current || !onStage || isVisitor.value || isAway.value) return null;
+  if (!requested || !current || !onStage || isGuest.value || isAway.value) return null;
   const isOwn = [requested.id, current.id, ...trainingIds(requested)].includes(onStage);
   return isOwn || commonStage.value?.next_run_id === requested.id ? null : current;
 });
@@ -147,7 +147,7 @@ const lastActivity = ({ ended_at, created_at }) => ended_at ?? created_at;
 /** The run that was last at work, if it was interrupted and is not on stage. */
 export const interruptedRun = computed(() => {
   const [last] = stageableRuns.value.toSorted((a, b) => lastActivity(b).localeCompare(lastActivity(a)));
-  if (work.value || isVisitor.value || last?.state !== "interrupted") return null;
+  if (work.value || isGuest.value || last?.state !== "interrupted") return null;
   return last === shownRun.value || last === resumableOnStage.value ? null : last;
 });
 
@@ -170,8 +170,8 @@ const fits = (training, values) =>
 const fittingTrainings = computed(() => {
   const known = [raceInView.value, shownRun.value, ...myRuns.value.map(runOf)];
   const trainings = known.flatMap((run) => (run?.kind === "race" ? trainingIds(run).map(runOf) : [run]));
-  // A stranger begins with a robot of their own, whatever the stage shows of others.
-  const isUsable = (/** @type {Run} */ run) => !isVisitor.value || myRuns.value.includes(run.id);
+  // A guest begins with a robot of their own, whatever the stage shows of others.
+  const isUsable = (/** @type {Run} */ run) => !isGuest.value || myRuns.value.includes(run.id);
   return trainings.filter(isKnown).filter((run) => isUsable(run) && fits(run, form.value));
 });
 
@@ -287,8 +287,8 @@ export const progress = computed(() => {
 const lastKnown = ({ label, ...known }) =>
   ({ ...known, label: `Last known: ${label[0].toLowerCase()}${label.slice(1)}`, left: "" });
 
-/** Told to those who wait for strangers. @param {Run} run */
-const placeInQueue = ({ queue_position: place }) => (isVisitor.value && place ? `, place ${place}` : "");
+/** Told to those who wait for others. @param {Run} run */
+const placeInQueue = ({ queue_position: place }) => (isGuest.value && place ? `, place ${place}` : "");
 
 /** @param {{ requested: Run, current: Run }} work @returns {Progress} */
 function ofWork({ requested, current }) {

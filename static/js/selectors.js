@@ -1,11 +1,12 @@
 // Values derived from the store: rights, and the runs that this tab started.
 import { computed, signal } from "@preact/signals";
 import { disturbancesOf } from "./disturbances.js";
+import { features } from "./features.js";
 import { isActive } from "./narrative/states.js";
 import { options, role, runs } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Allowance, GaitConfig, LaneConfig, Run, State } from "./types.js" */
+/** @import { GaitConfig, LaneConfig, Run, State } from "./types.js" */
 
 /** @type {Set<State>} */
 const WITH_TABLE = new Set(["finished", "stopped"]);
@@ -19,16 +20,15 @@ export { isActive };
 export const hasTable = (run) => run?.kind === "training" && WITH_TABLE.has(run.state);
 
 export const isOperator = computed(() => role.value === "operator");
-/** Whether this page is a stranger's, on a demo: they start runs, and change their own. */
-export const isVisitor = computed(() => role.value === "visitor");
+const guest = computed(() => features.value.find((feature) => feature.guest)?.guest ?? null);
+/** Whether this page is a feature's guest's: they start runs, and change their own, and leave the stage alone. */
+export const isGuest = computed(() => guest.value?.isHere.value ?? false);
+/** Ids of the guest's runs, oldest first. */
+export const guestRuns = computed(() => guest.value?.runs.value ?? []);
 /** Whether this page may start trainings and races. */
-export const mayStart = computed(() => isOperator.value || isVisitor.value);
-/** What the visitor of a demo may still start; null until it is known. @type {Signal<Allowance | null>} */
-export const allowance = signal(null);
-/** Ids of the runs of a demo's visitor, oldest first. @type {Signal<string[]>} */
-export const visitorRuns = signal([]);
+export const mayStart = computed(() => isOperator.value || isGuest.value);
 /** Whether this page may stop, rename or delete a run. @param {{ id: string }} run */
-export const mayChange = ({ id }) => isOperator.value || visitorRuns.value.includes(id);
+export const mayChange = ({ id }) => isOperator.value || guestRuns.value.includes(id);
 
 /** Every known run, newest first. */
 export const everyRun = computed(() =>
@@ -44,8 +44,8 @@ export const runOf = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);
 /** Ids of the runs that this tab started, newest first. @type {Signal<string[]>} */
 export const ownRuns = signal(readOwnRuns());
 
-/** Ids of the runs that this tab, or the visitor of a demo, has started, newest first. */
-export const myRuns = computed(() => [...new Set([...ownRuns.value, ...visitorRuns.value.toReversed()])]);
+/** Ids of the runs that this tab, or the guest, has started, newest first. */
+export const myRuns = computed(() => [...new Set([...ownRuns.value, ...guestRuns.value.toReversed()])]);
 
 /** @param {string} id */
 export const markAsMine = (id) => {

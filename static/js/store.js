@@ -14,7 +14,7 @@ export const isAway = computed(() => connection.value === "reconnecting");
 export const version = signal(null);
 /** Whether the server refuses this page because it lacks the link's token. */
 export const isLockedOut = signal(false);
-/** Null until the first snapshot. @type {Signal<"operator" | "spectator" | "visitor" | null>} */
+/** Null until the first snapshot. @type {Signal<NonNullable<EventBodies["snapshot"]["role"]> | null>} */
 export const role = signal(null);
 /** Number of pages that watch the stage. @type {Signal<number | null>} */
 export const viewers = signal(null);

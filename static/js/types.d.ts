@@ -336,4 +336,8 @@ export interface Feature {
   events?: Record<string, (data: any) => void>;
   hidesTab?: (tab: string) => boolean;
   deck?: Deck;
+  /** Who starts runs of their own here, without being an operator. */
+  guest?: { isHere: ReadonlySignal<boolean>, runs: ReadonlySignal<string[]> };
+  /** Called with each run that this page starts. */
+  started?: (run: Run) => void;
 }

@@ -11,7 +11,7 @@ import { ALL, EXAMPLE, FOLDER } from "./features.js";
 const CORE = new URL("../../static/js/", import.meta.url);
 const NAMES = ALL.map(({ name }) => name);
 /** Features that are not yet behind the seam. */
-const NOT_YET = ["demo", "gait_analysis"];
+const NOT_YET = ["gait_analysis"];
 
 /** The scripts below a folder, with their texts. @param {URL} folder */
 const scriptsIn = (folder) => readdirSync(folder, { recursive: true, encoding: "utf-8" })

@@ -241,7 +241,7 @@ const saidAt = (entry, { scene, stage }, changes = {}) => narrativeOf({
     ({ at_step, until_step: null, words: `${kind === "limp" ? "Legs 1, 4 limp" : "Lost"} from step ${at_step + 1}` })),
   recordedStep: entry.run.kind === "training" ? Math.round(scene.computed_s / 0.32) : null,
   goesOnWith: entry.run.can_resume ? entry.run : null, ghosts: null, problem: null, isAway: false, isOwn: false,
-  isOfVisitor: false, isBuffering: false, canPlay: true, canResume: true, ...changes,
+  isOfGuest: false, isBuffering: false, canPlay: true, canResume: true, ...changes,
 });
 
 const MOMENTS = ENTRIES.flatMap((entry) => entry.moments.map((/** @type {any} */ moment) => ({ entry, moment })));

@@ -5,16 +5,17 @@ import {
 } from "../actions.js";
 import { raceEstimate } from "../estimate.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
-import { count, sentence, whole } from "../format.js";
+import { sentence, whole } from "../format.js";
 import { ignored, page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { interruptedRun, myWork, offStage, progress, shownRun, work } from "../on-stage.js";
-import { allowance, isOperator, isVisitor, mayChange, mayStart } from "../selectors.js";
+import { isGuest, isOperator, mayChange, mayStart } from "../selectors.js";
 import { agentOf, learners, placeOf } from "../settings.js";
 import { isAway, scene } from "../store.js";
 import { inFormWords, labelOf, messageOf } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
 import { EstimateNote, goToField, html, Icon, Loaded, ProgressBar, UnknownParts } from "./elements.js";
+import { Slot } from "./feature-parts.js";
 
 /** @import { Run } from "../types.js" */
 
@@ -37,7 +38,7 @@ function Actions() {
       ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
       ${!isBusy && html`<${EstimateNote} words=${raceEstimate} />`}
       ${!isBusy && html`<${MissingLane} />`}
-      ${isVisitor.value && html`<${AllowanceLine} />`}
+      <${Slot} name="actions" />
       <${WorkActions} />
       ${isAway.value && html`
         <p class="dim" id="held-away">Nothing can be started or stopped until the server is back.</p>
@@ -114,18 +115,8 @@ const SecondaryActions = () => html`
 function WorkActions() {
   if (!work.value) return null;
   return html`
-    <${Progress} />${(isAtLeast("try") || isVisitor.value) && html`<${WorkButtons} />`}
+    <${Progress} />${(isAtLeast("try") || isGuest.value) && html`<${WorkButtons} />`}
   `;
-}
-
-/** What a visitor of a demo may still start, and what becomes of it. */
-function AllowanceLine() {
-  if (!isVisitor.value || allowance.value === null) return null;
-  const { steps_left, steps_per_hour, hours } = allowance.value;
-  // Steps come back with time.
-  const left = isAway.value ? "" : `: ${whole(steps_left)} of ${count(steps_per_hour, "step")} an hour left`;
-  const after = hours === 24 ? "a day" : count(hours, "hour");
-  return html`<p class="dim allowance">A demo${left}. What you make is public, and deleted after ${after}.</p>`;
 }
 
 function WorkButtons() {

@@ -7,7 +7,7 @@ import { page } from "../page-state.js";
 import { isPhone } from "../page.js";
 import { closeReplay, openReplay, stepReplay } from "../replay.js";
 import { percent, shareOf, ticks } from "../scale.js";
-import { isOperator, isVisitor } from "../selectors.js";
+import { isOperator, isGuest } from "../selectors.js";
 import { isAway, scene, stage } from "../store.js";
 import {
   laneRows, markInWords, marks, positionInWords, pressSlider, scale, seekTo, toggleTime,
@@ -69,7 +69,7 @@ function ReplayButton() {
 
 const BackToStage = () => html`
   <button class="secondary compact to-stage" onClick=${closeReplay} title="Watch the stage with everybody">
-    <span class="dot" aria-hidden="true"></span>${isVisitor.value ? "Stage" : "Live"}
+    <span class="dot" aria-hidden="true"></span>${isGuest.value ? "Stage" : "Live"}
   </button>
 `;
 

@@ -19,11 +19,11 @@ import {
  *   run: Run | null, stage: Pick<Stage, "run_id" | "phase" | "playing" | "ended"> | null,
  *   tests: CurvePoint[], happened: Happening[], conditions: string[], clockTitle: string,
  *   recordedStep: number | null, goesOnWith: Run | null, ghosts: string | null, problem: string | null,
- *   isAway: boolean, isOwn: boolean, isOfVisitor: boolean, isBuffering: boolean, canPlay: boolean, canResume: boolean,
+ *   isAway: boolean, isOwn: boolean, isOfGuest: boolean, isBuffering: boolean, canPlay: boolean, canResume: boolean,
  * }} Known
  * `tests`: of a practice, in its own steps. `recordedStep`: the last of a practice that is recorded. `goesOnWith`: the
  * run that going on with this one resumes. `ghosts`: of which run they are. `problem`: why there is no replay. `isOwn`:
- * whether it is a replay of this page's own, of the visitor's own robot if `isOfVisitor`.
+ * whether it is a replay of this page's own, of the guest's own robot if `isOfGuest`.
  */
 
 /**
@@ -282,11 +282,11 @@ const PHASES = {
 
 /** @param {Facts} facts @returns {Chip[]} */
 function replayOf(facts) {
-  const { scene, isOwn, isOfVisitor, isAway, isBuffering, problem } = facts;
+  const { scene, isOwn, isOfGuest, isAway, isBuffering, problem } = facts;
   if (!isOwn) return scene?.replay ? [{ kind: "", words: "Replay" }] : [];
   if (problem) return [];
   // While the server is away a note says so.
-  const words = isBuffering && !isAway ? loading(facts) : isOfVisitor ? "Your robot" : "Your own replay";
+  const words = isBuffering && !isAway ? loading(facts) : isOfGuest ? "Your robot" : "Your own replay";
   return [{ kind: "accent", words }];
 }
 

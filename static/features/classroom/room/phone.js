@@ -3,7 +3,6 @@ import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../../../js/api.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
 import { html, Loaded } from "../../../js/components/elements.js";
-import { Slot } from "../../../js/components/feature-parts.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups, count, metres } from "../../../js/format.js";
 import { Deeds, Next } from "./card-actions.js";
@@ -46,6 +45,11 @@ const Ended = () => html`
 
 /** What who has not joined does not load. */
 const loadOwnRobot = () => import("./participant-run.js").then(({ OwnRobot }) => OwnRobot);
+/** What other features show here, which few rooms have. */
+const loadMore = async () => {
+  const { Slot } = await import("../../../js/components/feature-parts.js");
+  return (/** @type {{ room: Classroom }} */ { room: shown }) => html`<${Slot} name="phone of a room" room=${shown} />`;
+};
 const loadOwnRun = () => import("./participant-run.js").then(({ OwnRun }) => OwnRun);
 
 /** The card that is shown. @param {{ known: Classroom }} props */
@@ -67,7 +71,7 @@ function Present({ known }) {
     `}
     ${ownWhatIf.value && html`<${WhatIfDots} answer=${ownWhatIf.value} />`}
     <${Closer} card=${shown} />
-    ${known.tournaments.length > 0 && html`<${Slot} name="phone of a room" room=${known} />`}
+    ${known.tournaments.length > 0 && html`<${Loaded} name="tournaments" load=${loadMore} room=${known} />`}
     <${Next} card=${shown} />
     <${Deeds} card=${shown} number=${card} isOpen=${isOpen} />
   `;

@@ -1,17 +1,15 @@
-// The page of a demo's visitor: what is left of the allowance, which runs are theirs, and the picture of their robot.
-// It is loaded there alone.
+// The page of a visitor: what is left of the allowance, which runs are theirs, and the picture of their robot. It is
+// loaded there alone.
 import { batch, computed, effect, untracked } from "@preact/signals";
-import { followed } from "./actions.js";
-import { getAllowance } from "./api.js";
-import { page } from "./page-state.js";
-import { openReplay, setReplaySpeed } from "./replay.js";
-import { followRuns } from "./runs.js";
-import {
-  allowance, isActive, isKnown, isVisitor, ownRuns, runOf, trainingIds, visitorRuns,
-} from "./selectors.js";
-import { connection, ownStage } from "./store.js";
+import { call } from "../../js/api.js";
+import { page } from "../../js/page-state.js";
+import { openReplay, setReplaySpeed } from "../../js/replay.js";
+import { followRuns } from "../../js/runs.js";
+import { isActive, isKnown, ownRuns, runOf, trainingIds } from "../../js/selectors.js";
+import { connection, ownStage } from "../../js/store.js";
+import { allowance, followed, isVisitor, visitorRuns } from "./feature.js";
 
-/** @import { Run } from "./types.js" */
+/** @import { Run } from "../../js/types.js" */
 
 /** Steps come back with time, and runs are deleted. */
 const REFRESH_MS = 60_000;
@@ -20,7 +18,7 @@ const SOON_MS = 250;
 
 async function refresh() {
   try {
-    const answer = await getAllowance();
+    const answer = await call("GET", "allowance");
     batch(() => {
       allowance.value = answer;
       visitorRuns.value = answer.runs;
