@@ -1,0 +1,62 @@
+"""The page without some of its features: it says nothing of them, and a race runs."""
+
+import json
+import re
+
+import pytest
+from playwright.sync_api import Route, expect
+
+from app.api.pages import page_features
+from hexapods import assets
+from tests.browser.dashboard import Dashboard
+from tests.browser.serving import Serving
+
+pytestmark = pytest.mark.timeout(300)
+
+NAMES = [feature["name"] for feature in page_features(assets.static_dir())]
+FORM = {"depth": "study", "simulator": "kinematic", "steps": "20", "lanes": "q-learning,greedy"}
+WORDS = {
+    "classroom": "lesson|room",
+    "tournaments": "tournament",
+    "demo": "demo",
+    "what_if": "What if",
+}
+"""How the page speaks of a feature."""
+
+
+def leave_out(dashboard: Dashboard, server: Serving, without: set[str]) -> None:
+    """Serve the page as if these features had no folders."""
+
+    def reduce(route: Route) -> None:
+        response = route.fetch()
+        kept = [f for f in page_features(assets.static_dir()) if f["name"] not in without]
+        folders = "|".join(without)
+        body = re.sub(
+            r'(id="features">).*?(</script>)',
+            lambda found: found[1] + json.dumps(kept) + found[2],
+            re.sub(rf"<link [^>]*features/(?:{folders})/[^>]*>\n", "", response.text()),
+        )
+        route.fulfill(response=response, body=body)
+
+    dashboard.page.route(re.compile(rf"^{re.escape(server.address)}(\?.*)?$"), reduce)
+    for name in without:
+        dashboard.page.route(
+            f"**/static/features/{name}/**", lambda route: route.fulfill(status=404)
+        )
+
+
+@pytest.mark.parametrize(
+    "without", [{"classroom", "tournaments", "demo"}, {*NAMES}], ids=["the farthest", "all"]
+)
+def test_a_race_runs_on_a_page_without_features(
+    dashboard: Dashboard, server: Serving, without: set[str]
+) -> None:
+    leave_out(dashboard, server, without)
+    dashboard.open(server.link(**FORM))
+    dashboard.button(re.compile("^Train 20 steps")).click()
+    dashboard.eventually(lambda: dashboard.has_figures(2), "both lanes have a distance")
+    dashboard.page.get_by_label("More", exact=True).first.click()
+    expect(dashboard.page.get_by_role("button", name="Keys and help")).to_be_visible()
+    said = dashboard.page.locator("#app").inner_text()
+    heard = [name for name in without & {*WORDS} if re.search(rf"\b(?:{WORDS[name]})s?\b", said)]
+    assert heard == []
