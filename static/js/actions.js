@@ -16,7 +16,7 @@ import {
   closeReplay, openReplay, plan, playReplay, replayTime, seekReplay, setReplayClock, setReplaySpeed,
 } from "./replay.js";
 import { beginOfStep } from "./replay-frames.js";
-import { features } from "./features.js";
+import { features, kindOf } from "./features.js";
 import { formRobot } from "./robots.js";
 import { agentOf, isClosed, laneSettings, learns, limitsOf, settingsOf } from "./settings.js";
 import {
@@ -31,7 +31,7 @@ import {
 /** Body of PUT /stage. @typedef {Partial<Stage> & { time_s?: number, stay?: boolean }} StageChanges */
 /** A button of the page. @typedef {{ label: string, run: () => unknown }} Action */
 
-/** Place → its last error; places are "start", "work", "stage", "tune", "experiment" and run ids. */
+/** Place → its last error; places are "start", "work", "stage", "tune", those of features, and run ids. */
 export const problems = /** @type {Signal<Record<string, RequestError | null>>} */ (signal({}));
 /** Places that wait for an answer. @type {Signal<Record<string, boolean>>} */
 export const pending = signal({});
@@ -310,7 +310,7 @@ export const runAgain = (run) =>
   attempt(run.id, async () => {
     const go = changeIfStillHere();
     const again = await adopt(() => api.startAgain(run.id));
-    go(run.kind === "experiment" ? { view: "experiments", report: again?.id ?? null } : { view: "race" });
+    go(kindOf(run)?.stateOf(again?.id ?? null) ?? { view: "race" });
   });
 
 /**

@@ -1,10 +1,10 @@
 // Client of the server: its REST API, one function per request.
 import { computed, effect, untracked } from "@preact/signals";
 
-/** @import { Annotations, Curve, Curves, Disturbance, Explanation, GaitAnalysis } from "./types.js" */
+/** @import { Annotations, Curve, Curves, Disturbance, Explanation } from "./types.js" */
 /** @import { Kind, Loss, Options } from "./types.js" */
-/** @import { Estimate, Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage, StateTable } from "./types.js" */
-/** @import { Summary, Timeline, Trial, Verb, WhatIfAnswer } from "./types.js" */
+/** @import { Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage, StateTable } from "./types.js" */
+/** @import { Timeline, Verb } from "./types.js" */
 
 /**
  * Where the stage is, relative to the page: all that it asks for is below, which tells the stage that it is about.
@@ -235,8 +235,6 @@ export async function start(path, body, idempotencyKey = randomKey()) {
 // Not randomUUID, which pages have only over https and on loopback.
 export const randomKey = () => Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("-");
 
-/** How long a run would take. @type {(path: string, body: object) => Promise<Estimate>} */
-export const estimate = (path, body) => call("POST", `${path}/estimate`, body);
 
 /** What is known of a robot, its gait and its foot grid. @type {(body: object) => Promise<Preview>} */
 export const previewRobot = (body) => call("POST", "robots/preview", body);
@@ -245,8 +243,6 @@ export const previewRobot = (body) => call("POST", "robots/preview", body);
 export const startTraining = (body) => start("trainings", body);
 /** @param {object} body */
 export const startRace = (body) => start("races", body);
-/** @param {object} body */
-export const startExperiment = (body) => start("experiments", body);
 
 /** @type {(id: string, changes: Rates) => Promise<Run>} */
 export const tuneTraining = (id, { pace, ...settings }) =>
@@ -256,8 +252,6 @@ export const tuneTraining = (id, { pace, ...settings }) =>
 export const disturbTraining = (id, disturbance) =>
   call("POST", `${pathOf({ kind: "training", id })}/disturbances`, disturbance);
 
-/** @type {(body: Record<string, unknown>) => Promise<WhatIfAnswer>} */
-export const whatIf = (body) => call("POST", "what-if", body);
 
 /** @type {(run: RunKey, verb: Verb) => Promise<Run | null>} */
 export const command = (run, verb) => call("POST", `${pathOf(run)}/${verb}`);
@@ -315,21 +309,6 @@ export async function getReplayFrames(id, address, query) {
 export const postExport = async (id, address) =>
   (await request("POST", `runs/${encodeURIComponent(id)}/${address}`)).blob();
 
-/**
- * The gait of a race, or of a part of a training; from a moment of robot time on, or all that is analysed at once.
- * @type {(id: string, part: string, from_s: number | null) => Promise<GaitAnalysis>}
- */
-export const getGait = (id, part, from_s) => {
-  const query = new URLSearchParams(part === "race" ? {} : { part });
-  if (from_s !== null) query.set("from_s", String(from_s));
-  return call("GET", `runs/${encodeURIComponent(id)}/gait?${query}`);
-};
-/** @type {(id: string) => Promise<{ trials: Trial[] }>} */
-export const getTrials = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/trials`);
-/** Run a trial of an experiment here. @type {(id: string, key: string) => Promise<Run>} */
-export const startTrial = (id, key) => start(`${pathOf({ kind: "experiment", id })}/trials/run`, { key });
-/** @type {(id: string) => Promise<Summary>} */
-export const getSummary = (id) => call("GET", `${pathOf({ kind: "experiment", id })}/summary`);
 
 /** @returns {Promise<Spectators>} */
 export const getSpectators = () => call("GET", "spectators");

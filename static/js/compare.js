@@ -7,7 +7,7 @@ import { page } from "./page-state.js";
 import { formRobot } from "./robots.js";
 import { greedyOf, namesAmong, NO_SUCH_RUN } from "./run-words.js";
 import { distanceOf, followRuns } from "./runs.js";
-import { isActive } from "./selectors.js";
+import { isActive, isWalk } from "./selectors.js";
 import { agentOf, choiceTitle, fullTitle, laneTitle, settingsOf } from "./settings.js";
 import { damagedRuns, isGone, runs, served } from "./store.js";
 import { agentTitle, gaitTitle, observationTitle, robotTitle, simulatorTitle } from "./titles.js";
@@ -72,7 +72,7 @@ export const compared = computed(() =>
 
 /** @type {(id: string, run: Run | null) => string | null} */
 function problemOf(id, run) {
-  if (run?.kind === "experiment") return "It is an experiment, which has its own report: choose trainings and races.";
+  if (run && !isWalk(run)) return `It is an ${run.kind}, which has its own report: choose trainings and races.`;
   if (run) return null;
   const damaged = damagedRuns.value.get(id);
   if (damaged) return `It cannot be read: ${damaged.damaged}`;

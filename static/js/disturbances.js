@@ -338,7 +338,7 @@ export function parseText(text, robot) {
 /** @param {DisturbanceKind} kind */
 const namesOf = ({ fields }) => listed(Object.values(fields).map(({ short }) => short));
 
-// ---- worlds of an experiment: a name, or what happens, joined by +
+// ---- worlds in a list: a name, or what happens, joined by +
 
 /**
  * The worlds of a text: "flat, limp:legs=1,4+slope:degrees=4". Names and kinds begin with a letter, so a comma

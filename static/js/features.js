@@ -6,7 +6,7 @@ import { computed, signal } from "@preact/signals";
 import { declareFields, declareWords } from "./page-state.js";
 import { addHandlers } from "./store.js";
 
-/** @import { Deck, Feature, MenuRow, SlotPart } from "./types.js" */
+/** @import { Deck, Feature, MenuRow, RunKind, SlotPart } from "./types.js" */
 
 /** What the server has written into the page. @returns {Feature[]} */
 const declared = () => JSON.parse(document.getElementById?.("features")?.textContent || "[]");
@@ -92,6 +92,10 @@ export async function runRow({ feature, dialog, call, run }) {
   run?.();
 }
 
+/** What a feature tells of runs of a kind; null of trainings and races. */
+/** @type {(run: { kind: string }) => RunKind | null} */
+export const kindOf = ({ kind }) => features.value.find(({ kinds = {} }) => kind in kinds)?.kinds?.[kind] ?? null;
+
 /** @type {Deck} */
 const NO_DECK = { cards: signal([]), number: signal(null), open: () => {}, Question: () => null };
 
@@ -105,3 +109,7 @@ export const wantedDialogs = signal([]);
 export const wantDialog = (name) => {
   if (!wantedDialogs.value.includes(name)) wantedDialogs.value = [...wantedDialogs.value, name];
 };
+
+/** The kinds of runs that features add, by their names. */
+export const allKinds = () => Object.entries(features.value.reduce((all, { kinds = {} }) => ({ ...all, ...kinds }),
+  /** @type {Record<string, RunKind>} */ ({})));

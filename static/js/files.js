@@ -1,5 +1,6 @@
 // Files that the browser downloads: the addresses of a run's, and those that the page makes.
 import { addressOf, idQuery, pathOf, postExport } from "./api.js";
+import { kindOf } from "./features.js";
 import { served } from "./store.js";
 
 /** @import { RunKey } from "./api.js" */
@@ -8,7 +9,7 @@ import { served } from "./store.js";
 // ---- files of the server
 
 /** @type {(run: RunKey, rest: string) => string} */
-const partOf = (run, rest) => addressOf(`${pathOf(run)}/${rest}`);
+export const partOf = (run, rest) => addressOf(`${pathOf(run)}/${rest}`);
 
 /** Where a file of a run's walk is, for other programs. @type {(run: RunKey, rest: string) => string} */
 const exportOf = ({ id }, rest) => addressOf(`runs/${encodeURIComponent(id)}/${rest}`);
@@ -24,12 +25,8 @@ export const exportAddress = (ids) => addressOf(`runs/export?${idQuery(ids)}`);
  * @returns {[string, string][]}
  */
 export function downloads(run) {
-  if (run.kind === "experiment") {
-    return [
-      ["Every trial (CSV)", partOf(run, "trials?format=csv")],
-      ["Summary (JSON)", partOf(run, "summary")],
-    ];
-  }
+  const kind = kindOf(run);
+  if (kind) return kind.downloads(run);
   // Nothing was recorded of an imported table.
   /** @type {[string, string][]} */
   const walk = run.started_at === null ? [] : served().exports
@@ -50,12 +47,6 @@ function learned(run) {
   if (!run.result.q_table_sha256) return [["Learned state (npz)", npz]];
   return [["Q-table (CSV)", partOf(run, "q-table?format=csv")], ["Q-table (npz)", npz]];
 }
-
-/**
- * The printable report of an experiment that has ended.
- * @param {RunKey} run
- */
-export const reportAddress = (run) => partOf(run, "report");
 
 /** @type {(run: RunKey, name: string) => string} */
 export const fileAddress = (run, name) =>

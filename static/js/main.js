@@ -1,12 +1,10 @@
 // Entry point: loads the options, opens the event stream, renders the page.
-import { effect } from "@preact/signals";
+import { effect, untracked } from "@preact/signals";
 import { render } from "preact";
 import { getStage } from "./api.js";
 import { App } from "./components/app.js";
 import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
-import { openExperimentForm } from "./experiments/form.js";
-import { announceExperiments, followExperiments, followSummary } from "./experiments/runs.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
 import { followOptions, isLockOut } from "./options.js";
@@ -18,7 +16,6 @@ import { announceOutcomes, headline } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
-import { loadFor } from "./roles.js";
 import {
   applyEvent, connection, eventNames, isLockedOut, openEvents, role, version,
 } from "./store.js";
@@ -28,8 +25,11 @@ import { followCurves, trainingsInView } from "./training.js";
 function openForms() {
   openForm();
   features.value.forEach(({ withOptions }) => withOptions?.());
-  openExperimentForm();
-  loadFor(() => role.value === "spectator", () => import("./spectators.js"), (own) => own.followStageSettings());
+  effect(() => {
+    // If that fails, again once the connection is back.
+    if (role.value !== "spectator" || connection.value !== "live") return;
+    import("./spectators.js").then(({ followStageSettings }) => untracked(followStageSettings), () => {});
+  });
 }
 
 /** Reload when the server comes back in another version, which these scripts may not fit. */
@@ -58,11 +58,8 @@ followRuns(stageIds);
 followCurves(trainingsInView);
 followTimeline();
 followReplay();
-followExperiments();
-followSummary();
 announceOutcomes();
 followTitle();
-announceExperiments();
 listenForKeys();
 listenForMenus();
 openEvents(eventNames(), applyEvent, (state) => {

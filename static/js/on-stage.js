@@ -8,10 +8,11 @@ import { count, duration, sentence, whole } from "./format.js";
 import { formRobot, isSame } from "./robots.js";
 import { earlyEndOf } from "./narrative/states.js";
 import {
-  hasTable, isActive, isKnown, isOperator, isGuest, myRuns, runOf, stageableRuns, trainingIds,
+  hasTable, isActive, isKnown, isOperator, isGuest, myRuns, runOf, stageableRuns, trainingIds, isWalk,
 } from "./selectors.js";
 import { learns } from "./settings.js";
 import { commonStage, isAway, isLockedOut, ownStage, scene, stage } from "./store.js";
+import { partsOf } from "./features.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { FormValues, Run, Scene } from "./types.js" */
@@ -220,7 +221,7 @@ const stepsShown = computed(() =>
 /** Conditions in the step that is shown, of the run on stage, in words. */
 export const conditionsShown = computed(() => {
   const run = shownRun.value;
-  if (!run || run.kind === "experiment" || !sceneOnStage.value) return [];
+  if (!run || !isWalk(run) || !sceneOnStage.value) return [];
   const step = Math.max(1, ...sceneOnStage.value.lanes.map((lane) => lane.step));
   return conditionsInWords(conditionsAt(disturbancesOf(run), step - 1, run.config.robot));
 });
@@ -345,7 +346,7 @@ function showing(now) {
 
 const PRODUCT = "Racing Hexapods";
 /** @type {Record<string, string>} */
-const VIEW_TITLES = { experiments: "Experiments", runs: "Runs", compare: "Compare runs" };
+const VIEW_TITLES = { runs: "Runs", compare: "Compare runs" };
 
 /**
  * The window's title: the connection if it is lost, the view, or what the stage shows.
@@ -353,7 +354,8 @@ const VIEW_TITLES = { experiments: "Experiments", runs: "Runs", compare: "Compar
  * @param {string | null} headline of the race or the practice that is shown
  */
 export function windowTitle(view, headline) {
-  const parts = [VIEW_TITLES[view] ?? (phase.value === "empty" ? null : headline ?? sceneOnStage.value?.label ?? null)];
+  const title = VIEW_TITLES[view] ?? partsOf("views")[view]?.title;
+  const parts = [title ?? (phase.value === "empty" ? null : headline ?? sceneOnStage.value?.label ?? null)];
   if (isLockedOut.value) parts.splice(0, 1, "No access");
   else if (isAway.value) parts.unshift("Reconnecting");
   return [...parts, PRODUCT].filter(Boolean).map((part) => sentence(/** @type {string} */ (part))).join(" · ");

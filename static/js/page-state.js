@@ -91,7 +91,7 @@ export const DEPTHS = ["watch", "try", "study"];
 /** The tabs of the panel; features add theirs. */
 const TABS = ["board", "train", "world"];
 /** The views; features add theirs. */
-const VIEWS = ["race", "experiments", "runs", "compare"];
+const VIEWS = ["race", "runs", "compare"];
 /** The ways to group the list of runs. */
 export const GROUPINGS = ["sweep", "race", "day", "none"];
 /** @type {Record<string, string>} */
@@ -129,10 +129,6 @@ const FIELDS = {
   isPresenting: { part: "query", name: "present", initial: false, ...FLAG },
   /** Whether the page is the remote of a presentation. */
   isRemote: { part: "query", name: "remote", initial: false, ...FLAG },
-  /** What was set of the next experiment, by field, as it was typed. */
-  experiment: { part: "experiments", ...TEXTS },
-  /** Id of the experiment whose report is shown; null for the newest. */
-  report: { part: "experiments", name: "run", initial: null, ...TEXT, isEntry: true },
   /** How the list of runs is grouped; null where the browser's own choice holds. */
   grouping: { part: "runs", name: "group", initial: null, ...oneOf([null, ...GROUPINGS]) },
   /** The columns of the list of runs; null where the browser's own choice holds. */
@@ -165,7 +161,7 @@ export const page = /** @type {{ [Name in keyof PageState]: Signal<PageState[Nam
  * What a link says that has no effect, as "alhpa=0.5", by the form beside which that is told.
  * @type {Record<string, Signal<string[]>>}
  */
-export const ignored = { query: signal([]), experiments: signal([]) };
+export const ignored = { query: signal([]) };
 
 /**
  * Add the fields of a feature, before the address is read.

@@ -8,6 +8,7 @@ import { shareOf } from "./run-words.js";
 import { distanceOf } from "./runs.js";
 import { bestKnown } from "./store.js";
 import { agentTitle, gaitTitle } from "./titles.js";
+import { isWalk } from "./selectors.js";
 
 /** @import { Run } from "./types.js" */
 
@@ -19,7 +20,7 @@ import { agentTitle, gaitTitle } from "./titles.js";
 /** @type {(value: (run: Run) => string) => (run: Run) => string} */
 const ofTraining = (value) => (run) => (run.kind === "training" ? value(run) : "");
 /** @type {(value: (run: Run) => string) => (run: Run) => string} */
-const ofWalk = (value) => (run) => (run.kind === "experiment" ? "" : value(run));
+const ofWalk = (value) => (run) => (isWalk(run) ? value(run) : "");
 
 /** @param {Run} run */
 const bestOf = ({ id, result, best_known_m }) => result?.best_known_m ?? best_known_m ?? bestKnown.value[id] ?? null;

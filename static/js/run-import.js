@@ -3,7 +3,8 @@ import { signal } from "@preact/signals";
 import * as api from "./api.js";
 import { count } from "./format.js";
 import { served } from "./store.js";
-import { messageOf, runTitle } from "./titles.js";
+import { titleOf } from "./run-words.js";
+import { messageOf } from "./titles.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Run } from "./types.js" */
@@ -63,5 +64,5 @@ async function send(file) {
 function describe(runs) {
   const [run] = runs;
   const isOne = runs.length === 1;
-  return isOne ? `is here as the ${run.kind} “${runTitle(run)}”.` : `has brought ${count(runs.length, "run")}.`;
+  return isOne ? `is here as the ${run.kind} “${titleOf(run)}”.` : `has brought ${count(runs.length, "run")}.`;
 }

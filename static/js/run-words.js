@@ -1,13 +1,12 @@
 // A run in words: its name, what is told beside it, and what came of it.
-import { paceOf } from "./experiments/runs.js";
+import { kindOf } from "./features.js";
 import { count, distanceApart, metres, percentage, sentence, whole } from "./format.js";
 import { commonInWords, differenceInWords, fieldsOf, variedIn } from "./run-settings.js";
 import { distanceOf } from "./runs.js";
 import { earlyEndOf } from "./narrative/states.js";
-import { isActive } from "./selectors.js";
+import { isActive, isWalk } from "./selectors.js";
 import { agentOf } from "./settings.js";
 import { references } from "./store.js";
-import { describeRun, runTitle } from "./titles.js";
 
 /** @import { AnyRun } from "./runs.js" */
 /** @import { LaneResult, Run } from "./types.js" */
@@ -23,7 +22,7 @@ export const isNamed = (run) => "damaged" in run || run.is_named;
 /** The name of a run by itself. @param {AnyRun} run */
 export function titleOf(run) {
   if ("damaged" in run) return run.name || `A ${run.kind ?? "run"} that cannot be read`;
-  return run.kind === "experiment" ? runTitle(run) : run.name || sentence(run.kind);
+  return kindOf(run)?.titleOf(run) ?? (run.name || sentence(run.kind));
 }
 
 /** Words that begin a line: a symbol stays as it is. @param {string} words */
@@ -37,7 +36,7 @@ const plain = (text) => text.toLowerCase().replaceAll("\u00a0", " ");
  * @param {Run} run
  */
 export function factsOf(run) {
-  if (run.kind === "experiment") return [describeRun(run)];
+  if (!isWalk(run)) return [kindOf(run)?.describe(run) ?? ""].filter(Boolean);
   const title = plain(titleOf(run));
   return commonInWords([fieldsOf(run)], []).filter((fact) => !title.includes(plain(fact)));
 }
@@ -84,7 +83,7 @@ export function unrankedInWords(run) {
 
 /** The result of a run in short: "0.33 m", "Greedy 0.32 m"; empty without one. @param {AnyRun} run */
 export function resultInWords(run) {
-  if ("damaged" in run || run.kind === "experiment") return "";
+  if ("damaged" in run || !isWalk(run)) return "";
   const distance = distanceOf(run);
   if (run.kind === "training") return run.result ? metres(distance) : "";
   const winner = winnerOf(run);
@@ -100,7 +99,7 @@ const LEVEL_M = 0.01;
 
 /** What came of a run besides its distance: "marching on the spot", "Greedy 3 cm before Sarsa". @param {Run} run */
 export function outcomeInWords(run) {
-  if (run.kind === "experiment") return paceOf(run).label;
+  if (!isWalk(run)) return kindOf(run)?.paceOf(run).label ?? "";
   if (run.state === "queued") return "";
   if (isActive(run)) return run.progress.total ? percentage(run.progress.done / run.progress.total) : "";
   return run.kind === "race" ? marginInWords(run) : practiceInWords(run);
@@ -136,7 +135,7 @@ function marginInWords(run) {
 
 /** The fields of trainings, or of races; none where runs are of several kinds. @param {AnyRun[]} all */
 export const fieldsOfAll = (all) =>
-  (all.every((run) => !("damaged" in run) && run.kind !== "experiment" && run.kind === all[0].kind)
+  (all.every((run) => !("damaged" in run) && isWalk(run) && run.kind === all[0].kind)
     ? /** @type {Run[]} */ (all).map(fieldsOf) : []);
 
 /** What runs have in common, in words. @param {AnyRun[]} all */

@@ -35,8 +35,11 @@ export const everyRun = computed(() =>
   [...runs.value.values()].sort((a, b) => b.created_at.localeCompare(a.created_at)),
 );
 
-/** Trainings and races: the runs that can be on stage. */
-export const stageableRuns = computed(() => everyRun.value.filter(({ kind }) => kind !== "experiment"));
+/** Whether a run is one in which robots walk, so that it can be on stage: a training or a race. */
+export const isWalk = (/** @type {{ kind: string }} */ { kind }) => kind === "training" || kind === "race";
+
+/** The runs that can be on stage. */
+export const stageableRuns = computed(() => everyRun.value.filter(isWalk));
 
 /** The known run with an id. @type {(id: string | null | undefined) => Run | null} */
 export const runOf = (id) => (isKnown(id) ? runs.value.get(id) ?? null : null);

@@ -3,13 +3,13 @@ import { batch, computed, effect, untracked } from "@preact/signals";
 import { copySettings } from "./actions.js";
 import { isReadOnly, stageTexts } from "./form.js";
 import { shownRun } from "./on-stage.js";
-import { trainingIds } from "./selectors.js";
+import { isWalk, trainingIds } from "./selectors.js";
 import { runs } from "./store.js";
 
 /** Key of the settings of the run that is shown: the run, which of its trainings are known, and changes. */
 const version = computed(() => {
   const run = shownRun.value;
-  if (!run || run.kind === "experiment") return null;
+  if (!run || !isWalk(run)) return null;
   const known = [run, ...trainingIds(run).flatMap((id) => runs.value.get(id) ?? [])];
   return known.map(({ id, changes }) => `${id} ${changes?.length ?? 0}`).join();
 });

@@ -54,8 +54,6 @@ export const bestKnown = signal({});
  * @type {Signal<Record<string, Rates>>}
  */
 export const rates = signal({});
-/** Run id → number of trials in that experiment's newest summary. @type {Signal<Record<string, number>>} */
-export const summarised = signal({});
 
 /**
  * Set one entry of a record in a signal.
@@ -118,7 +116,6 @@ const handlers = {
     newestEvents.set("stage", eventCount);
     commonStage.value = data;
   },
-  summary: ({ run_id, done }) => setEntry(summarised, run_id, done),
   viewers: (data) => (viewers.value = data.count),
   robots: (data) => (robotsVersion.value = data.version),
   scene: (data) => (commonScene.value = data),

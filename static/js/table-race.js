@@ -6,7 +6,7 @@ import { changeIfStillHere } from "./page-state.js";
 import { disturbancesOf } from "./disturbances.js";
 import { canonical, formRobot, isSame, numberOfLegs } from "./robots.js";
 import { isNamed, namesAmong, titleOf } from "./run-words.js";
-import { hasTable, isActive } from "./selectors.js";
+import { hasTable, isActive, isWalk } from "./selectors.js";
 import { limitsOf } from "./settings.js";
 import { served } from "./store.js";
 import { agentTitle, gaitTitle, robotTitle, simulatorTitle } from "./titles.js";
@@ -60,7 +60,7 @@ function lanesOf(runs) {
  * @param {(Run | DamagedRun)[]} runs
  */
 export function obstacle(runs) {
-  const strangers = runs.filter((run) => "damaged" in run || run.kind === "experiment");
+  const strangers = runs.filter((run) => "damaged" in run || !isWalk(run));
   if (strangers.length) {
     return `Only trainings and races have robots that can race: leave out ${listed(strangers.map(titleOf))}.`;
   }

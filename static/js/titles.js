@@ -1,12 +1,11 @@
-// Display names of what the server knows by identifiers, and of experiments' fields, values and runs.
+// Display names of what the server knows by identifiers, and of the fields and values of settings.
 import { worldTitle } from "./disturbances.js";
-import { experimentOf } from "./experiments/form.js";
-import { count, sentence } from "./format.js";
+import { sentence } from "./format.js";
 import { customRobotInWords, offered, partInWords, presetOf, storedName } from "./robots.js";
 import { agentOf, choiceTitle, shortTitle, titleOf } from "./settings.js";
 import { options } from "./store.js";
 
-/** @import { Described, GaitConfig, RobotConfig, Run } from "./types.js" */
+/** @import { Described, GaitConfig, RobotConfig } from "./types.js" */
 
 /** @type {(list: Described[] | undefined, name: string) => Described | undefined} */
 const find = (list, name) => list?.find((one) => one.name === name);
@@ -114,7 +113,7 @@ export const inFormWords = (text) =>
 /** The message of a failed request. @param {{ message: string }} error */
 export const messageOf = (error) => inFormWords(error.message);
 
-// ---- experiments
+// ---- fields of settings, and their values
 
 /** @param {string} name */
 export const agentTitle = (name) => agentOf(name).title;
@@ -125,7 +124,7 @@ export const agentTitle = (name) => agentOf(name).title;
  */
 export function fieldTitle(field) {
   const setting = options.value?.settings[field];
-  // An experiment has agents that do not learn, too.
+  // Not the learner alone: some agents do not learn.
   if (field === "agent") return "Agent";
   return setting ? shortTitle(setting) : titleOfField(field) ?? field;
 }
@@ -159,45 +158,3 @@ export function valueTitle(field, value) {
   if (value === null || value === undefined) return "–";
   return (VALUE_TITLES[field] ?? String)(value);
 }
-
-/** @param {string} name */
-const settingTitle = (name) => (options.value?.settings[name]?.title ?? name).toLowerCase();
-
-/** @param {Run} run */
-export const runTitle = (run) => run.name || experimentOf(run.config.experiment)?.title || run.config.experiment;
-
-/** Fields of an experiment's config that are told apart from what it sweeps. */
-const TOLD_APART = ["agents", "gaits", "observations", "robots", "worlds"];
-
-/**
- * The worlds in which agents are compared; none where there is only the first, in which nothing happens.
- * @param {Run["config"]} config
- */
-const worldsIn = ({ worlds = [] }) =>
-  worlds.some((/** @type {string} */ one) => one !== options.value?.worlds[0].name) ? worlds.map(worldTitle) : [];
-
-/**
- * The settings that a sweep varies: "α 0.1, 0.3".
- * @param {Run["config"]} config
- */
-const sweptIn = (config) =>
-  Object.entries({ ...config, ...config.settings }).flatMap(([name, values]) =>
-    Array.isArray(values) && values.length > 1 && !TOLD_APART.includes(name)
-      ? [`${fieldTitle(name)} ${values.join(", ")}`]
-      : []);
-
-/**
- * An experiment's swept values, seeds and places in one line.
- * @param {Run} run
- */
-export const describeRun = ({ config }) => {
-  const robots = (config.robots ?? []).map((one) =>
-    customRobotInWords(one) ?? storedName(one) ?? presetOf(one) ?? "own robot");
-  const observations = (config.observations ?? []).map(observationTitle);
-  return [
-    ...(config.experiment === "sweep" ? sweptIn(config) : []), worldsIn(config).join(", "),
-    count(config.seeds, "seed"), `from seed ${config.seed}`, observations.join(" and "), robots.join(" and "),
-    config.tolerance ? `${settingTitle("tolerance")} ${config.tolerance}` : "",
-    config.reward === "track" ? rewardInWords(config.reward) : "", simulatorTitle(config.simulator),
-  ].filter(Boolean).join(" · ");
-};

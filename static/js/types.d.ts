@@ -245,6 +245,8 @@ export interface LoadedPart {
   show: FeatureSource;
   /** What the page calls it while it loads. */
   loading: string;
+  /** Whether the page says nothing while it comes. */
+  isQuiet?: boolean;
   /** Its style sheet, from the feature's folder. */
   style?: string;
 }
@@ -292,7 +294,22 @@ export interface DeclaredField {
 }
 /** The fields that features declare, with their types: each adds its own by an interface of this name. */
 export interface FieldsOfFeatures {}
-/** Cards of a lesson, for whoever presents. */
+/** What is told of runs that are no trainings and no races. */
+export interface RunKind {
+  /** Several of them: "Experiments". */
+  plural: string;
+  /** Of what its progress is: "Trials". */
+  unit: string;
+  titleOf: (run: Run) => string;
+  describe: (run: Run) => string;
+  /** How far it is: as a share, in words, and how long it still takes. */
+  paceOf: (run: Run) => { share: number, label: string, left: string };
+  /** What the page shows of it: fields of its state. */
+  stateOf: (id: string | null) => Record<string, unknown>;
+  /** Its files: [label, address]. */
+  downloads: (run: Pick<Run, "id">) => [string, string][];
+}
+/** Cards that are shown one after the other, for whoever presents. */
 export interface Deck {
   cards: ReadonlySignal<DeckCard[]>;
   /** The number of the open card, from 1; null without one. */
@@ -329,12 +346,14 @@ export interface Feature {
   slots?: Record<string, SlotPart>;
 
   /** Runs once, before the page is drawn; the address has been read. */
-  follow?: () => void;
+  follow?: () => unknown;
   /** Runs once, when the server's options are there. */
   withOptions?: () => void;
   /** Handlers of events of the server, by their names. */
   events?: Record<string, (data: any) => void>;
   hidesTab?: (tab: string) => boolean;
+  /** Kinds of runs besides trainings and races, by their names. */
+  kinds?: Record<string, RunKind>;
   deck?: Deck;
   /** Who starts runs of their own here, without being an operator. */
   guest?: { isHere: ReadonlySignal<boolean>, runs: ReadonlySignal<string[]> };

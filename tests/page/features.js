@@ -29,7 +29,11 @@ const tabOf = (title, depth, order) => ({ title, depth, order, about: title, sho
 /** A feature with a part of each kind that a link can name. @type {Feature} */
 export const EXAMPLE = {
   name: "example",
-  fields: { page_number: { part: "query", name: "page", is: "whole" } },
+  fields: {
+    page_number: { part: "query", name: "page", is: "whole" },
+    experiment: { part: "experiments", name: null, is: "texts" },
+    report: { part: "experiments", name: "run", is: "text", isEntry: true },
+  },
   hideable: ["card"],
   tabs: {
     "why": { ...tabOf("Why", "try", 40), isInWatch: true, wasPanel: "explain" },
@@ -37,5 +41,8 @@ export const EXAMPLE = {
     "table": tabOf("Table", "study", 60),
     "what-if": { ...tabOf("What if", "study", 70), wasPanel: "what-if" },
   },
-  views: { lessons: { title: "Lessons", show: "none.js#None", loading: "lessons" } },
+  views: {
+    experiments: { title: "Experiments", isInHeader: true, show: "none.js#None", loading: "experiments" },
+    lessons: { title: "Lessons", show: "none.js#None", loading: "lessons" },
+  },
 };

@@ -116,7 +116,7 @@ test("a value that is none is told, with those that are valid where they are few
   assert.deepEqual(inVain("/?tab=chart"), ["tab=chart (valid: board, train, world, why, gait, table, what-if)"]);
   assert.deepEqual(inVain("/?camera=9"), ["camera=9 (valid: leader, free, 1 to 8)"]);
   assert.deepEqual(inVain("/?hidden=panel,stage"), ["hidden=panel,stage (valid: panel, card)"]);
-  assert.deepEqual(inVain("/#nothing"), ["view=nothing (valid: race, experiments, runs, compare, lessons)"]);
+  assert.deepEqual(inVain("/#nothing"), ["view=nothing (valid: race, runs, compare, experiments, lessons)"]);
   assert.equal(write(), "", "all is as it is without a link");
 });
 

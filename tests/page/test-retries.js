@@ -1,7 +1,6 @@
 // What the page follows is requested again after an error that may pass, and not after one that lasts.
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
-import { followSummary, summary, summaryError } from "../../static/js/experiments/runs.js";
 import { page } from "../../static/js/page-state.js";
 import { followTimeline, timeline, timelineProblem } from "../../static/js/race.js";
 import { applyEvent, connection, options } from "../../static/js/store.js";
@@ -18,7 +17,6 @@ let asked = [];
 /** @type {Record<string, object>} */
 const ANSWERS = {
   timeline: { clock: "paper", lanes: [] },
-  summary: { config: {}, settings: [] },
   curve: { evaluations: [{ step: 10, distance_m: 0.1 }], greedy_distance_m: null, best_known_m: null },
 };
 
@@ -32,7 +30,6 @@ function answerTo({ pathname }) {
 globalThis.fetch = (address) => Promise.resolve(answerTo(new URL(String(address))));
 mock.timers.enable({ apis: ["setTimeout"] });
 followTimeline();
-followSummary();
 followCurves(trainingsInView);
 
 beforeEach(() => {
@@ -80,32 +77,4 @@ test("the curve of a training, and the training that it continues", async () => 
   asked = [];
   await show({ config: { steps: 10, continue_from: "earlier" } }, 404, 503);
   assert.deepEqual(asked, ["curve", "earlier", "earlier", "curve", "curve"], "at last the curves of both");
-});
-
-test("the summary of an experiment", async () => {
-  page.view.value = "experiments";
-  await show({ kind: "experiment", config: {} }, 503);
-  assert.equal(asked.filter((one) => one === "summary").length, 2);
-  assert.deepEqual([summaryError.value, summary.value?.settings], [null, []]);
-});
-
-test("the summary of another experiment is requested at once, that of the same one after a pause", async () => {
-  page.view.value = "experiments";
-  const [first, other] = [1, 2].map(() => makeRun({ kind: "experiment", config: {} }));
-  const summaries = () => asked.filter((one) => one === "summary").length;
-  const tell = (/** @type {number} */ done) => applyEvent("summary", { run_id: first.id, done });
-  page.report.value = first.id;
-  applyEvent("snapshot", { runs: [first, other], stage: STAGE, scene: null, role: "operator" });
-  tell(1);
-  assert.equal(summaries(), 1);
-  page.report.value = other.id;
-  assert.equal(summaries(), 2);
-  page.report.value = first.id;
-  assert.equal(summaries(), 3);
-  await pass();
-  assert.equal(summaries(), 3);
-  tell(2);
-  assert.equal(summaries(), 4);
-  page.report.value = null;
-  await pass();
 });

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
 import { change, page } from "../../static/js/page-state.js";
 import {
-  bestPointOf, closeDetails, commonGreedy, followDetails, isOfSelection, isOpenedGone, openDetails, repeatAddress,
+  bestPointOf, closeDetails, commonGreedy, followDetails, isOfSelection, isOpenedGone, openDetails,
   subjects,
 } from "../../static/js/run-details.js";
 import { setSelected } from "../../static/js/run-selection.js";
@@ -117,20 +117,4 @@ test("figures of curves: the farthest point, and greedy’s distance where it is
   }
   assert.deepEqual([bestPointOf(one)?.step, bestPointOf(other)], [20, null]);
   assert.deepEqual([commonGreedy([one, one]), commonGreedy([one, other])], [0.5, null]);
-});
-
-test("trainings are repeated with several seeds by the form of an experiment, where it can have their settings", () => {
-  const settings = (/** @type {number} */ alpha) => ({ settings: { ...config.settings, alpha } });
-  const [one, two] = [trained({ steps: 80, ...settings(0.3) }), trained({ steps: 80, ...settings(0.5) })];
-  know(one, two);
-  assert.equal(repeatAddress([one, two]), "#experiments?experiment=sweep&seeds=12&gaits=tripod&steps=80&alpha=0.3;0.5");
-  assert.equal(repeatAddress([one]), "#experiments?experiment=sweep&seeds=12&gaits=tripod&steps=80");
-  const limping = trained({ disturbances: OPTIONS.worlds[1].disturbances });
-  const others = [
-    limping, trained({ gait: { right_leg: 1 } }), trained({ continue_from: one.id }), trained({ tolerance: 0.1 }),
-    trained({ reward: "track" }),
-    makeRun({ kind: "race", name: "Final", config: { lanes: [] } }),
-  ];
-  for (const other of others) assert.equal(repeatAddress([one, other]), null);
-  assert.equal(repeatAddress([one, trained({ simulator: "kinematic" })]), null);
 });

@@ -1,6 +1,5 @@
 // The tournaments of a room, on the pages of the room.
-import { html } from "../../js/components/elements.js";
-import { Part } from "../../js/components/feature-parts.js";
+import { html, Part } from "../../js/components/elements.js";
 import { partsOf, wantDialog, wantedDialogs } from "../../js/features.js";
 import { options } from "../../js/store.js";
 import { askForTournament } from "./list.js";

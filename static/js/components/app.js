@@ -1,6 +1,6 @@
 // The page: header, the views and messages.
 import { announcement } from "../headline.js";
-import { effect } from "@preact/signals";
+import { computed, effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { menuRows, partsOf, runRow, wantedDialogs } from "../features.js";
 import { page } from "../page-state.js";
@@ -10,8 +10,7 @@ import {
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
-import { html, Icon, Loaded, loaded, withStyle } from "./elements.js";
-import { loadPart, Part, Slot } from "./feature-parts.js";
+import { html, Icon, Loaded, loaded, withStyle, loadPart, Part, Slot } from "./elements.js";
 import { toggleHelp } from "./keyboard.js";
 import { Panel, ThumbTabs } from "./panel.js";
 import { Stage } from "./stage.js";
@@ -113,8 +112,6 @@ const loadDesk = () => withStyle("style/presenter.css", import("./desk.js")).the
 
 /** With the style that no other view needs. @type {Record<string, () => Promise<FunctionComponent>>} */
 const LOADERS = {
-  experiments: () =>
-    withStyle("style/experiments.css", import("./experiments/experiments.js")).then((own) => own.Experiments),
   runs: () => withStyle("style/runs.css", import("./runs/runs.js")).then((own) => own.Runs),
   compare: () => withStyle("style/runs.css", import("./compare/compare.js")).then((own) => own.Compare),
 };
@@ -127,7 +124,12 @@ function LoadedView({ name }) {
 
 // ---- the header: navigation, depth, connection state, sharing and the menu
 
-const VIEWS = [["race", "Race", "#"], ["runs", "Runs", "#runs"], ["experiments", "Experiments", "#experiments"]];
+/** The views to which the header leads: [name, title, address]. */
+const headerViews = computed(() => [
+  ["race", "Race", "#"], ["runs", "Runs", "#runs"],
+  ...Object.entries(partsOf("views")).filter(([, { isInHeader }]) => isInHeader)
+    .map(([name, { title }]) => [name, title, `#${name}`]),
+]);
 
 /** Runs are compared from their list. @param {string} name */
 const currentOf = (name) => {
@@ -139,7 +141,9 @@ const Header = () => html`
   <header class="header">
     <h1 class="brand"><img src="static/favicon.svg" alt="" width="24" height="24" />Racing Hexapods</h1>
     <nav class="nav" aria-label="Views">
-      ${VIEWS.map(([name, title, href]) => html`<a href=${href} aria-current=${currentOf(name)}>${title}</a>`)}
+      ${headerViews.value.map(([name, title, href]) => html`
+        <a href=${href} aria-current=${currentOf(name)}>${title}</a>
+      `)}
     </nav>
     <span class="space"></span>
     ${page.view.value === "race" && options.value !== null && html`<${DepthChoice} />`}
@@ -176,7 +180,7 @@ function Menu() {
     <details class="menu more-menu">
       <summary class="quiet square" aria-label="More" title="More">⋯</summary>
       <div class="menu-body">
-        ${VIEWS.map(([, title, href]) => html`
+        ${headerViews.value.map(([, title, href]) => html`
           <a class="phone-only" href=${href} onClick=${item(() => {})}>${title}</a>
         `)}
         <button class="quiet" onClick=${item(share)}><${Icon} name="link" />Copy a link to this</button>

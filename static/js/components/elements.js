@@ -4,11 +4,12 @@ import htm from "htm";
 import { h } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { root } from "../api.js";
+import { fillersOf, imported } from "../features.js";
 import { listed } from "../format.js";
 import { connection, setEntry } from "../store.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
-/** @import { Gait } from "../types.js" */
+/** @import { Gait, LoadedPart } from "../types.js" */
 /** @import { ComponentChildren, FunctionComponent } from "preact" */
 
 export const html = htm.bind(h);
@@ -216,10 +217,13 @@ export function useWidth() {
 export const loaded = signal({});
 
 /**
- * `load`: imports the module and returns its component, which is drawn with the other properties.
- * @param {{ name: string, load: () => Promise<FunctionComponent<any>> } & Record<string, unknown>} props
+ * `load`: imports the module and returns its component, which is drawn with the other properties. `isQuiet`: nothing is
+ * said while it comes.
+ * @param {{
+ *   name: string, load: () => Promise<FunctionComponent<any>>, isQuiet?: boolean,
+ * } & Record<string, unknown>} props
  */
-export function Loaded({ name, load, ...props }) {
+export function Loaded({ name, load, isQuiet = false, ...props }) {
   const [hasFailed, setFailed] = useState(false);
   const state = connection.value;
   useEffect(() => {
@@ -228,6 +232,7 @@ export function Loaded({ name, load, ...props }) {
   }, [state]);
   const View = loaded.value[name];
   if (View) return html`<${View} ...${props} />`;
+  if (isQuiet) return null;
   if (state === "reconnecting") return html`<p role="status">Waiting for the server to load the ${name}.</p>`;
   return hasFailed
     ? html`<p role="alert">The ${name} could not be loaded. Load the page again.</p>`
@@ -250,6 +255,25 @@ export async function withStyle(path, module) {
   }
   return module;
 }
+
+// ---- what features add, drawn where the core has a place for it; loaded when it is first seen
+
+/** Load a part of a feature, with its style. @param {LoadedPart & { feature: string }} part */
+export const loadPart = ({ feature, show, style }) =>
+  (style ? withStyle(`features/${feature}/${style}`, imported(feature, show)) : imported(feature, show));
+
+/** @param {{ part: LoadedPart & { feature: string } } & Record<string, unknown>} props */
+export const Part = ({ part, ...props }) => html`
+  <${Loaded} name=${part.loading} load=${() => loadPart(part)} isQuiet=${part.isQuiet} ...${props} />
+`;
+
+/**
+ * What features put in a place, which may be one of another feature; it is drawn with the other properties.
+ * @param {{ name: string } & Record<string, unknown>} props
+ */
+export const Slot = ({ name, ...props }) => fillersOf(name).map((filler) => ("component" in filler
+  ? html`<${filler.component} key=${filler.feature} ...${props} />`
+  : html`<${Part} key=${filler.feature} part=${filler} ...${props} />`));
 
 // ---- a drawn hexapod, forward up, each leg of which is a button
 

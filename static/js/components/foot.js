@@ -3,7 +3,6 @@ import {
   canStart, dismissProblem, missingLane, pause, pending, primaryAction, problems, resume, resumeRun,
   runPrimaryAction, secondaryActions, showOnStage, stop,
 } from "../actions.js";
-import { raceEstimate } from "../estimate.js";
 import { chooseLearner, form, mistakes, isReadOnly } from "../form.js";
 import { sentence, whole } from "../format.js";
 import { ignored, page } from "../page-state.js";
@@ -14,8 +13,7 @@ import { agentOf, learners, placeOf } from "../settings.js";
 import { isAway, scene } from "../store.js";
 import { inFormWords, labelOf, messageOf } from "../titles.js";
 import { isAtLeast, openTab, setDepth, tab } from "../workspace.js";
-import { EstimateNote, goToField, html, Icon, Loaded, ProgressBar, UnknownParts } from "./elements.js";
-import { Slot } from "./feature-parts.js";
+import { goToField, html, Icon, Loaded, ProgressBar, UnknownParts, Slot } from "./elements.js";
 
 /** @import { Run } from "../types.js" */
 
@@ -36,7 +34,7 @@ function Actions() {
       <${Problem} at="tune" />
       <${UnknownParts} parts=${ignored.query} />
       ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
-      ${!isBusy && html`<${EstimateNote} words=${raceEstimate} />`}
+      ${!isBusy && html`<${Slot} name="estimate" />`}
       ${!isBusy && html`<${MissingLane} />`}
       <${Slot} name="actions" />
       <${WorkActions} />

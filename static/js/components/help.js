@@ -6,8 +6,7 @@ import { copy, helpIsOpen, shortcuts } from "../page.js";
 import { getCode } from "../api.js";
 import { version } from "../store.js";
 import { messageOf } from "../titles.js";
-import { Dialog, html } from "./elements.js";
-import { Slot } from "./feature-parts.js";
+import { Dialog, html, Slot } from "./elements.js";
 
 /** @import { Changed, Run } from "../types.js" */
 

@@ -4,7 +4,7 @@ import { tryOwnSettings } from "../form.js";
 import { page } from "../page-state.js";
 import { closeReplay, openReplay } from "../replay.js";
 import { clock, shownRun } from "../on-stage.js";
-import { isActive } from "../selectors.js";
+import { isActive, isWalk } from "../selectors.js";
 import { isAway, scene } from "../store.js";
 import { html, Icon } from "./elements.js";
 
@@ -12,7 +12,7 @@ import { html, Icon } from "./elements.js";
 
 export function OwnChoices() {
   const run = shownRun.value;
-  const canReplay = run?.kind !== "experiment" && Boolean(run?.progress?.done);
+  const canReplay = run !== null && isWalk(run) && Boolean(run?.progress?.done);
   return html`
     <div class="own-choices">
       ${page.run.value !== null && html`

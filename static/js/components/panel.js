@@ -15,8 +15,7 @@ import {
   canPin, isAtLeast, isPanelHidden, openTab, pinnedTab, tab, tabAbout, tabs, tabTitle, togglePin,
 } from "../workspace.js";
 import { Board } from "./board.js";
-import { html, Icon, Loaded, withStyle } from "./elements.js";
-import { Part } from "./feature-parts.js";
+import { html, Icon, Loaded, withStyle, Part } from "./elements.js";
 import { Foot } from "./foot.js";
 
 /** @import { FunctionComponent } from "preact" */

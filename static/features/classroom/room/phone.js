@@ -1,21 +1,20 @@
 // The page of a participant: the card, the own prediction, the own robot, and after the reveal its place in the class.
 import { useEffect, useState } from "preact/hooks";
 import { getCurve } from "../../../js/api.js";
-import { DotStrip } from "../../../js/components/dot-strip.js";
-import { html, Loaded } from "../../../js/components/elements.js";
+import { html, Loaded, Slot } from "../../../js/components/elements.js";
 import { Prose } from "../components/prose.js";
-import { codeInGroups, count, metres } from "../../../js/format.js";
+import { codeInGroups } from "../../../js/format.js";
 import { Deeds, Next } from "./card-actions.js";
 import { Away, Door } from "./join.js";
 import { May } from "./allowed-settings.js";
 import { CLOSER, closerLink, replayed } from "./picture.js";
 import { Answer } from "./questions.js";
-import { axisOf, scoreInWords } from "./scores.js";
+import { scoreInWords } from "./scores.js";
 import {
   goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, room, shownResults,
 } from "./room.js";
 
-/** @import { Ask, Classroom, LessonCard, WhatIfAnswer } from "../../../js/types.js" */
+/** @import { Ask, Classroom, LessonCard } from "../../../js/types.js" */
 
 export function Phone() {
   const known = /** @type {Classroom} */ (room.value);
@@ -45,17 +44,16 @@ const Ended = () => html`
 
 /** What who has not joined does not load. */
 const loadOwnRobot = () => import("./participant-run.js").then(({ OwnRobot }) => OwnRobot);
-/** What other features show here, which few rooms have. */
-const loadMore = async () => {
-  const { Slot } = await import("../../../js/components/feature-parts.js");
-  return (/** @type {{ room: Classroom }} */ { room: shown }) => html`<${Slot} name="phone of a room" room=${shown} />`;
-};
+const loadClass = () => import("./phone-results.js").then(({ ClassDots }) => ClassDots);
+const loadWhatIf = () => import("./phone-results.js").then(({ WhatIfDots }) => WhatIfDots);
 const loadOwnRun = () => import("./participant-run.js").then(({ OwnRun }) => OwnRun);
 
 /** The card that is shown. @param {{ known: Classroom }} props */
 function Present({ known }) {
   const { shown, html: texts, card, cards, state } = known;
   const isOpen = state === "open";
+  // The reveal comes to all at once, and over a poor network: what draws it is there before.
+  useEffect(() => { loadClass().catch(() => {}); }, []);
   return html`
     ${replayed.value && html`<${Loaded} name="robot" load=${loadOwnRobot} />`}
     <article class="phone-part" aria-labelledby="card-title">
@@ -69,9 +67,9 @@ function Present({ known }) {
     ${shown.go && Object.keys(shown.may ?? {}).length > 0 && html`
       <${May} card=${shown} number=${card} isDisabled=${!isOpen || goesOn(ownRun.value)} />
     `}
-    ${ownWhatIf.value && html`<${WhatIfDots} answer=${ownWhatIf.value} />`}
+    ${ownWhatIf.value && html`<${Loaded} name="thirty robots" load=${loadWhatIf} answer=${ownWhatIf.value} />`}
     <${Closer} card=${shown} />
-    ${known.tournaments.length > 0 && html`<${Loaded} name="tournaments" load=${loadMore} room=${known} />`}
+    ${known.tournaments.length > 0 && html`<${Slot} name="phone of a room" room=${known} />`}
     <${Next} card=${shown} />
     <${Deeds} card=${shown} number=${card} isOpen=${isOpen} />
   `;
@@ -108,23 +106,6 @@ function useOwnCurve({ ask }) {
 
 // ---- what came of it
 
-/** Thirty ideal robots with these settings, beside the defaults. @param {{ answer: WhatIfAnswer }} props */
-function WhatIfDots({ answer }) {
-  const far = 1.06 * Math.max(answer.greedy_m, ...answer.chosen.distances_m, ...answer.default.distances_m);
-  return html`
-    <section class="phone-part" aria-label="Thirty robots">
-      ${[["With these settings", answer.chosen], ["With the defaults", answer.default]].map(([title, half]) => {
-        const { distances_m, iqm_m } = /** @type {WhatIfAnswer["chosen"]} */ (half);
-        return html`
-          <p><b>${title}</b>: typically ${metres(iqm_m)}</p>
-          <${DotStrip} label=${`${title}: typically ${metres(iqm_m)}`} points=${distances_m} high=${far}
-            low=${Math.min(0, ...distances_m)} typical=${{ iqm: iqm_m }} axis=${metres} />
-        `;
-      })}
-    </section>
-  `;
-}
-
 /** Ways to the tabs of the dashboard that the card shows, with the own run. @param {{ card: LessonCard }} props */
 function Closer({ card }) {
   const tabs = [...new Set([...(card.show ?? []), card.state?.tab ?? ""])].filter((tab) => tab in CLOSER);
@@ -146,30 +127,11 @@ function Revealed({ known }) {
   const own = ownEntry.value;
   return html`
     <section class="phone-part revealed" aria-label="The class">
-      ${found && found.distances_m.length > 0 && html`<${ClassDots} />`}
+      ${found && found.distances_m.length > 0 && html`<${Loaded} name="class" load=${loadClass} />`}
       ${own?.score && html`
         <p class="score" role="status">${scoreInWords(own, /** @type {Ask} */ (known.shown.ask))}</p>
       `}
       ${known.html.reveal && html`<${Prose} text=${known.html.reveal} />`}
     </section>
-  `;
-}
-
-function ClassDots() {
-  const { distances_m, interval } = /** @type {NonNullable<typeof shownResults.value>} */ (shownResults.value);
-  const own = ownEntry.value?.run ?? null;
-  const { low, high } = axisOf(distances_m);
-  const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
-  const all = count(distances_m.length, "seed");
-  const rank = own?.rank ? `Rank ${own.rank} of ${all}` : all;
-  return html`
-    <h2>${rank}</h2>
-    <${DotStrip} label=${`${rank}, from ${metres(distances_m[0])} to ${metres(distances_m.at(-1))}`} size=${1.6}
-      points=${distances_m} low=${low} high=${high} typical=${typical} axis=${metres} own=${own?.distance_m ?? null} />
-    <p class="dim">
-      ${own && html`<span class="own-key">your robot</span> ${metres(own.distance_m)}, `}the class typically
-      ${" "}${metres(interval?.iqm_m)}
-      ${interval && interval.low_m !== null && html` (95 %: ${metres(interval.low_m)} to ${metres(interval.high_m)})`}
-    </p>
   `;
 }

@@ -2,7 +2,7 @@
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { getCurves } from "../../../js/api.js";
 import { DotStrip } from "../../../js/components/dot-strip.js";
-import { html, Icon } from "../../../js/components/elements.js";
+import { html, Icon, Slot } from "../../../js/components/elements.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups, count, metres, shortAddress } from "../../../js/format.js";
 import { Away } from "./join.js";
@@ -12,7 +12,6 @@ import { Axes, lineOf } from "./questions.js";
 import { isShownToEnd } from "../../../js/narrative/states.js";
 import { agentOf } from "../../../js/settings.js";
 import { scene } from "../../../js/store.js";
-import { Slot } from "../../../js/components/feature-parts.js";
 import { isRevealed, room, shownResults } from "./room.js";
 import { axisOf, predictedMetres, tally } from "./scores.js";
 

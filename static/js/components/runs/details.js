@@ -1,15 +1,14 @@
 // The details beside the list: of one run, or of all that are selected.
 import { pending, resumeRun, isShown, showOnStage } from "../../actions.js";
-import { paceOf } from "../../experiments/runs.js";
+import { kindOf } from "../../features.js";
 import { isPhone } from "../../page.js";
 import { addressOf } from "../../page-state.js";
-import { closeDetails, isOfSelection, isOpenedGone, repeatAddress, subjects } from "../../run-details.js";
+import { closeDetails, isOfSelection, isOpenedGone, subjects } from "../../run-details.js";
 import { runGroups } from "../../run-list.js";
 import { NO_SUCH_RUN, outcomeInWords, titleOf, withResult } from "../../run-words.js";
-import { isOperator } from "../../selectors.js";
+import { isOperator, isWalk } from "../../selectors.js";
 import { isAway } from "../../store.js";
-import { describeRun } from "../../titles.js";
-import { html, Icon, ProgressBar } from "../elements.js";
+import { html, Icon, ProgressBar, Slot } from "../elements.js";
 import { Problem } from "../foot.js";
 import { ReplayLink } from "../replay-link.js";
 import { Name, Notes, Tags } from "./annotations.js";
@@ -69,18 +68,20 @@ const One = ({ run }) => html`
     ${run.error && html`<p class="problem">${run.error}</p>`}
     ${run.kind === "training" && html`<${OneCurve} run=${run} /><${TrainingResult} run=${run} />`}
     ${run.kind === "race" && html`<${RaceResult} run=${run} />`}
-    ${run.kind === "experiment" ? html`<${Experiment} run=${run} />` : html`<${Settings} run=${run} />`}
+    ${isWalk(run) ? html`<${Settings} run=${run} />` : html`<${OfKind} run=${run} />`}
     <div class="annotations"><${Tags} run=${run} /><${Notes} run=${run} /></div>
   </div>
   <${Foot} run=${run} />
 `;
 
-/** @param {{ run: Run }} props */
-function Experiment({ run }) {
-  const { share, label, left } = paceOf(run);
+/** Of a run that is no walk, what its feature tells. @param {{ run: Run }} props */
+function OfKind({ run }) {
+  const kind = kindOf(run);
+  if (!kind) return html`<p class="dim">It is kept. This server has left out what shows it.</p>`;
+  const { share, label, left } = kind.paceOf(run);
   return html`
-    <p>${describeRun(run)}</p>
-    <${ProgressBar} label="Trials" share=${share} />
+    <p>${kind.describe(run)}</p>
+    <${ProgressBar} label=${kind.unit} share=${share} />
     <p class="dim">${label}${left && `, ${left}`}</p>
   `;
 }
@@ -88,33 +89,25 @@ function Experiment({ run }) {
 /** @param {{ run: Run }} props */
 function Foot({ run }) {
   const isPending = pending.value[run.id] || isAway.value;
-  const isWalk = run.kind !== "experiment";
+  const state = kindOf(run)?.stateOf(run.id);
   const canResume = isOperator.value && run.can_resume && run.state !== "paused";
-  const repeat = isOperator.value ? repeatAddress([run]) : null;
   return html`
     <footer class="details-foot">
       <div class="row">
         ${canResume && html`
           <button class="secondary" disabled=${isPending} onClick=${() => resumeRun(run)}>Go on</button>
         `}
-        ${isWalk && isOperator.value && html`
+        ${isWalk(run) && isOperator.value && html`
           <button class="secondary" disabled=${isPending || run.state === "queued"}
             onClick=${() => showOnStage(run)} title="Show it on the stage, to everybody">
             ${isShown(run) ? "On stage" : "Show"}
           </button>
         `}
-        ${repeat && html`<${RepeatLink} address=${repeat} />`}
+        <${Slot} name="actions on runs" runs=${[run]} />
       </div>
-      ${isWalk && run.progress.done > 0 && html`<${ReplayLink} id=${run.id}>Replay<//>`}
-      ${!isWalk && html`
-        <a class="to-report" href=${addressOf({ view: "experiments", report: run.id })}>Report</a>
-      `}
+      ${isWalk(run) && run.progress.done > 0 && html`<${ReplayLink} id=${run.id}>Replay<//>`}
+      ${state && html`<a class="to-report" href=${addressOf(state)}>Report</a>`}
       <${Problem} at=${run.id} />
     </footer>
   `;
 }
-
-/** @param {{ address: string }} props */
-export const RepeatLink = ({ address }) => html`
-  <a class="secondary button" href=${address} title="As an experiment: how much of it is chance">Repeat, 12 seeds</a>
-`;

@@ -132,7 +132,7 @@ function NoRuns() {
 const FirstVisit = () => html`
   <p><b>No runs yet.</b></p>
   <p>
-    Every training, race and experiment is kept here, with its curve, its table, its recording or its
+    Every run is kept here, with its curve, its table, its recording or its
     report. <a href="#">Start the first one</a>${isOperator.value && ", or drop the file of an exported one here"}.
   </p>
 `;

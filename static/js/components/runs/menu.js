@@ -4,10 +4,11 @@ import { attempt, copySettings, deleteRun, pending, runAgain } from "../../actio
 import { archiveAddress, downloads, notInstalled, rendered, saveExport } from "../../files.js";
 import { listed } from "../../format.js";
 import { addressOf } from "../../page-state.js";
-import { isActive, isOperator, mayChange, mayStart } from "../../selectors.js";
+import { isActive, isOperator, isWalk, mayChange, mayStart } from "../../selectors.js";
 import { html } from "../elements.js";
 import { edit } from "./annotations.js";
 import { showCode } from "./code.js";
+import { kindOf } from "../../features.js";
 
 /** @import { AnyRun } from "../../runs.js" */
 /** @import { ExportOption, Run } from "../../types.js" */
@@ -55,14 +56,14 @@ export function RunMenu({ run, label }) {
 }
 
 /** @param {Run} run */
-const mayRunAgain = ({ kind }) => (kind === "experiment" ? isOperator.value : mayStart.value);
+const mayRunAgain = (run) => (isWalk(run) ? mayStart.value : isOperator.value && kindOf(run) !== null);
 
 /** @param {{ run: Run }} props */
 function Items({ run }) {
-  const isWalk = run.kind !== "experiment";
+  const state = kindOf(run)?.stateOf(run.id);
   return html`
-    ${!isWalk && html`<a href=${addressOf({ view: "experiments", report: run.id })}>Its report</a>`}
-    ${mayStart.value && isWalk && html`<a href="#" onClick=${() => copySettings(run)}>Use its settings</a>`}
+    ${state && html`<a href=${addressOf(state)}>Its report</a>`}
+    ${mayStart.value && isWalk(run) && html`<a href="#" onClick=${() => copySettings(run)}>Use its settings</a>`}
     <button onClick=${() => showCode(run)}>As code</button>
     ${mayRunAgain(run) && html`<button onClick=${() => runAgain(run)}>Run again</button>`}
     ${mayChange(run) && html`
@@ -71,7 +72,7 @@ function Items({ run }) {
       <button onClick=${() => edit(run, "notes")}>${run.notes ? "Change its notes" : "Add notes"}</button>
     `}
     <${Downloads} run=${run} />
-    ${isOperator.value && isWalk && !isActive(run) && run.progress.done > 0 && html`
+    ${isOperator.value && isWalk(run) && !isActive(run) && run.progress.done > 0 && html`
       ${rendered().map((file) => html`<${RenderButton} key=${file.title} run=${run} file=${file} />`)}
       ${notInstalled().map(([install, titles]) => html`
         <p class="dim">${listed(titles)}: not installed on the server; <code>${install}</code> adds it.</p>
@@ -104,7 +105,7 @@ function Downloads({ run }) {
   const hasEnded = !isActive(run);
   const hasBegun = run.progress.done > 0 || run.result;
   const files = [
-    ...(run.kind === "experiment" || (hasEnded && hasBegun) ? downloads(run) : []),
+    ...(!isWalk(run) || (hasEnded && hasBegun) ? downloads(run) : []),
     ...(hasEnded ? [["Archive (zip)", archiveAddress(run)]] : []),
   ];
   return html`

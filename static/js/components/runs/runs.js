@@ -14,10 +14,12 @@ import { Details } from "./details.js";
 import { ImportButton, useDrop } from "./import.js";
 import { List } from "./list.js";
 import { SelectionBar } from "./selection.js";
+import { allKinds } from "../../features.js";
 
 /** @import { Changed } from "../../types.js" */
 
-const KINDS = [["", "All"], ["training", "Trainings"], ["race", "Races"], ["experiment", "Experiments"]];
+const KINDS = [["", "All"], ["training", "Trainings"], ["race", "Races"]];
+const kinds = () => [...KINDS, ...allKinds().map(([name, { plural }]) => [name, plural])];
 /** @type {[string, string][]} */
 const STATES = ["running", "paused", "queued", "finished", "stopped", "failed", "interrupted"]
   .map((state) => [state, state]);
@@ -55,7 +57,7 @@ function Head() {
       <input class="search" type="search" aria-label="Search names, ids, tags and notes"
         placeholder="Search" maxlength=${served().limits.name[1]} value=${search}
         onInput=${(/** @type {Changed} */ { target }) => setFilters({ search: target.value })} />
-      <${Segments} label="Kind" choices=${KINDS} value=${kind}
+      <${Segments} label="Kind" choices=${kinds()} value=${kind}
         onValue=${(/** @type {string} */ value) => setFilters({ kind: value })} />
       <${Choice} label="Groups" choices=${Object.entries(GROUPING_TITLES)} value=${grouping.value}
         onValue=${setGrouping} />

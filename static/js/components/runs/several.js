@@ -2,16 +2,15 @@
 import { COLOURS, MAX_COMPARED } from "../../compare.js";
 import { count, metres } from "../../format.js";
 import { addressOf } from "../../page-state.js";
-import { bestPointOf, commonGreedy, isTraining, MAX_CURVES, repeatAddress, subjects } from "../../run-details.js";
+import { bestPointOf, commonGreedy, isTraining, MAX_CURVES, subjects } from "../../run-details.js";
 import { fieldsOf, titleOfSweep, variedIn } from "../../run-settings.js";
 import { commonFacts, fieldsOfAll, namesAmong, resultInWords, shareOf } from "../../run-words.js";
 import { distanceOf } from "../../runs.js";
-import { isOperator } from "../../selectors.js";
+import { isWalk } from "../../selectors.js";
 import { curveOf } from "../../training.js";
-import { html } from "../elements.js";
+import { html, Slot } from "../elements.js";
 import { CurvesChart } from "../compare/curves.js";
 import { RaceThem } from "../compare/race-them.js";
-import { RepeatLink } from "./details.js";
 import { SelectionActions } from "./selection.js";
 
 /** @import { AnyRun } from "../../runs.js" */
@@ -127,12 +126,11 @@ function Notes({ named }) {
 
 /** @param {{ all: AnyRun[] }} props */
 function Foot({ all }) {
-  const repeat = isOperator.value ? repeatAddress(all) : null;
   return html`
     <footer class="details-foot">
       <div class="row">
         <${CompareThem} all=${all} />
-        ${repeat && html`<${RepeatLink} address=${repeat} />`}
+        <${Slot} name="actions on runs" runs=${all} />
       </div>
       <${RaceThem} runs=${all} />
     </footer>
@@ -141,7 +139,7 @@ function Foot({ all }) {
 
 /** @param {{ all: AnyRun[] }} props */
 function CompareThem({ all }) {
-  const ids = all.filter((run) => !("damaged" in run) && run.kind !== "experiment").map(({ id }) => id);
+  const ids = all.filter((run) => !("damaged" in run) && isWalk(run)).map(({ id }) => id);
   if (ids.length < 2) return null;
   if (ids.length > MAX_COMPARED) return html`<span class="dim">Up to ${MAX_COMPARED} runs compare.</span>`;
   return html`

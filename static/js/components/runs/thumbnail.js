@@ -1,7 +1,7 @@
 // A small picture of what came of a run: a training's curve below greedy's line, a race's lanes up to the finish.
 import { pointsOf } from "../../run-thumbnails.js";
 import { greedyOf } from "../../run-words.js";
-import { isActive } from "../../selectors.js";
+import { isActive, isWalk } from "../../selectors.js";
 import { agentOf } from "../../settings.js";
 import { html } from "../elements.js";
 
@@ -21,7 +21,7 @@ export const Thumbnail = ({ run }) => html`
   <svg class="thumbnail" viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} width=${WIDTH} height=${HEIGHT} aria-hidden="true">
     ${!("damaged" in run) && run.kind === "training" && html`<${Curve} run=${run} />`}
     ${!("damaged" in run) && run.kind === "race" && html`<${Lanes} run=${run} />`}
-    ${!("damaged" in run) && (isActive(run) || run.kind === "experiment") && html`<${Progress} run=${run} />`}
+    ${!("damaged" in run) && (isActive(run) || !isWalk(run)) && html`<${Progress} run=${run} />`}
   </svg>
 `;
 

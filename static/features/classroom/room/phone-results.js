@@ -1,0 +1,45 @@
+// What came of it, on a participant's phone: the class, and thirty ideal robots. Loaded by those who have joined.
+import { DotStrip } from "../../../js/components/dot-strip.js";
+import { html } from "../../../js/components/elements.js";
+import { count, metres } from "../../../js/format.js";
+import { ownEntry, shownResults } from "./room.js";
+import { axisOf } from "./scores.js";
+
+/** @import { WhatIfAnswer } from "../../../js/types.js" */
+
+/** Thirty ideal robots with these settings, beside the defaults. @param {{ answer: WhatIfAnswer }} props */
+export function WhatIfDots({ answer }) {
+  const far = 1.06 * Math.max(answer.greedy_m, ...answer.chosen.distances_m, ...answer.default.distances_m);
+  return html`
+    <section class="phone-part" aria-label="Thirty robots">
+      ${[["With these settings", answer.chosen], ["With the defaults", answer.default]].map(([title, half]) => {
+        const { distances_m, iqm_m } = /** @type {WhatIfAnswer["chosen"]} */ (half);
+        return html`
+          <p><b>${title}</b>: typically ${metres(iqm_m)}</p>
+          <${DotStrip} label=${`${title}: typically ${metres(iqm_m)}`} points=${distances_m} high=${far}
+            low=${Math.min(0, ...distances_m)} typical=${{ iqm: iqm_m }} axis=${metres} />
+        `;
+      })}
+    </section>
+  `;
+}
+
+/** The distances of the class, with the own one among them. */
+export function ClassDots() {
+  const { distances_m, interval } = /** @type {NonNullable<typeof shownResults.value>} */ (shownResults.value);
+  const own = ownEntry.value?.run ?? null;
+  const { low, high } = axisOf(distances_m);
+  const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
+  const all = count(distances_m.length, "seed");
+  const rank = own?.rank ? `Rank ${own.rank} of ${all}` : all;
+  return html`
+    <h2>${rank}</h2>
+    <${DotStrip} label=${`${rank}, from ${metres(distances_m[0])} to ${metres(distances_m.at(-1))}`} size=${1.6}
+      points=${distances_m} low=${low} high=${high} typical=${typical} axis=${metres} own=${own?.distance_m ?? null} />
+    <p class="dim">
+      ${own && html`<span class="own-key">your robot</span> ${metres(own.distance_m)}, `}the class typically
+      ${" "}${metres(interval?.iqm_m)}
+      ${interval && interval.low_m !== null && html` (95 %: ${metres(interval.low_m)} to ${metres(interval.high_m)})`}
+    </p>
+  `;
+}

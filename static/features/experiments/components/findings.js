@@ -1,0 +1,275 @@
+// Findings over all seeds: gaits together, learners against each other, claims, conclusions, real clock.
+import { useMemo } from "preact/hooks";
+import { greedyTotals, placeOf } from "../distances.js";
+import { decision, metres, percentage, whole } from "../../../js/format.js";
+import { largest } from "../../../js/scale.js";
+import { agentOf } from "../../../js/settings.js";
+import { served } from "../../../js/store.js";
+import { agentTitle, fieldTitle, gaitTitle, observationTitle, robotTitle, variedFields } from "../../../js/titles.js";
+import { DotStrip } from "../../../js/components/dot-strip.js";
+import { html } from "../../../js/components/elements.js";
+
+/** @import { ClaimView, Finding, NarrativeSection, PooledView, Setting } from "../../../js/types.js" */
+/** @import { Interval } from "../../../js/types.js" */
+/** @import { Summary, VersusView, WallLane } from "../../../js/types.js" */
+
+// ---- all gaits together: how near learners come to greedy, how many walk, how often they beat it at time-out
+
+const BEATS_GREEDY = "Beats it at time-out";
+const SHARES = "Share of greedy’s distance, a dot for each seed";
+const POOLED_COLUMNS = [
+  { title: "Setting" },
+  { title: SHARES, kind: "wide-cell" },
+  { title: "Interquartile mean", words: "Interquartile mean, with its 95 % interval" },
+  { title: "Share that walks", words: "Get at least half as far as greedy" },
+  { title: "Reach greedy", words: "Get at least 95 % as far" },
+  { title: BEATS_GREEDY, words: "Under the paper clock" },
+];
+const MARKS = [{ value: 1, kind: "greedy" }, { value: 0.5, kind: "half" }];
+const POOLED_VERDICTS = { yes: "more often than not", no: "less often than not", "not established": "not established" };
+
+/** @param {{ known: Summary }} props */
+export function AtAGlance({ known }) {
+  const pooled = (known.pooled ?? []).filter(({ relative }) => relative);
+  const points = useMemo(() => pooled.map((one) => pointsOf(known, one)), [known]);
+  if (!pooled.length || (pooled.length === 1 && pooled[0].gaits.length === 1)) return null;
+  const high = 1.03 * largest(points.flat(), 1);
+  const varied = variedFields(pooled, ["agent", "observation", "robot", ...known.parameters]);
+  const isRaced = pooled.some(({ relative_finished }) => relative_finished);
+  const isOfSeveral = pooled.some(({ gaits }) => gaits.length > 1);
+  const heading = isOfSeveral ? "All gaits together" : "All seeds together";
+  const columns = POOLED_COLUMNS.filter(({ title }) => isRaced || title !== BEATS_GREEDY);
+  return html`
+    <section class="panel glance" aria-labelledby="glance">
+      <h2 id="glance">${heading}</h2>
+      <p class="dim">Total distance as a share of greedy’s in the same place; a robot that gets half as far walks.</p>
+      <div class="scroller" tabindex="0" role="region" aria-label=${`Table of ${heading.toLowerCase()}`}>
+        <table class="facts-table stacking" role="table">
+          <thead role="rowgroup"><tr role="row">
+            ${columns.map(({ title, words, kind }) => html`
+              <th role="columnheader" scope="col" class=${kind} title=${words}>${title}</th>
+            `)}
+          </tr></thead>
+          <tbody role="rowgroup">
+            ${pooled.map((one, n) => html`
+              <${PooledRow} key=${n} one=${one} varied=${varied} points=${points[n]} high=${high} isRaced=${isRaced} />
+            `)}
+          </tbody>
+        </table>
+      </div>
+    </section>
+  `;
+}
+
+/** @param {{ one: PooledView, varied: string[], points: number[], high: number, isRaced: boolean }} props */
+function PooledRow({ one, varied, points, high, isRaced }) {
+  const { iqm, low, high: end } = /** @type {Interval} */ (one.relative);
+  const interval = low === null || end === null ? null : `${Math.round(100 * low)} – ${percentage(end)}`;
+  const label = `${points.length} seeds, typically ${percentage(iqm)} of greedy’s distance`;
+  return html`
+    <tr role="row">
+      <th role="rowheader" scope="row">${nameOf(one, varied)}</th>
+      <td role="cell" class="wide-cell" data-label=${SHARES}>
+        <${DotStrip} label=${label} points=${points} high=${high} typical=${one.relative} marks=${MARKS}
+          color=${agentOf(one.agent).color} height=${44} axis=${percentage} />
+      </td>
+      <td role="cell" data-label="Interquartile mean" class="num">
+        ${percentage(iqm)}${interval && html`<br /><span class="dim">${interval}</span>`}
+      </td>
+      <td role="cell" data-label="Share that walks" class="num">${percentage(one.walkers?.share ?? NaN)}</td>
+      <td role="cell" data-label="Reach greedy" class="num">${percentage(one.reaches_greedy?.share ?? NaN)}</td>
+      ${isRaced && html`
+        <td role="cell" data-label=${BEATS_GREEDY} class="num"><${Beats} beats=${one.beats_greedy} /></td>
+      `}
+    </tr>
+  `;
+}
+
+/** @param {{ beats: PooledView["beats_greedy"] }} props */
+const Beats = ({ beats }) =>
+  beats ? html`${percentage(beats.share)}<br /><span class="dim">${POOLED_VERDICTS[beats.verdict]}</span>` : "–";
+
+/** Fields that have words of their own in the name of a row. */
+const NAMED_APART = ["agent", "observation", "robot", "steps"];
+
+/**
+ * The fields in which a row differs from the others.
+ * @param {PooledView} one
+ * @param {string[]} varied
+ */
+function nameOf(one, varied) {
+  /** @param {string} field */
+  const differs = (field) => varied.includes(field);
+  const agent = [
+    differs("agent") && agentTitle(one.agent),
+    one.blocks === 1 && differs("steps") && `${whole(one.steps)} steps`,
+  ];
+  const place = [observationTitle(one.observation), differs("robot") && robotTitle(one.robot).toLowerCase()];
+  const parameters = varied.filter((field) => !NAMED_APART.includes(field));
+  if (parameters.length && !differs("observation")) place.shift();
+  const own = parameters.filter((field) => one[field] !== null)
+    .map((field) => `${fieldTitle(field)}\u00a0${one[field]}`);
+  return [...agent, ...place, ...own].filter(Boolean).join(", ");
+}
+
+/**
+ * Every seed of the gaits that were pooled, as shares of greedy's distance.
+ * @param {Summary} one
+ * @param {PooledView} one
+ */
+function pointsOf({ settings, parameters }, one) {
+  const greedy = greedyTotals(settings);
+  /** @param {Setting} setting */
+  const isPooled = (setting) =>
+    setting.role === "learner" && placeOf(setting) === placeOf(one) &&
+    ["agent", ...parameters].every((field) => setting[field] === one[field]);
+  return settings.filter(isPooled).flatMap((setting) => {
+    const greedy_m = greedy(setting);
+    return greedy_m ? (setting.total?.points_m ?? []).map((total_m) => total_m / greedy_m) : [];
+  });
+}
+
+// ---- learners against each other: the chance that a seed of one beats a seed of another
+
+const VERSUS_VERDICTS = { yes: "better", no: "worse", "not established": "not established" };
+const VERSUS_COLUMNS = ["Place", "First", "Second", "Chance", "The first is"];
+
+/** @param {{ known: Summary }} props */
+export const Versus = ({ known }) => known.versus?.length > 0 && html`
+  <section class="panel versus" aria-labelledby="versus">
+    <h2 id="versus">Learners against each other</h2>
+    <p class="dim">The chance that a seed of the first gets further than a seed of the second; a half is a tie.</p>
+    <div class="scroller" tabindex="0" role="region" aria-label="Table of chances">
+      <table class="facts-table">
+        <thead><tr>${VERSUS_COLUMNS.map((title) => html`<th scope="col">${title}</th>`)}</tr></thead>
+        <tbody>${known.versus.map((one) => html`<${VersusRow} one=${one} />`)}</tbody>
+      </table>
+    </div>
+  </section>
+`;
+
+/** @param {{ one: VersusView }} props */
+function VersusRow({ one }) {
+  const place = [observationTitle(one.observation), robotTitle(one.robot).toLowerCase(), `${whole(one.steps)} steps`];
+  const interval = one.low === null || one.high === null ? "" : `${percentage(one.low)} – ${percentage(one.high)}`;
+  return html`
+    <tr>
+      <th scope="row">${gaitTitle(one.gait)}, <span class="dim">${place.join(", ")}</span></th>
+      <td>${agentTitle(one.a)}</td><td>${agentTitle(one.b)}</td>
+      <td class="num">${percentage(one.probability)} <span class="dim">${interval}</span></td>
+      <td>${VERSUS_VERDICTS[one.verdict] ?? one.verdict}</td>
+    </tr>
+  `;
+}
+
+// ---- the paper's claims with verdicts over all seeds, in each case that was tried
+
+/** @type {Record<string, string[]>} */
+const VERDICTS = {
+  holds: ["holds", "✓", "Holds"],
+  "does not hold": ["fails", "✕", "Does not hold"],
+  "not established": ["open", "?", "Not established"],
+  depends: ["mixed", "±", "Depends"],
+};
+
+/** @param {{ claims: ClaimView[], isComplete: boolean }} props */
+export const Claims = ({ claims, isComplete }) => claims.length > 0 && html`
+  <section class="panel claims" aria-labelledby="claims">
+    <h2 id="claims">The paper’s claims over all seeds</h2>
+    ${!isComplete && html`<p class="dim">So far: a verdict may change until the last trial has ended.</p>`}
+    <ul>${claims.map((one) => html`<${Claim} key=${one.id} ...${one} />`)}</ul>
+  </section>
+`;
+
+/** @param {{ claim: string, criterion: string, verdict: string, evidence: string, where: Finding[] }} props */
+function Claim({ claim, criterion, verdict, evidence, where }) {
+  const hasCases = where.length > 1;
+  return html`
+    <li class="claim">
+      <${Verdict} verdict=${verdict} />
+      <div>
+        <p><b>${claim}</b></p>
+        <p class="dim">${evidence}</p>
+        <details>
+          <summary>${hasCases ? `All ${where.length} cases` : "Criterion"}</summary>
+          <p class="dim">Criterion: ${criterion}</p>
+          ${hasCases && html`
+            <ul class="cases">${where.map((one) => html`<${Case} key=${one.label} ...${one} />`)}</ul>
+          `}
+        </details>
+      </div>
+    </li>
+  `;
+}
+
+/** @param {{ label: string, verdict: string, evidence: string }} props */
+const Case = ({ label, verdict, evidence }) => html`
+  <li><${Verdict} verdict=${verdict} /><p><b>${label}</b> <span class="dim">${evidence}</span></p></li>
+`;
+
+/** @param {{ verdict: string }} props */
+function Verdict({ verdict }) {
+  const [kind, sign, word] = VERDICTS[verdict] ?? ["open", "?", verdict];
+  return html`<p class=${`verdict ${kind}`}><span aria-hidden="true">${sign}</span>${word}</p>`;
+}
+
+// ---- conclusions in prose, written by the server from this run's numbers
+
+/** @param {{ parts: NarrativeSection[] }} props */
+export const Narrative = ({ parts }) => parts.length > 0 && html`
+  <section class="panel narrative" aria-label="Findings">
+    ${parts.map(({ heading, text }) => html`
+      <h2>${heading}</h2>
+      ${text.split("\n\n").map((paragraph) => html`<p>${paragraph}</p>`)}
+    `)}
+  </section>
+`;
+
+// ---- races under the real clock: decisions cost the time measured on the machine, not the paper's price
+
+/** @param {{ timed: Summary["timed"] }} props */
+export function FairClocks({ timed }) {
+  if (!timed.length) return null;
+  const agents = timed[0].lanes.map(({ agent }) => agent);
+  return html`
+    <section class="panel fair-clocks" aria-labelledby="fair-clocks">
+      <h2 id="fair-clocks">Under the real clock</h2>
+      <p class="dim">
+        The distances above are under the paper clock. Here a decision costs the time that it took on this machine:
+        one race in each place, with the first seed; distances at time-out.
+      </p>
+      <div class="scroller" tabindex="0" role="region" aria-label="Races under the real clock">
+        <table class="facts-table">
+          <thead>
+            <tr>
+              <th scope="col">Place</th>
+              ${agents.map((name) => html`<th scope="col">${agentOf(name).title}</th>`)}
+            </tr>
+          </thead>
+          <tbody>${timed.map((race) => html`<${Race} race=${race} />`)}</tbody>
+        </table>
+      </div>
+    </section>
+  `;
+}
+
+/** @param {{ race: Summary["timed"][number] }} props */
+const Race = ({ race }) => html`
+  <tr>
+    <th scope="row">
+      ${gaitTitle(race.gait)}
+      <span class="dim"> ${observationTitle(race.observation)}, ${robotTitle(race.robot).toLowerCase()}</span>
+    </th>
+    ${race.lanes.map((lane) => html`<td class="num"><${Lane} lane=${lane} /></td>`)}
+  </tr>
+`;
+
+/** @param {{ lane: WallLane }} props */
+function Lane({ lane }) {
+  const distance = metres(lane.finished_distance_m);
+  const perDecision = decision(lane.decision_s / served().defaults.race.steps);
+  return html`
+    ${lane.rank === 1 ? html`<b>${distance}</b> <span class="first">first</span>` : distance}
+    <br /><span class="dim">${perDecision} a decision</span>
+  `;
+}

@@ -1,0 +1,105 @@
+// Tools over a report's figures: the choice of place and unit, and the legend of dot strips.
+import { unit, UNITS } from "../distances.js";
+import { sentence } from "../../../js/format.js";
+import { agentOf } from "../../../js/settings.js";
+import { options, served } from "../../../js/store.js";
+import { observationTitle, robotTitle } from "../../../js/titles.js";
+import { html, Segments } from "../../../js/components/elements.js";
+
+/** @import { Described, Place } from "../../../js/types.js" */
+/** @import { ComponentChildren } from "preact" */
+
+// ---- the place: observation, robot and foot grid; hidden where there is only one
+
+/** @param {Place} place @param {Place[]} places */
+const titleOf = (place, places) => {
+  /** @param {keyof Place} field */
+  const differs = (field) => new Set(places.map((one) => one[field])).size > 1;
+  const parts = [
+    observationTitle(place.observation),
+    differs("robot") && robotTitle(place.robot).toLowerCase(),
+    differs("divisions") && `${place.divisions} × ${place.divisions}`,
+    differs("grid_side_m") && `${place.grid_side_m} m`,
+  ];
+  return sentence(parts.filter(Boolean).join(", "));
+};
+
+/** @param {Described[] | undefined} list @param {string} name */
+const descriptionOf = (list, name) => list?.find((one) => one.name === name)?.description ?? "";
+
+/** The observation and the robot of a place, explained. @param {{ place: Place }} props */
+export function PlaceWords({ place: { observation, robot } }) {
+  const about = descriptionOf(options.value?.observations, observation);
+  const words = [`${sentence(observationTitle(observation))}:`, about, descriptionOf(options.value?.robots, robot)];
+  return html`<p class="dim">${words.filter(Boolean).join(" ")}</p>`;
+}
+
+/** @param {{ places: Place[], value: number, onValue: (value: string) => unknown }} props */
+export function PlaceSwitch({ places, value, onValue }) {
+  if (places.length < 2) return null;
+  const choices = places.map((one) => [one.key, titleOf(one, places)]);
+  return html`<${Segments} label="Place" choices=${choices} value=${value} onValue=${onValue} />`;
+}
+
+export const UnitSwitch = () => html`
+  <${Segments} label="Unit of distances" choices=${UNITS} value=${unit.value}
+    onValue=${(/** @type {string} */ one) => (unit.value = one)} />
+`;
+
+const TYPICAL = html`
+  <line class="interval" x1="2" x2="18" y1="8" y2="8" /><line class="typical" x1="10" x2="10" y1="3" y2="13" />
+`;
+/** @typedef {"seed" | "typical" | "greedy" | "best-known" | "published"} SignName */
+
+/** @type {Record<SignName, [string, ComponentChildren]>} */
+const SIGNS = {
+  seed: ["one seed", html`<circle class="dot-of-seed" cx="10" cy="8" r="3.5" />`],
+  typical: ["interquartile mean, 95 % interval", TYPICAL],
+  greedy: ["greedy", html`<line class="mark greedy" x1="10" x2="10" y1="0" y2="16" />`],
+  "best-known": ["best known", html`<line class="mark best-known" x1="10" x2="10" y1="0" y2="16" />`],
+  published: ["the paper", html`<path class="mark published" d="M10 2 16 8 10 14 4 8z" />`],
+};
+
+/** @param {{ name: SignName }} props */
+const Sign = ({ name }) => html`
+  <span><svg class="dots" width="20" height="16" aria-hidden="true">${SIGNS[name][1]}</svg>${SIGNS[name][0]}</span>
+`;
+
+/** The legend of a dot strip. @param {{ signs?: SignName[], color: string | undefined }} props */
+export const StripKey = ({ signs = /** @type {SignName[]} */ (Object.keys(SIGNS)), color }) => html`
+  <p class="strip-key" style=${color && { "--agent": color }}>${signs.map((name) => html`<${Sign} name=${name} />`)}</p>
+`;
+
+/**
+ * Definition of the best known distance, and the cases that have one if some lack it.
+ * @param {{ distances: (number | null | undefined)[] }} props
+ */
+export function BestKnownWords({ distances }) {
+  const { best_known, best_known_where } = served().help;
+  const isEverywhere = distances.every((one) => typeof one === "number");
+  return html`<p class="dim table-note">${best_known} ${isEverywhere ? "" : best_known_where}</p>`;
+}
+
+/**
+ * The lines of references, after the colours of agents.
+ * @param {{ levels: { kind: string, name: string }[] }} props
+ */
+export const LevelKey = ({ levels }) => levels.map(({ kind, name }) => html`
+  <span>
+    <svg class="dots" width="24" height="8" aria-hidden="true">
+      <line class=${`mark ${kind}`} x1="0" x2="24" y1="4" y2="4" />
+    </svg>${name.toLowerCase()}
+  </span>
+`);
+
+/**
+ * The colours of agents, and what else a chart has.
+ * @param {{ agents: string[], children: ComponentChildren }} props
+ */
+export const AgentKey = ({ agents, children }) => html`
+  <p class="strip-key">
+    ${agents.map(agentOf).map(({ color, title }) => html`
+      <span style=${{ "--agent": color }}><i class="swatch"></i>${title}</span>
+    `)}${children}
+  </p>
+`;

@@ -1,0 +1,321 @@
+// The report of one experiment. It fills while trials end.
+import { useMemo, useState } from "preact/hooks";
+import { pending, runAgain } from "../../../js/actions.js";
+import { setFormOf } from "../form.js";
+import { forgetPreset } from "../presets.js";
+import { command, deleteExperiment, summary, summaryError } from "../runs.js";
+import { configInWords, findingIn } from "../words.js";
+import { downloads, fileAddress, partOf } from "../../../js/files.js";
+import { count, duration } from "../../../js/format.js";
+import { addressOf, page } from "../../../js/page-state.js";
+import { isActive, isOperator } from "../../../js/selectors.js";
+import { messageOf, simulatorTitle } from "../../../js/titles.js";
+import { html, Icon, ProgressBar } from "../../../js/components/elements.js";
+import { Problem } from "../../../js/components/foot.js";
+import { editHere, EditorOf, isEdited } from "../../../js/components/runs/annotations.js";
+import { formIsOpen, unsayable } from "./dialog.js";
+import { FigureFour } from "./figure-four.js";
+import { AtAGlance, Claims, FairClocks, Narrative, Versus } from "./findings.js";
+import { Seeds } from "./seeds.js";
+import { StateOf } from "./state-of.js";
+import { SweepTable } from "./sweep-table.js";
+import { TableOne } from "./table-one.js";
+import { Worlds } from "./worlds.js";
+import { paceOf, runTitle } from "../feature.js";
+
+/** @import { Run, State, Summary, Verb } from "../../../js/types.js" */
+/** @import { ComponentChildren } from "preact" */
+
+const FIGURES = {
+  table1: TableOne, figure4: FigureFour, sweep: SweepTable,
+  league: Worlds, recovery: Worlds, groups: Worlds, bodies: Worlds,
+};
+
+/** Id of the menu from which name, tags and notes are changed. */
+const MORE = "more-of-report";
+
+/** @param {{ run: Run }} props */
+export function Report({ run }) {
+  const known = summary.value;
+  // Progress changes several times a second, the summary seldom.
+  const findings = useMemo(() => html`<${Findings} known=${known} />`, [known]);
+  const hasSeeds = known?.settings?.some(({ n }) => n > 0);
+  const finding = findingIn(known);
+  return html`
+    <section class="report" aria-label=${`Experiment: ${runTitle(run)}`}>
+      <${ReportHead} run=${run} />
+      <div class="report-body" tabindex="0" role="group" aria-label="Report, to be scrolled">
+        <${Progress} run=${run} />
+        <${Note} run=${run} />
+        <${Problem} at=${run.id} />
+        ${summaryError.value && html`<p class="problem" role="alert">${messageOf(summaryError.value)}</p>`}
+        <div class="gist">
+          ${finding && html`<p class="finding" role="heading" aria-level="3">${soFar(run)}${finding}</p>`}
+          <p class="dim">${configInWords(run.config)}</p>
+          <${OwnWords} run=${run} />
+        </div>
+        ${hasSeeds ? findings : html`<${Waiting} run=${run} />`}
+      </div>
+    </section>
+  `;
+}
+
+/** Its tags and notes. @param {{ run: Run }} props */
+function OwnWords({ run }) {
+  const tags = (run.tags ?? []).join(", ");
+  return html`
+    ${isEdited(run, "tags")
+      ? html`<${EditorOf} run=${run} field="tags" opener=${MORE} />`
+      : tags && html`<p class="dim">Tags: ${tags}</p>`}
+    ${isEdited(run, "notes")
+      ? html`<${EditorOf} run=${run} field="notes" opener=${MORE} />`
+      : run.notes && html`<p class="notes">${run.notes}</p>`}
+  `;
+}
+
+/** @param {Run} run */
+const soFar = (run) => run.state !== "finished" && html`<span class="so-far">So far: </span>`;
+
+/** @param {{ known: Summary }} props */
+function Findings({ known }) {
+  const Figure = FIGURES[known.experiment];
+  return html`
+    <${LeftOut} trials=${known.trials} />
+    ${Figure && html`<${Figure} known=${known} />`}
+    <${Seeds} known=${known} />
+    ${!known.worlds?.length && html`<${AtAGlance} known=${known} />`}
+    <${Versus} known=${known} />
+    <${Claims} claims=${known.claims ?? []} isComplete=${known.trials.done >= known.trials.total} />
+    <${Narrative} parts=${known.story ?? []} />
+    <${FairClocks} timed=${known.timed ?? []} />
+    <${Making} known=${known} />
+  `;
+}
+
+/** @type {Partial<Record<State, string>>} */
+const WORDS = {
+  queued: "Waiting in the queue.",
+  running: "Waiting for the first trials. Agents that look ahead come first, then one seed after the other.",
+  paused: "Paused before the first trial ended.",
+  failed: "No trial was completed.",
+};
+
+/** @param {{ run: Run }} props */
+const Waiting = ({ run }) => html`
+  <section class="panel waiting" aria-label="Report">
+    <div class="no-rows" aria-hidden="true">${[0, 1, 2, 3].map(() => html`<i></i>`)}</div>
+    <p class="dim">${WORDS[run.state] ?? "No trial was completed before the experiment ended."}</p>
+  </section>
+`;
+
+// ---- the head: the experiment's name and state, and what can be done with it
+
+/** @param {{ run: Run }} props */
+const ReportHead = ({ run }) => html`
+  <div class="report-head">
+    <button class="quiet back-to-list" onClick=${() => (page.report.value = null)}>
+      <span aria-hidden="true">‹</span> Back
+    </button>
+    <div class="report-name">
+      ${isEdited(run, "name")
+        ? html`<${EditorOf} run=${run} field="name" opener=${MORE} />`
+        : html`<h2>${runTitle(run)}</h2>`}
+      <${StateOf} run=${run} />
+    </div>
+    <${Commands} run=${run} />
+    <${Actions} run=${run} />
+  </div>
+`;
+
+/** @param {{ run: Run }} props */
+function Progress({ run }) {
+  if (!isActive(run) && !["interrupted", "stopped"].includes(run.state)) return null;
+  const pace = paceOf(run);
+  return html`
+    <div class="progress">
+      <p><span class="num">${pace.label}</span><span class="dim num">${pace.left}</span></p>
+      <${ProgressBar} label="Trials that are done" share=${pace.share} />
+    </div>
+  `;
+}
+
+/** @type {Partial<Record<State, string>>} */
+const NOTES = {
+  paused: "Paused. Finished trials are kept, and no core is used.",
+  stopped: "Stopped. Resume to run only the rest.",
+  interrupted: "The server ended before the experiment did. Finished trials are kept; resume to run only the rest.",
+};
+
+/** @param {{ run: Run }} props */
+function Note({ run }) {
+  if (run.state === "failed") {
+    return html`
+      <div class="notice bad">
+        <p><b>The experiment failed.</b> ${run.error}</p>
+        <p>Trials that were done before are kept below; resume to run only the rest.</p>
+      </div>
+    `;
+  }
+  if (!NOTES[run.state]) return null;
+  const isStopped = run.state === "stopped";
+  const covered = isStopped && hasReport(run) ? "The report covers the completed trials." : "";
+  return html`<p class="notice">${NOTES[run.state]} ${covered} ${isStopped && run.error}</p>`;
+}
+
+/** What steers it; on a phone by pictures alone, so that all fit in a line. @param {{ run: Run }} props */
+const Commands = ({ run }) => isOperator.value && html`
+  <div class="report-commands">
+    ${run.state === "running" && html`<${CommandButton} run=${run} verb="pause" icon="pause" title="Pause" />`}
+    ${run.can_resume && html`<${CommandButton} run=${run} verb="resume" icon="play" title="Resume" />`}
+    ${isActive(run) && html`<${CommandButton} run=${run} verb="stop" icon="stop" title="Stop" />`}
+  </div>
+`;
+
+/** @param {{ run: Run }} props */
+const Actions = ({ run }) => html`
+  <div class="report-actions">
+    ${isOperator.value && html`
+      <button class="secondary compact" onClick=${() => repeatWith(run)}>Repeat with…</button>
+    `}
+    <${Menu} title="Files"><${Files} run=${run} /><//>
+    ${isOperator.value && html`
+      <${Menu} title="⋯" id=${MORE} label="More about this experiment">
+        <button disabled=${pending.value[run.id]} onClick=${() => runAgain(run)}>Run again</button>
+        <button onClick=${() => editHere(run, "name")}>Rename</button>
+        <button onClick=${() => editHere(run, "tags")}>${run.tags?.length ? "Change its tags" : "Add tags"}</button>
+        <button onClick=${() => editHere(run, "notes")}>${run.notes ? "Change its notes" : "Add notes"}</button>
+        <a href=${addressOf({ view: "runs", opened: run.id, isOverList: true })}>Show in Runs</a>
+        ${!isActive(run) && html`<${DeleteButton} run=${run} />`}
+      <//>
+    `}
+  </div>
+`;
+
+/** @param {{ run: Run, verb: Verb, icon: string, title: string }} props */
+const CommandButton = ({ run, verb, icon, title }) => html`
+  <button class="quiet compact" disabled=${pending.value[run.id]} onClick=${() => command(run, verb)}>
+    <${Icon} name=${icon} /><span>${title}</span>
+  </button>
+`;
+
+/** Open the form with what this experiment was. @param {Run} run */
+function repeatWith(run) {
+  forgetPreset();
+  unsayable.value = setFormOf(run.config);
+  formIsOpen.value = true;
+}
+
+/** @param {{ title: string, id?: string, label?: string, children: ComponentChildren }} props */
+const Menu = ({ title, id, label, children }) => html`
+  <details class="menu report-menu">
+    <summary id=${id} class=${`quiet ${label ? "square" : ""}`} aria-label=${label}>${title}</summary>
+    <div class="menu-body">${children}</div>
+  </details>
+`;
+
+/** @param {{ run: Run }} props */
+function DeleteButton({ run }) {
+  const [isSure, setSure] = useState(false);
+  const onClick = () => (isSure ? deleteExperiment(run) : setSure(true));
+  return html`
+    <button class="bad" disabled=${pending.value[run.id]} onBlur=${() => setSure(false)} onClick=${onClick}>
+      ${isSure ? "Delete for good?" : "Delete"}
+    </button>
+  `;
+}
+
+/** @param {Run} run */
+const hasReport = (run) => Boolean(run.result?.files?.includes("report.html"));
+
+/** What can be taken away: the report, the numbers and the figures. @param {{ run: Run }} props */
+function Files({ run }) {
+  const files = run.result?.files ?? [];
+  const figures = files.filter((name) => /\.(png|svg|pdf)$/.test(name));
+  return html`
+    ${hasReport(run) && html`
+      <a href=${partOf(run, "report")} target="_blank" rel="noopener">Open the report</a>
+    `}
+    ${downloads(run).map(([title, href]) => html`<a href=${href} download>${title}</a>`)}
+    ${figures.length > 0 && html`
+      <p class="menu-part dim">Figures</p>
+      ${figures.map((name) => html`<a href=${fileAddress(run, name)} download>${name.split("/").at(-1)}</a>`)}
+    `}
+  `;
+}
+
+// ---- trials without a distance, with the reasons
+
+/** @param {{ trials: Summary["trials"] }} props */
+function LeftOut({ trials }) {
+  const aside = trials.set_aside ?? [];
+  const failures = trials.failures ?? [];
+  // Summaries of earlier versions count those that were set aside apart.
+  const failed = Math.max(trials.failed, failures.length + aside.length);
+  if (!failed) return null;
+  const counts = [`${count(failed, "trial")} failed`, aside.length && `${aside.length} of them set aside`];
+  return html`
+    <section class="panel left-out" aria-labelledby="left-out">
+      <h2 id="left-out">Left out: ${counts.filter(Boolean).join(", ")}</h2>
+      <p class="dim">
+        A trial is set aside when it has killed its worker three times, or cannot be run. All others are in the figures.
+      </p>
+      <details class="more">
+        <summary>Which, and why</summary>
+        <ul>
+          ${[...failures, ...aside].map(({ label, key, reason }) => html`
+            <li>${label ?? key}: <span class="dim">${reason}</span></li>
+          `)}
+        </ul>
+      </details>
+    </section>
+  `;
+}
+
+// ---- what is needed to repeat it: seeds, versions, machine and time
+
+/** @param {(string | 0 | false | null | undefined)[]} parts */
+const joined = (parts) => parts.filter(Boolean).join(", ");
+
+
+/** @param {Summary} known */
+const simulatorOf = ({ config, versions = {} }) => {
+  const version = config.simulator === "mujoco" ? versions.mujoco : null;
+  return [simulatorTitle(config.simulator), version].filter(Boolean).join(" ");
+};
+
+/** @param {Summary} known */
+const versionsOf = ({ versions = {} }) =>
+  joined(Object.entries(versions).filter(([name]) => name !== "mujoco").map(([name, version]) => `${name} ${version}`));
+
+/** @param {Summary} known */
+const machineOf = ({ machine = {} }) => joined([machine.platform, machine.cores && count(machine.cores, "core")]);
+
+/** @param {{ cost: Summary["cost"] }} one */
+const timeOf = ({ cost }) =>
+  cost && joined([
+    cost.wall_s && duration(cost.wall_s),
+    cost.trials_per_s && `${cost.trials_per_s.toPrecision(3)} trials a second`,
+    cost.workers && count(cost.workers, "worker"),
+  ]);
+
+/** @param {{ known: Summary }} props */
+function Making({ known }) {
+  const { seeds, seed } = known.config;
+  const rows = [
+    ["Seeds", `${count(seeds, "seed")}, spawned from ${seed}`],
+    ["Simulator", simulatorOf(known)],
+    ["Versions", versionsOf(known)],
+    ["Machine", machineOf(known)],
+    ["Time", timeOf(known)],
+  ];
+  return html`
+    <section class="panel making" aria-labelledby="making">
+      <h2 id="making">Method</h2>
+      <dl>
+        ${rows.filter(([, value]) => value !== undefined && value !== null).map(([name, value]) => html`
+          <div><dt>${name}</dt><dd>${value}</dd></div>
+        `)}
+      </dl>
+    </section>
+  `;
+}

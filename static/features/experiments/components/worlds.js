@@ -1,0 +1,341 @@
+// A league, a recovery, groups or bodies: in each world the learners' curves with the walks of their
+// references, and a table.
+import { useState } from "preact/hooks";
+import { worldTitle } from "../../../js/disturbances.js";
+import {
+  asMarks, bare, distanceAxis, factorOf, inUnit, placeOf, placesOf, shown, stepsAxis, unit, UNIT_NAMES,
+} from "../distances.js";
+import { count, percentage, whole } from "../../../js/format.js";
+import { largest } from "../../../js/scale.js";
+import { agentOf } from "../../../js/settings.js";
+import { agentTitle, gaitTitle, planningModelTitle } from "../../../js/titles.js";
+import { Chart } from "../../../js/components/charts.js";
+import { html, Segments } from "../../../js/components/elements.js";
+import { AgentKey, BestKnownWords, LevelKey, PlaceSwitch, UnitSwitch } from "./report-tools.js";
+
+/** @import { Interval, ScoredCurve, Summary, Until, WorldView } from "../../../js/types.js" */
+/** @import { ComponentChildren } from "preact" */
+
+/** In the unit that is shown, if it has one. @typedef {{ [Part in keyof Interval]: number | null }} MaybeInterval */
+
+const NOMINAL = "nominal";
+
+/** Question of each experiment. */
+/** @type {Record<string, string>} */
+const TITLES = {
+  league: "Distances by agent and world", recovery: "Recovery by agent and disturbance",
+  groups: "Distances by groups of legs", bodies: "Distances by agent and body",
+};
+/** @type {Record<string, string>} */
+const STEPS_OF = {
+  league: "steps of practice", recovery: "steps after it happened",
+  groups: "steps of practice", bodies: "steps of practice",
+};
+
+/** @param {{ known: Summary }} props */
+export function Worlds({ known }) {
+  const entries = known.worlds ?? [];
+  const worlds = [...new Set(entries.map(({ world }) => /** @type {string} */ (world)))];
+  const [wantedWorld, setWorld] = useState(/** @type {string | null} */ (null));
+  const [wantedPlace, setPlace] = useState(/** @type {string | null} */ (null));
+  if (!entries.length) return null;
+  const world = wantedWorld !== null && worlds.includes(wantedWorld) ? wantedWorld : worlds[0];
+  const inWorld = entries.filter((one) => one.world === world);
+  const places = placesOf(inWorld);
+  const place = places.find(({ key }) => key === wantedPlace) ?? places[0];
+  const here = inWorld.filter((one) => placeOf(one) === place.key);
+  const learners = [...new Set(here.filter(({ curve }) => curve).map(({ agent }) => agent))];
+  const gaits = [...new Set(here.map(({ gait }) => gait))];
+  return html`
+    <section class="panel worlds" aria-labelledby="worlds">
+      <div class="report-tools">
+        <h2 id="worlds">${TITLES[known.experiment]}</h2>
+        ${worlds.length > 1 && html`
+          <${Segments} label="World" choices=${worlds.map((one) => [one, worldTitle(one)])} value=${world}
+            onValue=${setWorld} />
+        `}
+        <${PlaceSwitch} places=${places} value=${place.key} onValue=${setPlace} />
+        <${UnitSwitch} />
+      </div>
+      <p class="dim">
+        ${worldTitle(world)}: ${UNIT_NAMES[unit.value]}, against ${STEPS_OF[known.experiment]}.
+        Curve: interquartile mean; band: its 95 % interval.
+      </p>
+      <${AgentKey} agents=${learners}><${LevelKey} levels=${levelsOf(here[0])} /><//>
+      <div class=${`gait-panels ${gaits.length > 1 ? "" : "alone"}`}>
+        ${gaits.map((gait) => html`
+          <${Gait} key=${gait} gait=${gait} entries=${here.filter((one) => one.gait === gait)} known=${known} />
+        `)}
+      </div>
+      ${gaits.map((gait) => html`
+        <${Table} key=${gait} gait=${gait} entries=${here.filter((one) => one.gait === gait)} known=${known} />
+      `)}
+      <${BestKnownWords} distances=${here.map(({ best_known_m }) => best_known_m)} />
+    </section>
+    ${worlds.length > 1 && html`
+      <${Overview} entries=${entries.filter((one) => placeOf(one) === place.key)} worlds=${worlds} known=${known} />
+    `}
+  `;
+}
+
+// ---- the lines of references
+
+/** @type {() => ["greedy_m" | "greedy_nominal_m" | "best_known_m", string, string][]} */
+const knownLevels = () => [
+  ["greedy_m", "greedy", "Greedy"],
+  ["greedy_nominal_m", "nominal", `Greedy, ${planningModelTitle(NOMINAL)}`],
+  ["best_known_m", "best-known", "Best known"],
+];
+
+/** The references that are known, in the unit that is shown. @param {WorldView} entry */
+const levelsOf = (entry) =>
+  knownLevels().flatMap(([field, kind, name]) => {
+    const value = inUnit(entry[field], factorOf(entry));
+    return value === null ? [] : [{ kind, name, value }];
+  });
+
+// ---- one chart per gait
+
+/**
+ * Names of entries: of one agent several, if the experiment practises for several numbers of steps.
+ * @param {WorldView} one
+ * @param {Summary} other
+ */
+const nameOf = ({ agent, plans_with, steps, role }, { config }) => [
+  agentTitle(agent), plans_with && planningModelTitle(plans_with),
+  role === "learner" && config.steps.length > 1 && count(steps, "step"),
+].filter(Boolean).join(", ");
+
+/** @param {{ gait: string, entries: WorldView[], known: Summary }} props */
+function Gait({ gait, entries, known }) {
+  const curves = entries.filter(({ curve }) => curve).map((one) => toUnit(one, known));
+  const levels = levelsOf(entries[0]);
+  const marks = asMarks(levels);
+  const ends = curves.map(({ name, ys, xs }) => `${name} ${shown(ys.at(-1))} after ${count(xs.at(-1) ?? 0, "step")}`);
+  const lines = levels.map(({ name, value }) => `${name.toLowerCase()} ${shown(value)}`);
+  const label = `${gaitTitle(gait)}: ${[...ends, ...lines].join(", ")}`;
+  return html`
+    <figure>
+      <figcaption><b>${gaitTitle(gait)}</b><span class="dim num">${seedsOf(entries)}</span></figcaption>
+      ${curves.length > 0 && html`
+        <${Chart} name=${gaitTitle(gait)} label=${label} lines=${curves} marks=${marks}
+          xs=${[...new Set(curves.flatMap(({ xs }) => xs))].sort((a, b) => a - b)}
+          x=${stepsAxis(curves, STEPS_OF[known.experiment])} y=${distanceAxis([{ lines: curves, marks }])} />
+      `}
+    </figure>
+  `;
+}
+
+/** @param {WorldView[]} entries */
+function seedsOf(entries) {
+  const numbers = entries.filter(({ role }) => role === "learner").map(({ n }) => n);
+  if (!numbers.length) return "no learner yet";
+  const [least, most] = [Math.min(...numbers), Math.max(...numbers)];
+  return least === most ? count(most, "seed") : `${whole(least)} to ${count(most, "seed")}`;
+}
+
+/** @param {WorldView} one @param {Summary} known */
+function toUnit(one, known) {
+  const factor = factorOf(one);
+  /** @param {(number | null)[]} list */
+  const all = (list) => list.map((value) => inUnit(value, factor));
+  const { steps, iqm_m, low_m, high_m } = /** @type {ScoredCurve} */ (one.curve);
+  return {
+    name: nameOf(one, known), color: agentOf(one.agent).color, xs: steps, ys: all(iqm_m), low: all(low_m),
+    high: all(high_m), dots: true,
+  };
+}
+
+// ---- all worlds beside each other: the share of the best known walk, in the end
+
+/** Of the best known walk; of greedy's where none is known. @param {WorldView} one */
+const shareIn = ({ of_best_known, of_greedy, best_known_m }) =>
+  (best_known_m === null ? of_greedy : of_best_known)?.iqm ?? null;
+
+/** @param {number[]} values */
+const meanOf = (values) => (values.length ? values.reduce((sum, one) => sum + one, 0) / values.length : null);
+
+/** @param {{ entries: WorldView[], worlds: string[], known: Summary }} props */
+function Overview({ entries, worlds, known }) {
+  const names = [...new Set(entries.map((one) => nameOf(one, known)))];
+  /** @param {string} name @param {string} world */
+  const meanIn = (name, world) => meanOf(
+    entries.filter((one) => one.world === world && nameOf(one, known) === name).map(shareIn)
+      .filter((share) => share !== null),
+  );
+  const rows = names.map((name) => ({ name, shares: worlds.map((world) => meanIn(name, world)) }));
+  const best = worlds.map((_, n) => largest(rows.map(({ shares }) => shares[n] ?? -Infinity), -Infinity));
+  // What reads the same is as good.
+  const isBest = (/** @type {number} */ share, /** @type {number} */ n) => percentage(share) === percentage(best[n]);
+  /** @param {string} world */
+  const ofGreedy = (world) => entries.some((one) => one.world === world && one.best_known_m === null);
+  const title = "All worlds: share of the best known distance";
+  /** @param {{ shares: (number | null)[] }} one */
+  const overall = ({ shares }) => meanOf(shares.filter((share) => share !== null)) ?? 0;
+  rows.sort((a, b) => overall(b) - overall(a));
+  return html`
+    <section class="panel worlds" aria-labelledby="all-worlds">
+      <h2 id="all-worlds">${title}</h2>
+      <p class="dim overview-words">In the end, as a mean over the gaits; the farthest of each world is bold.</p>
+      <div class="scroller" tabindex="0" role="region" aria-label="Table of all worlds">
+        <table class="facts-table world-table">
+          <caption class="sr-only">${title}</caption>
+          <thead><tr>
+            <th scope="col">Agent</th>
+            ${worlds.map((world) => html`
+              <th scope="col">${worldTitle(world)}${ofGreedy(world) ? ", of greedy" : ""}</th>
+            `)}
+          </tr></thead>
+          <tbody>
+            ${rows.map(({ name, shares }) => html`
+              <tr key=${name}>
+                <th scope="row">${name}</th>
+                ${shares.map((share, n) => html`
+                  <td class="num">${share === null ? "–" : isBest(share, n) ? html`<b>${percentage(share)}</b>`
+                    : percentage(share)}</td>
+                `)}
+              </tr>
+            `)}
+          </tbody>
+        </table>
+      </div>
+    </section>
+  `;
+}
+
+// ---- one table per gait, the farthest first
+
+/**
+ * A value with its interval below it; a dash without one.
+ * @param {MaybeInterval | null} one
+ * @param {(value: number) => string} words
+ * @param {(value: number) => string} bareWords
+ */
+const valueOf = (one, words, bareWords) => one && one.iqm !== null && html`
+  ${words(one.iqm)}${one.low !== null && html`
+    <br /><span class="dim">${bareWords(one.low)} – ${bareWords(one.high ?? NaN)}</span>
+  `}
+`;
+
+/** @param {MaybeInterval | null} interval @param {WorldView} entry */
+function distanceOf(interval, entry) {
+  const factor = factorOf(entry);
+  /** @param {number | null} value */
+  const own = (value) => inUnit(value, factor);
+  return interval && valueOf({ iqm: own(interval.iqm), low: own(interval.low), high: own(interval.high) }, shown, bare);
+}
+
+/** @param {MaybeInterval | null} interval */
+const shareOf = (interval) => valueOf(interval, percentage, (share) => percentage(share).replace(/[^\d\u2212]/g, ""));
+
+/** @param {Until | null} until */
+const untilOf = (until) => until && html`
+  ${until.median_steps === null ? "not reached" : whole(until.median_steps)}
+  <br /><span class="dim">reached by ${percentage(until.reached)}</span>
+`;
+
+/**
+ * The value of a curve at one of its places, as an interval.
+ * @param {ScoredCurve | null} curve
+ * @param {number} place
+ */
+const atPlace = (curve, place) =>
+  curve && { iqm: curve.iqm_m[place], low: curve.low_m[place], high: curve.high_m[place] };
+
+/** @typedef {{ title: string, words?: string, cell: (entry: WorldView) => ComponentChildren }} Column */
+
+/** @type {Column[]} */
+const SHARES = [
+  { title: "Of greedy", cell: ({ of_greedy }) => shareOf(of_greedy) },
+  { title: "Of best known", cell: ({ of_best_known }) => shareOf(of_best_known) },
+];
+
+/**
+ * Columns: title, explanation, and the cell of an entry.
+ * @param {Summary} one
+ * @param {WorldView[]} entries
+ * @returns {Column[]}
+ */
+function columnsOf({ experiment }, entries) {
+  const learner = entries.find(({ curve }) => curve);
+  const share = (learner?.until_greedy ?? learner?.until_best_known)?.of;
+  /** @type {Column[]} */
+  const until = share ? [
+    { title: `Steps to ${percentage(share)} of greedy`, words: UNTIL, cell: (one) => untilOf(one.until_greedy) },
+    { title: `To ${percentage(share)} of best known`, words: UNTIL, cell: (one) => untilOf(one.until_best_known) },
+  ] : [];
+  /** @type {Column} */
+  const mean = {
+    title: "Mean", words: "Over the practice: the area under the curve divided by its steps",
+    cell: (one) => distanceOf(one.mean_m, one),
+  };
+  const last = whole(learner?.curve?.steps.at(-1) ?? 0);
+  /** @type {Column} */
+  const distance = {
+    title: experiment === "recovery" ? `After ${last}` : "Distance", words: "In 50 steps, at the last evaluation",
+    cell: (one) => distanceOf(one.distance, one),
+  };
+  if (experiment !== "recovery") return [distance, ...SHARES, mean, ...until];
+  return [
+    { title: "Right after", words: "Once it has happened", cell: (one) => distanceOf(atPlace(one.curve, 0), one) },
+    distance, ...SHARES, mean,
+    {
+      title: "Earned", words: "In the first 50 steps of practice after it happened",
+      cell: (one) => distanceOf(atPlace(one.earned, 0), one),
+    },
+    ...until,
+  ];
+}
+
+const UNTIL = "Median over the seeds of the steps until an evaluation reaches it; below, the share of seeds that do";
+
+/** @param {{ title: string, value: ComponentChildren }} props */
+const Cell = ({ title, value }) => html`
+  <td role="cell" data-label=${title} class=${`num ${value ? "" : "no-value"}`}>${value || "–"}</td>
+`;
+
+/** The best known walk as the first row: what is possible. @param {{ entry: WorldView, columns: Column[] }} props */
+function BestKnown({ entry, columns }) {
+  const { best_known_m, greedy_m } = entry;
+  const only = { iqm: best_known_m, low: null, high: null };
+  /** @type {Record<string, ComponentChildren>} */
+  const cells = {
+    Distance: distanceOf(only, entry), "Of greedy": greedy_m && percentage(Number(best_known_m) / greedy_m),
+  };
+  return html`
+    <tr role="row" class="best-known">
+      <th role="rowheader" scope="row">Best known</th>
+      ${columns.map(({ title }) => html`
+        <${Cell} title=${title} value=${cells[title.startsWith("After") ? "Distance" : title]} />
+      `)}
+    </tr>
+  `;
+}
+
+/** @param {{ gait: string, entries: WorldView[], known: Summary }} props */
+function Table({ gait, entries, known }) {
+  const columns = columnsOf(known, entries).filter(({ cell }) => entries.some(cell));
+  const sorted = [...entries].sort((a, b) => b.distance.iqm - a.distance.iqm);
+  const title = `Agents in ${gaitTitle(gait)}`;
+  return html`
+    <h3>${gaitTitle(gait)}</h3>
+    <div class="scroller" tabindex="0" role="region" aria-label=${title}>
+      <table class="facts-table world-table stacking" role="table">
+        <caption class="sr-only">${title}</caption>
+        <thead role="rowgroup"><tr role="row">
+          <th role="columnheader" scope="col">Agent</th>
+          ${columns.map((one) => html`<th role="columnheader" scope="col" title=${one.words}>${one.title}</th>`)}
+        </tr></thead>
+        <tbody role="rowgroup">
+          ${entries[0].best_known_m !== null && html`<${BestKnown} entry=${entries[0]} columns=${columns} />`}
+          ${sorted.map((one) => html`
+            <tr role="row" key=${one.key} style=${{ "--agent": agentOf(one.agent).color }}>
+              <th role="rowheader" scope="row"><i class="swatch"></i> ${nameOf(one, known)}</th>
+              ${columns.map(({ title: column, cell }) => html`<${Cell} title=${column} value=${cell(one)} />`)}
+            </tr>
+          `)}
+        </tbody>
+      </table>
+    </div>
+  `;
+}

@@ -1,0 +1,128 @@
+// What-if: distances of kinematic robots that practise with these settings, and with the defaults.
+import { useEffect } from "preact/hooks";
+import { form, mistakes, isReadOnly } from "../../js/form.js";
+import { metres, whole } from "../../js/format.js";
+import { agentOf, learns } from "../../js/settings.js";
+import {
+  answer, error, evaluateSettings, followWhatIf, isComputing, isCurrent, isTooLong, mostSteps, seeds,
+} from "./what-if.js";
+import { messageOf } from "../../js/titles.js";
+import { DotStrip } from "../../js/components/dot-strip.js";
+import { html } from "../../js/components/elements.js";
+import { Restricted } from "../../js/components/fields.js";
+import { PracticeSettings } from "../../js/components/settings.js";
+
+/** @import { WhatIfAnswer, WhatIfHalf } from "../../js/types.js" */
+
+const HEADROOM = 1.06;
+
+/** It computes beside the race, and changes nothing on the stage. */
+export function WhatIf() {
+  useEffect(followWhatIf, []);
+  if (!form.value.lanes.some(learns)) {
+    return html`<p class="dim">No learner is in the race: add one in Train, and its settings can be tried here.</p>`;
+  }
+  return html`
+    <section class="what-if" aria-label="What if">
+      <${Restricted} />
+      <${PracticeSettings} />
+      <h3>${seeds.value} ideal robots: distance in 50 steps</h3>
+      <${Comparison} />
+    </section>
+  `;
+}
+
+const hasMistakes = () => Object.keys(mistakes.value).length > 0;
+
+function Comparison() {
+  const known = answer.value;
+  const isOld = isComputing.value || isTooLong.value || hasMistakes() || (known && !isCurrent.value);
+  const far = known && HEADROOM * Math.max(known.greedy_m, ...known.chosen.distances_m, ...known.default.distances_m);
+  return html`
+    <div class=${`trial ${isOld ? "old" : ""}`} aria-busy=${isComputing.value ? "true" : "false"}>
+      <${Half} title="These settings" half=${known?.chosen} known=${known} far=${far} />
+      <${Half} title="The defaults" half=${known?.default} known=${known} far=${far} />
+      ${known && html`<${Axis} known=${known} far=${far} />`}
+    </div>
+    <${Status} known=${known} />
+  `;
+}
+
+/** @param {{ title: string, half: WhatIfHalf, known: WhatIfAnswer, far: number }} props */
+function Half({ title, half, known, far }) {
+  if (!half) {
+    return html`<div class="tried"><p><span>${title}</span></p><div class="no-dots" aria-hidden="true"></div></div>`;
+  }
+  const walkers = Math.round(half.walkers * known.seeds);
+  const marks = [{ value: known.greedy_m, kind: "greedy" }, { value: known.greedy_m / 2, kind: "half" }];
+  const typically = `typically ${metres(half.iqm_m)}`;
+  return html`
+    <div class="tried">
+      <p>
+        <span>${title}</span><span class="num"><b>${walkers} of ${known.seeds}</b> walk · ${typically}</span>
+      </p>
+      <${DotStrip} label=${captionOf(title, half, known)} points=${half.distances_m} high=${far}
+        typical=${{ iqm: half.iqm_m }} marks=${marks} color=${agentOf(form.value.agent).color} />
+    </div>
+  `;
+}
+
+/** @param {string} title @param {WhatIfHalf} other @param {WhatIfAnswer} known */
+function captionOf(title, { distances_m, iqm_m, walkers }, { seeds: tried, greedy_m }) {
+  const [low, high] = [Math.min(...distances_m), Math.max(...distances_m)];
+  return [
+    `${title}: ${Math.round(walkers * tried)} of ${tried} walk.`,
+    `They get from ${metres(low)} to ${metres(high)}, typically ${metres(iqm_m)}; greedy gets ${metres(greedy_m)}.`,
+  ].join(" ");
+}
+
+/** @param {{ known: WhatIfAnswer, far: number }} props */
+const Axis = ({ known, far }) => html`
+  <p class="tried-axis dim" aria-hidden="true">
+    <span>0 m</span>
+    <span style=${{ left: `${(50 * known.greedy_m) / far}%` }}>half</span>
+    <span class="greedy" style=${{ "--at": `${(100 * known.greedy_m) / far}%` }}>greedy ${metres(known.greedy_m)}</span>
+  </p>
+`;
+
+/**
+ * State of the answer: a hint for reading it, that one is computed, or why there is none; always two lines high.
+ * @param {{ known: WhatIfAnswer | null }} props
+ */
+function Status({ known }) {
+  if (hasMistakes()) {
+    return html`<p class="what-if-words" role="status">Settings that are not valid are not tried.</p>`;
+  }
+  if (isTooLong.value) {
+    const words = `${whole(mostSteps.value)} steps at most: more take too long.`;
+    return html`<p class="what-if-words" role="status">${words}</p>`;
+  }
+  if (error.value && !isComputing.value) {
+    return html`
+      <p class="what-if-words bad" role="alert">
+        <span>${messageOf(error.value)}</span> <button class="link" onClick=${evaluateSettings}>Try again</button>
+      </p>
+    `;
+  }
+  if (isComputing.value) {
+    return html`
+      <p class="what-if-words" role="status">
+        <span class="spinner" aria-hidden="true"></span>${seeds.value} robots practise…
+      </p>
+    `;
+  }
+  if (!known || !isCurrent.value) return html`<${Request} isFirst=${!known} />`;
+  const words = "Ideal (no slip). A robot walks if it gets at least half as far as greedy.";
+  return html`<p class="what-if-words dim" role="status">${words}</p>`;
+}
+
+/** By whether the sliders are read only. */
+const FIRST_WORDS = { false: "Move a slider: each seed becomes a dot.", true: "Each seed becomes a dot." };
+
+/** @param {{ isFirst: boolean }} props */
+const Request = ({ isFirst }) => html`
+  <p class="what-if-words dim">
+    <span>${isFirst ? FIRST_WORDS[`${isReadOnly.value}`] : "The settings have changed."}</span>
+    <button class="link" onClick=${evaluateSettings}>Try ${isFirst ? "the settings as they are" : "these"}</button>
+  </p>
+`;

@@ -1,0 +1,81 @@
+// What-if: kinematic trials of the form's settings, beside trials of the defaults.
+import { computed, effect, signal } from "@preact/signals";
+import * as api from "../../js/api.js";
+import { form, mistakes, whatIfBody, isReadOnly } from "../../js/form.js";
+import { limitsOf } from "../../js/settings.js";
+import { options, role } from "../../js/store.js";
+
+/** @import { Signal } from "@preact/signals" */
+/** @import { RequestError } from "../../js/api.js" */
+/** @import { WhatIfAnswer } from "../../js/types.js" */
+
+/** A slider that has not moved for so long counts as released. */
+const QUIET_MS = 300;
+
+/** The newest answer, and the settings that it is for. @type {Signal<(WhatIfAnswer & { settings: string }) | null>} */
+export const answer = signal(null);
+/** @type {Signal<RequestError | null>} */
+export const error = signal(null);
+/** Whether a request is under way. */
+export const isComputing = signal(false);
+
+const settings = computed(() => JSON.stringify(whatIfBody()));
+/** The most steps of practice that the server tries; null without a limit. */
+export const mostSteps = computed(() => limitsOf("what_if_steps").maximum);
+export const isTooLong = computed(() => mostSteps.value !== null && form.value.steps > mostSteps.value);
+/** Number of seeds of an answer. */
+export const seeds = computed(() => options.value?.defaults.what_if.seeds ?? 0);
+/** Whether the answer is for the form's settings as they are. */
+export const isCurrent = computed(() => answer.value?.settings === settings.value);
+
+/** A form that follows the stage would ask from every page at once. */
+const canAsk = () => role.value !== null && !isReadOnly.value && !isTooLong.value &&
+  Object.keys(mistakes.value).length === 0;
+
+let hasMissed = false;
+
+/** Request an answer for the form's settings; one request at a time, the newest settings next. */
+export async function evaluateSettings() {
+  if (isComputing.peek()) {
+    hasMissed = true;
+    return;
+  }
+  isComputing.value = true;
+  hasMissed = false;
+  const asked = settings.peek();
+  try {
+    const found = await api.call("POST", "what-if", JSON.parse(asked));
+    answer.value = { ...found, settings: asked };
+    error.value = null;
+  } catch (problem) {
+    error.value = asked === settings.peek() ? /** @type {RequestError} */ (problem) : null;
+  } finally {
+    isComputing.value = false;
+  }
+  if (hasMissed && canAsk() && !isCurrent.peek()) evaluateSettings();
+}
+
+/**
+ * Request an answer now, unless the settings are read only, and each time the form has come to rest with others, until
+ * the function that is returned is called.
+ */
+export function followWhatIf() {
+  let known = "";
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  const stop = effect(() => {
+    const now = settings.value;
+    const isAllowed = canAsk();
+    clearTimeout(timer);
+    if (now === known || !isAllowed) return;
+    const isFirst = known === "";
+    timer = setTimeout(() => {
+      known = now;
+      if (!isCurrent.peek()) evaluateSettings();
+    }, isFirst ? 0 : QUIET_MS);
+  });
+  return () => {
+    clearTimeout(timer);
+    stop();
+  };
+}
