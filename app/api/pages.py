@@ -93,7 +93,7 @@ def page_features(folder: Path) -> list[dict[str, Any]]:
 
 def _start_modules(name: str, features: list[dict[str, Any]]) -> list[str]:
     """Return the modules that the dashboard loads at once because a feature has code for it."""
-    has_code = [feature["name"] for feature in features if feature["hasCode"]]
+    has_code = [f["name"] for f in features if f["hasCode"] and "codeFor" not in f]
     return [f"static/features/{feature}/feature.js" for feature in has_code if name == _INDEX]
 
 

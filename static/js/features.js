@@ -46,13 +46,24 @@ export function install(all) {
  * @returns {Promise<Feature>}
  */
 async function withCode(feature) {
-  if (!feature.hasCode) return feature;
   const { default: code } = await import(`../features/${feature.name}/feature.js`);
   return { ...feature, ...code };
 }
 
-/** Install the features of the page. */
-export const installFeatures = async () => install(await Promise.all(features.peek().map(withCode)));
+/** Install the features of the page, with the code that has to run from the start. */
+export const installFeatures = async () => install(await Promise.all(
+  features.peek().map((feature) => (feature.hasCode && !feature.codeFor ? withCode(feature) : feature))));
+
+/** Load the code that pages of a role alone need, and run it. @param {string} role */
+export async function addCodeFor(role) {
+  const added = await Promise.all(features.peek().filter(({ codeFor }) => codeFor === role).map(withCode));
+  const isNew = added.filter(({ name }) => features.peek().find((one) => one.name === name)?.codeFor);
+  features.value = features.peek().map((feature) => {
+    const { codeFor: _, ...whole } = isNew.find(({ name }) => name === feature.name) ?? feature;
+    return isNew.some(({ name }) => name === feature.name) ? whole : feature;
+  });
+  isNew.forEach(({ follow }) => follow?.());
+}
 
 /**
  * What a source names, as "components/gait.js#Gait".

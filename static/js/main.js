@@ -8,9 +8,8 @@ import { listenForKeys, listenForMenus } from "./components/keyboard.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
 import { followOptions, isLockOut } from "./options.js";
-import { features, installFeatures } from "./features.js";
+import { addCodeFor, features, installFeatures } from "./features.js";
 import { followHistory, page, reload } from "./page-state.js";
-import { followPresentation } from "./presentation.js";
 import { followPresenter, followTheme } from "./page.js";
 import { announceOutcomes, headline } from "./headline.js";
 import { followTimeline } from "./race.js";
@@ -42,6 +41,17 @@ function reloadAfterUpgrade() {
   });
 }
 
+/** Follow the presentation on the pages that show or command it. */
+const followPresentations = () => effect(() => {
+  if (page.isPresenting.value) import("./presentation.js").then((own) => untracked(own.followPresentation), () => {});
+});
+
+/** Load the code of features that pages of this role need; if that fails, again once the connection is back. */
+const followRole = () => effect(() => {
+  const isLive = connection.value === "live";
+  if (isLive && role.value) addCodeFor(role.value).catch(() => {});
+});
+
 /** Keep the window's title: what is shown, in a list of tabs. */
 const followTitle = () => effect(() => {
   document.title = windowTitle(page.view.value, headline.value);
@@ -52,7 +62,8 @@ followHistory();
 features.value.forEach(({ follow }) => follow?.());
 followTheme();
 followPresenter();
-followPresentation();
+followPresentations();
+followRole();
 reloadAfterUpgrade();
 followRuns(stageIds);
 followCurves(trainingsInView);

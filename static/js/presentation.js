@@ -34,8 +34,12 @@ export const turnCode = () =>
 export const toggleWhy = () => tell({ shows_why: !presentation.peek().shows_why });
 export const toggleBlank = () => tell({ is_blank: !presentation.peek().is_blank });
 
+let isFollowing = false;
+
 /** Let this page, while it is presented, show what the presentation says; then it is as it was before. */
 export function followPresentation() {
+  if (isFollowing) return;
+  isFollowing = true;
   /** @type {Partial<PageState> | null} */
   let before = null;
   effect(() => {

@@ -331,6 +331,8 @@ export interface Feature {
   name: string;
   /** Whether it has a `feature.js`, which runs from the start. */
   hasCode?: boolean;
+  /** The role of pages that alone run its code. */
+  codeFor?: string;
   /** Names of the features without which it does not work. */
   needs?: string[];
   /** Names of the features of which it shows something, where they are there. */

@@ -157,14 +157,14 @@ def opened_by_features(folder: Path) -> list[str]:
 def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Api) -> None:
     page = api.client.get("/").text
     folder = assets.static_dir()
-    starts = [
-        f"static/features/{f['name']}/feature.js" for f in page_features(folder) if f["hasCode"]
-    ]
+    coded = {f["name"]: f for f in page_features(folder) if f["hasCode"]}
+    starts = [f"static/features/{n}/feature.js" for n in coded if "codeFor" not in coded[n]]
     entries = ["static/js/main.js", *starts]
     modules = {path for entry in entries for path in imported_modules(entry, folder)}
     scripts = [*(folder / "js").rglob("*.js"), *(folder / "features").rglob("*.js")]
     opened = {path for script in scripts for path in imported_later(script, folder)}
     opened |= {*opened_by_features(folder)}
+    opened |= {f"static/features/{n}/feature.js" for n in coded if "codeFor" in coded[n]}
     opened.add("static/js/offline/player.js")  # of files that play a replay offline
     opened.add("static/features/classroom/room/main.js")  # of the page of rooms
     opened.add("static/features/tournaments/main.js")  # of the page of tournaments

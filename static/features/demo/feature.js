@@ -1,7 +1,7 @@
-// A demo that is open to strangers: each visitor starts runs of their own. What only their pages need is loaded there.
-import { computed, effect, signal, untracked } from "@preact/signals";
+// A demo that is open to strangers: each visitor starts runs of their own. It is loaded on their pages alone.
+import { computed, signal } from "@preact/signals";
 import { html, Loaded } from "../../js/components/elements.js";
-import { connection, role } from "../../js/store.js";
+import { role } from "../../js/store.js";
 
 /** @import { Signal } from "@preact/signals" */
 /** @import { Allowance, Feature, Run } from "../../js/types.js" */
@@ -29,9 +29,5 @@ export default {
   started: (/** @type {Run} */ run) => {
     if (isVisitor.peek()) followed.value = run.id;
   },
-  follow: () => effect(() => {
-    // If that fails, again once the connection is back.
-    if (!isVisitor.value || connection.value !== "live") return;
-    import("./visitor-page.js").then(({ followDemo }) => untracked(followDemo), () => {});
-  }),
+  follow: () => import("./visitor-page.js").then(({ followDemo }) => followDemo()),
 };

@@ -23,6 +23,8 @@ function Actions() {
   const isBusy = Boolean(myWork.value) || pending.value.start;
   const label = isBusy ? busyLabel() : primaryAction.value.label;
   const isDisabled = isBusy || !canStart.value;
+  // As it is by default it is short.
+  const isChanged = page.form.value.size > 0;
   const isHeld = !isBusy && Object.keys(mistakes.value).length > 0;
   return html`
     <div class="actions" role="group" aria-label="Actions">
@@ -34,7 +36,7 @@ function Actions() {
       <${Problem} at="tune" />
       <${UnknownParts} parts=${ignored.query} />
       ${isHeld && html`<${Held} id="held-start" mistakes=${mistakes.value} onField=${showField} />`}
-      ${!isBusy && html`<${Slot} name="estimate" />`}
+      ${!isBusy && isChanged && html`<${Slot} name="estimate" />`}
       ${!isBusy && html`<${MissingLane} />`}
       <${Slot} name="actions" />
       <${WorkActions} />
@@ -122,6 +124,8 @@ function WorkButtons() {
   const isPaused = state === "paused";
   // Events tell of a new state before the command is answered; a click in between would be lost.
   // Not `disabled`, by which the button would lose the keyboard's focus.
+  // As it is by default it is short.
+  const isChanged = page.form.value.size > 0;
   const isHeld = pending.value.work || isAway.value ? "true" : undefined;
   return html`
     <div class="row">

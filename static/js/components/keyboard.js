@@ -4,7 +4,6 @@ import { page } from "../page-state.js";
 import { helpIsOpen, leavePresenter, present, shortcuts } from "../page.js";
 import { stepReplay } from "../replay.js";
 import { closeLegs, legsAreOpen, openLegs } from "../legs.js";
-import { turnCode, turnPage } from "../presentation.js";
 import { isOperator } from "../selectors.js";
 import { scale, seekTo, seekToMark, toggleTime } from "../time.js";
 import { isAtLeast, nextDepth, openTab, toggleHidden } from "../workspace.js";
@@ -33,11 +32,14 @@ const RACE_KEYS = {
   "p": () => (page.isPresenting.value ? leavePresenter : present)(),
 };
 
+const loadPresentation = () => import("../presentation.js");
+const next = () => loadPresentation().then(({ turnPage }) => turnPage(1));
+const previous = () => loadPresentation().then(({ turnPage }) => turnPage(-1));
+
 /** Keys of the presenter's window, as those of a remote control for slides. @type {Record<string, () => unknown>} */
 const PRESENTER_KEYS = {
-  "ArrowRight": () => turnPage(1), "PageDown": () => turnPage(1),
-  "ArrowLeft": () => turnPage(-1), "PageUp": () => turnPage(-1),
-  "q": turnCode,
+  ArrowRight: next, PageDown: next, ArrowLeft: previous, PageUp: previous,
+  q: () => loadPresentation().then(({ turnCode }) => turnCode()),
 };
 
 /** Perform the action of a key; false if it has none. @param {string} pressed */

@@ -3,12 +3,13 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { isGuest, mayChange, mayStart, myRuns } from "../../../static/js/selectors.js";
 import { followed, visitorRuns } from "../../../static/features/demo/feature.js";
-import { features } from "../../../static/js/features.js";
+import { addCodeFor, features } from "../../../static/js/features.js";
 import { makeRun } from "../../page/options.js";
 import { installOnly } from "../../page/features.js";
 import { role } from "../../../static/js/store.js";
 
 await installOnly("demo");
+await addCodeFor("visitor");
 
 test("a visitor starts runs and changes their own alone", () => {
   role.value = "visitor";
