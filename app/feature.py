@@ -52,6 +52,8 @@ class Feature:
         damage_advice: by name of its tables, what helps against damaged rows.
         state_events: names of its events of which only the newest counts.
         event_bodies: models of the data of its events, by the event's name.
+        page: of another package the folder with its part of the page: `feature.json` and its
+            modules; that of the others is `static/features/NAME`.
         option_types: types of what `options` returns, by name.
         core: the services of the core.
     """
@@ -65,6 +67,7 @@ class Feature:
     state_events: ClassVar[Collection[str]] = ()
     event_bodies: ClassVar[Mapping[str, type[BaseModel]]] = {}
     option_types: ClassVar[Mapping[str, Any]] = {}
+    page: ClassVar[Path | None] = None
 
     def __init__(self, core: "Services") -> None:
         """Build its services; those of the core, and the features that it needs, are there."""
@@ -205,6 +208,11 @@ class Features:
         found = self._features[feature.name]
         assert isinstance(found, feature)  # noqa: S101 - by name and class alike
         return found
+
+    @property
+    def pages_of_others(self) -> dict[str, Path]:
+        """Folders of the pages of those of other packages, by name."""
+        return {one.name: one.page for one in self.classes if one.page is not None}
 
     def owner_of(self, run_id: str) -> Owner | None:
         """Return who waits for a run; None for an operator."""

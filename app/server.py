@@ -38,7 +38,7 @@ from app.api import (
     trainings,
 )
 from app.api.concurrency_limit import WorkSlots
-from app.api.deps import Services
+from app.api.deps import PageFiles, Services
 from app.api.guards import RouteGuards
 from app.api.guide import guide_routes
 from app.api.host_check import HostGuard
@@ -170,6 +170,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
         new_stage=lambda path: new_stage(path=path, session_path="", announces=False),
         features=features,
+        page_files=PageFiles(assets.static_dir(), settings.without, features.pages_of_others),
     )
     features.build(app.state.services)
     store.is_public = features.visible_runs(None)
@@ -180,7 +181,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     app.router.routes += _api_routes(app.state.services.agents, features.classes)
     app.router.routes += [
         *_viewer_routes(),
-        *pages.page_routes(assets.static_dir()),
+        *pages.page_routes(app.state.services.page_files),
         *guide_routes(assets.docs_dir()),
     ]
     _check_paths(app.routes, features)

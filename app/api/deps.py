@@ -1,9 +1,11 @@
 """FastAPI dependencies of routes: the services, the stage, the client's role, a start request."""
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from threading import Lock
+from types import MappingProxyType
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 from fastapi import Depends, Header, HTTPException, Request
@@ -36,6 +38,20 @@ from app.what_if.what_if import WhatIf
 T = TypeVar("T")
 
 
+class PageFiles(NamedTuple):
+    """Where the files of the page are.
+
+    Attributes:
+        folder: of the dashboard, with its `index.html` and a folder `features`.
+        without: names of the features whose folders are left out.
+        others: folders of the pages of features of other packages, by the feature's name.
+    """
+
+    folder: Path
+    without: Collection[str] = ()
+    others: Mapping[str, Path] = MappingProxyType({})
+
+
 @dataclass(frozen=True)
 class Services:
     """Services that `create_app` builds and routes use.
@@ -55,6 +71,7 @@ class Services:
         listeners: slots of event streams, of all stages.
         new_stage: makes a further stage with a path, which uses the sessions of the first.
         features: those of the server.
+        page_files: where the files of the page are.
         stream_lock: held while a race is encoded as a recorded stream for viser.
         exports: memory budget of exports that clients are still reading.
         analyses: gait analyses and timelines, which all pages that watch a run request at once.
@@ -78,6 +95,7 @@ class Services:
     listeners: ClientSlots["EventListener"]
     new_stage: Callable[[str], SharedStage]
     features: Features
+    page_files: PageFiles
     stream_lock: Lock = field(default_factory=Lock)
     exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
     analyses: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))

@@ -16,10 +16,10 @@ from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import BaseRoute
 from starlette.staticfiles import PathLike, StaticFiles
-from starlette.types import Scope
+from starlette.types import Receive, Scope, Send
 
 from app.api.compression import CompressedContent
-from app.api.deps import Services
+from app.api.deps import PageFiles, Services
 from app.api.policy import ANY_PAGE, PUBLIC, WATCH, GuardedFiles, GuardedPage, Policy, policy
 from app.api.problem_pages import prefers_html
 from app.api.problems import as_sentence, problem
@@ -38,14 +38,15 @@ _ENTRY = re.compile(r'<script type="module" src="((?:\.\./)*)([^"]+)"></script>'
 _IMPORT = re.compile(r'^import [^"]*"(\.[^"]+)";', re.MULTILINE)
 
 
-def page_routes(folder: Path) -> list[BaseRoute]:
+def page_routes(page_files: PageFiles) -> list[BaseRoute]:
     """Return the routes of the page at `/`, as it is now, and of its files under `/static/`.
 
     Args:
-        folder: folder of the dashboard, with its `index.html`.
+        page_files: where they are.
     """
-    index = page_content(_INDEX, folder)
-    files = _Files(directory=folder)
+    index = page_content(_INDEX, page_files)
+    files = _Files(directory=page_files.folder)
+    public = Policy(access=PUBLIC)
 
     @policy(access=PUBLIC, opens_session=True)
     async def show(request: Request) -> Response:
@@ -60,14 +61,29 @@ def page_routes(folder: Path) -> list[BaseRoute]:
         GuardedPage("/favicon.ico", favicon, name="favicon"),
         GuardedPage("/robots.txt", robots_txt, name="robots_txt"),
         # The page's files are public; the data they show is not.
-        GuardedFiles("/static", files, Policy(access=PUBLIC), name="static"),
+        *(
+            GuardedFiles(f"/static/features/{name}", _Files(directory=folder), public)
+            for name, folder in page_files.others.items()
+        ),
+        *(
+            GuardedFiles(f"/static/features/{name}", _nothing, public)
+            for name in page_files.without
+        ),
+        GuardedFiles("/static", files, public, name="static"),
     ]
 
 
-def page_content(name: str, folder: Path) -> CompressedContent:
+async def _nothing(scope: Scope, receive: Receive, send: Send) -> None:
+    """Answer for the files of a feature that is left out."""
+    await problem(404, "There is no such file.")(scope, receive, send)
+
+
+def page_content(name: str, page_files: PageFiles) -> CompressedContent:
     """Return a page of the dashboard's folder with its preloads and its policy."""
-    features = page_features(folder)
-    page = with_preloads(_with_common_head(name, folder), folder, _start_modules(name, features))
+    folder, features = page_files.folder, page_features(page_files)
+    page = with_preloads(
+        _with_common_head(name, folder), folder, _start_modules(name, features, page_files)
+    )
     # As "<" it could end the script that it stands in.
     declared = json.dumps(features, ensure_ascii=False).replace("<", "\\u003c")
     page = page.replace(_FEATURES, _FEATURES.replace("[]", declared))
@@ -75,25 +91,27 @@ def page_content(name: str, folder: Path) -> CompressedContent:
     return CompressedContent(page.encode(), "text/html", policy)
 
 
-def page_features(folder: Path) -> list[dict[str, Any]]:
-    """Return what each feature adds to the page, as its `feature.json` declares it.
-
-    Args:
-        folder: folder of the dashboard, with a folder `features` of one folder each.
-    """
+def page_features(page_files: PageFiles) -> list[dict[str, Any]]:
+    """Return what each feature adds to the page, as its `feature.json` declares it."""
+    folders = {
+        file.parent.name: file.parent
+        for file in sorted(page_files.folder.glob("features/*/feature.json"))
+        if file.parent.name not in page_files.without
+    }
     return [
         {
-            "name": file.parent.name,
-            "hasCode": file.with_name("feature.js").is_file(),
-            **json.loads(file.read_text("utf-8")),
+            "name": name,
+            "hasCode": (folder / "feature.js").is_file(),
+            **json.loads((folder / "feature.json").read_text("utf-8")),
         }
-        for file in sorted(folder.glob("features/*/feature.json"))
+        for name, folder in {**folders, **page_files.others}.items()
     ]
 
 
-def _start_modules(name: str, features: list[dict[str, Any]]) -> list[str]:
+def _start_modules(name: str, features: list[dict[str, Any]], page_files: PageFiles) -> list[str]:
     """Return the modules that the dashboard loads at once because a feature has code for it."""
-    has_code = [f["name"] for f in features if f["hasCode"] and "codeFor" not in f]
+    at_once = [f["name"] for f in features if f["hasCode"] and "codeFor" not in f]
+    has_code = [one for one in at_once if one not in page_files.others]
     return [f"static/features/{feature}/feature.js" for feature in has_code if name == _INDEX]
 
 

@@ -9,6 +9,7 @@ from starlette.applications import Starlette
 from starlette.testclient import TestClient
 
 from app.api.compression import CompressedContent, accepts_gzip
+from app.api.deps import PageFiles
 from app.api.pages import (
     content_policy,
     imported_modules,
@@ -101,7 +102,7 @@ def test_changed_file_is_sent_anew(tmp_path: Path) -> None:
     (tmp_path / "js").mkdir()
     (tmp_path / "js" / "main.js").write_text("first")
     (tmp_path / "favicon.svg").write_text("<svg/>")
-    app = Starlette(routes=page_routes(tmp_path))
+    app = Starlette(routes=page_routes(PageFiles(tmp_path)))
     app.state.guards = let_all_pass
     with TestClient(app) as client:
         first = client.get(SCRIPT)
@@ -157,7 +158,7 @@ def opened_by_features(folder: Path) -> list[str]:
 def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Api) -> None:
     page = api.client.get("/").text
     folder = assets.static_dir()
-    coded = {f["name"]: f for f in page_features(folder) if f["hasCode"]}
+    coded = {f["name"]: f for f in page_features(PageFiles(folder)) if f["hasCode"]}
     starts = [f"static/features/{n}/feature.js" for n in coded if "codeFor" not in coded[n]]
     entries = ["static/js/main.js", *starts]
     modules = {path for entry in entries for path in imported_modules(entry, folder)}

@@ -2,18 +2,22 @@
 
 import json
 import re
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from playwright.sync_api import Route, expect
 
+from app.api.deps import PageFiles
 from app.api.pages import page_features
+from app.feature import load
 from hexapods import assets
 from tests.browser.dashboard import Dashboard
-from tests.browser.serving import Serving
+from tests.browser.serving import Serving, serving
 
 pytestmark = pytest.mark.timeout(300)
 
-NAMES = [feature["name"] for feature in page_features(assets.static_dir())]
+NAMES = [feature["name"] for feature in page_features(PageFiles(assets.static_dir()))]
 FORM = {"depth": "study", "simulator": "kinematic", "steps": "20", "lanes": "q-learning,greedy"}
 WORDS = {
     "classroom": "lesson|room",
@@ -24,12 +28,22 @@ WORDS = {
 """How the page speaks of a feature."""
 
 
+@pytest.fixture
+def server(without: set[str], tmp_path: Path) -> Iterator[Serving]:
+    """A server that leaves out those of its features."""
+    own = {feature.name for feature in load()} & without
+    with serving(tmp_path, without=",".join(sorted(own))) as fresh:
+        yield fresh
+
+
 def leave_out(dashboard: Dashboard, server: Serving, without: set[str]) -> None:
-    """Serve the page as if these features had no folders."""
+    """Serve the page as if those of its features had no folders that are no server's."""
 
     def reduce(route: Route) -> None:
         response = route.fetch()
-        kept = [f for f in page_features(assets.static_dir()) if f["name"] not in without]
+        kept = [
+            f for f in page_features(PageFiles(assets.static_dir())) if f["name"] not in without
+        ]
         folders = "|".join(without)
         body = re.sub(
             r'(id="features">).*?(</script>)',
@@ -53,10 +67,12 @@ def test_a_race_runs_on_a_page_without_features(
 ) -> None:
     leave_out(dashboard, server, without)
     dashboard.open(server.link(**FORM))
-    dashboard.button(re.compile("^Train 20 steps")).click()
+    dashboard.page.get_by_role("button", name=re.compile("^Train 20 steps")).first.click()
     dashboard.eventually(lambda: dashboard.has_figures(2), "both lanes have a distance")
     dashboard.page.get_by_label("More", exact=True).first.click()
     expect(dashboard.page.get_by_role("button", name="Keys and help")).to_be_visible()
     said = dashboard.page.locator("#app").inner_text()
+    response = dashboard.page.request.get(f"{server.address}static/features/classroom/feature.js")
+    assert response.status == 404
     heard = [name for name in without & {*WORDS} if re.search(rf"\b(?:{WORDS[name]})s?\b", said)]
     assert heard == []

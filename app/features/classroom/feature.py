@@ -27,7 +27,6 @@ from app.features.classroom.rooms import Rooms
 from app.features.classroom.tables import METADATA
 from app.jobs.queue import Owner
 from app.storage.database.store import RunStore
-from hexapods import assets
 
 _BACKUP = "put a backup of the database back; without one the server goes on, and leaves them out"
 
@@ -71,7 +70,7 @@ class Classroom(Feature):
         return lesson_routes.router, room_routes.router
 
     def pages(self) -> Sequence[BaseRoute]:
-        return pages.routes(page_content("features/classroom/room.html", assets.static_dir()))
+        return pages.routes(page_content("features/classroom/room.html", self.core.page_files))
 
     @classmethod
     def complete_schema(cls, schemas: dict[str, Any]) -> None:

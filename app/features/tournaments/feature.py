@@ -27,7 +27,6 @@ from app.features.tournaments.tournaments import Tournaments
 from app.features.tournaments.views import publish, tournaments_of_room
 from app.settings import Settings
 from app.storage.database.store import RunStore
-from hexapods import assets
 from hexapods.machine import cores
 
 _BACKUP = "put a backup of the database back; without one the server goes on, and leaves them out"
@@ -77,7 +76,9 @@ class TournamentFeature(Feature):
         return routes.router, routes.entry_routes(agents)
 
     def pages(self) -> Sequence[BaseRoute]:
-        return pages.routes(page_content("features/tournaments/tournament.html", assets.static_dir()))
+        return pages.routes(
+            page_content("features/tournaments/tournament.html", self.core.page_files)
+        )
 
     @classmethod
     def options(cls) -> Mapping[str, Any]:

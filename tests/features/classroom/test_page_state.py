@@ -4,12 +4,13 @@ import re
 from dataclasses import fields
 from typing import get_args, get_type_hints
 
+from app.api.deps import PageFiles
 from app.api.pages import page_features
 from app.features.classroom.page_state import Depth, PageState, Tab
 from hexapods import assets
 
 SOURCE = (assets.static_dir() / "js" / "page-state.js").read_text("utf-8")
-FEATURES = page_features(assets.static_dir())
+FEATURES = page_features(PageFiles(assets.static_dir()))
 
 
 def words(name: str) -> list[str]:

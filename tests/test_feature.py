@@ -1,0 +1,198 @@
+"""The seam of features: which there are, what may be left out, and what a folder less means."""
+
+import os
+import shutil
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from app.feature import load
+from app.settings import Settings, read_settings
+from app.storage.database.opening import DATABASE_FILE
+from hexapods.domain.errors import DamagedFile, InvalidInput
+from tests.api.conftest import running
+
+NAMES = ("classroom", "tournaments", "demo")
+OF_FEATURE = {"classroom": "/rooms", "tournaments": "/tournaments", "demo": "/allowance"}
+"""An address of each."""
+
+
+def names(*without: str) -> tuple[str, ...]:
+    return tuple(one.name for one in load(without))
+
+
+def test_each_comes_after_those_that_it_uses() -> None:
+    assert set(NAMES) <= set(names())
+    assert [name for name in names() if name in NAMES] == list(NAMES)
+
+
+def test_any_may_be_left_out() -> None:
+    for name in NAMES:
+        assert set(names(name)) == set(names()) - {name}
+
+
+def test_an_unknown_name_is_refused_with_those_that_there_are() -> None:
+    with pytest.raises(InvalidInput, match=r"HEXAPODS_WITHOUT names no feature by 'clasroom'"):
+        load(["clasroom"])
+    with pytest.raises(InvalidInput, match=r"there are classroom, demo"):
+        load(["clasroom"])
+
+
+def test_names_are_read_from_the_environment(tmp_path: Path) -> None:
+    environ = {"HEXAPODS_DATA": str(tmp_path), "HEXAPODS_WITHOUT": "demo, classroom,"}
+    assert read_settings(environ).without == ("demo", "classroom")
+
+
+def start(data: Path) -> None:
+    """Start a server, and stop it."""
+    with running(Settings(data=data)):
+        pass
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+    """Returns a function that installs a package with features, by the lines of their classes."""
+
+    def install(source: str) -> None:
+        (tmp_path / "other_features.py").write_text(
+            f"from app.feature import Feature\nfrom starlette.routing import Route\n{source}"
+        )
+        about = tmp_path / "other_features-1.0.dist-info"
+        about.mkdir()
+        (about / "METADATA").write_text("Metadata-Version: 2.1\nName: other_features\nVersion: 1\n")
+        lines = [line for line in source.splitlines() if line.startswith("class ")]
+        classes = [line.split()[1].partition("(")[0].rstrip(":") for line in lines]
+        points = "".join(f"{one.lower()} = other_features:{one}\n" for one in classes)
+        (about / "entry_points.txt").write_text(f"[hexapods.features]\n{points}")
+        monkeypatch.syspath_prepend(tmp_path)
+        monkeypatch.delitem(sys.modules, "other_features", raising=False)
+
+    return install
+
+
+def test_what_needs_a_feature_that_is_left_out_is_refused(install: Callable[[str], None]) -> None:
+    install('class Exams(Feature):\n    name = "exams"\n    needs = ("classroom",)\n')
+    assert names().index("classroom") < names().index("exams")
+    assert "exams" not in names("classroom", "exams")
+    with pytest.raises(InvalidInput, match=r"exams needs classroom, which is left out; leave"):
+        load(["classroom"])
+
+
+def test_two_of_one_name_are_refused(install: Callable[[str], None]) -> None:
+    install('class Demo(Feature):\n    name = "demo"\n')
+    with pytest.raises(InvalidInput, match=r"two features are called demo.*other_features:Demo"):
+        load()
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("class Broken:\n    pass\n", "no subclass of app.feature.Feature"),
+        ("class Broken(Missing):\n    pass\n", "cannot be imported"),
+    ],
+)
+def test_a_package_without_a_feature_is_told(
+    install: Callable[[str], None], source: str, message: str
+) -> None:
+    install(source)
+    with pytest.raises(InvalidInput, match=message):
+        load()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_server_without_a_feature_runs_a_race_and_knows_no_address_of_it(
+    name: str, tmp_path: Path
+) -> None:
+    with running(Settings(data=tmp_path, job_niceness=0, without=(name,))) as api:
+        assert api.call("GET", OF_FEATURE[name]).status_code == 404
+        described = api.client.get("/openapi.json").json()
+        assert not [path for path in described["paths"] if f"/api/v1{OF_FEATURE[name]}" in path]
+        race = {"lanes": [{"agent": "greedy"}, {"agent": "random-walk"}], "steps": 2}
+        assert api.finished(api.race(**race))["result"]["lanes"]
+
+
+def test_what_is_left_out_keeps_its_data(tmp_path: Path) -> None:
+    with running(Settings(data=tmp_path)) as api:
+        code = api.call("POST", "/rooms", json={}).json()["code"]
+    with running(Settings(data=tmp_path, without=("classroom",))) as api:
+        assert api.call("GET", f"/rooms/{code}").status_code == 404
+        opened = api.call("POST", "/tournaments", json={"rules": {"gait": "tripod"}})
+        assert opened.status_code == 201
+        refused = api.call("POST", "/tournaments", json={"room": code, "rules": {"gait": "tripod"}})
+        assert (refused.status_code, "has no classroom" in refused.text) == (404, True)
+    with running(Settings(data=tmp_path)) as api:
+        assert api.get(f"/rooms/{code}")["code"] == code
+
+
+def test_a_table_that_is_missing_is_told(tmp_path: Path) -> None:
+    start(tmp_path)
+    with closing(sqlite3.connect(tmp_path / DATABASE_FILE)) as file:
+        file.execute("DROP TABLE predictions")
+    with (
+        pytest.raises(DamagedFile, match=r"has lost predictions of the feature classroom; put a"),
+        running(Settings(data=tmp_path)),
+    ):
+        pass
+    with running(Settings(data=tmp_path, without=("classroom",))) as api:
+        assert api.get("/runs")["items"] == []
+
+
+def test_tables_of_a_newer_version_are_told(tmp_path: Path) -> None:
+    start(tmp_path)
+    with closing(sqlite3.connect(tmp_path / DATABASE_FILE)) as file:
+        file.execute("UPDATE alembic_version_demo SET version_num = 'demo_9999'")
+        file.commit()
+    with (
+        pytest.raises(InvalidInput, match=r"newer version of the feature demo .*demo_9999"),
+        running(Settings(data=tmp_path)),
+    ):
+        pass
+
+
+def test_two_with_one_page_are_told(tmp_path: Path, install: Callable[[str], None]) -> None:
+    install(
+        'class Rival(Feature):\n    name = "rival"\n    def pages(self):\n'
+        '        return [Route("/r/{code}", lambda request: None)]\n'
+    )
+    with (
+        pytest.raises(InvalidInput, match=r"rival has the path /r/\{code\}, which is there"),
+        running(Settings(data=tmp_path)),
+    ):
+        pass
+
+
+_RACE_WITHOUT = """
+import sys
+from pathlib import Path
+from app.settings import Settings
+from tests.api.conftest import running
+
+if __name__ == "__main__":
+    with running(Settings(data=Path(sys.argv[1]), job_niceness=0)) as api:
+        lanes = [{"agent": "greedy"}, {"agent": "random-walk"}]
+        print(len(api.finished(api.race(lanes=lanes, steps=2))["result"]["lanes"]))
+        print(api.client.get("/").status_code, api.call("GET", sys.argv[2]).status_code)
+"""
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_folder_of_a_feature_can_be_deleted(name: str, tmp_path: Path) -> None:
+    """In a copy of the repository."""
+    root, copy = Path(__file__).parents[1], tmp_path / "copy"
+    for folder in ("app", "docs", "hexapods", "models", "static", "tests"):
+        shutil.copytree(root / folder, copy / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in ("app", "static", "tests"):
+        shutil.rmtree(copy / folder / "features" / name)
+    (copy / "race_without.py").write_text(_RACE_WITHOUT)
+    command = [sys.executable, "race_without.py", str(tmp_path / "data"), OF_FEATURE[name]]
+    environment = {**os.environ, "PYTHONPATH": str(copy)}
+    done = subprocess.run(
+        command, cwd=copy, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["2", "200 404"]
