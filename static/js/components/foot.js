@@ -124,8 +124,6 @@ function WorkButtons() {
   const isPaused = state === "paused";
   // Events tell of a new state before the command is answered; a click in between would be lost.
   // Not `disabled`, by which the button would lose the keyboard's focus.
-  // As it is by default it is short.
-  const isChanged = page.form.value.size > 0;
   const isHeld = pending.value.work || isAway.value ? "true" : undefined;
   return html`
     <div class="row">
