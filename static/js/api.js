@@ -262,8 +262,6 @@ export const annotateRun = (id, changes) => call("PATCH", `runs/${encodeURICompo
 
 /** Start a run with the settings of another. @param {string} id */
 export const startAgain = (id) => start(`runs/${encodeURIComponent(id)}/again`, undefined);
-/** @type {(id: string) => Promise<{ command: string, python: string }>} */
-export const getCode = (id) => call("GET", `runs/${encodeURIComponent(id)}/code`);
 
 /** @param {string[]} ids */
 export const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));

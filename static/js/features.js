@@ -6,7 +6,7 @@ import { computed, signal } from "@preact/signals";
 import { declareFields, declareWords } from "./page-state.js";
 import { addHandlers } from "./store.js";
 
-/** @import { Deck, Feature, MenuRow, RunKind, SlotPart } from "./types.js" */
+/** @import { Deck, Feature, MenuRow, Run, RunKind, SlotPart } from "./types.js" */
 
 /** What the server has written into the page. @returns {Feature[]} */
 const declared = () => JSON.parse(document.getElementById?.("features")?.textContent || "[]");
@@ -96,10 +96,18 @@ export const menuRows = computed(() => features.value
   .flatMap(({ name: feature, menu = [] }) => menu.map((row) => ({ ...row, feature })))
   .sort((a, b) => (a.order ?? 0) - (b.order ?? 0)));
 
-/** Do what a row of the menu is for. @param {MenuRow & { feature: string }} row */
-export async function runRow({ feature, dialog, call, run }) {
+/** The rows that features add to the menu of each run. @type {{ value: (MenuRow & { feature: string })[] }} */
+export const rowsOfRuns = computed(() => features.value
+  .flatMap(({ name: feature, runMenu = [] }) => runMenu.map((row) => ({ ...row, feature }))));
+
+/**
+ * Do what a row of a menu is for.
+ * @param {MenuRow & { feature: string }} row
+ * @param {Run} [subject] of whose menu it is
+ */
+export async function runRow({ feature, dialog, call, run }, subject) {
   if (dialog) wantDialog(dialog);
-  if (call) (await imported(feature, call))();
+  if (call) (await imported(feature, call))(subject);
   run?.();
 }
 

@@ -344,6 +344,8 @@ export interface Feature {
   views?: Record<string, ViewPart>;
   dialogs?: Record<string, LoadedPart>;
   menu?: MenuRow[];
+  /** Rows of the menu of each run; what they call gets the run. */
+  runMenu?: MenuRow[];
   /** By the name of the place. */
   slots?: Record<string, SlotPart>;
 

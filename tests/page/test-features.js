@@ -55,6 +55,8 @@ const WORDS = {
   demo: /\bdemos?\b|visitor/i,
   experiments: /(?<!guide\/)experiment/i,
   gait_analysis: /gait.analysis/i,
+  guide: /guide\//,
+  run_code: /as code|showCode/i,
 };
 
 test("no module of the core names a feature", () => {
@@ -66,11 +68,11 @@ test("no module of the core names a feature", () => {
 });
 
 test("what a feature declares is there", async () => {
-  for (const { name, tabs = {}, views = {}, dialogs = {}, slots = {}, menu = [], needs = [] } of ALL) {
+  for (const { name, tabs = {}, views = {}, dialogs = {}, slots = {}, menu = [], runMenu = [], needs = [] } of ALL) {
     assert.deepEqual(needs.filter((other) => !NAMES.includes(other)), [], name);
     const parts = [tabs, views, dialogs, slots].flatMap((kind) => Object.values(kind));
     const shown = parts.flatMap((part) => ("show" in part ? [part.show] : []));
-    for (const source of [...shown, ...menu.flatMap(({ call }) => call ?? [])]) {
+    for (const source of [...shown, ...[...menu, ...runMenu].flatMap(({ call }) => call ?? [])]) {
       assert.equal(typeof await imported(name, source), "function", `${name}: ${source}`);
     }
     const styles = parts.flatMap((part) => ("style" in part && part.style ? [part.style] : []));

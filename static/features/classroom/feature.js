@@ -22,7 +22,7 @@ export default {
       run: () => (card.peek() ? closeLesson : openLesson)(),
     },
   ],
-  slots: { card: { component: LessonCard }, help: { component: FirstLesson } },
+  slots: { card: { component: LessonCard }, "buttons of the help": { component: FirstLesson } },
   follow: followLesson,
   hidesTab: (tab) => !isShown(tab),
   deck: { cards, number: cardNumber, open: openCard, Question: Prediction },

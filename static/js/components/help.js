@@ -1,14 +1,8 @@
-// The help dialog: keys, what the page shows, and where to read on; and how to cite the run on stage.
-import { useState } from "preact/hooks";
-import { shownRun } from "../on-stage.js";
-import { linkTo } from "../page-state.js";
-import { copy, helpIsOpen, shortcuts } from "../page.js";
-import { getCode } from "../api.js";
-import { version } from "../store.js";
-import { messageOf } from "../titles.js";
+// The help dialog: keys, what the page shows, and where to read on.
+import { helpIsOpen, shortcuts } from "../page.js";
 import { Dialog, html, Slot } from "./elements.js";
 
-/** @import { Changed, Run } from "../types.js" */
+/** @import { Changed } from "../types.js" */
 
 /** [key, what it does] */
 const KEYS = [
@@ -61,9 +55,9 @@ export const HelpDialog = () => html`
       a flag shows who crossed it.
     </p>
     <${Reading} />
-    <${Citation} />
+    <${Slot} name="sections of the help" />
     <form method="dialog">
-      <${Slot} name="help" />
+      <${Slot} name="buttons of the help" />
       <button class="secondary">Close</button>
     </form>
   <//>
@@ -72,42 +66,7 @@ export const HelpDialog = () => html`
 const Reading = () => html`
   <h2>To read on</h2>
   <ul class="reading">
-    <li><a href="guide/page">The guide</a>: this page, a tutorial, how-tos, and how each part works</li>
-    <li><a href="guide/experiments">The paper</a>, <i>Racing Hexapods: Q-learning vs Uninformed Search</i>, repeated
-      over thirty seeds</li>
+    <${Slot} name="reading" />
     <li><a href="docs">The REST API</a>, with every request and answer</li>
-    <li><a href="guide/architecture">The source</a>: where each part is, and where to add one</li>
   </ul>
 `;
-
-/** How to name a run so that it can be repeated: the version, its seed, its hash and its command. */
-function Citation() {
-  const run = shownRun.value;
-  const [text, setText] = useState("");
-  if (!run || !run.progress.done) return null;
-  const cite = async () => {
-    try {
-      const { command } = await getCode(run.id);
-      const words = citationOf(run, command);
-      setText((await copy(words, "Citation copied.")) ? `Copied: ${words}` : words);
-    } catch (error) {
-      setText(messageOf(/** @type {Error} */ (error)));
-    }
-  };
-  return html`
-    <h2>Cite this run</h2>
-    <p class="dim">${run.name}: version, seed, hash of what it learned or recorded, and the command that repeats it.</p>
-    <p><button type="button" class="secondary compact" onClick=${cite}>Copy the citation</button></p>
-    ${text && html`<pre class="citation" tabindex="0" role="region" aria-label="Citation">${text}</pre>`}
-  `;
-}
-
-/** @type {(run: Run, command: string) => string} */
-function citationOf(run, command) {
-  const hash = run.result?.q_table_sha256 ?? run.result?.recording_sha256;
-  return [
-    `Racing Hexapods ${version.value}, ${run.kind} "${run.name}" (${run.id}), ${run.created_at.slice(0, 10)}`,
-    `seed ${run.config.seed}${hash ? `, SHA-256 ${hash}` : ""}`,
-    linkTo({ run: run.id }), command.trim(),
-  ].join("\n");
-}

@@ -7,8 +7,7 @@ import { addressOf } from "../../page-state.js";
 import { isActive, isOperator, isWalk, mayChange, mayStart } from "../../selectors.js";
 import { html } from "../elements.js";
 import { edit } from "./annotations.js";
-import { showCode } from "./code.js";
-import { kindOf } from "../../features.js";
+import { kindOf, rowsOfRuns, runRow } from "../../features.js";
 
 /** @import { AnyRun } from "../../runs.js" */
 /** @import { ExportOption, Run } from "../../types.js" */
@@ -64,7 +63,9 @@ function Items({ run }) {
   return html`
     ${state && html`<a href=${addressOf(state)}>Its report</a>`}
     ${mayStart.value && isWalk(run) && html`<a href="#" onClick=${() => copySettings(run)}>Use its settings</a>`}
-    <button onClick=${() => showCode(run)}>As code</button>
+    ${rowsOfRuns.value.map((row) => html`
+      <button key=${row.title} onClick=${() => runRow(row, run)}>${row.title}</button>
+    `)}
     ${mayRunAgain(run) && html`<button onClick=${() => runAgain(run)}>Run again</button>`}
     ${mayChange(run) && html`
       <button onClick=${() => edit(run, "name")}>Rename</button>

@@ -9,7 +9,6 @@ import { isPhone } from "../../page.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
 import { html, Icon, Segments } from "../elements.js";
-import { CodeDialog } from "./code.js";
 import { Details } from "./details.js";
 import { ImportButton, useDrop } from "./import.js";
 import { List } from "./list.js";
@@ -44,7 +43,6 @@ export function Runs() {
       </section>
       ${(!isPhone.value || isCovered) && html`<${Details} />`}
       ${isDragging && html`<p class="drop-note" role="status">Drop to take in: archives of runs, or Q-tables</p>`}
-      <${CodeDialog} />
     </div>
   `;
 }

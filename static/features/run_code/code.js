@@ -1,13 +1,13 @@
 // The dialog that shows a run as commands and as a Python program.
 import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
-import { copy } from "../../page.js";
-import { getCode } from "../../api.js";
-import { messageOf } from "../../titles.js";
-import { Dialog, html, Segments } from "../elements.js";
+import { copy } from "../../js/page.js";
+import { getCode } from "./api.js";
+import { messageOf } from "../../js/titles.js";
+import { Dialog, html, Segments } from "../../js/components/elements.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Run } from "../../types.js" */
+/** @import { Run } from "../../js/types.js" */
 
 /** The run whose code is shown; null before the first. @type {Signal<Run | null>} */
 const shown = signal(null);
