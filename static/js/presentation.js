@@ -7,6 +7,7 @@ import { change, page } from "./page-state.js";
 import { isTimedOut } from "./race.js";
 import { isOperator } from "./selectors.js";
 import { commonStage } from "./store.js";
+import { explainingTab } from "./workspace.js";
 
 /** @import { PageState } from "./page-state.js" */
 /** @import { Presentation } from "./types.js" */
@@ -54,7 +55,7 @@ export function followPresentation() {
     if (!page.isPresenting.value) return;
     const { number, open } = deck.peek();
     if (card !== null && card !== number.peek()) open(card);
-    change({ tab: shows_why ? "why" : "board", depth: "watch" });
+    change({ tab: shows_why ? explainingTab.value : "board", depth: "watch" });
   });
   // Who wants to watch has the address by the end of the first race: the robots get its room.
   let hasShrunk = false;

@@ -36,6 +36,13 @@ const keptDepth = storedText("depth", DEPTHS[0]);
 /** @param {Depth} one */
 const rankOf = (one) => DEPTHS.indexOf(one);
 
+/** The name of a tab that is there: a link, a card or a key may name one whose feature is left out. */
+/** @type {(name: string | null) => string | null} */
+const existing = (name) => (name !== null && name in kinds.value ? name : null);
+
+/** The tab that explains a step, which Watch shows, too; null without one. */
+export const explainingTab = computed(() => allTabs.value.find((name) => kinds.value[name].isInWatch) ?? null);
+
 /** The least depth that shows a tab. @param {string} tab */
 const neededFor = (tab) => (kinds.value[tab].isInWatch ? DEPTHS[0] : kinds.value[tab].depth);
 
@@ -44,7 +51,8 @@ const chosenDepth = computed(() =>
 
 /** How much of the page is shown: what the link says, or the browser has kept; as much as the open tab needs. */
 export const depth = computed(() => {
-  const needed = [page.tab.value, page.pinned.value].map((one) => (one === null ? DEPTHS[0] : neededFor(one)));
+  const needed = [page.tab.value, page.pinned.value].map(existing)
+    .map((name) => (name === null ? DEPTHS[0] : neededFor(name)));
   return [chosenDepth.value, ...needed].reduce((most, one) => (rankOf(one) > rankOf(most) ? one : most));
 });
 
@@ -66,20 +74,28 @@ export const tabAbout = (tab) => kinds.value[tab].about;
 
 /** The open tab: before the first run of those who try, the one in which it is set. */
 export const tab = computed(() =>
-  page.tab.value ?? (isAtLeast("try") && phase.value === "empty" ? "train" : FIRST_TAB));
+  existing(page.tab.value) ?? (isAtLeast("try") && phase.value === "empty" ? "train" : FIRST_TAB));
 
 /** Whether a second tab can be pinned beside the first. */
 export const canPin = computed(() => isWide.value && isAtLeast("study"));
 /** The pinned tab, where there is room for it. */
 export const pinnedTab = computed(() =>
-  (canPin.value && page.pinned.value !== tab.value ? page.pinned.value : null));
+  (canPin.value && page.pinned.value !== tab.value ? existing(page.pinned.value) : null));
 
 /** Open a tab of the panel, in the depth that offers it. @param {string} name */
-export const openTab = (name) => change({
-  tab: name, hidden: page.hidden.peek().filter((one) => one !== "panel"),
-  // The tab that was pinned is the open one now.
-  ...(page.pinned.peek() === name ? { pinned: null } : {}),
-});
+export const openTab = (name) => {
+  if (existing(name) === null) return;
+  change({
+    tab: name, hidden: page.hidden.peek().filter((one) => one !== "panel"),
+    // The tab that was pinned is the open one now.
+    ...(page.pinned.peek() === name ? { pinned: null } : {}),
+  });
+};
+
+/** Open the tab that explains a step, where there is one. */
+export const openExplanation = () => {
+  if (explainingTab.peek() !== null) openTab(/** @type {string} */ (explainingTab.peek()));
+};
 
 /** Pin the open tab, and open another beside it; or let the pinned one go. */
 export const togglePin = () => {
@@ -92,7 +108,7 @@ export const togglePin = () => {
 export function setDepth(one) {
   keptDepth.value = one;
   const isOffered = (/** @type {string | null} */ name) =>
-    name === null || rankOf(kinds.value[name].depth) <= rankOf(one);
+    name === null || rankOf(kinds.value[name]?.depth ?? DEPTHS[0]) <= rankOf(one);
   change({
     depth: one,
     tab: isOffered(page.tab.peek()) ? page.tab.peek() : null,

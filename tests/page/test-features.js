@@ -3,9 +3,9 @@ import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 import { features, fillersOf, hasFeature, imported, install, menuRows, partsOf } from "../../static/js/features.js";
-import { ignored, page, read } from "../../static/js/page-state.js";
+import { change, ignored, page, read } from "../../static/js/page-state.js";
 import { applyEvent, eventNames } from "../../static/js/store.js";
-import { allTabs } from "../../static/js/workspace.js";
+import { allTabs, depth, openTab, pinnedTab, setDepth, tab } from "../../static/js/workspace.js";
 import { ALL, EXAMPLE, FOLDER } from "./features.js";
 
 const CORE = new URL("../../static/js/", import.meta.url);
@@ -102,9 +102,18 @@ test("a feature adds tabs, views, fields, places and events; one that needs a mi
   assert.deepEqual(menuRows.value.map(({ title, feature }) => [title, feature]), [["A", "example"], ["B", "example"]]);
   assert.deepEqual([fillersOf("card"), fillersOf("none")], [[{ component: Filler, feature: "example" }], []]);
   read({ search: "?tab=gait&page=3", hash: "#lessons" });
-  const { tab, view, page_number } = /** @type {any} */ (page);
-  assert.deepEqual([tab.value, view.value, page_number.value], ["gait", "lessons", 3]);
+  const fields = /** @type {any} */ (page);
+  assert.deepEqual([fields.tab.value, fields.view.value, fields.page_number.value], ["gait", "lessons", 3]);
   assert.ok(eventNames().includes("example"));
   applyEvent("example", { value: 7 });
   assert.deepEqual(heard, [7]);
+});
+
+test("a tab whose feature is left out is none, whoever names it", () => {
+  change({ tab: "missing", pinned: "missing" });
+  assert.deepEqual([tab.value, pinnedTab.value, depth.value], ["board", null, "watch"], "as a card of a lesson may");
+  openTab("missing");
+  setDepth("try");
+  assert.deepEqual([tab.value, depth.value], ["train", "try"]);
+  change({ tab: null, pinned: null });
 });

@@ -20,7 +20,7 @@ globalThis.fetch = (_, { body = "" } = {}) => {
   told.push(asked);
   return Promise.resolve(new Response(JSON.stringify(makeStage({ presentation: asked }))));
 };
-await installOnly("classroom");
+await installOnly("classroom", "explanations");
 followPresentation();
 
 const settle = () => new Promise((resolve) => {

@@ -13,7 +13,7 @@ import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, scene, served } from "../store.js";
 import { choicesOf, clockTitle, flatParts, planningModelTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
-import { isAtLeast, openTab } from "../workspace.js";
+import { explainingTab, isAtLeast, openExplanation } from "../workspace.js";
 import { html, Icon, Loaded } from "./elements.js";
 import { LearningChart } from "./learning.js";
 import { RaceChart } from "./race-chart.js";
@@ -79,7 +79,7 @@ function Standings({ rows }) {
 async function explainLoss(lane) {
   const [{ chosenLane }, { isSought }] = await Promise.all([import("../steps.js"), import("../loss.js")]);
   [chosenLane.value, isSought.value] = [lane, true];
-  openTab("why");
+  openExplanation();
 }
 
 /** Disturbances of the race, and the race of which it is a branch. */
@@ -141,7 +141,7 @@ function Lane({ row, longest }) {
         <td colspan="5">
           <${TimeStrip} spent=${row.spent} longest=${longest} />
           ${linesBelow(row).map(([kind, words]) => html`<p class=${kind}>${words}</p>`)}
-          ${isLoser(row.lane) && isAtLeast("try") && !page.isPresenting.value && html`
+          ${explainingTab.value !== null && isLoser(row.lane) && isAtLeast("try") && !page.isPresenting.value && html`
             <button class="link" onClick=${() => explainLoss(row.lane)}>
               Why does it lose?<span class="sr-only"> ${row.title}</span>
             </button>

@@ -1,16 +1,17 @@
 // The help dialog: keys, what the page shows, and where to read on.
 import { helpIsOpen, shortcuts } from "../page.js";
 import { Dialog, html, Slot } from "./elements.js";
+import { explainingTab } from "../workspace.js";
 
 /** @import { Changed } from "../types.js" */
 
 /** [key, what it does] */
-const KEYS = [
+const pageKeys = () => [
   ["Space", "play and pause; the training on stage too"],
   [", .", "one robot step back or on, in your own replay"],
   ["[ ]", "to what happened before or next"],
   ["Home End", "to the start, and to what is computed"],
-  ["E", "explain this step"],
+  ...(explainingTab.value ? [["E", "explain this step"]] : []),
   ["1 – 8", "follow the robot in that lane; 0 frees the camera"],
   ["L", "the legs of the robot that is followed; arrows choose, Enter opens"],
   ["R", "press the main button"],
@@ -38,7 +39,7 @@ const Keys = ({ keys }) => html`
 export const HelpDialog = () => html`
   <${Dialog} id="help" labelledBy="help-title" isOpen=${helpIsOpen}>
     <h2 id="help-title" tabindex="-1" autofocus>Keys</h2>
-    <${Keys} keys=${KEYS} />
+    <${Keys} keys=${pageKeys()} />
     <label class="check">
       <input type="checkbox" checked=${shortcuts.value === "on"}
         onChange=${(/** @type {Changed} */ { target }) => (shortcuts.value = target.checked ? "on" : "off")} />

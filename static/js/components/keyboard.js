@@ -6,7 +6,7 @@ import { stepReplay } from "../replay.js";
 import { closeLegs, legsAreOpen, openLegs } from "../legs.js";
 import { isOperator } from "../selectors.js";
 import { scale, seekTo, seekToMark, toggleTime } from "../time.js";
-import { isAtLeast, nextDepth, openTab, toggleHidden } from "../workspace.js";
+import { isAtLeast, nextDepth, openExplanation, toggleHidden } from "../workspace.js";
 
 const TEXT = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable]";
 const PRESSED_BY_SPACE = "button:not([aria-disabled=true]), a, summary, input:not([type=range])";
@@ -25,7 +25,7 @@ const RACE_KEYS = {
   "]": () => seekToMark(1),
   "Home": () => seekTo(0),
   "End": () => seekTo(scale.value?.end ?? 0),
-  "e": () => openTab("why"),
+  "e": openExplanation,
   "d": nextDepth,
   "l": () => isAtLeast("try") && openLegs(),
   "\\": () => toggleHidden("panel"),

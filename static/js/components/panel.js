@@ -12,7 +12,8 @@ import { scene } from "../store.js";
 import { scale } from "../time.js";
 import { clockTitle } from "../titles.js";
 import {
-  canPin, isAtLeast, isPanelHidden, openTab, pinnedTab, tab, tabAbout, tabs, tabTitle, togglePin,
+  canPin, explainingTab, isAtLeast, isPanelHidden, openExplanation, openTab, pinnedTab, tab, tabAbout, tabs, tabTitle,
+  togglePin,
 } from "../workspace.js";
 import { Board } from "./board.js";
 import { html, Icon, Loaded, withStyle, Part } from "./elements.js";
@@ -39,7 +40,7 @@ export function Panel() {
 // ---- how it stands, and why; in the tab that explains a step, the move
 
 function Reason() {
-  const isOfMove = tab.value === "why";
+  const isOfMove = tab.value === explainingTab.value;
   const { title, words, color } = isOfMove ? ofMove() : ofRun();
   return html`
     <header class="reason" aria-label=${isOfMove ? "The move" : "How it stands"}>
@@ -51,7 +52,7 @@ function Reason() {
       </h2>
       <p>${words}</p>
       ${!isOfMove && canExplain() && html`
-        <button class="link" onClick=${() => openTab("why")}>
+        <button class="link" onClick=${openExplanation}>
           Explain ${phase.value === "ended" ? "the last" : "this"} step
         </button>
       `}
@@ -72,7 +73,8 @@ function ofRun() {
 }
 
 /** Who tries has a tab for it. */
-const canExplain = () => !isAtLeast("try") && Boolean(shownRun.value?.progress.done) && scale.value !== null;
+const canExplain = () => explainingTab.value !== null && !isAtLeast("try") &&
+  Boolean(shownRun.value?.progress.done) && scale.value !== null;
 
 // ---- the tabs
 
@@ -116,7 +118,7 @@ function Tab({ name }) {
 
 /** On a phone the tabs are at the thumb: those of its depth, and of who watches the two that explain. */
 export function ThumbTabs() {
-  const names = isAtLeast("try") ? tabs.value : ["board", "why"];
+  const names = isAtLeast("try") ? tabs.value : ["board", ...(explainingTab.value ? [explainingTab.value] : [])];
   return html`
     <div class="thumb-tabs" role="tablist" aria-label="Panel" onKeyDown=${moveByKey}>
       ${names.map((name) => html`<${Tab} key=${name} name=${name} />`)}
