@@ -63,7 +63,8 @@ CONTENTS = (
 )
 """Pages of the guide by heading: names of files in `docs/`, without their ending."""
 _NAMES = frozenset(name for _, names in CONTENTS for name in names)
-_OTHER_PAGE = re.compile(r"(?P<name>[\w-]+)\.md(?P<part>#[\w-]+)?")
+_PAGE = re.compile(r"((?P<name>[\w-]+)\.md)?(?P<part>#[\w-]+)?")
+_ELSEWHERE = re.compile(r"https?://.+")
 _NOT_IN_SLUG = re.compile(r"[^\w\- ]")
 
 
@@ -95,7 +96,7 @@ def _page(folder: Path, name: str) -> str:
     shown = [token for token in tokens if not _is_directive(token)]
     _add_anchors(shown)
     for token in shown:
-        token.children = _linked(token.children or []) if token.children else token.children
+        token.children = _linked(token.children, name) if token.children else token.children
     body = markdown.renderer.render(shown, markdown.options, {})
     return render(
         "guide.html",
@@ -128,10 +129,18 @@ def _add_anchors(tokens: list["Token"]) -> None:
             token.attrSet("id", words.replace(" ", "-"))
 
 
-def _linked(tokens: list["Token"]) -> list["Token"]:
-    """Let links to other files of the documentation lead to their pages; leave out pictures."""
+def _linked(tokens: list["Token"], name: str) -> list["Token"]:
+    """Let links lead to pages of the guide; leave out pictures, and links to what it has not.
+
+    Args:
+        tokens: inline tokens of a page.
+        name: of this page.
+    """
     for token in tokens:
-        found = _OTHER_PAGE.fullmatch(str(token.attrGet("href") or ""))
-        if found and found["name"] in _NAMES:
-            token.attrSet("href", f"guide/{found['name']}{found['part'] or ''}")
+        href = str(token.attrGet("href") or "")
+        page = _PAGE.fullmatch(href)
+        if page and (page["name"] or name) in _NAMES:
+            token.attrSet("href", f"guide/{page['name'] or name}{page['part'] or ''}")
+        elif not _ELSEWHERE.fullmatch(href):  # a file of the repository
+            token.attrs.pop("href", None)
     return [token for token in tokens if token.type != "image"]

@@ -17,9 +17,20 @@ def test_each_page_is_shown_with_its_title_and_links_to_the_others(
         assert page.status_code == 200
         title = (assets.docs_dir() / f"{name}.md").read_text("utf-8").partition("\n")[0][2:]
         assert f"<title>{title}" in page.text.replace("&#39;", "'")
-        # Neither directives of Sphinx nor links to files, which the server has not.
-        assert "{toctree}" not in page.text
-        assert not re.search(r'href="[\w-]+\.md', page.text)
+        assert "{toctree}" not in page.text  # a directive of Sphinx
+
+
+def test_links_lead_to_pages_of_the_server_or_elsewhere_and_to_no_file_that_it_lacks(
+    shared: Callable[..., Api],
+) -> None:
+    client = shared().client
+    for name in (one for _, names in CONTENTS for one in names):
+        main = client.get(f"/guide/{name}").text.partition("<main>")[2]
+        assert [
+            href
+            for href in re.findall(r'<a [^>]*href="([^"]*)"', main)
+            if not re.fullmatch(r"https?://.+|guide/[\w-]+(#[\w-]+)?", href)
+        ] == [], name
 
 
 def test_links_to_a_part_of_a_page_find_it(shared: Callable[..., Api]) -> None:
