@@ -1,1 +1,16 @@
-"""The dashboard of Racing Hexapods: a server that runs robots of `hexapods`, and its page."""
+"""The dashboard of Racing Hexapods: a server that runs robots of `hexapods`, and its page.
+
+`server` builds all parts once (`create_app`) and runs them with the lifespan; `feature` is the seam
+by which `features` add to them; `settings` are those of a server; `cache` is a cache of encoded
+answers. docs/architecture.md has a row for each package.
+
+Processes and threads:
+
+- Server: the event loop (HTTP, events, the hub), worker threads for routes, a thread for each job
+  that receives its messages, that of the supervisor, and one for each stage that draws.
+- Fork server, on Linux: that of `multiprocessing`, started first (`hexapods.processes`). The
+  processes of jobs and pools are its forks. It ends when the server does, and they with it. `top`
+  shows it as `python`, and jobs by kind and id.
+- A process for each job, and pools of processes for requests that wait (`app.jobs`): as many as
+  cores for what-ifs, one that times steps for estimates, one that renders videos.
+"""

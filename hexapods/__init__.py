@@ -8,6 +8,17 @@
 `train`, `iter_train`, `evaluate`, `race`, `lane`, `experiment` and `load` are what the dashboard
 and the command line run; `Robot`, `Gait`, `World` and the agents are what they are given. All are
 loaded when the first of them is used. `hexapods.environment` is the Gymnasium environment.
+
+Modules beside the packages, each of which has a map in its docstring:
+
+- `public`: the names of `hx`. Verbs and their results: `practice`, `changes`, `trainings`; `races`,
+  `race_tables`; `repetition`; `benchmarks`; `viewing`; `policies`, `result_table`. `arguments`:
+  what a person may write for an agent, a robot or a world. `interruption`: Ctrl-C.
+- `assembly`: from a config to a simulator and agents.
+- `assets`: where models, page and documents are; `files`: atomic writes and locks; `machine`: cores
+  and memory.
+- `processes`: start, set-up, watch and end of processes; `clean_start`: they do not import the
+  program that starts them; `fork_server_end`: no folder is left; `worker_pool`: their executor.
 """
 
 import importlib

@@ -1,14 +1,23 @@
 """The REST interface: routes parse a request, call a service, and shape the answer.
 
-Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments` (with `runs` in
-common), `gait`, `replays`, `exports`, `stage`, `spectators`, `events`, `options`, `archives`
-(export and import), `monitoring`, `pages`, `docs`. Requests: `agent_bodies`, `schemas`,
-`experiment_body`, `fields`, `descriptions`, `formats`. Answers: `answers`, `recorded_answers`,
-`experiment_answers`, `explanation_answers`, `option_answers`, `curves`, `problems`
-(RFC 9457), `templates` (web pages), `compression`. `contract` completes the OpenAPI document.
-Middleware, before all routes: `middleware` (its base, security headers), `stage_paths` (which
-stage), `request_headers`, `cookies`, `host_check`, `wellformed`, `problem_pages`, `unfinished`.
-`policy` says on each route who may use it and what it costs; `guards` runs what reads that, when a
-route was matched: `auth` (roles, and identities of features: `identity`), `rate_limit`,
-`memory_limit`, `concurrency_limit`. `deps` injects services and the stage.
+- Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments` (with `runs` in
+  common), `robots`, `gait`, `replays`, `exports`, `run_code`, `stage`, `spectators`, `events`,
+  `options`, `archives` (export and import), `monitoring`; `pages`, `docs` and `guide`.
+- Requests: `agent_bodies`, `schemas`, `experiment_body`, `fields`, `descriptions`, `formats`.
+- Answers: `answers`, `recorded_answers`, `experiment_answers`, `explanation_answers`,
+  `option_answers` (from `option_texts`, `robot_options` and `body_fields`), `robot_answers`,
+  `event_answers`, `curves`, `problems` (RFC 9457), `templates` (web pages), `compression`.
+- `contract` completes the OpenAPI document; `deps` injects services and the stage.
+- `policy` says of each route who may use it and what it costs. `guards` run when a route was
+  matched, before its body is read: `auth` (roles, and those whom features know by `identity`),
+  `rate_limit`, `memory_limit`, `concurrency_limit`.
+- Middleware before the routes: `middleware` (its base, security headers), `stage_paths` (which
+  stage), `request_headers`, `cookies`, `host_check`, `wellformed`, `problem_pages`, `unfinished`.
+
+To add a route: an endpoint with `@policy(access=…)`, on a router of `policy.api_router`, and a
+response model.
+
+The docstring of a response model tells what each member means, in the OpenAPI document too;
+`make page-types` writes the page's types from it. Pages below `static` are compressed, with a
+preload of every other module (`pages`), when the server starts.
 """

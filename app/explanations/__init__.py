@@ -1,5 +1,6 @@
 """Explanations of steps, and tables of any moment: learners are built again from what is stored.
 
 `rebuilt_practice` goes to any step of one walk, forward and back, by snapshots; `service` finds the
-walks of runs, and answers; `plain` converts explanations to plain types.
+walks of runs, and answers; `loss` answers why a learner loses; `explanation_json` converts
+explanations to plain types.
 """

@@ -1,11 +1,13 @@
 """Persistent storage of runs: rows in a database, artifact files beside it.
 
-`database` is the store of runs, in SQLite or PostgreSQL; `run` defines what it stores, `errors` its
-exceptions, `run_names` the names of runs that nobody has named.
-`artifacts` writes files atomically and verifies their SHA-256; `artifact_file` reads them in
-chunks; `disk_space` enforces the quota of the data folder.
-`recordings`, `stored_trainings` and `stored_races` hold the recorded motion that the stage replays.
-`idempotency`, `sessions` and `run_ids`: idempotency keys, operators' sessions, sortable ids.
-`stored_tables` and `stored_trials` load tables, checkpoints and trials; `json_text` encodes JSON.
-`server_lock` admits one server to a data folder, and records where it listens.
+- `database` is the store of runs, in SQLite or PostgreSQL; `run` defines what it stores, `errors`
+  its exceptions, `run_names` the names of runs that nobody has named; `stored_robot` a robot.
+- `artifacts` writes files atomically and verifies their SHA-256; `artifact_file` reads them in
+  chunks, `npz_artifacts` their arrays; `disk_space` enforces the quota of the data folder.
+- `recordings`, `stored_trainings` and `stored_races` hold the recorded motion that the stage
+  replays.
+- `idempotency`, `sessions` and `run_ids`: idempotency keys, operators' sessions, sortable ids.
+- `stored_tables` and `stored_trials` load tables, checkpoints and trials; `json_text` encodes JSON.
+- `server_lock` admits one server to a data folder, and records where it listens; `private_folder`
+  shuts out other users of the machine.
 """

@@ -8,4 +8,6 @@
 - `scores`: shares of best known, their interquartile means and intervals.
 - `kept_runs`: keeps runs in a file until all are done.
 - `score_file`: the result as JSON; `verification`: repeats it.
+
+To add a protocol: a file beside `hexabench_1.json`, and its name in `PROTOCOLS` of `protocol`.
 """

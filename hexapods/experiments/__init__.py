@@ -1,7 +1,7 @@
 """Experiments over many seeds, the paper's and in other worlds, and their evaluation.
 
-- `config`: the experiments' parameters; `plan`: the grid of settings and their trials; `trial`:
-  one trial (practice, walk, race) and its result.
+- `config`: the experiments' parameters; `names`: what they are called; `plan`: the grid of settings
+  and their trials; `trial`: one trial (practice, walk, race); `result`: its result.
 - `engine`: runs trials on workers; `local_workers`: processes on this machine, `cluster`: those,
   or a Dask cluster; `worker`: the code that runs on a worker, and the check that all machines have
   the same versions.
@@ -9,9 +9,11 @@
   same with an append-only results file, from which it resumes.
 - `statistics`, `measures`, `setting_results`, `summary`: interquartile means, bootstrap intervals
   and comparisons, from single results up to the summary document; `worlds`: the part of a league
-  or recovery.
+  or recovery; `trial_rows`: trials as rows of a table.
 - `tuning`: search for the settings of a learner, judged on held-out seeds.
 - `published`: the paper's Table 1; `claims`: the paper's claims and their verdicts;
-  `narrative`: explanatory text; `report`: HTML page, figures and CSV; `formatting`: numbers and
-  names as text.
+  `narrative`: explanatory text; `report`: HTML page, figures and CSV; `formatting`, `labels` and
+  `failures`: numbers, names and failed trials as text.
+
+To add a claim about an experiment: a module in `claims`, and its sentence in `narrative`.
 """

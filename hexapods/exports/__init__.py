@@ -1,6 +1,7 @@
 """Export a recorded walk as files for other programs: tables, videos, pages, robot logs.
 
-- `registry`: all formats, from which routes, commands, menu and checks of extras follow.
+- `registry`: all formats, each declared once with its function, from which routes, commands, menu
+  and checks of extras follow.
 - `export_format`: what the registry declares of a format, and what a format's function is given.
 - `options`: settings of the formats.
 - `recorded_walks`: the recorded steps of each robot, the source of most formats.
@@ -10,7 +11,8 @@
 - `mcap_log`: joint states and frames for tools of robots.
 - `recording_json`, `recorded_stream`: a race's recording as JSON, and for viser's player.
 - `servo_map`, `servo_map_file`, `servo_walk`, `servo_files`: a walk as pulses of a real robot's
-  servos. It needs a map of them, which no request has, so it is no format of the registry.
+  servos. It needs a map of them, which no request has, so it is no format of the registry. To add a
+  map: a file in `servo_maps`, named in `BUILT_IN_MAPS` of `servo_map`.
 - `robot_model`: a robot as a model for MuJoCo.
 - `extras`: the optional packages that some files need.
 """

@@ -1,9 +1,15 @@
 """Robots from files of strangers: MJCF or URDF, alone or in a zip with meshes.
 
-`child.read_robot_file` is what others call: it reads a file in a child process with limits. There
-`reading` goes through the steps, each a module: `upload` unpacks, `xml` reads the document within
-bounds, `mjcf` and `urdf` keep of it what describes a body, `compiling` has MuJoCo turn it into
-numbers, `skeleton` finds the torso, legs and feet, `directions` tells forward and numbers the legs,
-`stance` finds how it stands, `servos` their strength, `shapes` what touches the ground, `drawing`
-what is drawn, and `building` makes a `RobotModel` of all. Guesses and repairs are told in `notes`.
+`child.read_robot_file` is what the rest of the product calls: it reads a file in a child process
+with limits (docs/decisions/0011). There `reading` goes through the steps:
+
+- `upload` unpacks; `xml` reads the document within bounds; `mjcf` and `urdf` keep of it what
+  describes a body; `mesh_files`, `collada` and `decimation` read and simplify meshes.
+- `compiling` has MuJoCo turn it into numbers; `posed` is the robot with all joints at 0.
+- `skeleton` finds the torso and the legs, `feet` their feet; `directions` tells forward and numbers
+  the legs; `stance` finds how it stands, by the kinematics of `chain`; `masses` and `servos` fill
+  in what is missing; `shapes` finds what touches the ground, from `surfaces`; `drawing` what is
+  drawn.
+- `building` makes a `RobotModel` of all. `choices` are decisions of a person, `notes` guesses and
+  repairs, `imported` the result.
 """

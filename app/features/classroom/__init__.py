@@ -1,11 +1,18 @@
 """The classroom: lessons, and rooms in which a class goes through one together.
 
+- `feature` is what the core sees of it.
 - `lesson` is the record of a lesson; `page_state` that of what a card opens of the page; `markdown`
   checks and renders its texts; `card_settings` are the settings that a card may open.
 - `lesson_file` reads and writes lessons as YAML; `built_in` holds those that come with the server;
   `lessons` finds a lesson of either kind.
 - `room` are a room, its participants and what they may do; `rooms` keeps them: with `seats` the
-  participants by their cookies, with `room_runs` their runs, and who may see them.
-- `answers` checks predictions and scores them; `results` are those of a room.
-- `names` draws codes and names.
+  participants by their cookies, with `room_runs` their runs, and who may see them; `room_stages`
+  opens a stage for each open room, with the roles and sessions of the server's first one.
+- `card_starts` makes what a card runs; `answers` checks predictions and scores them; `results` are
+  those of a room; `names` draws codes and names.
+- Over REST: `lesson_routes`, `room_routes`, `pages`, `request_bodies`, `response_models`,
+  `room_views`. In the database: `tables`, with `lesson_rows` and `room_rows`, and `migrations`.
+
+To add a lesson that is built in: a file in `built_in`. A question type: `Kind` and `Ask` in
+`lesson`, its check and score in `answers`, and how the page asks and shows it.
 """

@@ -2,7 +2,8 @@
 
 - `files`: writes all files; `page`: the self-contained HTML page, from `templates/`, where that of
   a tuning is too.
-- `tables`: the page's tables as text cells; `trials_csv`: every trial as CSV.
-- `figures`: all figures of an experiment, from `figure_table1`, `figure_curves` and
-  `figure_sweep`; `drawing`: their common style, colours and file formats.
+- `tables`: the page's tables as text cells; `trials_csv`: every trial as CSV; `walks`: walks from
+  rest, read back from a finished report.
+- `figures`: all figures of an experiment, from `figure_table1`, `figure_curves`, `figure_sweep` and
+  `figure_worlds`; `drawing`: their common style, colours and file formats.
 """
