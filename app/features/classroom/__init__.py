@@ -1,6 +1,6 @@
 """The classroom: lessons, and rooms in which a class goes through one together.
 
-- `feature` is what the core sees of it.
+- `feature` is what the core sees of it; `access` says what participants may do, and who sees rooms.
 - `lesson` is the record of a lesson; `page_state` that of what a card opens of the page; `markdown`
   checks and renders its texts; `card_settings` are the settings that a card may open.
 - `lesson_file` reads and writes lessons as YAML; `built_in` holds those that come with the server;

@@ -1,6 +1,6 @@
 """Tournaments of a server: entries are taken, judged in processes, and kept.
 
-- `feature` is what the core sees of it.
+- `feature` is what the core sees of it; `access` says who may enter, and who sees a tournament.
 - `tournament`: a tournament, as it is in the database.
 - `tournaments`: opens tournaments, takes entries, ends and deletes them.
 - `judge`: judges entries on their draws: half as many threads as cores, each with a pool of one
