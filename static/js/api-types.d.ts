@@ -1102,7 +1102,10 @@ export interface EventBodies {
  */
 export interface SnapshotView {
   version: string;
-  role: "operator" | "spectator" | "visitor";
+  /**
+   * `operator`, `spectator`, or another one of clients whom a feature knows.
+   */
+  role: string;
   viewers: number;
   /**
    * of the list of stored robots; a greater one than in the options that a client has means that they have changed since.
@@ -1843,7 +1846,7 @@ export interface StageView {
  */
 export interface Presentation {
   /**
-   * number of the lesson's card, from 1; null before the first
+   * number of the card that is shown, from 1; null before the first
    */
   card: number | null;
   /**
