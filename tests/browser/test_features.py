@@ -71,7 +71,7 @@ def test_a_race_runs_on_a_page_without_features(
     dashboard.eventually(lambda: dashboard.has_figures(2), "both lanes have a distance")
     dashboard.page.locator("body").press("e")
     dashboard.choose_depth("Watch")
-    explains = dashboard.button(re.compile("^Explain"))
+    explains = dashboard.page.get_by_role("button", name=re.compile("^Explain"))
     expect(explains).to_have_count(0 if "explanations" in without else 1)
     dashboard.page.get_by_label("More", exact=True).first.click()
     expect(dashboard.page.get_by_role("button", name="Keys and help")).to_be_visible()
