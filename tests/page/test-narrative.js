@@ -6,7 +6,6 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { gunzipSync } from "node:zlib";
 import { metres } from "../../static/js/format.js";
-import { participantRunNarrative } from "../../static/features/classroom/room/run-sentences.js";
 import { narrativeOf } from "../../static/js/narrative/narrative.js";
 import { isShownToEnd } from "../../static/js/narrative/states.js";
 import { OPTIONS } from "./options.js";
@@ -348,17 +347,7 @@ test("a run that never began, that waits, or that is not there says so", () => {
     ["No run is shown", "No run is shown."]);
 });
 
-test("on a phone nothing is said of how far a run came before its picture is there", () => {
-  const practice = ENTRIES.find(({ run }) => run.kind === "training" && run.state === "finished");
-  const of = (/** @type {object} */ changes, hasArrived = false) => participantRunNarrative({
-    run: { ...practice.run, ...changes }, distance_m: 0.123, isAway: false, hasArrived,
-  });
-  assert.deepEqual([of({}).state, of({}).distance], ["arriving", undefined]);
-  assert.deepEqual([of({}, true).state, of({}, true).distance], ["arrived", "0.12\u00a0m"]);
-  assert.equal(of({ state: "running" }).words, "It practises: step 150 of 150");
-  const waiting = of({ state: "queued", queue_position: 3 });
-  assert.equal(waiting.words, "Your robot waits for its turn. Place 3 in the queue.");
-  assert.ok(of({ state: "stopped" }, true).isBad);
+test("a run is shown to its end at its time-out, or with its last step", () => {
   for (const { entry: { run }, moment: { scene } } of MOMENTS) {
     const isThere = run.kind === "race" ? scene.time_out_s !== null && scene.time_s >= scene.time_out_s - SAME_S
       : scene.ended;

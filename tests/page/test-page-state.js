@@ -27,7 +27,9 @@ const open = (address) => {
 
 beforeEach(() => {
   for (const view of ["experiments", "runs", "compare"]) open(`/#${view}?none`);
-  change({ experiment: new URLSearchParams(), list: new URLSearchParams(), compared: [], report: null });
+  change(/** @type {object} */ ({
+    experiment: new URLSearchParams(), list: new URLSearchParams(), compared: [], report: null,
+  }));
   open("/");
   ignored.query.value = [];
   entries.splice(0, entries.length, "/");
@@ -96,7 +98,7 @@ test("a link can be read by people", () => {
 test("what is as it is by default is in no link", () => {
   assert.equal(write(), "");
   assert.equal(addressOf({ run: "a" }), "?run=a");
-  assert.equal(addressOf({ view: "experiments", report: "a b" }), "#experiments?run=a+b");
+  assert.equal(addressOf(/** @type {object} */ ({ view: "experiments", report: "a b" })), "#experiments?run=a+b");
   assert.equal(linkTo({ run: "a", moment: 1 }), "http://page.test/?run=a&t=1.00");
 });
 

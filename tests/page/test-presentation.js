@@ -1,13 +1,14 @@
 // The presentation that all presenters' windows of a stage follow, and who may tell it.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
+import { signal } from "@preact/signals";
 import {
   followPresentation, presentation, tell, toggleBlank, toggleWhy, turnCode, turnPage,
 } from "../../static/js/presentation.js";
-import { deck } from "../../static/js/features.js";
+import { install } from "../../static/js/features.js";
 import { change, page, read } from "../../static/js/page-state.js";
 import { applyEvent, options } from "../../static/js/store.js";
-import { installOnly } from "./features.js";
+import { EXAMPLE } from "./features.js";
 import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
 
 /** @import { Presentation } from "../../static/js/types.js" */
@@ -20,7 +21,12 @@ globalThis.fetch = (_, { body = "" } = {}) => {
   told.push(asked);
   return Promise.resolve(new Response(JSON.stringify(makeStage({ presentation: asked }))));
 };
-await installOnly("classroom", "explanations");
+/** @type {import("@preact/signals").Signal<number | null>} */
+const open = signal(null);
+const cards = signal(["One", "Two", "Three"].map((title) => ({ title, text: title })));
+install([{
+  ...EXAMPLE, deck: { cards, number: open, open: (number) => { open.value = number; }, Question: () => null },
+}]);
 followPresentation();
 
 const settle = () => new Promise((resolve) => {
@@ -34,6 +40,7 @@ const showCard = (shown, role = "operator") =>
 beforeEach(() => {
   options.value = OPTIONS;
   read({ search: "", hash: "" });
+  open.value = null;
   showCard({});
   told = [];
 });
@@ -42,7 +49,7 @@ test("before it is told, no card is shown, and the code is large", () => {
   assert.deepEqual(presentation.value, { card: null, shows_why: false, is_blank: false, code: "large" });
 });
 
-test("cards are turned within the lesson, and each begins without an explanation", async () => {
+test("cards are turned within the deck, and each begins without an explanation", async () => {
   turnPage(-1);
   turnPage(1);
   await settle();
@@ -52,7 +59,7 @@ test("cards are turned within the lesson, and each begins without an explanation
   turnPage(1);
   await settle();
   assert.deepEqual(told.at(-1), { ...START, card: 2 });
-  showCard({ card: deck.value.cards.value.length });
+  showCard({ card: cards.value.length });
   turnPage(1);
   assert.equal(told.length, 2);
 });
@@ -78,11 +85,11 @@ test("only operators tell it", async () => {
 
 test("a page that is presented follows it, and other pages do not", () => {
   showCard({ card: 2 });
-  assert.equal(page.card.value, null);
+  assert.equal(open.value, null);
   change({ isPresenting: true });
-  assert.deepEqual([page.card.value, page.tab.value, page.depth.value], [2, "board", "watch"]);
+  assert.deepEqual([open.value, page.tab.value, page.depth.value], [2, "board", "watch"]);
   showCard({ card: 3, shows_why: true });
-  assert.deepEqual([page.card.value, page.tab.value], [3, "why"]);
+  assert.deepEqual([open.value, page.tab.value], [3, "why"]);
 });
 
 test("a page that is presented no more is as deep as it was", () => {
