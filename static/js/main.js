@@ -7,7 +7,6 @@ import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
-import { followOptions, isLockOut } from "./options.js";
 import { addCodeFor, features, installFeatures } from "./features.js";
 import { followHistory, page, reload } from "./page-state.js";
 import { followPresenter, followTheme } from "./page.js";
@@ -16,7 +15,7 @@ import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
 import { followRuns, stageIds } from "./runs.js";
 import {
-  applyEvent, connection, eventNames, isLockedOut, openEvents, role, version,
+  applyEvent, connection, eventNames, followOptions, isLockedOut, isLockOut, openEvents, role, version,
 } from "./store.js";
 import { followCurves, trainingsInView } from "./training.js";
 

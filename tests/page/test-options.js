@@ -1,8 +1,7 @@
 // The options are asked for until they come, and again when stored robots have changed since.
 import assert from "node:assert/strict";
 import { mock, test } from "node:test";
-import { followOptions } from "../../static/js/options.js";
-import { applyEvent, isLockedOut, options } from "../../static/js/store.js";
+import { applyEvent, followOptions, isLockedOut, options } from "../../static/js/store.js";
 import { OPTIONS } from "./options.js";
 
 /** Requests that are not answered yet. @type {((answer: Response) => void)[]} */
