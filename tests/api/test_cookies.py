@@ -14,7 +14,8 @@ def scope(*lines: str, host: str = "127.0.0.1:8000") -> dict[str, Any]:
 
 
 def test_names_that_can_be_ours_are_kept() -> None:
-    lines = ("a=b; hexapods_operator_8000=x", "__Host-hexapods_room_443_ABC=y;hexapods_unknown_1=z")
+    """Those of features begin likewise, also of features that the core does not know."""
+    lines = ("a=b; hexapods_operator_8000=x", "__Host-hexapods_room_443_ABC=y;hexapod_1=z; sid=1")
     assert cookies_of(scope(*lines)) == {
         "hexapods_operator_8000": "x",
         "__Host-hexapods_room_443_ABC": "y",
