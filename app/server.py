@@ -24,7 +24,6 @@ from app.api import (
     events,
     experiments,
     exports,
-    gait,
     monitoring,
     options,
     pages,
@@ -40,7 +39,6 @@ from app.api import (
 from app.api.concurrency_limit import WorkSlots
 from app.api.deps import PageFiles, Services
 from app.api.guards import RouteGuards
-from app.api.guide import guide_routes
 from app.api.host_check import HostGuard
 from app.api.middleware import SecurityHeaders
 from app.api.policy import (
@@ -182,7 +180,6 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     app.router.routes += [
         *_viewer_routes(),
         *pages.page_routes(app.state.services.page_files),
-        *guide_routes(assets.docs_dir()),
     ]
     _check_paths(app.routes, features)
     for feature in features:
@@ -248,7 +245,7 @@ def _api_routes(
     router, prefix = api_router(), "/api/v1"
     # First, so that no other route matches `import` as a run's id.
     modules = (
-        *(archives, trainings, races, experiments, runs, exports, replays, gait),
+        *(archives, trainings, races, experiments, runs, exports, replays),
         *(stage, spectators, events, robots),
     )
     for module in modules:

@@ -1,8 +1,8 @@
 """The REST interface: routes parse a request, call a service, and shape the answer.
 
 - Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments` (with `runs` in
-  common), `robots`, `gait`, `replays`, `exports`, `run_code`, `stage`, `spectators`, `events`,
-  `options`, `archives` (export and import), `monitoring`; `pages`, `docs` and `guide`.
+  common), `robots`, `replays`, `exports`, `stage`, `spectators`, `events`,
+  `options`, `archives` (export and import), `monitoring`; `pages` and `docs`.
 - Requests: `agent_bodies`, `schemas`, `experiment_body`, `fields`, `descriptions`, `formats`.
 - Answers: `answers`, `recorded_answers`, `experiment_answers`, `explanation_answers`,
   `option_answers` (from `option_texts`, `robot_options` and `body_fields`), `robot_answers`,

@@ -195,13 +195,6 @@ class RunPage(Page):
     items: list[AnyRunView]
 
 
-class CodeView(Answer):
-    """A run as commands for a shell, and as a Python program."""
-
-    command: str
-    python: str
-
-
 class KeptRun(Answer):
     """A run that could not be deleted, and why."""
 

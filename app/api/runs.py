@@ -11,7 +11,6 @@ from starlette.responses import JSONResponse, Response
 
 from app.api.answers import (
     AnyRunView,
-    CodeView,
     DeletedView,
     ExperimentPage,
     ExperimentView,
@@ -30,7 +29,6 @@ from app.api.explanation_answers import ExplanationView
 from app.api.fields import RunId
 from app.api.policy import OPERATOR, OWN_RUNS, START, WATCH, WATCH_RUN, Access, api_router, policy
 from app.api.recorded_answers import CurvesView
-from app.api.run_code import run_code
 from app.api.schemas import AnnotationBody
 from app.archive.transfer import MAX_RUNS
 from app.jobs.jobs import Jobs
@@ -207,19 +205,6 @@ def run_again(
     It is the same to the last bit, wall times aside.
     """
     return start_run(services, request, start_request, CopyStart(run_id))
-
-
-@router.get(
-    "/{run_id}/code", summary="Get commands and Python that repeat a run", response_model=CodeView
-)
-@policy(access=WATCH_RUN, work="analysis")
-def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Response:
-    """Return what makes exactly this run, on the command line and in Python.
-
-    Trainings that it rests on are practised first; a table that no practice repeats is downloaded.
-    """
-    run = services.store.get(run_id)
-    return JSONResponse(run_code(run, services.store, str(request.base_url))._asdict())
 
 
 @router.get(

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable
 
-from app.api.guide import CONTENTS
+from app.features.guide.pages import CONTENTS
 from hexapods import assets
 from tests.api.calls import Api, refused
 

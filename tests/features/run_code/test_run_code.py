@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import hexapods as hx
-from app.api.run_code import MAX_CONTINUED, run_code
+from app.features.run_code.run_code import MAX_CONTINUED, run_code
 from app.storage.run import Run
 from tests.api.calls import Api, refused
 from tests.cli.running import in_process

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from app.api.gait import GaitAnalysis
+from app.features.gait_analysis.routes import GaitAnalysis
 from hexapods.domain.records import from_json
 from tests.api.calls import Api, refused
 

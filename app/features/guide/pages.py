@@ -100,6 +100,7 @@ def _page(folder: Path, name: str) -> str:
     body = markdown.renderer.render(shown, markdown.options, {})
     return render(
         "guide.html",
+        Path(__file__).parent,
         title=_title(folder, name),
         name=name,
         contents=[

@@ -1,0 +1,4 @@
+"""The guide: the documentation of the project as pages of the server.
+
+`feature` is what the core sees of it; `pages` renders Markdown, and has the contents.
+"""
