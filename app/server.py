@@ -58,7 +58,6 @@ from app.api.unfinished import IncompleteBodyGuard
 from app.api.wellformed import MalformedRequestGuard
 from app.events import logs
 from app.events.run_metrics import RunMetrics
-from app.explanations.service import Explanations
 from app.exports.file_renderer import FileRenderer
 from app.feature import Feature, Features, load
 from app.jobs.jobs import Jobs
@@ -161,7 +160,6 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         replays=replays,
         renderer=FileRenderer(check=stopping.check),
         what_if=WhatIf(ProcessPool()),
-        explanations=Explanations(store, recordings, stopping),
         estimates=Estimates(ProcessPool(count=1), jobs.cores, stopping),
         stopping=stopping,
         what_if_limiter=what_if_limiter(settings),
@@ -295,7 +293,6 @@ async def _end_long_requests(app: FastAPI) -> None:
     for user in (
         *services.features,
         services.what_if,
-        services.explanations,
         services.estimates,
         services.renderer,
     ):

@@ -22,6 +22,7 @@ OF_FEATURE = {
     "classroom": "/api/v1/rooms",
     "tournaments": "/api/v1/tournaments",
     "demo": "/api/v1/allowance",
+    "explanations": "/api/v1/runs/{run_id}/explain",
     "gait_analysis": "/api/v1/runs/{run_id}/gait",
     "run_code": "/api/v1/runs/{run_id}/code",
     "guide": "/guide/page",

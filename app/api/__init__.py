@@ -4,7 +4,7 @@
   common), `robots`, `replays`, `exports`, `stage`, `spectators`, `events`,
   `options`, `archives` (export and import), `monitoring`; `pages` and `docs`.
 - Requests: `agent_bodies`, `schemas`, `experiment_body`, `fields`, `descriptions`, `formats`.
-- Answers: `answers`, `recorded_answers`, `experiment_answers`, `explanation_answers`,
+- Answers: `answers`, `recorded_answers`, `experiment_answers`,
   `option_answers` (from `option_texts`, `robot_options` and `body_fields`), `robot_answers`,
   `event_answers`, `curves`, `problems` (RFC 9457), `templates` (web pages), `compression`.
 - `contract` completes the OpenAPI document; `deps` injects services and the stage.

@@ -16,7 +16,6 @@ from app.api.identity import Identity
 from app.api.stage_paths import stage_of
 from app.cache import BytesCache
 from app.events.run_metrics import RunMetrics
-from app.explanations.service import Explanations
 from app.exports.file_renderer import FileRenderer
 from app.feature import Features
 from app.jobs.jobs import Jobs
@@ -62,7 +61,6 @@ class Services:
         stages: all stages, the first of which has the path "".
         agents: names of the agents that were registered at server start.
         what_if: computes what-ifs.
-        explanations: explains steps, and shows tables of any moment.
         estimates: estimates how long runs would take.
         replays: encodes runs for pages that play them by themselves.
         renderer: renders large files, such as videos.
@@ -88,7 +86,6 @@ class Services:
     replays: ReplayFrames
     renderer: FileRenderer
     what_if: WhatIf
-    explanations: Explanations
     estimates: Estimates
     stopping: Stopping
     what_if_limiter: RateLimiter

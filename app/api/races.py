@@ -13,7 +13,6 @@ from starlette.types import Scope
 from app.api.compression import gzipped
 from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
-from app.api.explanation_answers import LossView
 from app.api.formats import attachment, negotiated
 from app.api.policy import WATCH_RUN, Work, policy
 from app.api.recorded_answers import RecordingView, TimelineView
@@ -93,28 +92,6 @@ def get_timeline(
     key = ("timeline", run.id, run.created_at, run.state, run.ended_at, clock)
     content = compute() if run.state in NOT_ENDED else services.analyses.computed(key, compute)
     return gzipped(request, content, "application/json")
-
-
-@router.get(
-    "/{run_id}/loss",
-    summary="Explain why a learner with a table loses a race",
-    response_model=LossView,
-)
-@policy(access=WATCH_RUN, work="analysis")
-def explain_loss(
-    services: ServicesDep,
-    run_id: RunPath,
-    lane: Annotated[int, Query(description="from 0 on")],
-    clock: Annotated[Clock, Query(description="by which the lanes are ranked")] = "paper",
-) -> Response:
-    """Tell how much of its table it had tried, and which better moves it walked past, and why.
-
-    In each state of its walk every move is simulated, one step ahead. A lane that is not behind, or
-    has no table, is refused.
-    """
-    run = find(services, "race", run_id)
-    answer = services.explanations.explain_loss(run.id, lane, clock)
-    return Response(answer, media_type="application/json")
 
 
 def _stored_recording(services: Services, run: Run) -> Iterator[bytes]:

@@ -25,7 +25,6 @@ from app.api.answers import (
 from app.api.contract import LOCATION, answers
 from app.api.deps import IdentityDep, RoleDep, Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
-from app.api.explanation_answers import ExplanationView
 from app.api.fields import RunId
 from app.api.policy import OPERATOR, OWN_RUNS, START, WATCH, WATCH_RUN, Access, api_router, policy
 from app.api.recorded_answers import CurvesView
@@ -205,27 +204,6 @@ def run_again(
     It is the same to the last bit, wall times aside.
     """
     return start_run(services, request, start_request, CopyStart(run_id))
-
-
-@router.get(
-    "/{run_id}/explain",
-    summary="Explain why a step was taken and what was learned from it",
-    response_model=ExplanationView,
-)
-@policy(access=WATCH_RUN, work="analysis")
-def explain_step(
-    services: ServicesDep,
-    run_id: RunPath,
-    step: Annotated[int | None, Query(description="from 1 on; the newest if absent")] = None,
-    lane: Annotated[int, Query(description="of a race, from 0 on")] = 0,
-) -> Response:
-    """Explain a step of a training or of a lane of a race.
-
-    The learner is built again from what is stored, and takes the step once more: the rule of its
-    update is checked, and gives the value after it to the last bit.
-    """
-    answer = services.explanations.explain(run_id, step, lane)
-    return Response(answer, media_type="application/json")
 
 
 def _page(services: Services, listing: Listing) -> Response:

@@ -11,14 +11,12 @@ from app.api import curves
 from app.api.answers import TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
-from app.api.explanation_answers import TableView
 from app.api.fields import Name
 from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.recorded_answers import CurveView, QTableView
 from app.api.runs import RunPath, find, located, run_routes
 from app.archive import table_import
-from app.explanations.explanation_json import MAX_VALUES_SHOWN
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
 from app.storage.json_text import finite
@@ -122,31 +120,6 @@ def _best_known_m(run: Run) -> float | None:
         return None
     step = min(run.done, run.config.steps - 1)
     return best_known_m(run.config, world_of(run).as_of(step))
-
-
-@router.get(
-    "/{run_id}/table",
-    summary="Get the Q-table after a step",
-    response_model=TableView,
-    description=(
-        "Return values, visits and best actions as they were after a step, built again from its "
-        "log.\n\nThe index of a state is the number whose digits are its cells, the first pair's "
-        f"the most significant. An answer has at most {MAX_VALUES_SHOWN:,} values; `first` and "
-        "`count` choose which."
-    ),
-)
-@policy(access=WATCH_RUN, work="analysis")
-def get_table_at(
-    services: ServicesDep,
-    run_id: RunPath,
-    step: Annotated[int | None, Query(description="after so many steps; newest if absent")] = None,
-    first: Annotated[int, Query(ge=0, description="index of the first state")] = 0,
-    count: Annotated[int, Query(ge=1, description="number of states, as far as they fit")] = 1000,
-) -> Response:
-    """Return a part of the table as it was after a step."""
-    find(services, "training", run_id)
-    answer = services.explanations.table(run_id, step, first, count)
-    return Response(answer, media_type="application/json")
 
 
 @router.get(

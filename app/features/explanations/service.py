@@ -7,13 +7,13 @@ from typing import Any, TypeVar
 from cachetools import LRUCache
 
 from app.cache import BytesCache
-from app.explanations.explanation_json import (
+from app.features.explanations.explanation_json import (
     MAX_VALUES_SHOWN,
     SearchFindings,
     explanation_as_json,
     table_as_json,
 )
-from app.explanations.loss import (
+from app.features.explanations.loss import (
     LIMIT_S,
     ValuedTable,
     WalkedLane,
@@ -22,7 +22,7 @@ from app.explanations.loss import (
     simulate,
     standing_of,
 )
-from app.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPractice
+from app.features.explanations.rebuilt_practice import Changes, LoggedSteps, RebuiltPractice
 from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.stopping import Stopping
 from app.jobs.turns import Turns

@@ -2,5 +2,6 @@
 
 `rebuilt_practice` goes to any step of one walk, forward and back, by snapshots; `service` finds the
 walks of runs, and answers; `loss` answers why a learner loses; `explanation_json` converts
-explanations to plain types.
+explanations to plain types. `feature` is what the core sees of it; `routes`, with
+`response_models`, are those over REST.
 """

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.explanations import service
-from app.explanations.service import Explanations
+from app.features.explanations import service
+from app.features.explanations.service import Explanations
 from app.storage.database.store import RunStore
 from app.storage.errors import Busy
 from app.storage.recordings import Recordings

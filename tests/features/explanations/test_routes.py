@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from app.api.explanation_answers import ExplanationView, LossView, TableView
+from app.features.explanations.response_models import ExplanationView, LossView, TableView
 from hexapods.agents.explanation import Term, evaluate
 from tests.api.calls import Api, refused
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.explanations import rebuilt_practice
-from app.explanations.rebuilt_practice import RebuiltPractice
+from app.features.explanations import rebuilt_practice
+from app.features.explanations.rebuilt_practice import RebuiltPractice
 from app.storage.errors import Busy
 from hexapods.assembly import rebuild_learner
 from hexapods.domain.errors import HexapodError

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.explanations.loss import count_tried, loss_as_json, passed_over
+from app.features.explanations.loss import count_tried, loss_as_json, passed_over
 from hexapods.agents.afterstate_q import AfterstateQ
 from hexapods.agents.protocol import Problem, Transition
 from hexapods.agents.q_learning import QLearning
