@@ -12,7 +12,7 @@ from contextlib import AbstractAsyncContextManager, AsyncExitStack, nullcontext
 from datetime import datetime
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from fastapi import APIRouter
 from prometheus_client.metrics_core import Metric
@@ -165,9 +165,6 @@ class Feature:
         return ()
 
 
-F = TypeVar("F", bound=Feature)
-
-
 class Features:
     """The features of one app, in an order in which each comes after those that it needs.
 
@@ -202,12 +199,6 @@ class Features:
     def get(self, name: str) -> Feature | None:
         """Return a feature by its name; None if it is left out."""
         return self._features.get(name)
-
-    def of(self, feature: type[F]) -> F:
-        """Return a feature by its class."""
-        found = self._features[feature.name]
-        assert isinstance(found, feature)  # noqa: S101 - by name and class alike
-        return found
 
     @property
     def pages_of_others(self) -> dict[str, Path]:
@@ -268,10 +259,15 @@ def _add(
     kept: Mapping[str, type[Feature]],
     available: Mapping[str, type[Feature]],
     ordered: dict[str, type[Feature]],
+    waiting: tuple[str, ...] = (),
 ) -> None:
-    """Add a feature to those that are ordered, after those that it needs."""
-    if name in ordered:
+    """Add a feature to those that are ordered, after those that it needs and uses.
+
+    Of features that need each other, whose names are in `waiting`, one is first.
+    """
+    if name in (*ordered, *waiting):
         return
+    waiting += (name,)
     for needed in kept[name].needs:
         if needed not in kept:
             where = "is left out" if needed in available else "is not installed"
@@ -279,10 +275,10 @@ def _add(
                 f"the feature {name} needs {needed}, which {where}; leave {name} out too, by "
                 f"{PREFIX}WITHOUT"
             )
-        _add(needed, kept, available, ordered)
+        _add(needed, kept, available, ordered, waiting)
     for used in kept[name].uses:
         if used in kept:
-            _add(used, kept, available, ordered)
+            _add(used, kept, available, ordered, waiting)
     ordered[name] = kept[name]
 
 

@@ -92,6 +92,14 @@ def test_what_needs_a_feature_that_is_left_out_is_refused(install: Callable[[str
         load(["classroom"])
 
 
+def test_those_that_need_each_other_are_both_there(install: Callable[[str], None]) -> None:
+    install(
+        'class Left(Feature):\n    name = "left"\n    needs = ("right",)\n'
+        'class Right(Feature):\n    name = "right"\n    needs = ("left",)\n'
+    )
+    assert {"left", "right"} <= set(names())
+
+
 def test_two_of_one_name_are_refused(install: Callable[[str], None]) -> None:
     install('class Demo(Feature):\n    name = "demo"\n')
     with pytest.raises(InvalidInput, match=r"two features are called demo.*other_features:Demo"):
