@@ -88,7 +88,8 @@ def test_what_a_link_says_in_vain_is_told(dashboard: Dashboard, shared_server: S
     for part in ("alhpa=0.5", "t=soon", "depth=deep", "tab=chart", "view=nowhere"):
         expect(told).to_contain_text(part)
     # What is valid is told where that is a word of a few.
-    for valid in ("watch, try, study", "board, train, world, why", "race, experiments, runs"):
+    views = "race, runs, compare, lessons, experiments"
+    for valid in ("watch, try, study", "board, train, world, why", views):
         expect(told).to_contain_text(valid)
     # A field of the form keeps its text, in the link too; the page beside it is as ever.
     expect(dashboard.scoreboard).to_be_visible()

@@ -37,8 +37,9 @@ def remove_lock(data: Path, url: str | None) -> None:
     (data / LOCK_FILE).unlink(missing_ok=True)
     if url is not None:
         with psycopg.connect(url, autocommit=True) as connection:
+            # Waits for its end: until then the lock still counts as granted.
             connection.execute(
-                "SELECT pg_terminate_backend(pid) FROM pg_locks WHERE locktype = 'advisory'"
+                "SELECT pg_terminate_backend(pid, 30000) FROM pg_locks WHERE locktype = 'advisory'"
             )
 
 
