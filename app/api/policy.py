@@ -82,7 +82,7 @@ QUESTION = Access(name="question", spectators="watching")
 """Computes something and changes nothing, so that those who may watch may ask it."""
 OPERATOR = Access(name="operator")
 START = Access(name="start")
-"""Starts a run, within what the server allows to those who are no operators."""
+"""Starts a run: operators, and who a feature lets start some; `TokenGuard` refuses all others."""
 OWN_RUNS = Access(name="own runs")
 """Changes the run `run_id` of the path, or all runs `id` of the query: operators, and who owns all
 of them."""

@@ -1,4 +1,4 @@
-"""Routes of trainings: import, learning curve and Q-table."""
+"""Routes of trainings: import, learning curve and Q-table. What starts one is in `starts`."""
 
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal
