@@ -148,6 +148,11 @@ class Settings:
     def _check_demo(self) -> None:
         if not self.demo:
             return
+        if "demo" in self.without:
+            raise InvalidInput(
+                f"{PREFIX}DEMO is on, and {PREFIX}WITHOUT leaves the demo out, so that nothing "
+                "that strangers make would be deleted; take one of both back"
+            )
         if self.token is None:
             raise InvalidInput(
                 f"a demo needs {PREFIX}TOKEN, or every stranger would be its operator; "

@@ -57,6 +57,7 @@ def test_an_empty_variable_is_none() -> None:
         ({"PORT": "99999"}, ["from 0 to 65535"]),
         ({"DEMO": "1"}, ["HEXAPODS_TOKEN", "stranger"]),
         ({"DEMO": "1", "HOST": "0.0.0.0"}, ["HEXAPODS_TOKEN"]),
+        ({"DEMO": "1", "TOKEN": TOKEN, "WITHOUT": "demo"}, ["HEXAPODS_WITHOUT", "one of both"]),
         ({"DEMO": "perhaps"}, ["HEXAPODS_DEMO", "1 or 0"]),
         ({"DEMO": "1", "TOKEN": TOKEN, "SPECTATORS": "token"}, ["HEXAPODS_SPECTATORS"]),
         ({"DEMO": "1", "TOKEN": TOKEN, "DEMO_HOURS": "25"}, ["from 1 to 24"]),

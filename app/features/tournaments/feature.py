@@ -98,9 +98,13 @@ class TournamentFeature(Feature):
         self.judge.close()
 
     def delete_before(self, time: datetime, delete_runs: DeleteRuns) -> tuple[()]:
-        """Delete the tournaments that rooms have left behind: their entrants were in these."""
+        """Delete the tournaments that rooms have left behind: their entrants were in these.
+
+        Without the classroom it is not known which rooms there are, and all tournaments stay.
+        """
         del delete_runs
-        self.tournaments.delete_left_behind(time, self.rooms.codes())
+        if (codes := self.rooms.codes()) is not None:
+            self.tournaments.delete_left_behind(time, codes)
         return ()
 
 

@@ -32,9 +32,9 @@ class RoomDirectory:
         owner: str | None = self._classroom.rooms.owner_of(run_id)
         return owner
 
-    def codes(self) -> list[str]:
-        """Return the codes of all rooms."""
-        return [] if self._classroom is None else list(self._classroom.rooms.codes())
+    def codes(self) -> list[str] | None:
+        """Return the codes of all rooms; None if it is not known which there are."""
+        return None if self._classroom is None else list(self._classroom.rooms.codes())
 
     def stage_of(self, code: str) -> SharedStage | None:
         """Return the stage of a room; None if it is not open."""
