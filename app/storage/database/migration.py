@@ -76,8 +76,8 @@ def migrate_feature(database: Database, name: str, folder: Path, tables: MetaDat
         if missing := sorted(tables.tables.keys() - there):
             raise DamagedFile(
                 f"the database has lost {', '.join(missing)} of the feature {name}; put a backup "
-                f"back, or start without the feature by HEXAPODS_WITHOUT={name}, which loses "
-                "nothing else"
+                f"back, or start without the feature by HEXAPODS_WITHOUT={name}, which "
+                "keeps the data, and no longer hides what the feature hid"
             )
 
     database.write(work)
