@@ -239,9 +239,14 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
             hosts = given[name].lower().split(",")
             given[name] = tuple(host.strip() for host in hosts if host.strip())
     if isinstance(given.get("without"), str):
-        given["without"] = tuple(filter(None, map(str.strip, given["without"].split(","))))
+        given["without"] = _names(given["without"])
     data = given.pop("data", None) or platformdirs.user_data_path("racing-hexapods", False)
     return Settings(data=Path(data).expanduser().absolute(), **given)
+
+
+def read_without(environ: Mapping[str, str] = os.environ) -> tuple[str, ...]:
+    """Return the names of the features that an environment leaves out."""
+    return _names(environ.get(f"{PREFIX}WITHOUT", ""))
 
 
 def is_demo(environ: Mapping[str, str] = os.environ) -> bool:
@@ -274,6 +279,10 @@ def is_loopback(host: str) -> bool:
         return ipaddress.ip_address(host.strip("[]")).is_loopback
     except ValueError:
         return False
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(filter(None, map(str.strip, text.split(","))))
 
 
 def _port(text: str) -> int:

@@ -10,7 +10,8 @@ from typing import Any
 from sphinx.application import Sphinx
 
 import hexapods
-from app.cli import COMMANDS, main
+from app.cli import main
+from app.cli.commands import command_modules
 from app.server import create_app
 from app.settings import Settings
 from app.storage.database.opening import open_store
@@ -93,7 +94,7 @@ def _cell(text: str) -> str:
 
 def _commands() -> Iterator[str]:
     yield "# Commands"
-    for name in COMMANDS:
+    for name in command_modules():
         shown = io.StringIO()
         with contextlib.redirect_stdout(shown), contextlib.suppress(SystemExit):
             main([name, "--help"])

@@ -6,7 +6,7 @@ import sqlite3
 from dataclasses import fields
 from pathlib import Path
 
-from app.cli import COMMANDS
+from app.cli.commands import command_modules
 from app.settings import PREFIX, Settings
 from app.storage.database.opening import ARTIFACTS_FOLDER, DATABASE_FILE
 from app.storage.run import TABLE
@@ -30,7 +30,7 @@ def test_every_setting_is_there_with_its_default() -> None:
 def test_every_command_is_one() -> None:
     said = set(re.findall(r"hexapods (runs|export|import|serve|doctor|\w+ly)\b", TEXT))
     assert said == {"runs", "export", "import", "serve", "doctor"}
-    assert said <= set(COMMANDS)
+    assert said <= set(command_modules())
 
 
 def test_every_promise_is_there() -> None:

@@ -6,6 +6,7 @@ Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `benchmark`, 
 `imports`, `verify` (score files in `verify_benchmark`), `doctor` (with checks in `machine_checks`
 and `data_checks`), `bench` (with the measurements in `benchmarks`).
 Their module docstrings are the descriptions in `--help`.
+Features add commands of their own (`commands`).
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments
 and sweeps), `files` (files that users name), `stored_runs` (runs of a data folder), `robot_names`
 (stored robots by name), `server_client` (requests to a running server), `terminal` (progress bars
@@ -24,30 +25,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
+from app.cli.commands import command_modules
 from app.cli.exit_codes import INTERRUPTED
 from app.cli.options import CommandParser
 from app.cli.robot_names import stored_robots_known
 from hexapods import __version__
 from hexapods.domain.errors import HexapodError
 
-COMMANDS = {
-    "serve": "serve",
-    "train": "train",
-    "race": "race",
-    "experiment": "experiment",
-    "sweep": "sweep",
-    "tune": "tune",
-    "benchmark": "benchmark",
-    "best-known": "best_known",
-    "runs": "runs",
-    "robots": "robots",
-    "export": "export",
-    "import": "imports",
-    "verify": "verify",
-    "doctor": "doctor",
-    "bench": "bench",
-}
-"""Name of the module of each command."""
 _OUTPUT_CLOSED = 128 + 13
 """Exit code that a shell reports of a tool that SIGPIPE ended."""
 
@@ -79,8 +63,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(given: Sequence[str]) -> int:
-    with without_garbage_collection():
-        parser = _parser(given)
+    try:
+        with without_garbage_collection():
+            parser = _parser(given)
+    except HexapodError as error:
+        print(f"hexapods: {error}", file=sys.stderr)
+        return 2
     options = parser.parse_args(given)
     try:
         with stored_robots_known(vars(options).get("data")):
@@ -130,7 +118,6 @@ def _parser(arguments: Sequence[str] = ()) -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         dest="command", required=True, metavar="COMMAND", parser_class=CommandParser
     )
-    named = [name for name in arguments[:1] if name in COMMANDS]
-    for name in named or COMMANDS:
-        importlib.import_module(f"app.cli.{COMMANDS[name]}").add_to(commands)
+    for module in command_modules(arguments[0] if arguments else None).values():
+        importlib.import_module(module).add_to(commands)
     return parser
