@@ -43,7 +43,7 @@ def command_modules(
         InvalidInput: if the command belongs to a feature that is left out, two features have a
             command of this name, or the commands of one cannot be imported.
     """
-    if name in CORE_COMMANDS:
+    if name is not None and name in CORE_COMMANDS:
         return {name: CORE_COMMANDS[name]}
     without = read_without(environ)
     modules = dict(CORE_COMMANDS)
@@ -61,7 +61,7 @@ def command_modules(
                 f"{feature} out by HEXAPODS_WITHOUT"
             )
         modules |= commands
-    return {name: modules[name]} if name in modules else modules
+    return modules if name is None or name not in modules else {name: modules[name]}
 
 
 def _commands_of_features() -> Iterator[tuple[str, Mapping[str, str]]]:
