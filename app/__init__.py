@@ -1,8 +1,9 @@
 """The dashboard of Racing Hexapods: a server that runs robots of `hexapods`, and its page.
 
 `server` builds all parts once (`create_app`) and runs them with the lifespan; `feature` is the seam
-by which `features` add to them; `settings` are those of a server; `cache` is a cache of encoded
-answers. docs/architecture.md has a row for each package.
+by which `features` add to them, `installed_features` says which there are, and `active_features`
+asks all of them; `settings` are those of a server; `cache` is a cache of encoded answers.
+docs/architecture.md has a row for each package.
 
 Processes and threads:
 

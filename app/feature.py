@@ -1,23 +1,25 @@
-"""The seam between the core and its features: what a feature may add, and which there are.
+"""The seam between the core and its features: all that a feature may add.
 
 A feature is a package `app/features/NAME` with a module `feature` that has a subclass of `Feature`
 as `FEATURE`, or a class that another package names in the entry-point group `hexapods.features`.
-The core asks its features, and names none of them; HEXAPODS_WITHOUT leaves some out.
+The core asks its features (`active_features`), and names none of them; HEXAPODS_WITHOUT leaves some
+out (`installed_features`).
 """
 
-import importlib
-import pkgutil
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractAsyncContextManager, AsyncExitStack, nullcontext
+from contextlib import (
+    AbstractAsyncContextManager,
+    contextmanager,
+    nullcontext,
+)
 from datetime import datetime
-from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fastapi import APIRouter
 from prometheus_client.metrics_core import Metric
 from pydantic import BaseModel
-from sqlalchemy import ColumnElement, MetaData, and_
+from sqlalchemy import ColumnElement, MetaData, not_, select
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import BaseRoute
@@ -25,17 +27,14 @@ from starlette.routing import BaseRoute
 from app.jobs.queue import Owner
 from app.jobs.submissions import Start
 from app.settings import PREFIX, Settings
-from app.storage.database.migration import migrate_feature
+from app.storage.database.schema import RUNS
 from app.storage.database.store import RunStore
-from hexapods.domain.errors import InvalidInput
+from hexapods.domain.errors import HexapodError, InvalidInput
 
 if TYPE_CHECKING:
     from app.api.deps import Services, StartRequest
     from app.api.identity import Identity, IdentityProvider
 
-GROUP = "hexapods.features"
-"""Entry-point group of features of other packages."""
-_PACKAGE = "app.features"
 DeleteRuns = Callable[[Iterable[str]], Collection[str]]
 """Stops and deletes runs by their ids, and returns the ids of those that are gone."""
 
@@ -122,7 +121,7 @@ class Feature:
         return None
 
     def provider(self) -> "IdentityProvider | None":
-        """Return what knows the feature's clients, and which runs are hidden from whom."""
+        """Return what knows the feature's clients."""
         return None
 
     def visible_runs(self, identity: "Identity | None") -> ColumnElement[bool] | None:
@@ -132,6 +131,28 @@ class Feature:
             identity: of the client; None for a spectator.
         """
         del identity
+        return None
+
+    def why_hidden(self, run_id: str, identity: "Identity | None") -> str | None:
+        """Return in a sentence why a run is hidden from a client; None if it is not.
+
+        It must agree with `visible_runs`, which it asks the database for; a feature that hides runs
+        knows by itself which, as each request about a run and each event asks this.
+
+        Args:
+            run_id: of the run, or anything else in its place.
+            identity: of a client, no operator; None for a spectator.
+        """
+        condition = self.visible_runs(identity)
+        is_visible = condition is None or run_id not in hidden_ids(self.core.store, condition)
+        return None if is_visible else f"This run is hidden by the feature {self.name}."
+
+    @classmethod
+    def visible_when_left_out(cls) -> ColumnElement[bool] | None:
+        """Return the condition that a run is not hidden while the feature is left out.
+
+        Who could see the others is not known then, but for operators. None if it hides no run.
+        """
         return None
 
     def start_run(
@@ -165,147 +186,29 @@ class Feature:
         return ()
 
 
-class Features:
-    """The features of one app, in an order in which each comes after those that it needs.
-
-    Attributes:
-        classes: theirs.
-        providers: of identities, of those that know clients.
-    """
-
-    def __init__(self, classes: tuple[type[Feature], ...], store: RunStore) -> None:
-        """Bring the tables of these features to this version; `build` makes the features.
-
-        Raises:
-            DamagedFile: if a table of one is missing.
-        """
-        self.classes = classes
-        self.providers: list[IdentityProvider] = []
-        self._features: dict[str, Feature] = {}
-        for feature in classes:
-            if feature.tables is not None and feature.migrations is not None:
-                migrate_feature(store.database, feature.name, feature.migrations, feature.tables)
-
-    def build(self, core: "Services") -> None:
-        """Make the features of an app."""
-        for feature in self.classes:
-            made = self._features[feature.name] = feature(core)
-            if (provider := made.provider()) is not None:
-                self.providers.append(provider)
-
-    def __iter__(self) -> Iterator[Feature]:
-        return iter(self._features.values())
-
-    def get(self, name: str) -> Feature | None:
-        """Return a feature by its name; None if it is left out."""
-        return self._features.get(name)
-
-    @property
-    def pages_of_others(self) -> dict[str, Path]:
-        """Folders of the pages of those of other packages, by name."""
-        return {one.name: one.page for one in self.classes if one.page is not None}
-
-    def owner_of(self, run_id: str) -> Owner | None:
-        """Return who waits for a run; None for an operator."""
-        return next((o for one in self if (o := one.owner_of(run_id)) is not None), None)
-
-    def visible_runs(self, identity: "Identity | None") -> ColumnElement[bool] | None:
-        """Return the condition that a run is one that no feature hides; see `Feature`."""
-        conditions = [
-            condition
-            for feature in self
-            if (condition := feature.visible_runs(identity)) is not None
-        ]
-        return and_(*conditions) if conditions else None
-
-    def is_hidden(self, run_id: str | None, identity: "Identity | None") -> bool:
-        """Whether a feature hides a run from a client who is no operator; False of None."""
-        return run_id is not None and any(
-            provider.why_hidden(run_id, identity) is not None for provider in self.providers
-        )
-
-    async def open(self, stack: AsyncExitStack) -> None:
-        """Enter all features, to be left with the stack."""
-        for feature in self:
-            await stack.enter_async_context(feature.open())
+def hidden_ids(store: RunStore, condition: ColumnElement[bool]) -> frozenset[str]:
+    """Return the ids of the runs that a condition hides."""
+    query = select(RUNS.c.id).where(not_(condition))
+    return frozenset(store.database.read(lambda c: c.execute(query).scalars().all()))
 
 
-def load(without: Collection[str] = ()) -> tuple[type[Feature], ...]:
-    """Return the classes of all features but some, each after those that it needs.
+@contextmanager
+def blaming(feature: type[Feature], what: str) -> Iterator[None]:
+    """Name a feature whose code raises an unexpected error, and how to start without it.
 
     Args:
-        without: names of those to leave out.
+        feature: whose code runs in this context.
+        what: of the feature fails, in words.
 
     Raises:
-        InvalidInput: if there is no feature of such a name, one needs another that is left out, or
-            two have the same name.
+        InvalidInput: in place of that error.
     """
-    available = _available()
-    unknown = sorted(set(without) - available.keys())
-    if unknown:
-        raise InvalidInput(
-            f"{PREFIX}WITHOUT names no feature by {unknown[0]!r}; there are "
-            f"{', '.join(sorted(available))}"
-        )
-    kept = {name: feature for name, feature in available.items() if name not in without}
-    ordered: dict[str, type[Feature]] = {}
-    for name in kept:
-        _add(name, kept, available, ordered)
-    return tuple(ordered.values())
-
-
-def _add(
-    name: str,
-    kept: Mapping[str, type[Feature]],
-    available: Mapping[str, type[Feature]],
-    ordered: dict[str, type[Feature]],
-    waiting: tuple[str, ...] = (),
-) -> None:
-    """Add a feature to those that are ordered, after those that it needs and uses.
-
-    Of features that need each other, whose names are in `waiting`, one is first.
-    """
-    if name in (*ordered, *waiting):
-        return
-    waiting += (name,)
-    for needed in kept[name].needs:
-        if needed not in kept:
-            where = "is left out" if needed in available else "is not installed"
-            raise InvalidInput(
-                f"the feature {name} needs {needed}, which {where}; leave {name} out too, by "
-                f"{PREFIX}WITHOUT"
-            )
-        _add(needed, kept, available, ordered, waiting)
-    for used in kept[name].uses:
-        if used in kept:
-            _add(used, kept, available, ordered, waiting)
-    ordered[name] = kept[name]
-
-
-def _available() -> dict[str, type[Feature]]:
-    """Return the classes of all features that are installed, by name."""
-    package = importlib.import_module(_PACKAGE)
-    modules = [f"{_PACKAGE}.{one.name}.feature" for one in pkgutil.iter_modules(package.__path__)]
-    classes = [(name, importlib.import_module(name).FEATURE) for name in sorted(modules)]
-    classes += [(entry.value, _loaded(entry)) for entry in entry_points(group=GROUP)]
-    available: dict[str, type[Feature]] = {}
-    for origin, feature in classes:
-        if feature.name in available:
-            raise InvalidInput(
-                f"two features are called {feature.name}, one of them in {origin}; uninstall one"
-            )
-        available[feature.name] = feature
-    return available
-
-
-def _loaded(entry: EntryPoint) -> type[Feature]:
     try:
-        feature = entry.load()
+        yield
+    except HexapodError:
+        raise
     except Exception as error:
         raise InvalidInput(
-            f"the feature {entry.name} of {entry.value} cannot be imported: {error}; mend or "
-            "uninstall its package"
+            f"the feature {feature.name} fails in {what}: {type(error).__name__}: {error}; "
+            f"start without it by {PREFIX}WITHOUT={feature.name}"
         ) from error
-    if not (isinstance(feature, type) and issubclass(feature, Feature)):
-        raise InvalidInput(f"{entry.value} is no subclass of app.feature.Feature")
-    return feature

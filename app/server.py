@@ -17,6 +17,7 @@ from fastapi import FastAPI
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
+from app.active_features import Features
 from app.api import (
     archives,
     contract,
@@ -59,7 +60,8 @@ from app.api.wellformed import MalformedRequestGuard
 from app.events import logs
 from app.events.run_metrics import RunMetrics
 from app.exports.file_renderer import FileRenderer
-from app.feature import Feature, Features, load
+from app.feature import Feature, blaming
+from app.installed_features import load
 from app.jobs.jobs import Jobs
 from app.jobs.process_pool import ProcessPool
 from app.jobs.stopping import Stopping
@@ -166,7 +168,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
         new_stage=lambda path: new_stage(path=path, session_path="", announces=False),
         features=features,
-        page_files=PageFiles(assets.static_dir(), settings.without, features.pages_of_others),
+        page_files=PageFiles(assets.static_dir(), settings.without, features.page_folders),
     )
     features.build(app.state.services)
     store.is_public = features.visible_runs(None)
@@ -179,16 +181,12 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         *_viewer_routes(),
         *pages.page_routes(app.state.services.page_files),
     ]
-    _check_paths(app.routes, features)
-    for feature in features:
-        app.router.routes += feature.pages()
+    app.router.routes += _pages_of_features(app.routes, features)
     problems.install(app)
     providers = features.providers
     contract.install(app, app.state.services.agents, settings, features.classes, providers)
     what_ifs = app.state.services.what_if_limiter
-    guards = RouteGuards(
-        settings, app.state.work_slots, what_ifs, providers, app.exception_handlers
-    )
+    guards = RouteGuards(settings, app.state.work_slots, what_ifs, features, app.exception_handlers)
     guard_everything(app, guards)
     # The middleware that is added last runs first.
     app.add_middleware(HostGuard, settings=settings)
@@ -201,15 +199,18 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     return app
 
 
-def _check_paths(routes: Sequence[BaseRoute], features: Features) -> None:
-    """Check that no two pages have the same path.
+def _pages_of_features(routes: Sequence[BaseRoute], features: Features) -> list[BaseRoute]:
+    """Return the pages that features add to routes.
 
     Raises:
         InvalidInput: if a feature has the path of another one, or of the core.
     """
     paths: set[str] = {getattr(route, "path", "") for route in routes}
+    pages: list[BaseRoute] = []
     for feature in features:
-        for page in feature.pages():
+        with blaming(type(feature), "`pages`"):
+            added = feature.pages()
+        for page in added:
             path: str = getattr(page, "path", "")
             if path in paths:
                 raise InvalidInput(
@@ -217,6 +218,8 @@ def _check_paths(routes: Sequence[BaseRoute], features: Features) -> None:
                     f"leave one of both out by {PREFIX}WITHOUT"
                 )
             paths.add(path)
+        pages += added
+    return pages
 
 
 def _viewer_routes() -> list[BaseRoute]:
@@ -251,8 +254,9 @@ def _api_routes(
     router.include_router(options.option_routes(features), prefix=prefix)
     router.include_router(start_routes(agents), prefix=prefix)
     for feature in features:
-        for of_feature in feature.routers(agents):
-            router.include_router(of_feature, prefix=prefix)
+        with blaming(feature, "`routers`"):
+            for added in feature.routers(agents):
+                router.include_router(added, prefix=prefix)
     for included in (monitoring.router, docs.router):
         router.include_router(included)
     return tuple(router.routes)
@@ -278,7 +282,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 
 def _resume_interrupted(services: Services) -> None:
     """Queue again what features let go on after a crash."""
-    for run_id in [run_id for feature in services.features for run_id in feature.unfinished()]:
+    for run_id in list(services.features.unfinished()):
         try:
             services.jobs.resume(run_id)
         except HexapodError as error:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from app.feature import load
+from app.installed_features import load
 from app.settings import Settings, read_settings
 from app.storage.database.opening import DATABASE_FILE
 from hexapods.domain.errors import DamagedFile, InvalidInput
@@ -32,7 +32,7 @@ NAMES = tuple(OF_FEATURE)
 
 
 def names(*without: str) -> tuple[str, ...]:
-    return tuple(one.name for one in load(without))
+    return tuple(feature.name for feature in load(without).classes)
 
 
 def test_each_comes_after_those_that_it_uses() -> None:

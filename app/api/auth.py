@@ -1,15 +1,15 @@
 """Authentication by token, session or identity, and authorization by the access of a route."""
 
 import asyncio
-from collections.abc import Sequence
 from urllib.parse import parse_qsl, urlencode
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from app.active_features import Features
 from app.api.cookies import SessionCookie, is_secure
-from app.api.identity import Identity, IdentityProvider, run_ids_of
+from app.api.identity import Identity, run_ids_of
 from app.api.policy import policy_of
 from app.api.problems import problem
 from app.api.rate_limit import too_many
@@ -39,17 +39,16 @@ class TokenGuard:
     operator may do is decided by the access of the route, and by the features that know the client.
     """
 
-    def __init__(
-        self, app: ASGIApp, settings: Settings, providers: Sequence[IdentityProvider] = ()
-    ) -> None:
+    def __init__(self, app: ASGIApp, settings: Settings, features: Features) -> None:
         """Wrap an app, inside `StagePaths`; of the settings it uses `public_url`.
 
         Args:
             app: the wrapped app.
             settings: of the server.
-            providers: know clients who are no operators; the first that knows one decides.
+            features: know clients who are no operators, of which the first that knows one
+                decides, and which runs are hidden.
         """
-        self._app, self._providers = app, providers
+        self._app, self._features = app, features
         self._wrong_guesses = RateLimiter(WRONG_TOKENS, WRONG_TOKENS_PER_S)
         self._settings = settings
 
@@ -64,7 +63,9 @@ class TokenGuard:
         role = roles.of(bearer, cookie.value)
         identity = None
         if role == "spectator" or not roles.needs_token:
-            identity = next(filter(None, (one.identify(scope) for one in self._providers)), None)
+            identity = next(
+                filter(None, (one.identify(scope) for one in self._features.providers)), None
+            )
         role = role if identity is None else "spectator"
         if role == "spectator" and roles.needs_token:
             wrong = [credential for credential in (bearer, cookie.value) if credential]
@@ -88,9 +89,8 @@ class TokenGuard:
     def _refusal(self, scope: Scope, roles: Roles, identity: Identity | None) -> ASGIApp | None:
         """Return the refusal of a request of no operator; None if it is allowed."""
         for run_id in run_ids_of(scope):
-            for provider in self._providers:
-                if (why := provider.why_hidden(run_id, identity)) is not None:
-                    return problem(403, why)
+            if (why := self._features.why_hidden(run_id, identity)) is not None:
+                return problem(403, why)
         access, as_spectator = policy_of(scope).access, None
         if not access.admits_spectators(is_public=roles.is_public):
             as_spectator = _unauthorized(f"This needs the operator: {_AUTH_HINT}.")

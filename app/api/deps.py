@@ -11,13 +11,13 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 from fastapi import Depends, Header, HTTPException, Request
 from starlette.requests import ClientDisconnect
 
+from app.active_features import Features
 from app.api.descriptions import VALID
 from app.api.identity import Identity
 from app.api.stage_paths import stage_of
 from app.cache import BytesCache
 from app.events.run_metrics import RunMetrics
 from app.exports.file_renderer import FileRenderer
-from app.feature import Features
 from app.jobs.jobs import Jobs
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots

@@ -1,14 +1,14 @@
 """The guards of all routes in their order: access, rates, memory of bodies, slots for work."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from starlette.middleware.exceptions import ExceptionMiddleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.active_features import Features
 from app.api.auth import TokenGuard
 from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
-from app.api.identity import IdentityProvider
 from app.api.memory_limit import BodyMemoryLimit
 from app.api.policy import Policy
 from app.api.rate_limit import RateLimit
@@ -24,7 +24,7 @@ class RouteGuards:
         settings: Settings,
         slots: WorkSlots,
         what_ifs: RateLimiter,
-        providers: Sequence[IdentityProvider] = (),
+        features: Features,
         handlers: Mapping[Any, Any] | None = None,
     ) -> None:
         """Create them.
@@ -33,7 +33,7 @@ class RouteGuards:
             settings: of the server.
             slots: of all kinds of work.
             what_ifs: limits what-ifs of spectators.
-            providers: know clients who are no operators.
+            features: know clients who are no operators, and which runs are hidden.
             handlers: exception handlers of the app, by exception: what a route raises, such as a
                 404, is answered inside the guards.
         """
@@ -42,7 +42,7 @@ class RouteGuards:
         answered = ExceptionMiddleware(_call_route, expected)
         limited = BodyMemoryLimit(ConcurrencyLimit(answered, slots))
         counted = RateLimit(limited, settings, what_ifs)
-        self._first = TokenGuard(counted, settings, providers)
+        self._first = TokenGuard(counted, settings, features)
 
     async def __call__(
         self, policy: Policy, route: ASGIApp, scope: Scope, receive: Receive, send: Send

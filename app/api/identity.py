@@ -53,15 +53,6 @@ class IdentityProvider(Protocol):
         """
         ...
 
-    def why_hidden(self, run_id: str, identity: Identity | None) -> str | None:
-        """Return in a sentence why a run is hidden from a client; None if it is not.
-
-        Args:
-            run_id: of the run, or anything else in its place.
-            identity: of the client, of any provider; None for a spectator.
-        """
-        ...
-
     def requirements(self, access: Access) -> list[dict[str, list[str]]]:
         """Return by what, beside an operator's credentials, a route of an access can be used.
 

@@ -137,6 +137,5 @@ class _ServicesCollector(Collector):
             "Frames that a viewer got as a part of a later one, because it was behind.",
             sum(one.frames_merged for one in counters),
         )
-        for feature in services.features:
-            yield from feature.metrics()
+        yield from services.features.metrics()
         yield InfoMetricFamily("hexapods", "The server.", {"version": __version__})

@@ -16,7 +16,7 @@ from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import BaseRoute
 from starlette.staticfiles import PathLike, StaticFiles
-from starlette.types import Receive, Scope, Send
+from starlette.types import Scope
 
 from app.api.compression import CompressedContent
 from app.api.deps import PageFiles, Services
@@ -45,7 +45,8 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
         page_files: where they are.
     """
     index = page_content(_INDEX, page_files)
-    files = _Files(directory=page_files.folder)
+    left_out = [page_files.folder / "features" / name for name in page_files.without]
+    files = _Files(page_files.folder, left_out)
     public = Policy(access=PUBLIC)
 
     @policy(access=PUBLIC, opens_session=True)
@@ -62,20 +63,11 @@ def page_routes(page_files: PageFiles) -> list[BaseRoute]:
         GuardedPage("/robots.txt", robots_txt, name="robots_txt"),
         # The page's files are public; the data they show is not.
         *(
-            GuardedFiles(f"/static/features/{name}", _Files(directory=folder), public)
+            GuardedFiles(f"/static/features/{name}", _Files(folder), public)
             for name, folder in page_files.others.items()
-        ),
-        *(
-            GuardedFiles(f"/static/features/{name}", _nothing, public)
-            for name in page_files.without
         ),
         GuardedFiles("/static", files, public, name="static"),
     ]
-
-
-async def _nothing(scope: Scope, receive: Receive, send: Send) -> None:
-    """Answer for the files of a feature that is left out."""
-    await problem(404, "There is no such file.")(scope, receive, send)
 
 
 def page_content(name: str, page_files: PageFiles) -> CompressedContent:
@@ -213,10 +205,27 @@ def page_of(
 class _Files(StaticFiles):
     """Static files, each held in memory and compressed once per version."""
 
-    def __init__(self, directory: Path) -> None:
+    def __init__(self, directory: Path, left_out: Sequence[Path] = ()) -> None:
+        """Serve a folder.
+
+        Args:
+            directory: the folder.
+            left_out: folders in it whose files are not served.
+        """
         super().__init__(directory=directory)
+        self._left_out = [os.path.realpath(folder) for folder in left_out]
         # By device and inode: some file systems know a file under names in any case.
         self._contents: dict[tuple[int, int], tuple[tuple[int, int], CompressedContent]] = {}
+
+    def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
+        full_path, stat_result = super().lookup_path(path)
+        # By the file that was found: an address may spell its path in many ways.
+        is_left_out = any(
+            os.path.commonpath([folder, os.path.realpath(full_path)]) == folder
+            for folder in self._left_out
+            if full_path
+        )
+        return ("", None) if is_left_out else (full_path, stat_result)
 
     def file_response(
         self,

@@ -24,6 +24,9 @@ class ProblemPages(HttpMiddleware):
     async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Call the app, and rewrite its answer if it is a problem document."""
         is_page = prefers_html(Headers(scope=scope))
+        # Relative, so that it is valid behind a proxy that serves the app under a prefix; and of
+        # the path as it is now, since a folder of files makes it shorter.
+        home = "../" * max(path_of(scope).count("/") - 1, 0) or "./"
         start: Message | None = None
         body = b""
 
@@ -41,7 +44,7 @@ class ProblemPages(HttpMiddleware):
             else:
                 body += message.get("body", b"")
                 if not message.get("more_body", False):
-                    await _page(start, body, scope)(scope, receive, send)
+                    await _page(start, body, home)(scope, receive, send)
 
         await self._app(scope, receive, send_page)
 
@@ -51,10 +54,8 @@ def prefers_html(headers: Headers) -> bool:
     return headers.get("accept", "").lstrip().startswith("text/html")
 
 
-def _page(start: Message, body: bytes, scope: Scope) -> HTMLResponse:
+def _page(start: Message, body: bytes, home: str) -> HTMLResponse:
     status = HTTPStatus(start["status"])
-    # Relative, so that it is valid behind a proxy that serves the app under a prefix.
-    home = "../" * max(path_of(scope).count("/") - 1, 0) or "./"
     page = render("problem.html", title=status.phrase, detail=json.loads(body)["detail"], home=home)
     response = HTMLResponse(page, status)
     for name, value in MutableHeaders(scope=start).items():

@@ -143,6 +143,7 @@ def _allowed(request: Request) -> str:
     literal = [route for route in routes if route.path == path]
     matching = literal or [r for r in routes if r.path and compile_path(r.path)[0].match(path)]
     methods = {method for route in matching for method in route.methods or ()}
+    methods = methods or {"GET"}  # of files
     return ", ".join(sorted(methods | ({"HEAD"} if "GET" in methods else set())))
 
 

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from app.cli.machine_checks import CheckFailed
 from app.events.damage import damaged_rows, damaged_runs
-from app.feature import Feature, load
+from app.feature import Feature
+from app.installed_features import load
 from app.settings import PREFIX, ROBOTS_FOLDER, Settings
 from app.storage.database.opening import ENTRIES
 from app.storage.database.read_only import open_read_only
@@ -123,7 +124,7 @@ def _robots(settings: Settings) -> str:
 
 def _rows(settings: Settings) -> str:
     """Check that every row of every table can be read."""
-    features = load(settings.without)
+    features = load(settings.without).classes
     tables = [feature.tables for feature in features if feature.tables is not None]
     with open_read_only(settings, *tables) as store:
         # What the rows stand for is known to those who read them.
@@ -199,12 +200,12 @@ def data_checks(settings: Settings) -> Mapping[str, Callable[[Settings], str]]:
     """Return the checks by their titles, with those of the features that can be loaded."""
     checks = {"features": _features, **_CHECKS}
     with suppress(HexapodError):
-        for feature in load(settings.without):
+        for feature in load(settings.without).classes:
             checks |= feature.checks()
     return checks
 
 
 def _features(settings: Settings) -> str:
-    names = [feature.name for feature in load(settings.without)]
+    names = [feature.name for feature in load(settings.without).classes]
     without = f"; left out: {', '.join(settings.without)}" if settings.without else ""
     return f"{', '.join(names) or 'none'}{without}"

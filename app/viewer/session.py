@@ -236,6 +236,15 @@ class ViewerProtocol(WebSocketsSansIOProtocol):
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND_BUFFER_BYTES)
         sock.setsockopt(socket.IPPROTO_TCP, _NOT_SENT_LOW_AT, _UNSENT_BYTES)
 
+    def data_received(self, data: bytes) -> None:
+        """Handle what a browser sends; end the connection if that is no handshake.
+
+        uvicorn leaves it open then, unanswered, and would wait for it when the server stops.
+        """
+        super().data_received(data)
+        if self.conn.handshake_exc is not None and self.conn.eof_sent:
+            self.transport.abort()
+
     def shutdown(self) -> None:
         """Close the connection without waiting for a peer that does not read."""
         super().shutdown()

@@ -31,7 +31,7 @@ from app.api.policy import OPERATOR, MissingPolicy, policies, policy
 from app.api.problems import STATUSES
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.api.robot_answers import StoredRobotsView, StoredRobotView, WholeRobotView
-from app.feature import load
+from app.installed_features import load
 from app.server import create_app
 from app.settings import Settings
 from hexapods.domain.errors import HexapodError
@@ -229,7 +229,7 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     yield StoredRobotView, stored
     yield WholeRobotView, api.get(f"/robots/{stored['id']}")
     yield StoredRobotsView, api.get("/robots")
-    yield options_view(load()), api.get("/options")
+    yield options_view(load().classes), api.get("/options")
     api.call("DELETE", f"/robots/{stored['id']}")
     yield ExperimentView, api.finished(experiment)
     yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
@@ -269,7 +269,7 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
         return await anext(get_events(services, services.stages[0], None, listener))
 
     snapshot = asyncio.run(first_event())
-    bodies = event_bodies(load()).model_fields.items()
+    bodies = event_bodies(load().classes).model_fields.items()
     models: dict[str, Any] = {field.alias or name: field.annotation for name, field in bodies}
     events = subscription.drain()
     subscription.close()

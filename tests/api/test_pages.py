@@ -2,8 +2,10 @@
 
 import gzip
 import re
+from collections.abc import Callable
 from pathlib import Path
 
+import httpx2
 import pytest
 from starlette.applications import Starlette
 from starlette.testclient import TestClient
@@ -203,3 +205,35 @@ def test_policy_allows_the_inline_scripts_of_the_page_as_sent(api: Api) -> None:
 def test_page_without_an_entry_point_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="entry point"):
         with_preloads("<p></p>", tmp_path)
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/static/features/guide/feature.json",
+        "/static//features/guide/feature.json",
+        "/static/./features/guide/feature.json",
+        "/static/%2e/features/guide/feature.json",
+        "/static/features//guide/feature.json",
+        "/static/features/demo/../guide/feature.json",
+        "/static/features/x/%2e%2e/guide/feature.json",
+        "/static/features%2Fguide%2Ffeature.json",
+    ],
+)
+def test_no_spelling_serves_a_file_of_a_feature_that_is_left_out(
+    path: str, shared: Callable[..., Api]
+) -> None:
+    # As a whole URL, of which the client shortens nothing.
+    client = shared(without=("guide",)).client
+    assert client.get(httpx2.URL(f"http://127.0.0.1:8000{path}")).status_code == 404
+
+
+def test_a_file_that_is_missing_is_told_with_the_way_home(api: Api) -> None:
+    answer = api.client.get("/static/nothing.js", headers={"accept": "text/html"})
+    assert (answer.status_code, 'href="../"' in answer.text) == (404, True)
+
+
+def test_a_file_cannot_be_changed(api: Api) -> None:
+    answer = api.client.put("/static/favicon.svg")
+    assert (answer.status_code, answer.headers["allow"]) == (405, "GET, HEAD")
+    assert "possible: GET, HEAD." in answer.text

@@ -10,7 +10,7 @@ from playwright.sync_api import Route, expect
 
 from app.api.deps import PageFiles
 from app.api.pages import page_features
-from app.feature import load
+from app.installed_features import load
 from hexapods import assets
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving, serving
@@ -31,7 +31,7 @@ WORDS = {
 @pytest.fixture
 def server(without: set[str], tmp_path: Path) -> Iterator[Serving]:
     """A server that leaves out those of its features."""
-    own = {feature.name for feature in load()} & without
+    own = {feature.name for feature in load().classes} & without
     with serving(tmp_path, without=",".join(sorted(own))) as fresh:
         yield fresh
 

@@ -20,7 +20,7 @@ from sqlalchemy import Column, Table
 
 from app.cli.data_checks import advice
 from app.events.damage import OF_RUNS
-from app.feature import load
+from app.installed_features import load
 from app.storage.database.engine import decode_leniently
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.schema import ABOUT
@@ -333,4 +333,4 @@ def test_what_a_row_cannot_stand_for_is_damage_too(
 
 
 def test_every_table_has_an_advice() -> None:
-    assert advice(load()).keys() == ALL_TABLES.keys()
+    assert advice(load().classes).keys() == ALL_TABLES.keys()

@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 from sqlalchemy import MetaData, Table
 
-from app.feature import load
+from app.installed_features import load
 from app.storage.database.schema import METADATA
 
 ALL_METADATA: list[MetaData] = [
     METADATA,
-    *(feature.tables for feature in load() if feature.tables is not None),
+    *(feature.tables for feature in load().classes if feature.tables is not None),
 ]
 ALL_TABLES: Mapping[str, Table] = {
     table.name: table for metadata in ALL_METADATA for table in metadata.sorted_tables

@@ -152,7 +152,7 @@ class Participant:
 
 
 class RoomAccess:
-    """Knows participants, and hides their runs. Thread-safe.
+    """Knows participants. Thread-safe.
 
     Attributes:
         scheme: of a participant's cookie.
@@ -196,13 +196,6 @@ class RoomAccess:
                 is about none.
         """
         self._shared[access] = room_of
-
-    def why_hidden(self, run_id: str, identity: Identity | None) -> str | None:
-        """Return why a run is hidden: others than its participant see it after the reveal."""
-        seats = identity.seats if isinstance(identity, Participant) else ()
-        if not self._rooms.is_hidden(run_id, seats):
-            return None
-        return "This run is a participant's; it is shown after the reveal."
 
     def requirements(self, access: Access) -> list[dict[str, list[str]]]:
         """Return that a participant's cookie is needed, or does as well as an operator's."""

@@ -100,6 +100,16 @@ class Classroom(Feature):
     def visible_runs(self, identity: Identity | None) -> ColumnElement[bool]:
         return is_seen_by(identity.seats if isinstance(identity, Participant) else ())
 
+    def why_hidden(self, run_id: str, identity: Identity | None) -> str | None:
+        seats = identity.seats if isinstance(identity, Participant) else ()
+        if not self.rooms.is_hidden(run_id, seats):
+            return None
+        return "This run is a participant's; it is shown after the reveal."
+
+    @classmethod
+    def visible_when_left_out(cls) -> ColumnElement[bool]:
+        return is_seen_by(())
+
     def unfinished(self) -> Iterable[str]:
         return self.rooms.unfinished()
 

@@ -2,6 +2,7 @@
 
 from urllib.parse import quote
 
+from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.routing import BaseRoute
@@ -58,6 +59,8 @@ def _room(request: Request) -> Response:
         return problem(404, as_sentence(str(error)))
     if not room.is_open:
         return problem(410, f"The room {room.code} has ended; ask for the code of a new one.")
+    if request.scope["root_path"]:  # the dashboard of a stage, below which there is no room
+        raise HTTPException(404)
     if normalized(given) == given:
         return problem(503, "The room is opening; try again.", headers={"Retry-After": "1"})
     return RedirectResponse(f"../{room.code}/", 303)

@@ -12,7 +12,6 @@ from urllib.parse import parse_qsl
 from starlette.types import ASGIApp, Scope
 
 from app.api.cookies import SessionCookie, is_secure
-from app.api.identity import Identity
 from app.api.policy import OWN_RUNS, START, Access
 from app.api.problems import problem
 from app.api.stage_paths import stage_of
@@ -92,10 +91,6 @@ class VisitorAccess:
         cookie = SessionCookie(scope, secure, "", VISITOR_NAME)
         # Another stage, such as that of a class, is no place of visitors.
         return Visitor(cookie, self._visitors, is_at_home=not stage_of(scope).path)
-
-    def why_hidden(self, run_id: str, identity: Identity | None) -> None:
-        """Hide nothing: all see what visitors run."""
-        del run_id, identity
 
     def requirements(self, access: Access) -> list[dict[str, list[str]]]:
         """Return that a visitor's cookie does; to start something, none is needed: it sets one."""

@@ -15,6 +15,11 @@ class RoomDirectory:
         # By its attributes alone: importing its classes would make it a part of this feature.
         self._classroom: Any = classroom
 
+    @property
+    def is_there(self) -> bool:
+        """Whether it is known which rooms there are."""
+        return self._classroom is not None
+
     def get(self, code: str) -> Any:
         """Return a room by its code as it was typed.
 

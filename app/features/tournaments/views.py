@@ -38,11 +38,15 @@ def seed_of(tournament: Tournament, reader: Reader) -> int | None:
 def check_may_know(rooms: RoomDirectory, tournament: Tournament, reader: Reader) -> None:
     """Check that a reader may know a tournament: once it or its room has ended, all may.
 
+    Without the classroom it is not known whether a room has ended.
+
     Raises:
         Forbidden: if not.
     """
     room = room_of(rooms, tournament)
-    is_for_all = room is None or not room.is_open or tournament.state == "ended"
+    is_going_on = room is not None and room.is_open
+    may_go_on = is_going_on or (tournament.room is not None and not rooms.is_there)
+    is_for_all = not may_go_on or tournament.state == "ended"
     if reader is not None and not is_for_all and seed_of(tournament, reader) is None:
         raise Forbidden(_OF_A_ROOM)
 

@@ -690,3 +690,9 @@ def test_answers_match_their_models(school: Class) -> None:
     TypeAdapter(LessonList).validate_python(school.teacher.get("/lessons"))
     assert pupil.get(f"/rooms/{code}")["shown"]["reveal"] is None
     assert school.teacher.get(f"/rooms/{code}")["shown"]["reveal"] is not None
+
+
+def test_there_is_no_room_below_a_room(api: Api) -> None:
+    code = api.call("POST", "/rooms", json={}).json()["code"]
+    assert api.client.get(f"/r/{code}/").status_code == 200
+    assert api.client.get(f"/r/{code}/r/{code}/").status_code == 404

@@ -1,0 +1,177 @@
+"""The features of one app, and what the core asks all of them."""
+
+import logging
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import AsyncExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from prometheus_client.metrics_core import Metric
+from sqlalchemy import ColumnElement, and_, inspect
+
+from app.feature import Feature, blaming, hidden_ids
+from app.installed_features import Catalogue
+from app.jobs.queue import Owner
+from app.storage.database.migration import migrate_feature
+from app.storage.database.store import RunStore
+
+if TYPE_CHECKING:
+    from app.api.deps import Services
+    from app.api.identity import Identity, IdentityProvider
+
+_logger = logging.getLogger(__name__)
+
+
+class Features:
+    """The features of one app, in an order in which each comes after those that it needs.
+
+    Attributes:
+        classes: theirs.
+        providers: of identities, of those that know clients.
+    """
+
+    def __init__(self, catalogue: Catalogue, store: RunStore) -> None:
+        """Bring the tables of the features to this version; `build` makes the features.
+
+        Args:
+            catalogue: which there are, and which are left out.
+            store: of the runs.
+
+        Raises:
+            DamagedFile: if a table of one is missing.
+            InvalidInput: if a newer version made its tables.
+        """
+        self.classes = catalogue.classes
+        self.providers: list[IdentityProvider] = []
+        self._features: dict[str, Feature] = {}
+        for feature in self.classes:
+            if feature.tables is not None and feature.migrations is not None:
+                migrate_feature(store.database, feature.name, feature.migrations, feature.tables)
+        self._left_out = _LeftOut(catalogue.left_out, store)
+
+    def build(self, core: "Services") -> None:
+        """Make the features of an app.
+
+        Raises:
+            InvalidInput: if one of them cannot be made.
+        """
+        for feature in self.classes:
+            with blaming(feature, "its start"):
+                made = self._features[feature.name] = feature(core)
+                if (provider := made.provider()) is not None:
+                    self.providers.append(provider)
+
+    def __iter__(self) -> Iterator[Feature]:
+        return iter(self._features.values())
+
+    def get(self, name: str) -> Feature | None:
+        """Return a feature by its name; None if it is left out."""
+        return self._features.get(name)
+
+    @property
+    def page_folders(self) -> dict[str, Path]:
+        """Folders of the pages of features of other packages, by the feature's name."""
+        return {feature.name: feature.page for feature in self.classes if feature.page is not None}
+
+    def owner_of(self, run_id: str) -> Owner | None:
+        """Return who waits for a run; None for an operator.
+
+        Where a feature fails to say it, the run is the feature's: no other runs wait for that, and
+        the run is not shown to everyone.
+        """
+        for feature in self:
+            try:
+                owner = feature.owner_of(run_id)
+            except Exception:
+                _logger.exception("the feature %s cannot say whose %s is", feature.name, run_id)
+                return Owner(feature.name)
+            if owner is not None:
+                return owner
+        return None
+
+    def visible_runs(self, identity: "Identity | None") -> ColumnElement[bool] | None:
+        """Return the condition that a run is one that no feature hides; see `Feature`."""
+        conditions = [
+            *(feature.visible_runs(identity) for feature in self),
+            self._left_out.visible_runs,
+        ]
+        hiding = [condition for condition in conditions if condition is not None]
+        return and_(*hiding) if hiding else None
+
+    def why_hidden(self, run_id: str, identity: "Identity | None") -> str | None:
+        """Return in a sentence why a run is hidden from a client who is no operator; else None."""
+        reasons = (feature.why_hidden(run_id, identity) for feature in self)
+        return next((why for why in reasons if why is not None), self._left_out.why_hidden(run_id))
+
+    def is_hidden(self, run_id: str | None, identity: "Identity | None") -> bool:
+        """Whether a feature hides a run from a client who is no operator; False of None."""
+        return run_id is not None and self.why_hidden(run_id, identity) is not None
+
+    async def open(self, stack: AsyncExitStack) -> None:
+        """Enter all features, to be left with the stack.
+
+        Raises:
+            InvalidInput: if one of them fails.
+        """
+        for feature in self:
+            with blaming(type(feature), "`open`"):
+                await stack.enter_async_context(feature.open())
+
+    def unfinished(self) -> Iterator[str]:
+        """Yield the ids of runs that are to go on, which a crash interrupted."""
+        for feature in self:
+            try:
+                yield from feature.unfinished()
+            except Exception:  # the runs stay interrupted, and can be resumed by hand
+                _logger.exception("the feature %s cannot say which runs go on", feature.name)
+
+    def metrics(self) -> Iterator[Metric]:
+        """Yield the metrics of all features, without those of one that fails."""
+        for feature in self:
+            try:
+                yield from feature.metrics()
+            except Exception:
+                _logger.exception("the feature %s has no metrics", feature.name)
+
+
+class _LeftOut:
+    """What features that are left out still hide.
+
+    Attributes:
+        visible_runs: the condition that none of them hides a run; None if they hide none.
+    """
+
+    def __init__(self, classes: Iterable[type[Feature]], store: RunStore) -> None:
+        """Read which runs are hidden: as long as the features are left out, no more will be."""
+        there = set(inspect(store.database.engine).get_table_names())
+        conditions: list[ColumnElement[bool]] = []
+        self._hidden: dict[str, str] = {}
+        for feature in classes:
+            condition = feature.visible_when_left_out()
+            if condition is None or not _has_tables(feature, there):
+                continue
+            conditions.append(condition)
+            self._hidden |= dict.fromkeys(hidden_ids(store, condition), feature.name)
+        self.visible_runs = and_(*conditions) if conditions else None
+
+    def why_hidden(self, run_id: str) -> str | None:
+        """Return in a sentence why a run is hidden; None if it is not."""
+        feature = self._hidden.get(run_id)
+        return (
+            None
+            if feature is None
+            else f"The feature {feature} hides this run, and is left out on this server."
+        )
+
+
+def _has_tables(feature: type[Feature], there: Collection[str]) -> bool:
+    """Whether the tables of a feature are there; of a new data folder they are not."""
+    missing = set() if feature.tables is None else feature.tables.tables.keys() - there
+    if missing and len(missing) < len(feature.tables.tables if feature.tables else ()):
+        _logger.warning(
+            "the database has lost %s of the feature %s, which is left out: runs that it hides are "
+            "shown",
+            ", ".join(sorted(missing)),
+            feature.name,
+        )
+    return not missing

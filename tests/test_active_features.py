@@ -1,0 +1,138 @@
+"""What the core asks of all features: whose a run is, who may see it; and features that fail."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app import active_features, server
+from app.feature import Feature
+from app.features.classroom.room_rows import RoomRows, RoomRun
+from app.installed_features import Catalogue, load
+from app.settings import Settings
+from app.storage.database.schema import RUNS
+from hexapods.domain.errors import InvalidInput
+from tests.api.calls import WALK
+from tests.api.conftest import running
+from tests.storage.stores import training
+
+TOKEN = "a-token-for-tests"
+BEARER = {"authorization": f"Bearer {TOKEN}"}
+PATHS_OF_HIDDEN = (
+    "/runs/hidden",
+    "/trainings/hidden",
+    "/runs/export?id=hidden",
+    "/events?run_id=hidden",
+)
+
+
+@pytest.fixture
+def with_hidden_run(tmp_path: Path) -> Path:
+    """A data folder with a run of a participant before the reveal, and one that is shown."""
+    with running(Settings(data=tmp_path, token=TOKEN)) as api:
+        code = api.call("POST", "/rooms", json={}, headers=BEARER).json()["code"]
+        store = api.client.app.state.services.store
+        run = RoomRun("hidden", code, 0, 0, {}, True, False, datetime.now(UTC))
+        RoomRows(store.database).add_runs([run])
+        store.create(training("hidden", state="finished"))
+        store.create(training("shown", state="finished"))
+    return tmp_path
+
+
+@pytest.mark.parametrize("without", [(), ("classroom",)], ids=["classroom", "left out"])
+def test_a_hidden_run_stays_hidden_where_its_feature_is_left_out(
+    without: tuple[str, ...], with_hidden_run: Path
+) -> None:
+    settings = Settings(data=with_hidden_run, token=TOKEN, without=without)
+    with running(settings) as api:
+        for path in ("/runs", "/trainings"):
+            assert [run["id"] for run in api.get(path)["items"]] == ["shown"], path
+        for path in PATHS_OF_HIDDEN:
+            assert api.client.head(f"/api/v1{path}").status_code == 403, path
+        assert api.call("GET", "/runs/hidden", headers=BEARER).status_code == 200
+        assert len(api.call("GET", "/runs", headers=BEARER).json()["items"]) == 2
+
+
+def test_tournaments_of_open_rooms_stay_closed_without_the_classroom(tmp_path: Path) -> None:
+    with running(Settings(data=tmp_path, token=TOKEN)) as api:
+        code = api.call("POST", "/rooms", json={}, headers=BEARER).json()["code"]
+        body = {"room": code, "rules": {"gait": "tripod"}}
+        opened = api.call("POST", "/tournaments", json=body, headers=BEARER).json()["id"]
+        assert api.call("GET", f"/tournaments/{opened}").status_code == 403
+    with running(Settings(data=tmp_path, token=TOKEN, without=("classroom",))) as api:
+        assert api.call("GET", f"/tournaments/{opened}").status_code == 403
+        assert api.call("GET", f"/tournaments/{opened}", headers=BEARER).status_code == 200
+
+
+Add = Callable[[type[Feature]], None]
+
+
+@pytest.fixture
+def add(monkeypatch: pytest.MonkeyPatch) -> Add:
+    """Returns a function that adds a feature to those that are installed."""
+
+    def add(feature: type[Feature]) -> None:
+        monkeypatch.setattr(
+            server, "load", lambda without: Catalogue((*load(without).classes, feature))
+        )
+
+    return add
+
+
+def failing(member: str) -> type[Feature]:
+    """Return a feature of which a member raises an unexpected error."""
+
+    def fail(*args: Any, **more: Any) -> Any:
+        raise RuntimeError("out of order")
+
+    is_of_class = isinstance(vars(Feature).get(member), classmethod)
+    return type(
+        "Failing",
+        (Feature,),
+        {"name": "failing", member: classmethod(fail) if is_of_class else fail},
+    )
+
+
+@pytest.mark.parametrize("member", ["__init__", "open", "routers", "pages", "provider"])
+def test_a_feature_that_fails_at_the_start_is_named(member: str, tmp_path: Path, add: Add) -> None:
+    add(failing(member))
+    with (
+        pytest.raises(InvalidInput, match=r"feature failing fails .*HEXAPODS_WITHOUT=failing"),
+        running(Settings(data=tmp_path)),
+    ):
+        pass
+
+
+def test_a_feature_that_fails_later_stops_nothing_else(
+    tmp_path: Path, add: Add, caplog: pytest.LogCaptureFixture
+) -> None:
+    members = {name: vars(failing(name))[name] for name in ("owner_of", "metrics", "unfinished")}
+    add(type("Failing", (Feature,), {"name": "failing", **members}))
+    with running(Settings(data=tmp_path, job_niceness=0)) as api:
+        assert "hexapods_runs" in api.client.get("/metrics").text
+        started = api.call("POST", "/trainings", json={**WALK, "steps": 20})
+        assert api.finished(started.json())["state"] == "finished"
+    messages = {record.message for record in caplog.records if "failing" in record.message}
+    assert {message.split(" cannot")[0].split(" has")[0] for message in messages} == {
+        "the feature failing"
+    }
+    assert {record.name for record in caplog.records if "failing" in record.message} == {
+        active_features.__name__
+    }
+
+
+def test_one_condition_hides_a_run_from_lists_and_alone(tmp_path: Path, add: Add) -> None:
+    class Hiding(Feature):
+        name = "hiding"
+
+        def visible_runs(self, identity: Any) -> Any:
+            return RUNS.c.id != "hidden"
+
+    add(Hiding)
+    with running(Settings(data=tmp_path, token=TOKEN)) as api:
+        api.client.app.state.services.store.create(training("hidden", state="finished"))
+        assert api.get("/runs")["items"] == []
+        refused = api.call("GET", "/runs/hidden")
+        assert (refused.status_code, "feature hiding" in refused.text) == (403, True)
