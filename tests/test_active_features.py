@@ -13,8 +13,9 @@ from app.features.classroom.room_rows import RoomRows, RoomRun
 from app.installed_features import Catalogue, load
 from app.settings import Settings
 from app.storage.database.schema import RUNS
+from app.storage.database.store import RunStore
 from hexapods.domain.errors import InvalidInput
-from tests.api.calls import WALK
+from tests.api.calls import WALK, Api
 from tests.api.conftest import running
 from tests.storage.stores import training
 
@@ -28,12 +29,18 @@ PATHS_OF_HIDDEN = (
 )
 
 
+def store_of(api: Api) -> RunStore:
+    app: Any = api.client.app
+    store: RunStore = app.state.services.store
+    return store
+
+
 @pytest.fixture
 def with_hidden_run(tmp_path: Path) -> Path:
     """A data folder with a run of a participant before the reveal, and one that is shown."""
     with running(Settings(data=tmp_path, token=TOKEN)) as api:
         code = api.call("POST", "/rooms", json={}, headers=BEARER).json()["code"]
-        store = api.client.app.state.services.store
+        store = store_of(api)
         run = RoomRun("hidden", code, 0, 0, {}, True, False, datetime.now(UTC))
         RoomRows(store.database).add_runs([run])
         store.create(training("hidden", state="finished"))
@@ -132,7 +139,7 @@ def test_one_condition_hides_a_run_from_lists_and_alone(tmp_path: Path, add: Add
 
     add(Hiding)
     with running(Settings(data=tmp_path, token=TOKEN)) as api:
-        api.client.app.state.services.store.create(training("hidden", state="finished"))
+        store_of(api).create(training("hidden", state="finished"))
         assert api.get("/runs")["items"] == []
         refused = api.call("GET", "/runs/hidden")
         assert (refused.status_code, "feature hiding" in refused.text) == (403, True)

@@ -77,7 +77,7 @@ def migrate_feature(database: Database, name: str, folder: Path, tables: MetaDat
             raise DamagedFile(
                 f"the database has lost {', '.join(missing)} of the feature {name}; put a backup "
                 f"back, or start without the feature by HEXAPODS_WITHOUT={name}, which "
-                "keeps the data, and no longer hides what the feature hid"
+                "keeps the data; what it hid may be shown then"
             )
 
     database.write(work)
