@@ -92,7 +92,10 @@ class Feature:
 
     @classmethod
     def options(cls) -> Mapping[str, Any]:
-        """Return what it adds to `GET /options`."""
+        """Return what it adds to `GET /options`.
+
+        What has the name of an object of the core, such as `limits`, is added to that object.
+        """
         return {}
 
     @classmethod

@@ -19,7 +19,6 @@ from starlette.websockets import WebSocket
 
 from app.active_features import Features
 from app.api import (
-    archives,
     contract,
     docs,
     events,
@@ -244,19 +243,19 @@ def _api_routes(
 ) -> tuple[BaseRoute, ...]:
     """Return the routes that are the same in all apps; FastAPI takes long to build them."""
     router, prefix = api_router(), "/api/v1"
-    # First, so that no other route matches `import` as a run's id.
+    # First, so that their fixed paths, such as `/runs/NAME`, are not taken for a run's id.
+    for feature in features:
+        with blaming(feature, "`routers`"):
+            for added in feature.routers(agents):
+                router.include_router(added, prefix=prefix)
     modules = (
-        *(archives, trainings, races, experiments, runs, exports, replays),
+        *(trainings, races, experiments, runs, exports, replays),
         *(stage, spectators, events, robots),
     )
     for module in modules:
         router.include_router(module.router, prefix=prefix)
     router.include_router(options.option_routes(features), prefix=prefix)
     router.include_router(start_routes(agents), prefix=prefix)
-    for feature in features:
-        with blaming(feature, "`routers`"):
-            for added in feature.routers(agents):
-                router.include_router(added, prefix=prefix)
     for included in (monitoring.router, docs.router):
         router.include_router(included)
     return tuple(router.routes)

@@ -209,12 +209,6 @@ class DeletedView(Answer):
     kept: list[KeptRun]
 
 
-class ImportedView(Answer):
-    """Runs that were imported, in the order of their archive."""
-
-    items: list[AnyRunView]
-
-
 class Announcement(Answer):
     """A replay that the stage will show by itself; `PUT /stage` with `stay` keeps the run."""
 

@@ -71,7 +71,7 @@ class Services:
         features: those of the server.
         page_files: where the files of the page are.
         stream_lock: held while a race is encoded as a recorded stream for viser.
-        exports: memory budget of exports that clients are still reading.
+        downloads: memory budget of files that clients are still reading.
         analyses: gait analyses and timelines, which all pages that watch a run request at once.
     """
 
@@ -94,7 +94,7 @@ class Services:
     features: Features
     page_files: PageFiles
     stream_lock: Lock = field(default_factory=Lock)
-    exports: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
+    downloads: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
     analyses: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
     _provided: dict[type, Any] = field(default_factory=dict)
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from app.archive.transfer import MAX_RUNS
 from app.storage.run import KINDS, MAX_KEY_LENGTH, SORTS, STATES
 from hexapods.domain import disturbances
 from hexapods.domain.gait import NAMED_GAITS
@@ -23,6 +22,8 @@ from hexapods.shows import show
 from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL
 
 MAX_PAGE = 100
+MAX_RUN_IDS = 100
+"""Runs that a request may name in its query."""
 MAX_SEARCH = MAX_NAME
 MAX_CURSOR = 2000
 """Maximum length of a cursor: a name, of which each character takes up to 12, and an id."""
@@ -84,7 +85,7 @@ VALID: dict[str, str] = {
         f"of its kind: {', '.join(disturbances.KINDS)}"
     ),
     "run_id": "the id of a run",
-    "id": f"the id of a run; up to {MAX_RUNS} of them as id=…&id=…",
+    "id": f"the id of a run; up to {MAX_RUN_IDS} of them as id=…&id=…",
     "ghost": "the id of another run of the same kind that has ended",
     "time_s": "a number of seconds, 0 or more",
     "playing": "true or false",

@@ -82,7 +82,7 @@ FIELD_HELP = {
     "tags": "How many words a run may have by which the list is filtered.",
     "notes": "What is worth remembering about a run.",
     "import_bytes": "How large a file may be that is imported.",
-    "archive_runs": "How many runs one archive holds.",
+    "run_ids": "How many runs a request may name.",
     "best_known": best_known.DEFINITION,
     "best_known_where": best_known.COVERAGE,
     "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",

@@ -13,6 +13,7 @@ from starlette.responses import JSONResponse, Response
 from app.api.body_fields import leg_fields, torso_fields
 from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
+from app.api.descriptions import MAX_RUN_IDS
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import OptionsView
 from app.api.option_texts import (
@@ -26,7 +27,6 @@ from app.api.option_texts import (
 )
 from app.api.policy import ANY_PAGE, api_router, policy
 from app.api.robot_options import built_in_options, gait_options, stored_options
-from app.archive.transfer import MAX_RUNS
 from app.feature import Feature
 from app.jobs.submissions import MAX_SETTINGS
 from app.storage.database.robots import RobotStore
@@ -124,7 +124,9 @@ def _content(
     """
     answer = catalogue(agents, robots.readable(hidden=True), version)
     for feature in features:
-        answer |= feature.options()
+        for name, added in feature.options().items():
+            # Limits and texts of a feature stand with those of the core.
+            answer[name] = {**answer[name], **added} if name in answer else added
     return CompressedContent(bytes(JSONResponse(answer).body), "application/json")
 
 
@@ -358,7 +360,7 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "tags": [0, MAX_TAGS],
         "notes": [0, MAX_NOTES],
         "import_bytes": [1, MAX_FILE_BYTES],
-        "archive_runs": [1, MAX_RUNS],
+        "run_ids": [1, MAX_RUN_IDS],
         "gait_window_s": [0, MAX_WINDOW_S],
         "seeds": [1, MAX_SEEDS],
         "trials": [1, MAX_TRIALS],

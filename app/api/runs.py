@@ -24,12 +24,11 @@ from app.api.answers import (
 )
 from app.api.contract import LOCATION, answers
 from app.api.deps import IdentityDep, RoleDep, Services, ServicesDep, StartRequest, StartRequestDep
-from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_SEARCH, VALID
+from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_RUN_IDS, MAX_SEARCH, VALID
 from app.api.fields import RunId
 from app.api.policy import OPERATOR, OWN_RUNS, START, WATCH, WATCH_RUN, Access, api_router, policy
 from app.api.recorded_answers import CurvesView
 from app.api.schemas import AnnotationBody
-from app.archive.transfer import MAX_RUNS
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import CopyStart, Start
 from app.storage.database.listing import Listing
@@ -43,7 +42,7 @@ MAX_POINTS = 40
 RunPath = Annotated[str, Path(description="id of the run")]
 RunIdsQuery = Annotated[
     list[RunId],
-    Query(alias="id", min_length=1, max_length=MAX_RUNS, description=VALID["id"]),
+    Query(alias="id", min_length=1, max_length=MAX_RUN_IDS, description=VALID["id"]),
 ]
 
 

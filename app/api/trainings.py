@@ -16,7 +16,7 @@ from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.recorded_answers import CurveView, QTableView
 from app.api.runs import RunPath, find, located, run_routes
-from app.archive import table_import
+from app.jobs import table_import
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
 from app.storage.json_text import finite

@@ -20,9 +20,9 @@ CORE_COMMANDS: Mapping[str, str] = {
     name: f"app.cli.{name.replace('-', '_')}"
     for name in (
         *("serve", "train", "race", "experiment", "sweep", "tune", "benchmark", "best-known"),
-        *("runs", "robots", "export", "verify", "doctor", "bench"),
+        *("runs", "robots", "verify", "doctor", "bench"),
     )
-} | {"import": "app.cli.imports"}
+}
 GROUP = "hexapods.commands"
 """Entry-point group of commands of features of other packages."""
 _PACKAGE = "app.features"

@@ -4,7 +4,8 @@ In the server:
 - `jobs` is the facade: submit, pause, resume, stop, change and delete runs.
 - `submissions` validates requests and builds the runs to be queued; `trial_runs` those that repeat
   a trial; `linked_start` notes whose they are before they are stored; `tasks` derives from a stored
-  run what its process needs to start, or to resume.
+  run what its process needs to start, or to resume; `table_import` makes a finished training of a
+  Q-table's file.
 - `queue` orders them; `supervisor` starts them as cores free up, and shuts them down.
 - `worker_process` is the handle on a process; `job` writes its messages to store and bus.
 - `process_pool` runs functions for requests that wait, in processes of its own; `turns`

@@ -8,6 +8,8 @@
   replays.
 - `idempotency`, `sessions` and `run_ids`: idempotency keys, operators' sessions, sortable ids.
 - `stored_tables` and `stored_trials` load tables, checkpoints and trials; `json_text` encodes JSON.
+- `untrusted_input` has the base class and field types with which input from elsewhere is parsed;
+  `imported_tables` validates tables from elsewhere.
 - `server_lock` admits one server to a data folder, and records where it listens; `private_folder`
   shuts out other users of the machine.
 """

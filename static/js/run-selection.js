@@ -61,7 +61,7 @@ export const deleteSelected = () =>
   attempt("selection", async () => {
     const reasons = [];
     const all = deletable.value.map(({ id }) => id);
-    const [, most] = served().limits.archive_runs;
+    const [, most] = served().limits.run_ids;
     for (let at = 0; at < all.length; at += most ?? all.length) {
       const { deleted, kept } = await api.deleteRuns(all.slice(at, at + (most ?? all.length)));
       deleted.forEach(markGone);

@@ -49,7 +49,7 @@ export function followThumbnails() {
 
 function request() {
   const ids = shownRuns.value.filter(({ kind }) => kind === "training").map(({ id }) => id);
-  const missing = ids.filter((id) => !asked.has(id)).slice(0, served().limits.archive_runs[1] ?? undefined);
+  const missing = ids.filter((id) => !asked.has(id)).slice(0, served().limits.run_ids[1] ?? undefined);
   if (missing.length === 0) return;
   missing.forEach((id) => asked.add(id));
   load(missing).then(request, (/** @type {RequestError} */ error) => {

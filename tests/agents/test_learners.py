@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.archive.imported_tables import checked_table
+from app.storage.imported_tables import checked_table
 from hexapods.agents.appearance import colors_of, description_of, title_of
 from hexapods.agents.protocol import Problem, Transition, Valuing
 from hexapods.agents.registry import OURS, build, find, learns, settings_of

@@ -10,7 +10,7 @@ import pytest
 
 from hexapods.experiments.config import experiment_config
 from tests.api.calls import Api, refused
-from tests.archive.test_transfer import repacked
+from tests.features.archives.test_transfer import repacked
 from tests.jobs.experiments import tried
 
 Serve = Callable[..., Api]

@@ -228,7 +228,7 @@ export const OPTIONS = {
     ...TRACER, ...LEARNER,
   },
   limits: { seeds: [1, null], seed: [0, null], what_if_steps: [1, 2000], lanes: [1, 6], legs: [3, 12], name: [0, 20],
-    tag: [1, 9], tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], gait_window_s: [0, 120],
+    tag: [1, 9], tags: [0, 3], notes: [0, 90], archive_runs: [1, 2], run_ids: [1, 2], gait_window_s: [0, 120],
     import_bytes: [1, 2 ** 20] },
   help: { alpha: "Learning rate." },
   titles: { gait: "Gait", agent: "Learner", lanes: "Lanes", name: "Name", robot: "Robot", world: "World" },

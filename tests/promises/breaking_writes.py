@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 from sqlalchemy import Connection, Engine, event, select
 
-from app.archive import table_import
 from app.events.bus import EventBus
+from app.jobs import table_import
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
 from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
@@ -40,7 +40,7 @@ from hexapods.runs.records import Evaluated, StepTaken
 from hexapods.runs.results import training_result
 from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
-from tests.archive.exported import export_run, import_run
+from tests.features.archives.exported import export_run, import_run
 from tests.jobs.played import played_job
 from tests.storage.ended_runs import GAIT, ended_experiment, ended_training
 from tests.storage.stores import opened, training

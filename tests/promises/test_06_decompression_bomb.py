@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from numpy.lib import format as npy
 
-from app.archive import archive
+from app.features.archives import archive
 from tests.browser.serving import Serving
 from tests.promises.raw import watched_memory
 

@@ -23,7 +23,7 @@ from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE
 from app.storage.run_ids import RunIds
-from tests.archive.exported import import_run
+from tests.features.archives.exported import import_run
 from tests.postgresql import PostgresServer
 from tests.promises.released import sample
 from tests.storage.all_tables import ALL_METADATA

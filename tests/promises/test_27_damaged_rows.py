@@ -23,10 +23,10 @@ import pytest
 from playwright.sync_api import Page, expect
 from sqlalchemy import text
 
-from app.archive import archive
-from app.archive.archived_trials import TRIALS
-from app.archive.transfer import RUN
 from app.events.run_view import run_view
+from app.features.archives import archive
+from app.features.archives.archived_trials import TRIALS
+from app.features.archives.transfer import RUN
 from app.storage.database.engine import Database, postgresql_engine
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.store import RunStore
@@ -34,10 +34,10 @@ from app.storage.errors import Damaged
 from app.storage.run import STATES, TABLE, DamagedRun
 from hexapods.runs import tables
 from hexapods.runs.tables import from_bytes
-from tests.archive.exported import export_run
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import serving
 from tests.cli.running import in_process
+from tests.features.archives.exported import export_run
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.worst_values import (

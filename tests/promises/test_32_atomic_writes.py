@@ -23,7 +23,7 @@ from app.storage.disk_space import MB
 from app.storage.run import TABLE
 from hexapods.domain import robot_documents
 from hexapods.domain.robot import as_mapping, document_of, robot
-from tests.archive.exported import export_run
+from tests.features.archives.exported import export_run
 from tests.promises.breaking_writes import OPERATIONS
 from tests.promises.length import at_length
 from tests.promises.processes import start_script

@@ -6,11 +6,11 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Path, Request
 from starlette.responses import JSONResponse, Response
 
+from app.api.budgeted_chunks import BudgetedChunks
 from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment
 from app.api.policy import ANY_PAGE, OPERATOR, api_router, policy
-from app.archive.transfer import BudgetedChunks
 from app.features.tournaments.access import (
     ENTER_TOURNAMENT,
     WATCH_TOURNAMENT,
@@ -129,7 +129,7 @@ def get_tournament_file(
     name_of = partial(name_for_others, services.of(RoomDirectory), tournament)
     data = file_of(services.of(Tournaments), tournament, name_of)
     parts = (data[at : at + CHUNK_BYTES] for at in range(0, len(data), CHUNK_BYTES))
-    chunks = BudgetedChunks(parts, len(data), services.exports)
+    chunks = BudgetedChunks(parts, len(data), services.downloads)
     return attachment(chunks, MEDIA_TYPE, f"tournament-{tournament.id}.json")
 
 

@@ -6,20 +6,10 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import Meta, Raw
 
-from app.archive.archived_curve import CurveRows, read_curve
-from app.archive.imported_tables import check_change, check_settings
-from app.archive.untrusted_input import (
-    Count,
-    Metres,
-    Moment,
-    Name,
-    PortableText,
-    UntrustedInput,
-    check_json,
-    check_moment,
-)
+from app.features.archives.archived_curve import CurveRows, read_curve
 from app.jobs.submissions import check_training, check_walk, plan_of
 from app.storage.errors import Conflict
+from app.storage.imported_tables import check_change, check_settings
 from app.storage.run import (
     CONFIGS,
     NOT_ENDED,
@@ -28,6 +18,16 @@ from app.storage.run import (
     Kind,
     Run,
     world_of,
+)
+from app.storage.untrusted_input import (
+    Count,
+    Metres,
+    Moment,
+    Name,
+    PortableText,
+    UntrustedInput,
+    check_json,
+    check_moment,
 )
 from hexapods import __version__
 from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, UnknownName

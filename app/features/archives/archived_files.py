@@ -9,20 +9,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from app.archive.archive import Member
-from app.archive.archived_trials import check_report_files, is_report_file, report_files
-from app.archive.imported_tables import checked_table
-from app.archive.untrusted_input import (
-    MAX_M,
-    Large,
-    Metres,
-    PortableText,
-    Seconds,
-    Share,
-    Step,
-)
+from app.features.archives.archive import Member
+from app.features.archives.archived_trials import check_report_files, is_report_file, report_files
 from app.storage.artifact_file import chunks
 from app.storage.database.store import RunStore
+from app.storage.imported_tables import checked_table
 from app.storage.run import CHECKPOINT, RESUMABLE, TABLE, Run
 from app.storage.stored_races import MAX_RACE_FILES, race_file
 from app.storage.stored_trainings import (
@@ -30,6 +21,15 @@ from app.storage.stored_trainings import (
     TRANSITIONS_PER_FILE,
     evaluations_file,
     transitions_file,
+)
+from app.storage.untrusted_input import (
+    MAX_M,
+    Large,
+    Metres,
+    PortableText,
+    Seconds,
+    Share,
+    Step,
 )
 from hexapods.domain.errors import DamagedFile, HexapodError
 from hexapods.domain.kinematics import legs_of

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from app.archive import archive
-from app.archive.transfer import RUN
+from app.features.archives import archive
+from app.features.archives.transfer import RUN
 from app.storage.database.store import RunStore
 from app.storage.run import Run
 from app.storage.run_ids import RunIds
@@ -15,7 +15,7 @@ from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from hexapods.domain.robot import Robot, document_of, robot
 from hexapods.runs.results import RaceResult
-from tests.archive.exported import export_run, import_run
+from tests.features.archives.exported import export_run, import_run
 from tests.storage.ended_runs import ended_race, ended_training
 from tests.storage.stores import opened, temporary_store
 

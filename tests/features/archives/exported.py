@@ -1,6 +1,6 @@
 """One run as an archive, and back."""
 
-from app.archive.transfer import export_chunks, import_runs
+from app.features.archives.transfer import export_chunks, import_runs
 from app.storage.database.store import RunStore
 from app.storage.run import IdempotencyKey, Run
 from app.storage.run_ids import RunIds

@@ -10,7 +10,9 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import UNSET, Meta, UnsetType
 
-from app.archive.untrusted_input import (
+from app.jobs.submissions import plan_of
+from app.storage.run import Run
+from app.storage.untrusted_input import (
     Large,
     Metres,
     Name,
@@ -19,8 +21,6 @@ from app.archive.untrusted_input import (
     UntrustedInput,
     check_json,
 )
-from app.jobs.submissions import plan_of
-from app.storage.run import Run
 from hexapods.domain.errors import DamagedFile
 from hexapods.domain.text import is_formula
 from hexapods.experiments.config import SUMMARY, ExperimentConfig

@@ -12,8 +12,8 @@ from hashlib import sha256
 
 import pytest
 
-from app.archive import archive
-from app.archive.archive import MANIFEST, pack, unpack
+from app.features.archives import archive
+from app.features.archives.archive import MANIFEST, pack, unpack
 from hexapods.domain.errors import DamagedFile, InvalidInput
 
 MEMBERS = {"run.json": b'{"a": 1}', "race.npz": bytes(range(256)) * 8}

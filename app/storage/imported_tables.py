@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from app.archive.untrusted_input import Metres, Name, Share, Step
+from app.storage.untrusted_input import Metres, Name, Share, Step
 from hexapods.agents import registry
 from hexapods.agents.tabular import TabularAgent
 from hexapods.domain.disturbance_documents import disturbance

@@ -28,7 +28,7 @@ def run(options: argparse.Namespace) -> int:
         HexapodError: if a run does not exist or has not ended, or the file cannot be written.
     """
     # Imported here, as the database modules would slow the start of other commands.
-    from app.archive.transfer import export_chunks, export_many  # noqa: PLC0415
+    from app.features.archives.transfer import export_chunks, export_many  # noqa: PLC0415
 
     check_writable(options.out)
     with open_for_reading(read_settings(data=options.data)) as store:

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.archive import archive
-from app.archive.transfer import RUN, export_many, import_runs
+from app.features.archives import archive
+from app.features.archives.transfer import RUN, export_many, import_runs
 from app.storage import stored_races
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound, StorageFull
@@ -30,7 +30,7 @@ from hexapods.domain.world import World
 from hexapods.runs.lane import PlanningModel, lane_config
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.race_file import race_arrays
-from tests.archive.exported import export_run, import_run
+from tests.features.archives.exported import export_run, import_run
 from tests.storage.ended_runs import ended_race, ended_training, result_of_race
 from tests.storage.stores import ODD, opened, temporary_store, training
 

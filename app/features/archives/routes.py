@@ -5,19 +5,25 @@ from collections.abc import Callable, Sequence
 from fastapi import Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import AnyRunView, ImportedView
+from app.api.answers import Answer, AnyRunView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, WATCH, WATCH_RUN, api_router, policy
 from app.api.robots import publish_robots
 from app.api.runs import RunIdsQuery, RunPath, find, located, phrase
-from app.archive import archive
-from app.archive.transfer import export_chunks, export_many, import_runs
+from app.features.archives import archive
+from app.features.archives.transfer import export_chunks, export_many, import_runs
 from app.storage.run import KINDS, IdempotencyKey, Kind, Run, robots_of
 from hexapods.domain.errors import InvalidInput
 
 router = api_router()
+
+
+class ImportedView(Answer):
+    """Runs that were imported, in the order of their archive."""
+
+    items: list[AnyRunView]
 
 
 def _export(kind: Kind) -> Callable[..., Response]:
@@ -25,7 +31,7 @@ def _export(kind: Kind) -> Callable[..., Response]:
     def export(services: ServicesDep, run_id: RunPath) -> Response:
         """Return a `.zip` that another server's import, or `hexapods import`, accepts."""
         run = find(services, kind, run_id)
-        data = export_chunks(services.store, run.id, services.exports)
+        data = export_chunks(services.store, run.id, services.downloads)
         return attachment(data, archive.MEDIA_TYPE, f"{kind}-{run.id}.zip")
 
     return export
@@ -57,7 +63,7 @@ for _kind in KINDS:
 @policy(access=WATCH, work="download")
 def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     """Return one `.zip` with the archive of each, which `POST /runs/import` accepts."""
-    data = export_many(services.store, ids, services.exports)
+    data = export_many(services.store, ids, services.downloads)
     count = len(dict.fromkeys(ids))
     return attachment(data, archive.MEDIA_TYPE, f"{count}-run{'' if count == 1 else 's'}.zip")
 

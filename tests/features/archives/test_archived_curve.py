@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from app.archive.archived_curve import read_curve
+from app.features.archives.archived_curve import read_curve
 
 LONG = [{"step": n, "distance_m": n / 7, "epsilon": 1 / (n + 1)} for n in range(60_000)]
 ROW = {"step": 1, "distance_m": 0.5, "epsilon": 0.1}

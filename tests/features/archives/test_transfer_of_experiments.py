@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from app.archive import archive
-from app.archive.archived_trials import TRIALS
+from app.features.archives import archive
+from app.features.archives.archived_trials import TRIALS
 from app.storage.database.store import RunStore
 from app.storage.run import State
 from hexapods.agents.registry import OURS
@@ -17,8 +17,15 @@ from hexapods.experiments.config import SUMMARY, experiment_config
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.trial import run_trial
 from hexapods.experiments.worker import Outcome
-from tests.archive.exported import export_run
-from tests.archive.test_transfer import Change, _set, imported, refusal, repacked, rewritten
+from tests.features.archives.exported import export_run
+from tests.features.archives.test_transfer import (
+    Change,
+    _set,
+    imported,
+    refusal,
+    repacked,
+    rewritten,
+)
 from tests.storage.ended_runs import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened
 

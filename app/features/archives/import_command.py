@@ -7,11 +7,11 @@ import argparse
 import json
 from typing import Any
 
-from app.archive.archive import MAX_BYTES
 from app.cli.files import read_bounded
 from app.cli.options import CommandParser
 from app.cli.server_client import call_server
 from app.cli.stored_runs import add_data
+from app.features.archives.archive import MAX_BYTES
 from app.settings import Settings, read_settings
 from hexapods.runs.config import usable_agents
 
@@ -44,8 +44,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _import(settings: Settings, data: bytes, label: str) -> list[dict[str, Any]]:
     # Imported here, as the database modules would slow the start of other commands.
-    from app.archive.transfer import import_runs  # noqa: PLC0415
     from app.events.run_view import run_view  # noqa: PLC0415
+    from app.features.archives.transfer import import_runs  # noqa: PLC0415
     from app.storage.database.opening import open_store  # noqa: PLC0415
     from app.storage.run_ids import RunIds  # noqa: PLC0415
     from app.storage.server_lock import FolderInUse  # noqa: PLC0415

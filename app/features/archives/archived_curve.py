@@ -11,7 +11,7 @@ from typing import Any, overload
 
 import msgspec
 
-from app.archive.untrusted_input import Metres, Share, Step, UntrustedInput
+from app.storage.untrusted_input import Metres, Share, Step, UntrustedInput
 
 _PIECE_BYTES = 1_000_000
 _MAX_ROW_BYTES = 300

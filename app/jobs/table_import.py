@@ -3,9 +3,9 @@
 from collections.abc import Collection
 from datetime import UTC, datetime
 
-from app.archive.imported_tables import checked_table
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import check_training
+from app.storage.imported_tables import checked_table
 from app.storage.run import IdempotencyKey, Run
 from hexapods.domain.text import check_name
 from hexapods.runs import tables

@@ -9,19 +9,20 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from app.archive import archive
-from app.archive.archived_files import check_files, is_file_of, members_of
-from app.archive.archived_robots import (
+from app.api.budgeted_chunks import BudgetedChunks
+from app.features.archives import archive
+from app.features.archives.archived_files import check_files, is_file_of, members_of
+from app.features.archives.archived_robots import (
     is_robot,
     robot_members,
     robots_to_store,
     take_documents,
 )
-from app.archive.archived_run import read_run_json, run_json
-from app.archive.archived_trials import TRIALS, read_trials_json, trials_json
+from app.features.archives.archived_run import read_run_json, run_json
+from app.features.archives.archived_trials import TRIALS, read_trials_json, trials_json
 from app.limits.memory_budget import MemoryBudget
 from app.storage.database.store import RunStore
-from app.storage.errors import Busy, Damaged
+from app.storage.errors import Damaged
 from app.storage.json_text import is_finite
 from app.storage.run import KINDS, Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
@@ -33,7 +34,6 @@ RUN = "run.json"
 MAX_RUNS = 100
 """Runs of an archive."""
 _ONE_OF_SEVERAL = re.compile(rf"({'|'.join(KINDS)})-[0-9a-z]{{1,32}}\.zip", re.ASCII)
-_ANYONE = "anyone"
 
 
 def export_chunks(
@@ -104,37 +104,6 @@ def _contents(
     if run.kind == "experiment":
         texts[TRIALS] = trials_json(trials)
     return run, texts, members_of(store, run)
-
-
-class BudgetedChunks:
-    """Iterator over chunks that holds bytes of a memory budget until it is garbage-collected."""
-
-    def __init__(self, chunks: Iterator[bytes], size: int, budget: MemoryBudget) -> None:
-        """Reserve the bytes.
-
-        Args:
-            chunks: what is iterated over.
-            size: of what is held in memory meanwhile [bytes].
-            budget: of which it is a part.
-
-        Raises:
-            Busy: if the budget has no place for it.
-        """
-        self._chunks, self._size, self._budget = chunks, 0, budget
-        if budget.reserve(_ANYONE, size) is not None:
-            raise Busy("as much is exported as the server can at once; try again in a moment", 5)
-        self._size = size
-
-    def __iter__(self) -> Iterator[bytes]:
-        return self
-
-    def __next__(self) -> bytes:
-        return next(self._chunks)
-
-    def __del__(self) -> None:
-        # Not in a generator's `finally`, which does not run if the response was never started.
-        if self._size:
-            self._budget.release(_ANYONE, self._size)
 
 
 def import_runs(

@@ -1,0 +1,8 @@
+"""The commands `export` and `import`."""
+
+from collections.abc import Mapping
+
+COMMANDS: Mapping[str, str] = {
+    "export": "app.features.archives.export_command",
+    "import": "app.features.archives.import_command",
+}
