@@ -108,6 +108,11 @@ class Services:
         service: T = self._provided[kind]
         return service
 
+    def publish_robots(self) -> None:
+        """Send an event to all pages, as stored robots have changed."""
+        robots = self.store.robots
+        self.bus.publish("robots", {"count": len(robots.stored()), "version": robots.version})
+
 
 class EventListener:
     """A client of the event stream, with its role; `close` ends its stream, if one is open."""

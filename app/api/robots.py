@@ -8,7 +8,7 @@ from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import JSONResponse, Response
 
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers
-from app.api.deps import BodyDep, Services, ServicesDep
+from app.api.deps import BodyDep, ServicesDep
 from app.api.fields import Body, Name, record_fields
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, QUESTION, WATCH, api_router, policy
@@ -104,7 +104,7 @@ def store_robot(
     stored once, with the name that it was given first, and answered with 200.
     """
     stored, is_new = import_robot(services.store, body, name, file or None)
-    publish_robots(services)
+    services.publish_robots()
     location = {"Location": f"/api/v1/robots/{stored.id}"}
     return JSONResponse(robot_view(stored), 201 if is_new else 200, location)
 
@@ -150,7 +150,7 @@ def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBo
     if choices is not None:
         robot_id = correct_robot(services.store, robot_id, choices).id
     changed = robots.change(robot_id, **changes) if changes else robots.get(robot_id)
-    publish_robots(services)
+    services.publish_robots()
     return JSONResponse(robot_view(changed))
 
 
@@ -161,7 +161,7 @@ def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBo
 def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
     """Delete a robot that no run uses; one that runs use can be hidden."""
     services.store.robots.delete(robot_id)
-    publish_robots(services)
+    services.publish_robots()
 
 
 @router.get(
@@ -192,9 +192,3 @@ def preview_robot(body: _PreviewBody) -> Response:
     """
     walk = WalkingProblem(**{name: getattr(body, name) for name in type(body).model_fields})
     return JSONResponse(to_json(preview(walk)))
-
-
-def publish_robots(services: Services) -> None:
-    """Send an event to all pages, as stored robots have changed."""
-    robots = services.store.robots
-    services.bus.publish("robots", {"count": len(robots.stored()), "version": robots.version})

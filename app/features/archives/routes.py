@@ -10,7 +10,6 @@ from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, WATCH, WATCH_RUN, api_router, policy
-from app.api.robots import publish_robots
 from app.api.runs import RunIdsQuery, RunPath, find, located, phrase
 from app.features.archives import archive
 from app.features.archives.transfer import export_chunks, export_many, import_runs
@@ -122,5 +121,5 @@ def _imported(services: Services, start_request: StartRequest, *, is_one: bool) 
     for run in runs:
         services.bus.publish_run(run)
     if any(robot.id is not None for run in runs for robot in robots_of(run.config)):
-        publish_robots(services)
+        services.publish_robots()
     return runs
