@@ -30,7 +30,7 @@ from app.api import (
     problems,
     races,
     replays,
-    robots,
+    robot_preview,
     runs,
     spectators,
     stage,
@@ -250,7 +250,7 @@ def _api_routes(
                 router.include_router(added, prefix=prefix)
     modules = (
         *(trainings, races, experiments, runs, exports, replays),
-        *(stage, spectators, events, robots),
+        *(stage, spectators, events, robot_preview),
     )
     for module in modules:
         router.include_router(module.router, prefix=prefix)

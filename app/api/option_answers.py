@@ -238,8 +238,6 @@ class OptionsView(Answer):
 
     Attributes:
         limits: [lowest, highest]; `settings` says which of them are not valid themselves.
-        leg_fields: numbers of a leg that the editor of bodies offers.
-        torso_fields: those of the rest of the robot.
         robots_version: increases with each change of the stored robots.
         titles: names of fields that are no declared settings.
         exports: files of a recorded walk.
@@ -249,8 +247,6 @@ class OptionsView(Answer):
     robots_version: Count
     gaits: list[GaitOption]
     robots: list[RobotOption]
-    leg_fields: dict[str, SettingOption]
-    torso_fields: dict[str, SettingOption]
     agents: list[AgentOption]
     worlds: list[WorldOption]
     disturbances: list[DisturbanceOption]

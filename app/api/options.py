@@ -10,7 +10,6 @@ from fastapi import APIRouter, Request
 from pydantic import create_model
 from starlette.responses import JSONResponse, Response
 
-from app.api.body_fields import leg_fields, torso_fields
 from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.descriptions import MAX_RUN_IDS
@@ -160,8 +159,6 @@ def catalogue(
         "robots_version": robots_version,
         "gaits": [gait_options(name) for name in NAMED_GAITS],
         "robots": [*map(built_in_options, CREATURES.values()), *map(stored_options, robots)],
-        "leg_fields": {name: setting_option(setting) for name, setting in leg_fields().items()},
-        "torso_fields": {name: setting_option(setting) for name, setting in torso_fields().items()},
         "agents": _agents(agents),
         "worlds": _worlds(),
         "disturbances": _disturbances(),

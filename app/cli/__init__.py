@@ -1,10 +1,9 @@
 """The `hexapods` command line: each command parses its options and makes one call.
 
 Commands: `serve`, `train`, `race`, `experiment`, `sweep`, `tune`, `benchmark`, `best_known`,
-`runs` (list, show, delete; `run_files` and `servos` have its verbs that write files), `robots`
-(list, show, export; `stored_robots` has its verbs that change which are stored), `verify` (score
-files in `verify_benchmark`), `doctor` (with checks in `machine_checks` and `data_checks`), `bench`
-(with the measurements in `benchmarks`).
+`runs` (list, show, delete; `run_files` and `servos` have its verbs that write files), `verify`
+(score files in `verify_benchmark`), `doctor` (with checks in `machine_checks` and `data_checks`),
+`bench` (with the measurements in `benchmarks`).
 Their module docstrings are the descriptions in `--help`.
 Features add commands of their own (`commands`).
 Shared: `options` (options and parsers of their values), `trial_options` and `trials` (experiments

@@ -20,7 +20,7 @@ CORE_COMMANDS: Mapping[str, str] = {
     name: f"app.cli.{name.replace('-', '_')}"
     for name in (
         *("serve", "train", "race", "experiment", "sweep", "tune", "benchmark", "best-known"),
-        *("runs", "robots", "verify", "doctor", "bench"),
+        *("runs", "verify", "doctor", "bench"),
     )
 }
 GROUP = "hexapods.commands"

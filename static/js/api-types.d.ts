@@ -3016,18 +3016,6 @@ export interface OptionsView {
   robots_version: number;
   gaits: GaitOption[];
   robots: RobotOption[];
-  /**
-   * numbers of a leg that the editor of bodies offers.
-   */
-  leg_fields: {
-    [k: string]: SettingOption;
-  };
-  /**
-   * those of the rest of the robot.
-   */
-  torso_fields: {
-    [k: string]: SettingOption;
-  };
   agents: AgentOption[];
   worlds: WorldOption[];
   disturbances: DisturbanceOption[];
@@ -3059,6 +3047,12 @@ export interface OptionsView {
    */
   exports: ExportOption[];
   tournament_fields: {
+    [k: string]: SettingOption;
+  };
+  leg_fields: {
+    [k: string]: SettingOption;
+  };
+  torso_fields: {
     [k: string]: SettingOption;
   };
 }

@@ -30,7 +30,6 @@ from app.api.options import options_view
 from app.api.policy import OPERATOR, MissingPolicy, policies, policy
 from app.api.problems import STATUSES
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
-from app.api.robot_answers import StoredRobotsView, StoredRobotView, WholeRobotView
 from app.installed_features import load
 from app.server import create_app
 from app.settings import Settings
@@ -225,12 +224,7 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     experiment = api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1})
     yield ExperimentView, experiment
     yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
-    stored = api.call("POST", "/robots", json={"robot": {"preset": "ant", "femur_m": 0.07}}).json()
-    yield StoredRobotView, stored
-    yield WholeRobotView, api.get(f"/robots/{stored['id']}")
-    yield StoredRobotsView, api.get("/robots")
     yield options_view(load().classes), api.get("/options")
-    api.call("DELETE", f"/robots/{stored['id']}")
     yield ExperimentView, api.finished(experiment)
     yield SummaryView, api.get(f"/experiments/{experiment['id']}/summary")
     yield TrialsView, api.get(f"/experiments/{experiment['id']}/trials")
@@ -259,8 +253,7 @@ def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> No
     api.finished(api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1}))
     api.ended(run)
     api.call("DELETE", f"/trainings/{run['id']}")
-    stored = api.call("POST", "/robots", json={"robot": {"preset": "ant", "femur_m": 0.07}}).json()
-    api.call("DELETE", f"/robots/{stored['id']}")
+    services.publish_robots()
     opened = api.call("POST", "/tournaments", json={"rules": {**WALK, "draws": 5}}).json()
     api.call("DELETE", f"/tournaments/{opened['id']}")
 

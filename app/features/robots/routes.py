@@ -1,43 +1,34 @@
-"""Routes of robots: those that are stored, and what is known of one before it walks."""
+"""Routes of stored robots."""
 
 from typing import Annotated, Any
 
 from fastapi import Path, Query
-from pydantic import ConfigDict, Field, create_model
+from pydantic import ConfigDict, Field
 from starlette.convertors import StringConvertor, register_url_convertor
 from starlette.responses import JSONResponse, Response
 
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers
 from app.api.deps import BodyDep, ServicesDep
-from app.api.fields import Body, Name, record_fields
+from app.api.fields import Body, Name
 from app.api.formats import attachment
-from app.api.policy import OPERATOR, QUESTION, WATCH, api_router, policy
-from app.api.robot_answers import (
+from app.api.policy import OPERATOR, WATCH, api_router, policy
+from app.api.schemas import PatchBody, one_given
+from app.features.robots.response_models import (
     StoredRobotsView,
     StoredRobotView,
     WholeRobotView,
     robot_view,
     whole_view,
 )
-from app.api.schemas import PatchBody, one_given
-from app.archive.robot_import import check_stands, correct_robot, import_robot
+from app.features.robots.robot_import import check_stands, correct_robot, import_robot
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.gait import AnyGait
-from hexapods.domain.records import to_json
 from hexapods.domain.robot import AnyRobot
 from hexapods.imports.choices import Choices
-from hexapods.runs.config import WalkingProblem
-from hexapods.runs.preview import Preview, preview
 
 FILE_TYPES = ("application/xml", "application/zip", "application/octet-stream")
 router = api_router(prefix="/robots", tags=["robots"])
-
-_OTHER = {"world", "simulator", "tolerance", "reward"}
-"""Fields of the walking problem that a preview does not depend on."""
-_PreviewBody: Any = create_model(
-    "PreviewBody", __base__=Body, **record_fields(WalkingProblem, _OTHER)
-)
 
 
 class _RobotId(StringConvertor):
@@ -175,20 +166,3 @@ def get_robot_file(services: ServicesDep, robot_id: RobotPath) -> Response:
     """Return its document, which `POST /robots` and `hexapods robots import` store elsewhere."""
     data = services.store.robots.document(robot_id)
     return attachment(data, "application/json", f"robot-{robot_id}.json")
-
-
-@router.post(
-    "/preview",
-    summary="Tell support, reach, states and speed of a robot before it walks",
-    response_model=Preview,
-)
-@policy(access=QUESTION, work="analysis")
-def preview_robot(body: _PreviewBody) -> Response:
-    """Return what follows from robot, gait and foot grid; nothing is simulated.
-
-    `margin_m` below 0 means that it tips; `better` then has groups with which it stands. Without
-    slip it advances by `law_m_per_step`: 2 h / (G (1 + Σ w²)), h half the grid's side, G the number
-    of groups, w their shares of the feet.
-    """
-    walk = WalkingProblem(**{name: getattr(body, name) for name in type(body).model_fields})
-    return JSONResponse(to_json(preview(walk)))

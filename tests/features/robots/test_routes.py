@@ -8,9 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import BaseModel
 
 from app.api.memory_limit import MAX_FILE_BYTES
-from hexapods.domain.robot import robot
+from app.api.options import options_view
+from app.features.robots.response_models import StoredRobotsView, StoredRobotView, WholeRobotView
+from app.installed_features import load
+from hexapods.domain.robot import PLACED_RANGES, RANGES, robot
 from tests.api.calls import WALK, Api, refused
 
 BODY = {"preset": "dog", "femur_m": 0.0912}
@@ -42,6 +46,17 @@ def test_a_stored_robot_has_its_legs_its_groups_and_its_gait(api: Api, rex: dict
     assert whole["robot"]["femur_m"] == 0.0912
     assert whole["preview"]["tips"] is False
     assert robot(whole["robot"]).feet_out_m == robot(BODY).feet_out_m
+
+
+def test_answers_match_their_models(api: Api, rex: dict[str, Any]) -> None:
+    answers: dict[type[BaseModel], Any] = {
+        StoredRobotView: rex,
+        WholeRobotView: api.get(f"/robots/{rex['id']}"),
+        StoredRobotsView: api.get("/robots"),
+        options_view(load().classes): api.get("/options"),
+    }
+    for model, answer in answers.items():
+        model.model_validate(answer)
 
 
 def test_the_same_content_is_stored_once(api: Api, rex: dict[str, Any]) -> None:
@@ -176,6 +191,18 @@ def test_a_file_that_is_too_large_is_refused(api: Api) -> None:
     answer = api.call("POST", "/robots", content=b" " * (MAX_FILE_BYTES + 1))
     refused(answer, 413, f"{MAX_FILE_BYTES:,} bytes")
     refused(api.call("POST", "/robots", content=b" " * (9 << 20)), 422, "at most 8,388,608 bytes")
+
+
+def test_fields_of_the_editor_have_the_limits_of_requests(api: Api) -> None:
+    options = api.call("GET", "/options").json()
+
+    assert options["limits"]["legs"] == [3, 12]
+    for name, field in options["leg_fields"].items():
+        assert (field["minimum"], field["maximum"]) == PLACED_RANGES[name]
+        assert field["minimum"] <= field["default"] <= field["maximum"]
+    for name, field in options["torso_fields"].items():
+        assert (field["minimum"], field["maximum"]) == RANGES[name]
+        assert field["minimum"] <= field["default"] <= field["maximum"]
 
 
 def test_spectators_read_and_do_not_write(serve: Callable[..., Api]) -> None:

@@ -6,11 +6,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from app.cli import stored_robots
 from app.cli.files import check_writable, size_text, write_whole
 from app.cli.options import CommandParser, read_gait, read_robot
 from app.cli.stored_runs import add_data, open_for_reading
 from app.cli.terminal import show_table
+from app.features.robots import storing_commands
 from app.settings import read_settings
 from hexapods.domain.creatures import CREATURES, Creature, own_gait
 from hexapods.domain.errors import HexapodError, InvalidInput
@@ -69,7 +69,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
             metavar="NAME",
             help=f"{', '.join(PRESETS)}, a stored one's name or id, a TOML file, or JSON",
         )
-    stored_robots.add_to(verbs)
+    storing_commands.add_to(verbs)
 
 
 def list_robots(options: argparse.Namespace) -> int:

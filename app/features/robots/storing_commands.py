@@ -61,7 +61,8 @@ def _import(options: argparse.Namespace) -> int:
     name = options.name or path.stem
 
     def store_it(store: "RunStore") -> "StoredRobot":
-        from app.archive.robot_import import import_robot  # noqa: PLC0415 - loads the jobs
+        # Imported here, as it loads the jobs.
+        from app.features.robots.robot_import import import_robot  # noqa: PLC0415
 
         return import_robot(store, data, name, path.name)[0]
 

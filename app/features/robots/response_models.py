@@ -1,4 +1,4 @@
-"""Response models of stored robots, as those of `app.api.answers`."""
+"""Answers about stored robots."""
 
 import json
 from datetime import datetime

@@ -4,7 +4,6 @@ from typing import Any
 
 import pytest
 
-from hexapods.domain.robot import PLACED_RANGES, RANGES
 from tests.api.calls import Api, refused
 
 
@@ -69,18 +68,6 @@ def test_legs_that_cannot_be_so_are_named(api: Api) -> None:
 
     refused(answer, 422, "feet of legs 2 and 3")
     assert answer.json()["legs"] == [2, 3]
-
-
-def test_fields_of_the_editor_have_the_limits_of_requests(api: Api) -> None:
-    options = api.call("GET", "/options").json()
-
-    assert options["limits"]["legs"] == [3, 12]
-    for name, field in options["leg_fields"].items():
-        assert (field["minimum"], field["maximum"]) == PLACED_RANGES[name]
-        assert field["minimum"] <= field["default"] <= field["maximum"]
-    for name, field in options["torso_fields"].items():
-        assert (field["minimum"], field["maximum"]) == RANGES[name]
-        assert field["minimum"] <= field["default"] <= field["maximum"]
 
 
 def test_what_makes_no_sense_is_refused(api: Api) -> None:

@@ -1,0 +1,39 @@
+"""Route of what is known of a robot before it walks.
+
+It is the core's, as it is told of any robot: one that is built in, stored, or in the request.
+"""
+
+from typing import Any
+
+from pydantic import create_model
+from starlette.responses import JSONResponse, Response
+
+from app.api.fields import Body, record_fields
+from app.api.policy import QUESTION, api_router, policy
+from hexapods.domain.records import to_json
+from hexapods.runs.config import WalkingProblem
+from hexapods.runs.preview import Preview, preview
+
+router = api_router(prefix="/robots", tags=["robots"])
+_IRRELEVANT = {"world", "simulator", "tolerance", "reward"}
+"""Fields of the walking problem that a preview does not depend on."""
+_PreviewBody: Any = create_model(
+    "PreviewBody", __base__=Body, **record_fields(WalkingProblem, _IRRELEVANT)
+)
+
+
+@router.post(
+    "/preview",
+    summary="Tell support, reach, states and speed of a robot before it walks",
+    response_model=Preview,
+)
+@policy(access=QUESTION, work="analysis")
+def preview_robot(body: _PreviewBody) -> Response:
+    """Return what follows from robot, gait and foot grid; nothing is simulated.
+
+    `margin_m` below 0 means that it tips; `better` then has groups with which it stands. Without
+    slip it advances by `law_m_per_step`: 2 h / (G (1 + Σ w²)), h half the grid's side, G the number
+    of groups, w their shares of the feet.
+    """
+    walk = WalkingProblem(**{name: getattr(body, name) for name in type(body).model_fields})
+    return JSONResponse(to_json(preview(walk)))
