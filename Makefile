@@ -127,7 +127,7 @@ docs: $(DEV_STAMP) ## Build docs/ as a site in build/docs
 .PHONY: soak
 soak: $(DEV_STAMP) ## Show what is promised at its full length; it takes hours
 	HEXAPODS_SOAK=1 $(BIN)/python -m pytest tests/promises tests/runs/test_figures.py \
-		tests/physics/test_figures.py tests/browser \
+		tests/physics/test_figures.py tests/browser $(wildcard tests/features/*/browser) \
 		tests/tournaments/test_verification.py tests/experiments/test_cluster.py \
 		tests/experiments/test_trial.py tests/experiments/report/test_files.py \
 		tests/experiments/test_summary.py tests/test_wheel.py \

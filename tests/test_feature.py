@@ -26,6 +26,7 @@ OF_FEATURE = {
     "gait_analysis": "/api/v1/runs/{run_id}/gait",
     "run_code": "/api/v1/runs/{run_id}/code",
     "guide": "/guide/page",
+    "robots": "/api/v1/robots/{robot_id}",
 }
 """An address of each."""
 NAMES = tuple(OF_FEATURE)

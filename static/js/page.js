@@ -8,10 +8,6 @@ import { replayLink } from "./replay.js";
 /** @import { Message } from "./replay-frames.js" */
 
 export const helpIsOpen = signal(false);
-/** Whether the editor of the robot's body is open. */
-export const bodyIsOpen = signal(false);
-/** Whether the list of stored robots is open. */
-export const robotsAreOpen = signal(false);
 
 /**
  * A text that the browser keeps; where storage is forbidden, it is kept until the page is closed.

@@ -24,6 +24,7 @@ WORDS = {
     "tournaments": "tournament",
     "demo": "demo",
     "what_if": "What if",
+    "robots": "Edit the body|Your robot",
 }
 """How the page speaks of a feature."""
 

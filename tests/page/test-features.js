@@ -57,6 +57,7 @@ const WORDS = {
   gait_analysis: /gait.analysis/i,
   guide: /guide\//,
   run_code: /as code|showCode/i,
+  robots: /body.?editor|your robots|edit.?(the.)?body|robotsAreOpen/i,
 };
 
 test("no module of the core names a feature", () => {

@@ -4,9 +4,7 @@ import { computed, effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { menuRows, partsOf, runRow, wantedDialogs } from "../features.js";
 import { page } from "../page-state.js";
-import {
-  bodyIsOpen, clickedCell, helpIsOpen, isPhone, nextTheme, present, robotsAreOpen, share, theme, toastMessage,
-} from "../page.js";
+import { clickedCell, helpIsOpen, isPhone, nextTheme, present, share, theme, toastMessage } from "../page.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
@@ -24,8 +22,6 @@ export const App = () => html`
   <${Header} />
   <main id="main" tabindex="-1"><${Main} /></main>
   <${Help} />
-  <${BodyEditor} />
-  <${StoredRobots} />
   <${Dialogs} />
   <${Toast} />
   <p class="sr-only" role="status">${announcement}</p>
@@ -86,20 +82,6 @@ const loadHelp = () => import("./help.js").then(({ HelpDialog }) => HelpDialog);
 
 /** Loaded when it is first opened, and there since then. */
 const Help = () => (helpIsOpen.value || loaded.value.help) && html`<${Loaded} name="help" load=${loadHelp} />`;
-
-const loadBodyEditor = () =>
-  withStyle("style/body-editor.css", import("./body-editor.js")).then((own) => own.BodyEditor);
-
-const BodyEditor = () => (bodyIsOpen.value || loaded.value["editor of the body"]) && html`
-  <${Loaded} name="editor of the body" load=${loadBodyEditor} />
-`;
-
-const loadStoredRobots = () =>
-  withStyle("style/stored-robots.css", import("./stored-robots.js")).then((own) => own.StoredRobots);
-
-const StoredRobots = () => (robotsAreOpen.value || loaded.value["list of robots"]) && html`
-  <${Loaded} name="list of robots" load=${loadStoredRobots} />
-`;
 
 /** Of features, those that were wanted. */
 const Dialogs = () => Object.entries(partsOf("dialogs"))

@@ -16,8 +16,7 @@ import {
 } from "../titles.js";
 import { isAtLeast } from "../workspace.js";
 import { Beforehand } from "./beforehand.js";
-import { EditBody } from "./edit-body.js";
-import { HexapodGlyph, html } from "./elements.js";
+import { HexapodGlyph, html, Slot } from "./elements.js";
 import {
   attributesOf, closable, Description, MistakeOf, NumberField, SelectField, SettingField, SettingRow, Slider,
 } from "./fields.js";
@@ -51,7 +50,7 @@ export function TrainSettings() {
             choices=${served().worlds.map(({ name, title }) => [name, title])} />
         </div>
       `}
-      ${isFull && closable("robot", html`<${EditBody} />`)}
+      ${isFull && robotLine(html`<span class="dim">Robot</span><b>${robotTitle(form.value.robot)}</b>`)}
       <${GaitPicker} />
       ${isFull && html`
         <${SeedAndObservation} />
@@ -285,9 +284,14 @@ function robotChosen() {
   ];
 }
 
+/** What is told of the chosen robot, and what features do with it. @param {ComponentChildren} [words] */
+const robotLine = (words = null) => closable("robot", html`
+  <div class="chosen-robot">${words}<${Slot} name="robot of the form" /></div>
+`);
+
 const RobotGroup = () => html`
   <div class="more-fields">
-    <div class="field"><${RobotField} />${closable("robot", html`<${EditBody} isNamed=${false} />`)}</div>
+    <div class="field"><${RobotField} />${robotLine()}</div>
     <${SelectField} field="simulator" label="Simulator"
       choices=${choicesOf(options.value?.simulators, simulatorTitle)} />
     <${Figure} field="divisions" />

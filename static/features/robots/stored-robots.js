@@ -1,12 +1,12 @@
 // Stored robots: saved under a name, renamed, hidden, deleted, and taken in from files.
 import { computed, signal } from "@preact/signals";
-import { call, getOptions } from "./api.js";
-import { chooseRobot, form } from "./form.js";
-import { setEntry, options, served } from "./store.js";
-import { messageOf } from "./titles.js";
+import { call, getOptions } from "../../js/api.js";
+import { chooseRobot, form } from "../../js/form.js";
+import { setEntry, options, served } from "../../js/store.js";
+import { messageOf } from "../../js/titles.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { GaitConfig, Robot, RobotConfig, StoredRobot } from "./types.js" */
+/** @import { GaitConfig, Robot, RobotConfig, StoredRobot } from "../../js/types.js" */
 
 /**
  * A file, and what came of it: the sentence of the refusal, or the robot.

@@ -1,10 +1,10 @@
 // Fields that correct what was guessed of a robot from a file, before it walks.
 import { correct, fields, isReading, readAgain, setCorrection, whole, wrongChoice } from "../correction.js";
-import { html } from "./elements.js";
-import { Told } from "./told.js";
+import { html } from "../../../js/components/elements.js";
+import { Notes } from "./notes.js";
 
 /** @import { Fields } from "../correction.js" */
-/** @import { Found } from "../types.js" */
+/** @import { Found } from "../../../js/types.js" */
 
 const FORWARD = [["x", "x of its torso"], ["-x", "−x"], ["y", "y"], ["-y", "−y"]];
 
@@ -24,8 +24,8 @@ export function CorrectRobot() {
   };
   return html`
     <form class="robots-correct" onSubmit=${onSubmit}>
-      <${Told} title="Guessed" sentences=${robot.guesses} isOpen=${true} />
-      <${Told} title="Repaired" sentences=${robot.repairs} />
+      <${Notes} title="Guessed" sentences=${robot.guesses} isOpen=${true} />
+      <${Notes} title="Repaired" sentences=${robot.repairs} />
       <${Forward} found=${found} forward=${now.forward} />
       <div class="field">
         <label for="correct-groups">Groups of legs</label>

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import {
   addLeg, changeAll, changeLeg, changeTorso, drawnLeg, extentOf, isBox, makeBox, mirrorOf, openBody, partsOf, removeLeg,
   robotOf, sharedPart,
-} from "../../static/js/body.js";
+} from "../../../static/features/robots/body.js";
 
 /** @type {any} */
 const SHARED = {

@@ -1,8 +1,8 @@
 // Sentences on a robot from a file, folded.
-import { html } from "./elements.js";
+import { html } from "../../../js/components/elements.js";
 
 /** @param {{ title: string, sentences: string[], isOpen?: boolean }} props */
-export const Told = ({ title, sentences, isOpen = false }) => sentences.length > 0 && html`
+export const Notes = ({ title, sentences, isOpen = false }) => sentences.length > 0 && html`
   <details class="told" open=${isOpen}>
     <summary>${title}: ${sentences.length}</summary>
     <ul>${sentences.map((one) => html`<li key=${one}>${one}</li>`)}</ul>

@@ -1,27 +1,27 @@
 // The editor of the robot's body: what is edited and can be undone, what was typed that is no number, and what the
 // server tells of it. Nothing is changed in the form until the body is used.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { isLasting, previewRobot } from "./api.js";
+import { isLasting, previewRobot } from "../../js/api.js";
 import {
   addLeg, changeAll, changeLeg, changeTorso, isBox, makeBox, mirrorOf, numbersOf, openBody, partsOf, removeLeg, robotOf,
   sharedPart,
 } from "./body.js";
 import { consequencesOf, inOwnWords, objectionsTo, settingFor, unreachedBy } from "./body-words.js";
-import { bodyFields, form, setField } from "./form.js";
-import { bodyIsOpen } from "./page.js";
-import { parseSetting } from "./parse.js";
-import { isSame, storedRobot } from "./robots.js";
-import { limitsOf } from "./settings.js";
-import { keepAnswer } from "./steps.js";
-import { connection, served } from "./store.js";
-import { messageOf } from "./titles.js";
+import { bodyFields, form, setField } from "../../js/form.js";
+import { bodyIsOpen } from "./dialogs.js";
+import { parseSetting } from "../../js/parse.js";
+import { isSame, storedRobot } from "../../js/robots.js";
+import { limitsOf } from "../../js/settings.js";
+import { keepAnswer } from "../../js/steps.js";
+import { connection, served } from "../../js/store.js";
+import { messageOf } from "../../js/titles.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
-/** @import { RequestError } from "./api.js" */
+/** @import { RequestError } from "../../js/api.js" */
 /** @import { Body } from "./body.js" */
 /** @import { Objection } from "./body-words.js" */
-/** @import { Reply } from "./steps.js" */
-/** @import { FormValue, GaitConfig, Preview, RobotConfig, SettingOption } from "./types.js" */
+/** @import { Reply } from "../../js/steps.js" */
+/** @import { FormValue, GaitConfig, Preview, RobotConfig, SettingOption } from "../../js/types.js" */
 
 /** What the server tells: of which question, and under which gait. */
 /** @typedef {{ of: string, known: Preview, gait: GaitConfig }} Told */

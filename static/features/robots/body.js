@@ -1,7 +1,7 @@
 // A body as it is edited: its legs, their mirror images, and the robot that they make. Places and directions are those
 // of the picture, in which the gait's forward direction at the beginning is up; a robot has them in its own frame.
 
-/** @import { GaitConfig, GaitParts, Preview, RobotConfig } from "./types.js" */
+/** @import { GaitConfig, GaitParts, Preview, RobotConfig } from "../../js/types.js" */
 
 /**
  * A leg: the numbers that are its own, as in a request; `given` is what the form had, until the leg is changed.

@@ -3,9 +3,9 @@
 import { signal } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import { told } from "../body-editor.js";
-import { html } from "./elements.js";
+import { html } from "../../../js/components/elements.js";
 
-/** @import { Preview } from "../types.js" */
+/** @import { Preview } from "../../../js/types.js" */
 
 /** Right, forward, up [m]. @typedef {number[]} Place */
 

@@ -2,13 +2,14 @@
 import { batch, computed, signal } from "@preact/signals";
 import { robotOf } from "./body.js";
 import { body, cancel, canUse, isTold, told } from "./body-editor.js";
-import { setFields } from "./form.js";
-import { bodyIsOpen, toast } from "./page.js";
+import { setFields } from "../../js/form.js";
+import { toast } from "../../js/page.js";
+import { bodyIsOpen } from "./dialogs.js";
 import { saveRobot } from "./stored-robots.js";
-import { messageOf } from "./titles.js";
+import { messageOf } from "../../js/titles.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { FormValue } from "./types.js" */
+/** @import { FormValue } from "../../js/types.js" */
 
 /** The name under which it is to be saved; null while that is not asked for. @type {Signal<string | null>} */
 export const bodyName = signal(null);

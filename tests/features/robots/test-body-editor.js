@@ -1,14 +1,14 @@
 // The editor of the robot's body: what is typed stays, changes are undone one by one, and the form changes at the end.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import * as editor from "../../static/js/body-editor.js";
-import { partsOf } from "../../static/js/body.js";
-import { inOwnWords, reachInWords } from "../../static/js/body-words.js";
-import { form, openForm, setField } from "../../static/js/form.js";
-import { bodyIsOpen } from "../../static/js/page.js";
-import { page } from "../../static/js/page-state.js";
-import { connection, options } from "../../static/js/store.js";
-import { OPTIONS } from "./options.js";
+import * as editor from "../../../static/features/robots/body-editor.js";
+import { partsOf } from "../../../static/features/robots/body.js";
+import { inOwnWords, reachInWords } from "../../../static/features/robots/body-words.js";
+import { form, openForm, setField } from "../../../static/js/form.js";
+import { bodyIsOpen } from "../../../static/features/robots/dialogs.js";
+import { page } from "../../../static/js/page-state.js";
+import { connection, options } from "../../../static/js/store.js";
+import { OPTIONS } from "../../page/options.js";
 
 const BUILT = { femur_m: 0.08, torso_radius_m: 0.1, torso_length_m: null, torso_width_m: null };
 const ANGLES = [45, 135, 225, 315];

@@ -4,12 +4,12 @@ import {
   typeIn, valuesOf,
 } from "../body-editor.js";
 import { extentOf, isBox } from "../body.js";
-import { shareOf } from "../scale.js";
-import { html, Mistake, Segments } from "./elements.js";
-import { NumberInput } from "./fields.js";
+import { shareOf } from "../../../js/scale.js";
+import { html, Mistake, Segments } from "../../../js/components/elements.js";
+import { NumberInput } from "../../../js/components/fields.js";
 
 /** @import { Body } from "../body.js" */
-/** @import { Changed, SettingOption } from "../types.js" */
+/** @import { Changed, SettingOption } from "../../../js/types.js" */
 
 const STEP_M = 0.001;
 const HALF_TURN_DEG = 180;

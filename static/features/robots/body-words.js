@@ -1,12 +1,12 @@
 // What is told of a body that is edited, in sentences: what is impossible about which legs, its reach, and what else
 // changes with it.
-import { listed, sentence } from "./format.js";
-import { objections } from "./preview.js";
-import { isSame, partInWords } from "./robots.js";
-import { served } from "./store.js";
-import { gaitTitle, inFormWords } from "./titles.js";
+import { listed, sentence } from "../../js/format.js";
+import { objections } from "../../js/preview.js";
+import { isSame, partInWords } from "../../js/robots.js";
+import { served } from "../../js/store.js";
+import { gaitTitle, inFormWords } from "../../js/titles.js";
 
-/** @import { GaitConfig, GaitParts, Preview, SettingOption } from "./types.js" */
+/** @import { GaitConfig, GaitParts, Preview, SettingOption } from "../../js/types.js" */
 
 /** What speaks against a body, with the legs that make it so. @typedef {{ legs: number[], words: string }} Objection */
 

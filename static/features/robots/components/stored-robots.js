@@ -1,16 +1,16 @@
 // The robots that are stored: renamed, hidden and deleted, and new ones taken in from files.
 import { useState } from "preact/hooks";
 import { correct, corrected } from "../correction.js";
-import { robotsAreOpen } from "../page.js";
-import { isOperator } from "../selectors.js";
+import { robotsAreOpen } from "../dialogs.js";
+import { isOperator } from "../../../js/selectors.js";
 import {
   changeRobot, chooseStored, deleteRobot, dismissFile, fileOf, isChosen, refusals, storedRobots, taken, takeFiles,
 } from "../stored-robots.js";
 import { CorrectRobot } from "./correct-robot.js";
-import { Dialog, html, Icon } from "./elements.js";
-import { Told } from "./told.js";
+import { Dialog, html, Icon } from "../../../js/components/elements.js";
+import { Notes } from "./notes.js";
 
-/** @import { Robot } from "../types.js" */
+/** @import { Robot } from "../../../js/types.js" */
 /** @import { TakenFile } from "../stored-robots.js" */
 
 const ENDINGS = ".xml,.mjcf,.urdf,.zip,.json";
@@ -71,8 +71,8 @@ const Taken = ({ one: { key, name, state, words, robot } }) => html`
       ${state === "reading" && html`<span class="spinner" aria-hidden="true"></span>`} <b>${name}</b> ${words}
     </p>
     ${robot && html`
-      <${Told} title="Guessed" sentences=${robot.guesses} />
-      <${Told} title="Repaired" sentences=${robot.repairs} />
+      <${Notes} title="Guessed" sentences=${robot.guesses} />
+      <${Notes} title="Repaired" sentences=${robot.repairs} />
     `}
     ${state !== "reading" && html`
       <button class="quiet square small" aria-label=${`Dismiss ${name}`} onClick=${() => dismissFile(key)}>✕</button>

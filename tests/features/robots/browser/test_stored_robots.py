@@ -10,8 +10,15 @@ from playwright.sync_api import Browser, Locator, expect
 
 from tests.browser.dashboard import Dashboard
 from tests.browser.serving import Serving
-from tests.browser.test_body_editor import NARROW, SHORT, THUMB_PX, leg, opened, robot_in
 from tests.conftest import new_page
+from tests.features.robots.browser.test_body_editor import (
+    NARROW,
+    SHORT,
+    THUMB_PX,
+    leg,
+    opened,
+    robot_in,
+)
 from tests.imports.robots import dog
 
 pytestmark = pytest.mark.timeout(300)

@@ -1,14 +1,14 @@
 // The correction of a robot from a file: what was found in it, what a person decides, and its file read again.
 import { computed, signal } from "@preact/signals";
-import { pending } from "./actions.js";
-import { call } from "./api.js";
-import { form } from "./form.js";
-import { setEntry } from "./store.js";
+import { pending } from "../../js/actions.js";
+import { call } from "../../js/api.js";
+import { form } from "../../js/form.js";
+import { setEntry } from "../../js/store.js";
 import { chooseStored, refresh } from "./stored-robots.js";
-import { messageOf } from "./titles.js";
+import { messageOf } from "../../js/titles.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { GaitConfig, RobotChoices, StoredRobot, WholeRobot } from "./types.js" */
+/** @import { GaitConfig, RobotChoices, StoredRobot, WholeRobot } from "../../js/types.js" */
 
 /** What the fields say, as texts; "" for what was found. */
 /**

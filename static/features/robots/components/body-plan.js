@@ -5,11 +5,11 @@ import {
   body, chooseLeg, chosenLeg, endChange, followerOf, impossibleAt, moveBy, moveTo, told,
 } from "../body-editor.js";
 import { drawnLeg, extentOf, isBox, numbersOf, partsOf, sharedPart } from "../body.js";
-import { metres } from "../format.js";
-import { html } from "./elements.js";
+import { metres } from "../../../js/format.js";
+import { html } from "../../../js/components/elements.js";
 
 /** @import { Body, Point } from "../body.js" */
-/** @import { Preview } from "../types.js" */
+/** @import { Preview } from "../../../js/types.js" */
 
 /** From the middle of the drawing to its edge. */
 const EDGE = 100;

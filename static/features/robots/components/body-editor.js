@@ -7,16 +7,16 @@ import {
 } from "../body-editor.js";
 import { bodyName, canSave, followSaving, saveBody, unsaved } from "../body-saving.js";
 import { reachInWords } from "../body-words.js";
-import { bodyIsOpen } from "../page.js";
-import { count } from "../format.js";
-import { inWords } from "../preview.js";
-import { isOperator } from "../selectors.js";
-import { limitsOf } from "../settings.js";
+import { bodyIsOpen } from "../dialogs.js";
+import { count } from "../../../js/format.js";
+import { inWords } from "../../../js/preview.js";
+import { isOperator } from "../../../js/selectors.js";
+import { limitsOf } from "../../../js/settings.js";
 import { BodyFields } from "./body-fields.js";
 import { BodyPicture } from "./body-picture.js";
 import { BodyPlan } from "./body-plan.js";
-import { Dialog, html, Icon } from "./elements.js";
-import { Held } from "./foot.js";
+import { Dialog, html, Icon } from "../../../js/components/elements.js";
+import { Held } from "../../../js/components/foot.js";
 
 const TEXT = "input[type=text]";
 
