@@ -49,7 +49,7 @@ def test_any_may_be_left_out() -> None:
 def test_an_unknown_name_is_refused_with_those_that_there_are() -> None:
     with pytest.raises(InvalidInput, match=r"HEXAPODS_WITHOUT names no feature by 'clasroom'"):
         load(["clasroom"])
-    with pytest.raises(InvalidInput, match=r"there are classroom, demo,"):
+    with pytest.raises(InvalidInput, match=r"there are archives, classroom, demo,"):
         load(["clasroom"])
 
 
