@@ -12,6 +12,6 @@ Processes and threads:
 - Fork server, on Linux: that of `multiprocessing`, started first (`hexapods.processes`). The
   processes of jobs and pools are its forks. It ends when the server does, and they with it. `top`
   shows it as `python`, and jobs by kind and id.
-- A process for each job, and pools of processes for requests that wait (`app.jobs`): as many as
-  cores for what-ifs, one that times steps for estimates, one that renders videos.
+- A process for each job, and pools of processes for requests that wait (`app.jobs`): one that
+  renders videos, and those of features.
 """

@@ -34,6 +34,7 @@ from hexapods.domain.errors import HexapodError, InvalidInput
 if TYPE_CHECKING:
     from app.api.deps import Services, StartRequest
     from app.api.identity import Identity, IdentityProvider
+    from app.api.starts import StartKind
 
 DeleteRuns = Callable[[Iterable[str]], Collection[str]]
 """Stops and deletes runs by their ids, and returns the ids of those that are gone."""
@@ -53,7 +54,7 @@ class Feature:
         event_bodies: models of the data of its events, by the event's name.
         page: of another package the folder with its part of the page: `feature.json` and its
             modules; that of the others is `static/features/NAME`.
-        option_types: types of what `options` returns, by name.
+        option_types: types of what `options` returns, by name: `defaults.NAME` of a default.
         core: the services of the core.
     """
 
@@ -89,6 +90,12 @@ class Feature:
     def robots_txt(self) -> str | None:
         """Return what crawlers may read, in place of nothing; None to leave that to others."""
         return None
+
+    @classmethod
+    def routers_of_start(cls, start: "StartKind") -> Sequence[APIRouter]:
+        """Return its routes of the API about a kind of run that can be started; see `routers`."""
+        del start
+        return ()
 
     @classmethod
     def options(cls) -> Mapping[str, Any]:

@@ -53,7 +53,7 @@ from app.api.problem_pages import ProblemPages
 from app.api.rate_limit import what_if_limiter
 from app.api.request_headers import DeclaredHeaders
 from app.api.stage_paths import StagePaths, stage_of
-from app.api.starts import start_routes
+from app.api.starts import start_kinds, start_routes
 from app.api.unfinished import IncompleteBodyGuard
 from app.api.wellformed import MalformedRequestGuard
 from app.events import logs
@@ -62,7 +62,6 @@ from app.exports.file_renderer import FileRenderer
 from app.feature import Feature, blaming
 from app.installed_features import load
 from app.jobs.jobs import Jobs
-from app.jobs.process_pool import ProcessPool
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
@@ -81,8 +80,6 @@ from app.viewer.replay_frames import ReplayFrames
 from app.viewer.session import websocket_options
 from app.viewer.shared_stage import SharedStage
 from app.viewer.viewer_page import viewer_routes
-from app.what_if.estimate import Estimates
-from app.what_if.what_if import WhatIf
 from hexapods import __version__, assets
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.processes import return_freed_memory, start_fork_server
@@ -160,8 +157,6 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         agents=usable_agents(),
         replays=replays,
         renderer=FileRenderer(check=stopping.check),
-        what_if=WhatIf(ProcessPool()),
-        estimates=Estimates(ProcessPool(count=1), jobs.cores, stopping),
         stopping=stopping,
         what_if_limiter=what_if_limiter(settings),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
@@ -244,9 +239,11 @@ def _api_routes(
     """Return the routes that are the same in all apps; FastAPI takes long to build them."""
     router, prefix = api_router(), "/api/v1"
     # First, so that their fixed paths, such as `/runs/NAME`, are not taken for a run's id.
+    kinds = start_kinds(agents)
     for feature in features:
         with blaming(feature, "`routers`"):
-            for added in feature.routers(agents):
+            of_starts = [added for kind in kinds for added in feature.routers_of_start(kind)]
+            for added in (*feature.routers(agents), *of_starts):
                 router.include_router(added, prefix=prefix)
     modules = (
         *(trainings, races, experiments, runs, exports, replays),
@@ -293,12 +290,7 @@ async def _end_long_requests(app: FastAPI) -> None:
     services: Services = app.state.services
     services.stopping.set()
     app.state.work_slots.close()
-    for user in (
-        *services.features,
-        services.what_if,
-        services.estimates,
-        services.renderer,
-    ):
+    for user in (*services.features, services.renderer):
         await asyncio.to_thread(user.close)
 
 

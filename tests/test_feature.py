@@ -25,6 +25,7 @@ OF_FEATURE = {
     "explanations": "/api/v1/runs/{run_id}/explain",
     "gait_analysis": "/api/v1/runs/{run_id}/gait",
     "run_code": "/api/v1/runs/{run_id}/code",
+    "what_if": "/api/v1/what-if",
     "guide": "/guide/page",
     "robots": "/api/v1/robots/{robot_id}",
 }

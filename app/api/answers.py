@@ -244,19 +244,8 @@ class StageView(Answer):
     presentation: Presentation
 
 
-class EstimateView(Answer):
-    """Estimated duration of a run here once it has a core [s].
-
-    Attributes:
-        workers: how many of an experiment's trials are computed at once; null of other runs.
-    """
-
-    seconds: Annotated[float, Field(ge=0)]
-    workers: Annotated[int, Field(ge=1)] | None
-
-
-class WhatIfHalf(Answer):
-    """Result of 30 seeds with these settings: their distances [m] and interquartile mean."""
+class SeedsView(Answer):
+    """Result of many seeds with these settings: their distances [m] and interquartile mean."""
 
     settings: Settings
     steps_per_episode: int
@@ -265,13 +254,13 @@ class WhatIfHalf(Answer):
     iqm_m: float
 
 
-class WhatIfView(Answer):
-    """Result of a what-if: the chosen settings compared with the defaults."""
+class ComparisonView(Answer):
+    """The chosen settings of a practice compared with the defaults."""
 
     seeds: int
     greedy_m: float
-    chosen: WhatIfHalf
-    default: WhatIfHalf
+    chosen: SeedsView
+    default: SeedsView
     compute_s: float
 
 

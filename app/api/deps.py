@@ -31,8 +31,6 @@ from app.storage.recordings import Recordings
 from app.storage.run import MAX_KEY_LENGTH, Run
 from app.viewer.replay_frames import ReplayFrames
 from app.viewer.shared_stage import SharedStage
-from app.what_if.estimate import Estimates
-from app.what_if.what_if import WhatIf
 
 T = TypeVar("T")
 
@@ -60,8 +58,6 @@ class Services:
         store, recordings, bus, jobs, idempotency: the services of these names.
         stages: all stages, the first of which has the path "".
         agents: names of the agents that were registered at server start.
-        what_if: computes what-ifs.
-        estimates: estimates how long runs would take.
         replays: encodes runs for pages that play them by themselves.
         renderer: renders large files, such as videos.
         stopping: ends what takes long in threads when the server stops.
@@ -85,8 +81,6 @@ class Services:
     agents: tuple[str, ...]
     replays: ReplayFrames
     renderer: FileRenderer
-    what_if: WhatIf
-    estimates: Estimates
     stopping: Stopping
     what_if_limiter: RateLimiter
     listeners: ClientSlots["EventListener"]

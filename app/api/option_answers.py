@@ -103,18 +103,11 @@ class RaceDefaults(Answer):
     lanes: list[LaneDefaults]
 
 
-class WhatIfDefaults(Answer):
-    """The number of seeds of a what-if."""
-
-    seeds: int
-
-
 class DefaultsView(Answer):
-    """Default request bodies of a training and of a race, and the number of seeds of a what-if."""
+    """Default request bodies of a training and of a race, and what features add to them."""
 
     training: TrainingDefaults
     race: RaceDefaults
-    what_if: WhatIfDefaults
 
 
 class SettingOption(Answer):

@@ -69,7 +69,6 @@ SIMULATOR_TEXTS = {
 SIMULATOR_TITLES = {"mujoco": "MuJoCo physics", "kinematic": "ideal (no slip)"}
 FIELD_HELP = {
     "gait": "Which way is forward, and which legs move together.",
-    "what_if_steps": "How many steps of practice a what-if may have.",
     "observation": "How the robot knows where its feet are.",
     "robot": "Which robot walks; it differs in servos and friction.",
     "simulator": "What computes the walking.",

@@ -3,18 +3,19 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import MISSING, fields
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 from annotated_types import Ge, Le
 from fastapi import APIRouter, Request
 from pydantic import create_model
 from starlette.responses import JSONResponse, Response
 
+from app.api.answers import Answer
 from app.api.compression import CompressedContent
 from app.api.deps import ServicesDep
 from app.api.descriptions import MAX_RUN_IDS
 from app.api.memory_limit import MAX_FILE_BYTES
-from app.api.option_answers import OptionsView
+from app.api.option_answers import DefaultsView, OptionsView
 from app.api.option_texts import (
     CLOCK_TEXTS,
     EXPERIMENT_TEXTS,
@@ -30,8 +31,6 @@ from app.feature import Feature
 from app.jobs.submissions import MAX_SETTINGS
 from app.storage.database.robots import RobotStore
 from app.storage.stored_robot import StoredRobot
-from app.what_if.what_if import MAX_STEPS as MAX_WHAT_IF_STEPS
-from app.what_if.what_if import SEEDS as WHAT_IF_SEEDS
 from hexapods import __version__
 from hexapods.agents.appearance import colors_of, description_of, title_of
 from hexapods.agents.registry import (
@@ -77,13 +76,23 @@ from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from hexapods.shows.scene_spec import PAPERS_LANES
 
+A = TypeVar("A", bound=Answer)
+_DEFAULTS = "defaults."
+
 
 def options_view(features: Iterable[type[Feature]]) -> type[OptionsView]:
     """Return the model of the options, with what features add to them."""
-    added: dict[str, Any] = {
-        name: (kind, ...) for feature in features for name, kind in feature.option_types.items()
-    }
-    return create_model("OptionsView", __base__=OptionsView, __doc__=OptionsView.__doc__, **added)
+    types = [item for feature in features for item in feature.option_types.items()]
+    defaults = [(name, kind) for name, kind in types if name.startswith(_DEFAULTS)]
+    added = [item for item in types if item not in defaults]
+    in_defaults = [(name.removeprefix(_DEFAULTS), kind) for name, kind in defaults]
+    return _extended(OptionsView, [*added, ("defaults", _extended(DefaultsView, in_defaults))])
+
+
+def _extended(model: type[A], members: Iterable[tuple[str, Any]]) -> type[A]:
+    """Return a model of the same name with further members."""
+    fields: dict[str, Any] = {name: (kind, ...) for name, kind in members}
+    return create_model(model.__name__, __base__=model, __doc__=model.__doc__, **fields)
 
 
 def option_routes(features: Sequence[type[Feature]]) -> APIRouter:
@@ -166,11 +175,7 @@ def catalogue(
         "observations": _described(OBSERVATION_TEXTS, _choice_titles("observation")),
         "clocks": _described(CLOCK_TEXTS, CLOCK_TITLES),
         "experiments": _experiments(agents),
-        "defaults": {
-            "training": _training_defaults(),
-            "race": _race_defaults(),
-            "what_if": {"seeds": WHAT_IF_SEEDS},
-        },
+        "defaults": {"training": _training_defaults(), "race": _race_defaults()},
         "settings": {name: setting_option(setting) for name, setting in settings.items()},
         "limits": _limits(settings),
         "help": {name: setting.about.help for name, setting in settings.items()} | FIELD_HELP,
@@ -348,7 +353,6 @@ def _exports() -> list[dict[str, Any]]:
 def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | None]]:
     return {
         **{name: [one.low, one.high] for name, one in settings.items() if one.is_number},
-        "what_if_steps": [1, MAX_WHAT_IF_STEPS],
         "lanes": [1, MAX_LANES],
         "legs": [MIN_LEGS, MAX_LEGS],
         "disturbances": [0, MAX_DISTURBANCES],

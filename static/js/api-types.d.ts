@@ -452,22 +452,22 @@ export interface RunOutcome {
   /**
    * of one's own what-if.
    */
-  answer: WhatIfView | null;
+  answer: ComparisonView | null;
 }
 /**
- * Result of a what-if: the chosen settings compared with the defaults.
+ * The chosen settings of a practice compared with the defaults.
  */
-export interface WhatIfView {
+export interface ComparisonView {
   seeds: number;
   greedy_m: number;
-  chosen: WhatIfHalf;
-  default: WhatIfHalf;
+  chosen: SeedsView;
+  default: SeedsView;
   compute_s: number;
 }
 /**
- * Result of 30 seeds with these settings: their distances [m] and interquartile mean.
+ * Result of many seeds with these settings: their distances [m] and interquartile mean.
  */
-export interface WhatIfHalf {
+export interface SeedsView {
   /**
    * settings of the agent, by name
    */
@@ -713,7 +713,7 @@ export interface DamagedRunView {
   damaged: string;
 }
 /**
- * Default request bodies of a training and of a race, and the number of seeds of a what-if.
+ * Default request bodies of a training and of a race, and what features add to them.
  */
 export interface DefaultsView {
   training: TrainingDefaults;

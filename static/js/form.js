@@ -294,8 +294,6 @@ export const tryOwnSettings = () => {
 const WALK_FIELDS = ["gait", "robot", "simulator", "divisions", "grid_side_m", "tolerance", "reward"];
 const RACE_FIELDS = ["race_steps", "lanes"];
 const WORLD_FIELDS = ["world", REPEATED];
-/** Fields on which what is learned does not depend. */
-const SHOW_FIELDS = ["evaluate_every", "pace"];
 
 /** @type {<Value>(values: Record<string, Value>, isWanted: (field: string) => boolean) => Record<string, Value>} */
 const select = (values, isWanted) =>
@@ -351,14 +349,6 @@ export const trainingBody = (continueFrom = null) => {
   const { agent } = form.value;
   return { agent, ...walkFields(), ...nameField(), ...practiceFields(agent), ...beginning(continueFrom) };
 };
-
-/** Request body of a what-if, whose ideal robots never turn: the practice, without seed, pace, world and tolerance. */
-export function whatIfBody() {
-  const { agent } = form.value;
-  const body = { agent, ...walkFields(), ...practiceFields(agent) };
-  const others = ["simulator", "world", "disturbances", "tolerance", "reward", ...SHOW_FIELDS];
-  return select(body, (field) => !others.includes(field));
-}
 
 /**
  * The fields of an agent's lane that are not the default, and all settings that are the agent's own.

@@ -17,6 +17,7 @@ export type {
   CurveOfSetting,
   CurvesView as Curves,
   CurveView as Curve,
+  ComparisonView as WhatIfAnswer,
   DamagedRunView as DamagedRun,
   Described,
   Distances,
@@ -62,6 +63,7 @@ export type {
   SceneView as Scene,
   SettingOption,
   SettingView as Setting,
+  SeedsView as WhatIfHalf,
   SpectatorsView as Spectators,
   SummaryView as Summary,
   TableView as StateTable,
@@ -77,8 +79,6 @@ export type {
   ValueUpdateView as ValueUpdate,
   VersusView,
   WallLane,
-  WhatIfHalf,
-  WhatIfView as WhatIfAnswer,
   WorldView,
 } from "./api-types.js";
 

@@ -19,7 +19,6 @@ from app.api.answers import (
     StageView,
     TrainingPage,
     TrainingView,
-    WhatIfView,
 )
 from app.api.contract import operations, problems_of
 from app.api.deps import EventListener, Services
@@ -218,8 +217,6 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     for clock in ("paper", "wall", "free"):
         yield TimelineView, api.get(f"/races/{race['id']}/timeline?clock={clock}")
     yield StageView, api.get("/stage")
-    asked = api.call("POST", "/what-if", json={"gait": WALK["gait"], "steps": 50})
-    yield WhatIfView, asked.json()
     body = {"experiment": "sweep", "seeds": 2, "steps": 20, "gaits": "left-right-origin"}
     experiment = api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1})
     yield ExperimentView, experiment

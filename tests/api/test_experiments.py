@@ -1,4 +1,4 @@
-"""The resource `experiments`: start, summary, trials, report; and the what-if."""
+"""The resource `experiments`: start, summary, trials, report."""
 
 import csv
 import io
@@ -223,28 +223,6 @@ def test_options_describe_every_experiment(api: Api) -> None:
         assert one["title"]
         assert one["description"].endswith(".")
         assert set(one["fields"]) <= set(options["help"])
-
-
-@pytest.mark.parametrize("body", [{}, {"gait": "left-right-origin", "steps": 2_001}])
-def test_invalid_what_if_is_refused(serve: Serve, body: dict[str, Any]) -> None:
-    refused(serve().call("POST", "/what-if", json=body), 422)
-
-
-def test_what_if_that_continues_a_training_is_refused(serve: Serve) -> None:
-    body = {"gait": "left-right-origin", "continue_from": "abc"}
-    refused(serve().call("POST", "/what-if", json=body), 422, "continue_from")
-
-
-def test_what_if_compares_chosen_with_default_settings(api: Api) -> None:
-    body = {"gait": "left-right-origin", "steps": 20, "seed": 3, "name": "x"}
-    body["settings"] = {"alpha": 0.7}
-    answer = api.call("POST", "/what-if", json=body).json()
-    assert (answer["seeds"], len(answer["chosen"]["distances_m"])) == (30, 30)
-    assert (answer["chosen"]["settings"]["alpha"], answer["default"]["settings"]["alpha"]) == (
-        0.7,
-        0.3,
-    )
-    assert answer["compute_s"] > 0
 
 
 @pytest.mark.promises

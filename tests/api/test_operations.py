@@ -64,23 +64,6 @@ def test_spectators_have_a_token_bucket_of_their_own(serve: Serve) -> None:
     refused(api.call("POST", "/trainings", json={}, headers=bearer), 422)
 
 
-def test_what_ifs_of_spectators_are_limited_by_address(serve: Serve) -> None:
-    api = serve(what_ifs_per_minute=3, token=TOKEN)
-    for _ in range(3):
-        refused(api.call("POST", "/what-if", json={}), 422)
-    answer = api.call("POST", "/what-if", json={})
-    refused(answer, 429, "3 times a minute", "ask again in 20 s", "HEXAPODS_WHAT_IFS_PER_MINUTE")
-    assert answer.headers["retry-after"] == "20"
-    # Reading goes on, operators have no such limit, and the answer to a spectator is a whole one.
-    assert api.get("/stage")["run_id"] is None
-    bearer = {"Authorization": f"Bearer {TOKEN}"}
-    for _ in range(5):
-        refused(api.call("POST", "/what-if", json={}, headers=bearer), 422)
-    other = serve(token=TOKEN).call("POST", "/what-if", json={**WALK, "steps": 5})
-    assert other.status_code == 200, other.text
-    assert len(other.json()["chosen"]["distances_m"]) == other.json()["seeds"]
-
-
 def test_wrong_tokens_are_rate_limited(serve: Serve) -> None:
     client = serve(token=TOKEN).client
     wrong = {"Authorization": "Bearer not-this-one"}
@@ -142,8 +125,7 @@ def test_long_requests_end_with_the_server(tmp_path: Path) -> None:
         app = create_app(Settings(data=tmp_path), store)
         with TestClient(app, base_url=ADDRESS):
             services: Services = app.state.services
-        for user in (services.what_if, services.estimates, services.renderer):
-            with pytest.raises(Busy, match="the server is stopping"):
-                user._pool.map(abs, [-1])
+        with pytest.raises(Busy, match="the server is stopping"):
+            services.renderer._pool.map(abs, [-1])
         with pytest.raises(Busy, match="the server is stopping"):
             services.stopping.check()

@@ -63,7 +63,13 @@ def _is_whole(item: ast.expr) -> bool:
 @pytest.mark.test
 @pytest.mark.parametrize(
     "package",
-    ["hexapods", "app/features/classroom", "app/features/explanations", "app/stage", "app/what_if"],
+    [
+        "hexapods",
+        "app/features/classroom",
+        "app/features/explanations",
+        "app/features/what_if",
+        "app/stage",
+    ],
 )
 def test_no_float_is_summed_by_what_differs_between_pythons(package: str) -> None:
     programs = sorted((ROOT / package).rglob("*.py"))

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
   chooseLearner, chooseRobot, enter, form, isReadOnly, mistakes, offerLearner, openForm, raceBody, setField, setFields,
-  stageTexts, trainingBody, tryOwnSettings, whatIfBody, wrong,
+  stageTexts, trainingBody, tryOwnSettings, wrong,
 } from "../../static/js/form.js";
 import { ignored, page } from "../../static/js/page-state.js";
 import { isPreset } from "../../static/js/settings.js";
@@ -236,14 +236,6 @@ test("each learner of a race practises with its own settings, and a link has the
   assert.deepEqual(practices(), [learner, tracer]);
 });
 
-test("a what-if does not depend on seed, pace, name, simulator, build tolerance and reward", () => {
-  const before = whatIfBody();
-  setFields({ seed: 9, pace: 8, name: "x", simulator: "kinematic", tolerance: 0.03, reward: "track", race_steps: 7 });
-  assert.deepEqual(whatIfBody(), before);
-  setField("alpha", 0.9);
-  assert.notDeepEqual(whatIfBody(), before);
-});
-
 test("what a link says that is no field is told, until another link is read", () => {
   open("alhpa=0.5&alpha=0.4");
   assert.deepEqual(ignored.query.value, ["alhpa=0.5"]);
@@ -325,9 +317,7 @@ test("a world and what happens are in the link, one by one, and in the requests"
     assert.deepEqual({ world, disturbances }, happens);
   }
   const [{ training }] = /** @type {any[]} */ (raceBody().lanes);
-  for (const body of [training, whatIfBody()]) {
-    assert.ok(!["world", "disturb", "disturbances"].some((field) => field in body));
-  }
+  assert.ok(!["world", "disturb", "disturbances"].some((field) => field in training));
   setFields({ world: "flat", disturb: [] });
   assert.equal(String(inLink()), "");
   assert.ok(!("world" in trainingBody()) && !("disturbances" in trainingBody()));

@@ -25,6 +25,7 @@ from app.features.classroom.room_rows import Seat, is_seen_by
 from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
 from app.features.classroom.tables import METADATA
+from app.features.classroom.what_ifs import WhatIfs
 from app.jobs.queue import Owner
 from app.storage.database.store import RunStore
 
@@ -41,6 +42,7 @@ class Classroom(Feature):
     """
 
     name = "classroom"
+    uses = ("what_if",)
     tables = METADATA
     migrations = Path(__file__).with_name("migrations")
     damage_advice: ClassVar[Mapping[str, str]] = {
@@ -59,6 +61,7 @@ class Classroom(Feature):
         self.lessons = core.provide(Lessons(LessonRows(core.store.database)))
         self.stages = core.provide(RoomStages(core.stages, core.new_stage))
         core.provide(CardStarts(core.agents))
+        core.provide(WhatIfs(core.features.get("what_if")))
         self.rooms.on_changed = self.stages.publish
         self.access = RoomAccess(self.rooms, core.settings)
         self.rooms.is_here = lambda seat: any(self._listeners_of(seat))

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, JsonValue
 
-from app.api.answers import Answer, Count, WhatIfView
+from app.api.answers import Answer, ComparisonView, Count
 from app.features.classroom.lesson import Ask, Card, Lesson
 from app.storage.run import Kind, State
 
@@ -265,7 +265,7 @@ class RunOutcome(Answer):
     distance_m: float | None
     winners: list[str]
     rank: Annotated[int, Field(ge=1)] | None
-    answer: WhatIfView | None
+    answer: ComparisonView | None
 
 
 class ResultEntry(Answer):

@@ -9,7 +9,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import ServerSentEvent
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import AnyRunView, DeletedView, WhatIfView
+from app.api.answers import AnyRunView, ComparisonView, DeletedView
 from app.api.contract import LOCATION, TEXT, Schema, answers
 from app.api.cookies import SessionCookie, is_secure
 from app.api.deps import EventListener, IdempotencyKeyHeader, Services, ServicesDep
@@ -19,7 +19,6 @@ from app.api.policy import OPERATOR, WATCH, api_router, policy
 from app.api.rate_limit import asker_of
 from app.api.runs import delete_each, located
 from app.api.spectators import address_for_others, link_of
-from app.api.starts import spectators_asker
 from app.features.classroom.access import (
     BY_CODE,
     JOIN,
@@ -57,6 +56,7 @@ from app.features.classroom.room import Room
 from app.features.classroom.room_stages import RoomStages, path_of_room
 from app.features.classroom.room_views import results_view, room_view
 from app.features.classroom.rooms import Rooms
+from app.features.classroom.what_ifs import WhatIfs
 from app.storage.errors import Conflict, Forbidden, NotFound
 from app.storage.json_text import finite
 from app.viewer.shared_stage import SharedStage
@@ -334,7 +334,7 @@ def predict(services: ServicesDep, code: CodePath, seed: SeatDep, body: Predicti
     response_model=AnyRunView,
     responses={
         **answers(202, headers=LOCATION),
-        200: {"model": WhatIfView, "description": "the answer of a what-if"},
+        200: {"model": ComparisonView, "description": "the answer of a what-if"},
     },
 )
 @policy(access=participant("run"), work=work_of_card, starts=True)
@@ -359,7 +359,7 @@ def start_run(
         what_if, asker = starts.what_if(shown, given), asker_of(request.scope)
 
         def compute() -> dict[str, Any]:
-            return services.what_if.ask(what_if, spectators_asker(services, asker))
+            return services.of(WhatIfs).ask(what_if, asker)
 
         return JSONResponse(services.of(Rooms).ask(code, seed, given, compute, card=number))
     run = services.of(Rooms).start(

@@ -1,7 +1,7 @@
 // What-if: kinematic trials of the form's settings, beside trials of the defaults.
 import { computed, effect, signal } from "@preact/signals";
 import * as api from "../../js/api.js";
-import { form, mistakes, whatIfBody, isReadOnly } from "../../js/form.js";
+import { form, isReadOnly, mistakes, trainingBody } from "../../js/form.js";
 import { limitsOf } from "../../js/settings.js";
 import { options, role } from "../../js/store.js";
 
@@ -18,6 +18,15 @@ export const answer = signal(null);
 export const error = signal(null);
 /** Whether a request is under way. */
 export const isComputing = signal(false);
+
+/** Fields of a practice on which ideal robots that never turn do not depend. */
+const IGNORED = new Set([
+  "simulator", "world", "disturbances", "tolerance", "reward", "name", "seed", "evaluate_every", "pace",
+]);
+
+/** Request body of a what-if: the form's practice, but for what the answer does not depend on. */
+export const whatIfBody = () =>
+  Object.fromEntries(Object.entries(trainingBody()).filter(([field]) => !IGNORED.has(field)));
 
 const settings = computed(() => JSON.stringify(whatIfBody()));
 /** The most steps of practice that the server tries; null without a limit. */

@@ -13,16 +13,16 @@ import psutil
 import pytest
 from scipy import stats
 
-from app.jobs.process_pool import NICENESS, ProcessPool
-from app.storage.errors import Busy
-from app.what_if.what_if import (
+from app.features.what_if.what_if import (
     MAX_WAITING,
     SEEDS,
     SPECTATORS_LIMIT_S,
-    Asker,
     WhatIf,
+    WhatIfRequester,
     _interquartile_mean,
 )
+from app.jobs.process_pool import NICENESS, ProcessPool
+from app.storage.errors import Busy
 from hexapods.agents.registry import OURS, learns
 from hexapods.domain.disturbances import SensorNoise
 from hexapods.domain.errors import InvalidInput
@@ -149,7 +149,7 @@ def test_killed_worker_fails_one_request_only(what_if: WhatIf, pool: ProcessPool
             os.kill(pid, signal.SIGKILL)
 
     with pytest.raises(Busy, match="try again"):
-        what_if.ask(changed({"alpha": 0.32}), Asker(check=kill_at_work))
+        what_if.ask(changed({"alpha": 0.32}), WhatIfRequester(check=kill_at_work))
     what_if.ask(changed({"alpha": 0.31}))
     pids = pool.pids
     for pid in pids:
@@ -166,7 +166,7 @@ HEAVY = training_config(
 
 def test_work_that_takes_too_long_is_refused_before_it_begins(what_if: WhatIf) -> None:
     charged: list[float] = []
-    spectator = Asker(is_operator=False, charge=charged.append)
+    spectator = WhatIfRequester(is_operator=False, charge=charged.append)
     with pytest.raises(InvalidInput, match="may take 10 s; choose fewer steps"):
         what_if.ask(HEAVY, spectator)
     # Timed, not computed.
@@ -177,7 +177,7 @@ def test_work_that_takes_too_long_is_refused_before_it_begins(what_if: WhatIf) -
 
 def test_only_computing_is_charged(what_if: WhatIf) -> None:
     charged: list[float] = []
-    spectator = Asker(is_operator=False, charge=charged.append)
+    spectator = WhatIfRequester(is_operator=False, charge=charged.append)
     first = what_if.ask(changed({"alpha": 0.43}), spectator)
     assert 0 < charged[0] <= first["compute_s"]
     assert what_if.ask(changed({"alpha": 0.43}), spectator)["compute_s"] == 0.0
@@ -190,9 +190,9 @@ def test_waiting_for_a_core_is_neither_charged_nor_refused(
 ) -> None:
     """The trials take a fraction of a second, on a machine that does something else meanwhile."""
     limit_s = 1.5
-    monkeypatch.setattr("app.what_if.what_if.SPECTATORS_LIMIT_S", limit_s)
+    monkeypatch.setattr("app.features.what_if.what_if.SPECTATORS_LIMIT_S", limit_s)
     charged: list[float] = []
-    slow = Asker(is_operator=False, check=lambda: time.sleep(2), charge=charged.append)
+    slow = WhatIfRequester(is_operator=False, check=lambda: time.sleep(2), charge=charged.append)
     answer = what_if.ask(changed({"alpha": 0.435}), slow)
     assert charged[0] < limit_s < answer["compute_s"]
 
@@ -202,9 +202,9 @@ def test_nothing_is_computed_for_who_has_left(what_if: WhatIf, pool: ProcessPool
         raise Busy("the client has closed its connection", 1)
 
     with pytest.raises(Busy, match="closed its connection"):
-        what_if.ask(changed({"alpha": 0.44}), Asker(check=left))
+        what_if.ask(changed({"alpha": 0.44}), WhatIfRequester(check=left))
     charged: list[float] = []
-    what_if.ask(changed({"alpha": 0.44}), Asker(charge=charged.append))
+    what_if.ask(changed({"alpha": 0.44}), WhatIfRequester(charge=charged.append))
     assert charged, "it was not computed before"
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from cachetools import TTLCache
 
+from app.features.what_if.step_time import TimedSteps, step_s_of
 from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.stopping import Stopping
 from app.jobs.submissions import (
@@ -23,7 +24,6 @@ from app.jobs.submissions import (
     plan_of,
 )
 from app.jobs.turns import Turns
-from app.what_if.step_time import TimedSteps, step_s_of
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.sums import ordered_sum

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
+from app.features.what_if.estimate import MAX_WAITING, Estimates
+from app.features.what_if.step_time import TimedSteps
 from app.jobs.process_pool import ProcessPool
 from app.jobs.submissions import ExperimentStart, LaneStart, RaceStart, TrainingStart
 from app.storage.errors import Busy
-from app.what_if.estimate import MAX_WAITING, Estimates
-from app.what_if.step_time import TimedSteps
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.config import experiment_config
@@ -93,7 +93,7 @@ def test_trials_are_divided_among_the_workers() -> None:
 def test_trials_that_are_not_timed_count_as_those_of_the_same_agent(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("app.what_if.estimate.MAX_MEASURED", 4)
+    monkeypatch.setattr("app.features.what_if.estimate.MAX_MEASURED", 4)
     config = experiment_config(
         "sweep", {"seeds": 1, "agents": ("greedy", "q-learning"), "steps": (100,)}
     )

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from cachetools import LRUCache
 
+from app.features.what_if.step_time import TimedSteps, step_s_of, timed_trial
 from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.submissions import check_training
 from app.jobs.turns import Turns
-from app.what_if.step_time import TimedSteps, step_s_of, timed_trial
 from hexapods.agents.q_table import table_size
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
@@ -36,7 +36,7 @@ wall, settings that take a second would count as too heavy on a busy machine."""
 
 
 @dataclass(frozen=True)
-class Asker:
+class WhatIfRequester:
     """Client that asks a what-if, with its limits.
 
     Attributes:
@@ -56,7 +56,7 @@ class Asker:
         return OPERATORS_LIMIT_S if self.is_operator else SPECTATORS_LIMIT_S
 
 
-_OPERATOR = Asker()
+_OPERATOR = WhatIfRequester()
 
 
 class WhatIf:
@@ -74,13 +74,15 @@ class WhatIf:
         self._turns = Turns("questions", MAX_WAITING)
         self._cache_lock = threading.Lock()
 
-    def ask(self, training: TrainingConfig, asker: Asker = _OPERATOR) -> dict[str, Any]:
+    def ask(
+        self, training: TrainingConfig, requester: WhatIfRequester = _OPERATOR
+    ) -> dict[str, Any]:
         """Compute distances after this training, and after the same one with default settings.
 
         Args:
             training: the training; its simulator, build tolerance, seed, evaluations and pace are
                 ignored.
-            asker: who asks.
+            requester: who asks.
 
         Returns:
             `seeds`, `greedy_m`, `chosen` and `default` with `distances_m`, `walkers` (the share
@@ -108,7 +110,7 @@ class WhatIf:
         )
         greedy = TrialConfig(training=greedy_training, blocks=0)
         trials = [TrialConfig(training=variant) for variant in (chosen, default)]
-        distances, compute_s = self._distances([greedy, *trials], asker)
+        distances, compute_s = self._distances([greedy, *trials], requester)
         greedy_m = distances[greedy][0]
         return {
             "seeds": SEEDS,
@@ -123,27 +125,27 @@ class WhatIf:
         self._pool.close()
 
     def _distances(
-        self, trials: Sequence[TrialConfig], asker: Asker
+        self, trials: Sequence[TrialConfig], requester: WhatIfRequester
     ) -> tuple[dict[TrialConfig, tuple[float, ...]], float]:
         """Return the distances of all seeds of each trial [m], and the time it took [s]."""
         distances = self._cached(trials)
         if len(distances) == len(set(trials)):
             return distances, 0.0
-        with self._turns.turn(asker.check, is_operator=asker.is_operator) as check:
+        with self._turns.turn(requester.check, is_operator=requester.is_operator) as check:
             # A request that was served meanwhile may have cached the same trials.
             distances = self._cached(trials)
             missing = [one for one in dict.fromkeys(trials) if one not in distances]
             began_s, cost_s = time.monotonic(), None
             try:
-                self._check_time(missing, asker.limit_s, check)
-                computed, cost_s = self._run_trials(missing, check, asker.limit_s)
+                self._check_time(missing, requester.limit_s, check)
+                computed, cost_s = self._run_trials(missing, check, requester.limit_s)
             except OutOfProcessorTime as error:
-                raise _takes_too_long(f"over {asker.limit_s:g} s", asker.limit_s) from error
+                raise _takes_too_long(f"over {requester.limit_s:g} s", requester.limit_s) from error
             finally:
                 compute_s = time.monotonic() - began_s
-                # Not the clock on the wall: no asker owes for processes that start, or for a busy
+                # Not the clock on the wall: nobody owes for processes that start, or for a busy
                 # machine.
-                asker.charge(min(compute_s, asker.limit_s) if cost_s is None else cost_s)
+                requester.charge(min(compute_s, requester.limit_s) if cost_s is None else cost_s)
             distances |= computed
         with self._cache_lock:
             self._cache.update(distances)
@@ -170,7 +172,7 @@ class WhatIf:
     def _run_trials(
         self, missing: Sequence[TrialConfig], check: Callable[[], None], limit_s: float
     ) -> tuple[dict[TrialConfig, tuple[float, ...]], float]:
-        """Return the distances of all seeds of each trial [m], and what they cost (`Asker`) [s]."""
+        """Return the distances of all seeds of each trial [m], and what they cost [s]."""
         trials = [(one, seeded) for one in missing for seeded in _with_seeds(one)]
         seeded_trials = [seeded for _, seeded in trials]
         limit_s *= self._pool.count

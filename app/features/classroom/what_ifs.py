@@ -1,0 +1,38 @@
+"""What-ifs of cards, as far as that feature is there."""
+
+from typing import Any, Protocol, cast
+
+from app.feature import Feature
+from app.storage.errors import NotFound
+from hexapods.runs.config import TrainingConfig
+
+
+class _WhatIfFeature(Protocol):
+    """What cards need of the feature: importing its class would make it a part of this one."""
+
+    def ask_as_spectator(self, training: TrainingConfig, client: str) -> dict[str, Any]: ...
+
+
+class WhatIfs:
+    """Answers what-ifs of participants."""
+
+    def __init__(self, feature: Feature | None) -> None:
+        """Create it with the feature of what-ifs; None if it is left out."""
+        self._feature = cast("_WhatIfFeature | None", feature)
+
+    def ask(self, training: TrainingConfig, client: str) -> dict[str, Any]:
+        """Return the answer to a what-if, a `ComparisonView`.
+
+        Args:
+            training: what is compared with its defaults.
+            client: who is charged for the time that it takes.
+
+        Raises:
+            NotFound: if the feature is left out.
+            Busy: if too many are waiting, or the client has used up its allowance.
+        """
+        if self._feature is None:
+            raise NotFound(
+                "this server answers no what-ifs: its operator has left that feature out"
+            )
+        return self._feature.ask_as_spectator(training, client)

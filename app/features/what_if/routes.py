@@ -1,0 +1,123 @@
+"""Routes of what-ifs and of estimates, whose bodies are those that start runs."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from fastapi import APIRouter, Request
+from starlette.responses import JSONResponse, Response
+
+from app.api.agent_bodies import agent_bodies
+from app.api.answers import ComparisonView
+from app.api.deps import RoleDep, Services, ServicesDep
+from app.api.policy import OPERATOR, QUESTION, api_router, policy
+from app.api.rate_limit import what_ifs_used_up, whole_seconds
+from app.api.starts import StartKind
+from app.features.what_if.estimate import Estimates
+from app.features.what_if.response_models import EstimateView
+from app.features.what_if.what_if import (
+    MAX_STEPS,
+    OPERATORS_LIMIT_S,
+    SEEDS,
+    SPECTATORS_LIMIT_S,
+    WhatIf,
+    WhatIfRequester,
+)
+from app.limits.addresses import client_of
+from app.storage.errors import Busy
+from hexapods.domain.errors import InvalidInput
+
+_ESTIMATES: Mapping[str, tuple[str, str]] = {
+    "training": ("a training", "Time a few steps of the agent on this machine, and extrapolate."),
+    "race": (
+        "a race and its practice",
+        "Time a few steps of each lane, and extrapolate; not for a race that branches off.",
+    ),
+    "experiment": (
+        "an experiment",
+        "Time a few steps of its agents, and extrapolate to all of its trials.",
+    ),
+}
+"""By kind of run: what is estimated, for the summary, and a description."""
+
+
+def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
+    """Return the route of what-ifs.
+
+    Args:
+        agents: names of the registered agents.
+    """
+    router = api_router()
+    training_body: Any = agent_bodies(agents).training
+
+    @router.post(
+        "/what-if",
+        tags=["what-if"],
+        response_model=ComparisonView,
+        summary=f"Compare {SEEDS} seeds of a practice with {SEEDS} of the defaults",
+        description=(
+            f"Take a training's body, of at most {MAX_STEPS:,} steps; always use the kinematic "
+            f"simulator.\n\nIt may compute {SPECTATORS_LIMIT_S:g} s, for operators "
+            f"{OPERATORS_LIMIT_S:g} s: settings that take longer are refused."
+        ),
+    )
+    @policy(access=QUESTION, work="what-if")
+    def ask(
+        services: ServicesDep, request: Request, role: RoleDep, body: training_body
+    ) -> Response:
+        """Return what a practice with these settings would give, on the kinematic simulator."""
+        if body.continue_from is not None:
+            raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
+        requester = WhatIfRequester(check=services.stopping.check)
+        if role == "spectator":
+            requester = spectator(services, client_of(request.scope))
+        return JSONResponse(services.of(WhatIf).ask(body.start().config, requester))
+
+    return router
+
+
+def estimate_routes(start: StartKind) -> APIRouter:
+    """Return the route that estimates how long a run would take.
+
+    Args:
+        start: the kind of run, with its body.
+    """
+    router = api_router()
+    body_type: Any = start.body
+    thing, description = _ESTIMATES[start.kind]
+
+    @router.post(
+        f"/{start.kind}s/estimate",
+        tags=[f"{start.kind}s"],
+        summary=f"Estimate how long {thing} would take on this server",
+        description=description,
+        response_model=EstimateView,
+        name=f"estimate_{start.kind}",
+    )
+    @policy(access=OPERATOR)
+    def estimate_of_kind(services: ServicesDep, body: body_type) -> Response:
+        start, estimates = body.start(), services.of(Estimates)
+        seconds = round(estimates.of(start), 1)
+        return JSONResponse({"seconds": seconds, "workers": estimates.workers_of(start)})
+
+    return router
+
+
+def spectator(services: Services, client: str) -> WhatIfRequester:
+    """Return a spectator as the requester of a what-if, charged for what it takes beyond a second.
+
+    Args:
+        services: those of the core.
+        client: who is charged: an address, or the name of an identity.
+
+    Raises:
+        Busy: if those before have taken more than its allowance.
+    """
+    limiter = services.what_if_limiter
+    if (wait_s := limiter.debt_s(client)) > 0:
+        detail = what_ifs_used_up(services.settings.what_ifs_per_minute, wait_s)
+        raise Busy(detail, whole_seconds(wait_s))
+
+    def charge(seconds: float) -> None:
+        limiter.charge(client, max(0.0, seconds - 1.0))
+
+    return WhatIfRequester(is_operator=False, check=services.stopping.check, charge=charge)
