@@ -48,6 +48,7 @@ class Features:
             if feature.tables is not None and feature.migrations is not None:
                 migrate_feature(store.database, feature.name, feature.migrations, feature.tables)
         self._left_out = _LeftOut(catalogue.left_out, store)
+        keep_named_robots(catalogue, store)
 
     def build(self, core: "Services") -> None:
         """Make the features of an app.
@@ -132,6 +133,18 @@ class Features:
                 yield from feature.metrics()
             except Exception:
                 _logger.exception("the feature %s has no metrics", feature.name)
+
+
+def keep_named_robots(catalogue: Catalogue, store: RunStore) -> None:
+    """Let a store delete no robot that a feature names, whether it is left out or not.
+
+    A table that is missing, as of a feature that has never been there, names none.
+    """
+    there = set(inspect(store.database.engine).get_table_names())
+    for feature in (*catalogue.classes, *catalogue.left_out):
+        for noun, columns in feature.robot_users.items():
+            if columns[0].table.name in there:
+                store.robots.users[noun] = columns
 
 
 class _LeftOut:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from fastapi import APIRouter
 from prometheus_client.metrics_core import Metric
 from pydantic import BaseModel
-from sqlalchemy import ColumnElement, MetaData, not_, select
+from sqlalchemy import Column, ColumnElement, MetaData, not_, select
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import BaseRoute
@@ -49,6 +49,8 @@ class Feature:
         uses: names of features that are made before it, if they are there.
         tables: its tables, which `migrations` creates.
         migrations: folder with its Alembic scripts: a chain of revisions of its own.
+        robot_users: by noun of what names robots in one of its tables, the columns that do. Such a
+            robot is not deleted, also while the feature is left out.
         damage_advice: by name of its tables, what helps against damaged rows.
         state_events: names of its events of which only the newest counts.
         event_bodies: models of the data of its events, by the event's name.
@@ -63,6 +65,7 @@ class Feature:
     uses: ClassVar[Sequence[str]] = ()
     tables: ClassVar[MetaData | None] = None
     migrations: ClassVar[Path | None] = None
+    robot_users: ClassVar[Mapping[str, Sequence[Column[Any]]]] = {}
     damage_advice: ClassVar[Mapping[str, str]] = {}
     state_events: ClassVar[Collection[str]] = ()
     event_bodies: ClassVar[Mapping[str, type[BaseModel]]] = {}

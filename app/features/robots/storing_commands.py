@@ -98,8 +98,16 @@ def _change(options: argparse.Namespace, **changes: Any) -> dict[str, Any]:
 def _delete(options: argparse.Namespace) -> int:
     settings = read_settings(data=options.data)
     found = find_stored(settings, options.robot)
-    request = ("DELETE", f"api/v1/robots/{found.id}", None)
-    _changed(settings, lambda store: store.robots.delete(found.id), request)
+
+    def delete(store: "RunStore") -> None:
+        # Imported here, as they load all features.
+        from app.active_features import keep_named_robots  # noqa: PLC0415
+        from app.installed_features import load  # noqa: PLC0415
+
+        keep_named_robots(load(settings.without), store)
+        store.robots.delete(found.id)
+
+    _changed(settings, delete, ("DELETE", f"api/v1/robots/{found.id}", None))
     return _print(options, {"deleted": found.id}, f"Deleted robot {found.name} ({found.id}).")
 
 

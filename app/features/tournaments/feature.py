@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 from fastapi import APIRouter
 from pydantic import BaseModel
+from sqlalchemy import Column
 from starlette.routing import BaseRoute
 
 from app.api.deps import Services
@@ -44,6 +45,9 @@ class TournamentFeature(Feature):
     uses = ("classroom",)
     tables = METADATA
     migrations = Path(__file__).with_name("migrations")
+    robot_users: ClassVar[Mapping[str, Sequence[Column[Any]]]] = {
+        "tournament": (TOURNAMENTS.c.rules,)
+    }
     damage_advice: ClassVar[Mapping[str, str]] = {
         "tournaments": _BACKUP,
         "tournament_entries": f"{_BACKUP}; where a tournament is open, enter again",
@@ -62,7 +66,6 @@ class TournamentFeature(Feature):
         self.tournaments = core.provide(Tournaments(core.store))
         self.tournaments.on_changed = partial(publish, core.stages[0], self.rooms)
         self.judge = Judge(self.tournaments, max(1, cores() // 2), _niceness(core.settings))
-        core.store.robots.users["tournament"] = (TOURNAMENTS, (TOURNAMENTS.c.rules,))
         if classroom is not None:
             classroom.rooms.has_entered = self.tournaments.has_entered
             for access in (WATCH_TOURNAMENT, ENTER_TOURNAMENT):

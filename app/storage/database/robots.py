@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sqlalchemy import Column, Connection, String, Table, cast, delete, func, or_, select, update
+from sqlalchemy import Column, Connection, String, cast, delete, func, or_, select, update
 
 from app.storage.database.engine import Database
 from app.storage.database.rows import forget_configs
@@ -56,7 +56,7 @@ class RobotStore:
     without a row, which the next start deletes.
 
     Attributes:
-        users: by noun, the table of what may name robots, and the columns in which it does.
+        users: by noun of what may name robots, the columns in which it does, of one table.
         version: of the list of robots; a greater one after each change.
     """
 
@@ -71,9 +71,7 @@ class RobotStore:
         self._database, self._folder, self._disk_space = database, folder, disk_space
         # Of changes: a robot must not be deleted between its document's writing and its row's.
         self.lock = threading.RLock()
-        self.users: dict[str, tuple[Table, Sequence[Column[Any]]]] = {
-            "run": (RUNS, (RUNS.c.config, RUNS.c.result))
-        }
+        self.users: dict[str, Sequence[Column[Any]]] = {"run": (RUNS.c.config, RUNS.c.result)}
         self._told: set[str] = set()
         self.version = next(_versions)
 
@@ -379,9 +377,9 @@ class RobotStore:
     def _users_of(self, connection: Connection, robot_id: str) -> dict[str, int]:
         """Return the numbers, by noun, of what names a robot; only of some."""
         counts = {}
-        for noun, (table, columns) in self.users.items():
+        for noun, columns in self.users.items():
             named = (cast(column, String).contains(robot_id) for column in columns)
-            query = select(func.count()).select_from(table).where(or_(*named))
+            query = select(func.count()).select_from(columns[0].table).where(or_(*named))
             counts[noun] = int(connection.execute(query).scalar_one())
         return {noun: count for noun, count in counts.items() if count}
 
