@@ -8,12 +8,13 @@ import os
 import socket
 import sys
 import threading
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
 from functools import cache, partial
 from types import FrameType
 
 import uvicorn
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI
+from fastapi.routing import iter_route_contexts
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
@@ -206,14 +207,25 @@ def _pages_of_features(routes: Sequence[BaseRoute], features: Features) -> list[
             added = feature.pages()
         for page in added:
             path: str = getattr(page, "path", "")
-            if path in paths:
-                raise InvalidInput(
-                    f"the feature {feature.name} has the path {path}, which is there already; "
-                    f"leave one of both out by {PREFIX}WITHOUT"
-                )
+            _check_is_new(type(feature), path, path in paths)
             paths.add(path)
         pages += added
     return pages
+
+
+def _operations(router: APIRouter) -> Iterator[tuple[str, str]]:
+    """Yield method and path of all routes of a router."""
+    for context in iter_route_contexts(router.routes):
+        path = context.path_format or context.path or ""
+        yield from ((method, path) for method in context.methods or ())
+
+
+def _check_is_new(feature: type[Feature], path: str, is_taken: bool) -> None:
+    if is_taken:
+        raise InvalidInput(
+            f"the feature {feature.name} has the path {path}, which is there already; leave one of "
+            f"both out by {PREFIX}WITHOUT"
+        )
 
 
 def _viewer_routes() -> list[BaseRoute]:
@@ -238,21 +250,25 @@ def _api_routes(
 ) -> tuple[BaseRoute, ...]:
     """Return the routes that are the same in all apps; FastAPI takes long to build them."""
     router, prefix = api_router(), "/api/v1"
+    modules = (
+        *(trainings, races, experiments, runs, exports, replays),
+        *(stage, spectators, events, robot_preview),
+    )
+    routers = [module.router for module in modules]
+    routers += [options.option_routes(features), start_routes(agents)]
+    operations = {operation for added in routers for operation in _operations(added)}
     # First, so that their fixed paths, such as `/runs/NAME`, are not taken for a run's id.
     kinds = start_kinds(agents)
     for feature in features:
         with blaming(feature, "`routers`"):
             of_starts = [added for kind in kinds for added in feature.routers_of_start(kind)]
             for added in (*feature.routers(agents), *of_starts):
+                for method, path in set(_operations(added)):
+                    _check_is_new(feature, f"{method} {prefix}{path}", (method, path) in operations)
+                    operations.add((method, path))
                 router.include_router(added, prefix=prefix)
-    modules = (
-        *(trainings, races, experiments, runs, exports, replays),
-        *(stage, spectators, events, robot_preview),
-    )
-    for module in modules:
-        router.include_router(module.router, prefix=prefix)
-    router.include_router(options.option_routes(features), prefix=prefix)
-    router.include_router(start_routes(agents), prefix=prefix)
+    for added in routers:
+        router.include_router(added, prefix=prefix)
     for included in (monitoring.router, docs.router):
         router.include_router(included)
     return tuple(router.routes)

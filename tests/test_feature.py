@@ -185,6 +185,23 @@ def test_two_with_one_page_are_told(tmp_path: Path, install: Callable[[str], Non
         pass
 
 
+def test_two_with_one_operation_are_told(tmp_path: Path, install: Callable[[str], None]) -> None:
+    install(
+        "from app.api.policy import WATCH, api_router, policy\n"
+        "router = api_router()\n"
+        '@router.get("/runs/{run_id}")\n'
+        "@policy(access=WATCH)\n"
+        "def rival(run_id: str) -> None: pass\n"
+        'class Rival(Feature):\n    name = "rival"\n    @classmethod\n'
+        "    def routers(cls, agents):\n        return (router,)\n"
+    )
+    with (
+        pytest.raises(InvalidInput, match=r"rival has the path GET /api/v1/runs/\{run_id\}, which"),
+        running(Settings(data=tmp_path)),
+    ):
+        pass
+
+
 _RACE_WITHOUT = """
 import sys
 from pathlib import Path
@@ -199,6 +216,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.promises
 @pytest.mark.parametrize("name", NAMES)
 def test_the_folder_of_a_feature_can_be_deleted(name: str, tmp_path: Path) -> None:
     """In a copy of the repository."""
