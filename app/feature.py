@@ -3,7 +3,8 @@
 A feature is a package `app/features/NAME` with a module `feature` that has a subclass of `Feature`
 as `FEATURE`, or a class that another package names in the entry-point group `hexapods.features`.
 The core asks its features (`active_features`), and names none of them; HEXAPODS_WITHOUT leaves some
-out (`installed_features`).
+out (`installed_features`). Settings (`feature_settings`) and commands (`cli.commands`) of a feature
+are no members of the class: they are in modules of their own, which commands read without a server.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -26,7 +27,8 @@ from starlette.routing import BaseRoute
 
 from app.jobs.queue import Owner
 from app.jobs.submissions import Start
-from app.settings import PREFIX, Settings
+from app.setting_fields import PREFIX
+from app.settings import Settings
 from app.storage.database.schema import RUNS
 from app.storage.database.store import RunStore
 from hexapods.domain.errors import HexapodError, InvalidInput

@@ -7,7 +7,7 @@ from pkgutil import iter_modules
 from typing import NamedTuple
 
 from app.feature import Feature
-from app.settings import PREFIX
+from app.setting_fields import PREFIX
 from hexapods.domain.errors import InvalidInput
 
 GROUP = "hexapods.features"

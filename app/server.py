@@ -68,7 +68,8 @@ from app.limits.client_slots import ClientSlots
 from app.limits.http_protocol import KEEP_ALIVE_S, limited_http
 from app.limits.listener import ACCEPTS_AT_ONCE, BACKLOG, Listener, listen
 from app.limits.open_files import connection_table, raise_file_limit
-from app.settings import PREFIX, Settings
+from app.setting_fields import PREFIX
+from app.settings import Settings
 from app.stage.playback import Replays
 from app.stage.roles import Roles
 from app.storage.database.opening import open_store

@@ -1,7 +1,8 @@
 """Settings of a server: from the environment, overruled by options, checked before anything starts.
 
 Every name is `HEXAPODS_…`; an empty variable counts as none, since that is how compose files
-leave one out.
+leave one out. Features declare settings of their own (`feature_settings`), of kinds that
+`setting_fields` has.
 """
 
 import ctypes
@@ -10,46 +11,27 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields
+from itertools import chain
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal, TypeVar, get_args
 from urllib.parse import urlsplit
 
 import platformdirs
 
-from hexapods.domain.errors import InvalidInput, UnknownName
+from app.feature_settings import FeatureSettings, installed_settings
+from app.setting_fields import PREFIX, check_kinds, choice, read_texts, variable_of, whole_number
+from hexapods.domain.errors import InvalidInput
 
 Spectators = Literal["public", "token"]
 LogLevel = Literal["debug", "info", "warning", "error"]
+S = TypeVar("S", bound=FeatureSettings)
 
-PREFIX = "HEXAPODS_"
 ROBOTS_FOLDER = "robots"
 """In the data folder: documents of stored robots, in a folder for each database."""
 MIN_QUOTA_MB = 10
 MAX_PORT = 65535
-_CHOICES = {"spectators": get_args(Spectators), "log_level": get_args(LogLevel)}
-_WHOLE_NUMBERS = {
-    "quota_mb": (MIN_QUOTA_MB, None, " of megabytes"),
-    "starts_per_minute": (1, None, ""),
-    "what_ifs_per_minute": (1, None, ""),
-    "max_connections": (1, None, ""),
-    "max_connections_per_address": (1, None, ""),
-    "job_niceness": (0, 19, ""),
-    "max_viewers": (1, None, ""),
-    "demo_steps_per_hour": (1, None, " of steps"),
-    "demo_hours": (1, 24, " of hours"),
-}
-"""By setting the least, the most if there is one, and of what."""
-_YES, _NO = ("1", "true", "yes", "on"), ("0", "false", "no", "off")
-_DEMO_DEFAULTS: Mapping[str, Any] = {
-    "starts_per_minute": 120,
-    "what_ifs_per_minute": 20,
-    "max_viewers": 200,
-    "quota_mb": 4000,
-}
-"""What is stricter on a demo unless it is given: strangers are there, of whom a class may share an
-address."""
 MIN_TOKEN_LENGTH, MAX_TOKEN_LENGTH = 16, 200
 _TOKEN = re.compile(rf"[\x21-\x7e]{{{MIN_TOKEN_LENGTH},{MAX_TOKEN_LENGTH}}}")
 _HOST_NAME = re.compile(r"(?=.{1,253}$)[a-z0-9_]([a-z0-9_-]*[a-z0-9_])?(\.[a-z0-9_-]+)*")
@@ -83,32 +65,28 @@ class Settings:
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
         max_viewers: how many may watch the stage at once, and as many may follow the events.
         without: names of the features that are left out.
-        demo: whether strangers may train, within an allowance, what is deleted after a day.
-        demo_steps_per_hour: how many steps a visitor of a demo may compute in an hour.
-        demo_hours: after how many hours what a visitor of a demo has made is deleted.
+        features: settings of features, of those that are left out, too.
     """
 
     host: str = "127.0.0.1"
     port: int = 8000
     data: Path
     token: str | None = field(default=None, repr=False)
-    spectators: Spectators = "public"
+    spectators: Spectators = choice("public", get_args(Spectators))
     public_url: str | None = None
     allowed_hosts: tuple[str, ...] = ()
     trusted_proxies: tuple[str, ...] = ()
     database_url: str | None = field(default=None, repr=False)
-    quota_mb: int | None = None
-    max_connections: int | None = None
-    max_connections_per_address: int | None = None
-    starts_per_minute: int = 1200
-    what_ifs_per_minute: int = 30
-    job_niceness: int = 15
-    max_viewers: int = 300
-    log_level: LogLevel = "info"
+    quota_mb: int | None = whole_number(None, MIN_QUOTA_MB, unit=" of megabytes")
+    max_connections: int | None = whole_number(None, 1)
+    max_connections_per_address: int | None = whole_number(None, 1)
+    starts_per_minute: int = whole_number(1200, 1)
+    what_ifs_per_minute: int = whole_number(30, 1)
+    job_niceness: int = whole_number(15, 0, 19)
+    max_viewers: int = whole_number(300, 1)
+    log_level: LogLevel = choice("info", get_args(LogLevel))
     without: tuple[str, ...] = ()
-    demo: bool = False
-    demo_steps_per_hour: int = 20_000
-    demo_hours: int = 24
+    features: tuple[FeatureSettings, ...] = ()
 
     def __post_init__(self) -> None:
         if isinstance(self.port, bool) or not 0 <= self.port <= MAX_PORT:
@@ -118,9 +96,7 @@ class Settings:
                 f"{PREFIX}TOKEN must have {MIN_TOKEN_LENGTH} to {MAX_TOKEN_LENGTH} printable ASCII "
                 "characters and no spaces; `openssl rand -hex 16` makes a good one"
             )
-        for name, choices in _CHOICES.items():
-            if getattr(self, name) not in choices:
-                raise UnknownName(PREFIX + name.upper(), getattr(self, name), choices)
+        check_kinds(self)
         if self.public_url is not None:
             _check_url(self.public_url)
         for name in self.allowed_hosts:
@@ -129,40 +105,20 @@ class Settings:
             _check_network(name)
         if self.database_url is not None:
             _check_database_url(self.database_url)
-        self._check_numbers()
-        self._check_demo()
+        for settings in self.features:
+            if settings.feature in self.without:
+                settings.check_left_out()
+            else:
+                settings.check(self)
         if self.token is None and not is_loopback(self.host):
             raise InvalidInput(
                 f"refusing to listen on {self.host} without a token, since anyone there could "
                 f"start and delete runs: set {PREFIX}TOKEN, use --share, or bind 127.0.0.1"
             )
 
-    def _check_numbers(self) -> None:
-        for name, (least, most, _) in _WHOLE_NUMBERS.items():
-            number = getattr(self, name)
-            if number is None or (number >= least and (most is None or number <= most)):
-                continue
-            limits = f"at least {least}" if most is None else f"from {least} to {most}"
-            raise InvalidInput(f"{PREFIX}{name.upper()} must be {limits}, not {number}")
-
-    def _check_demo(self) -> None:
-        if not self.demo:
-            return
-        if "demo" in self.without:
-            raise InvalidInput(
-                f"{PREFIX}DEMO is on, and {PREFIX}WITHOUT leaves the demo out, so that nothing "
-                "that strangers make would be deleted; take one of both back"
-            )
-        if self.token is None:
-            raise InvalidInput(
-                f"a demo needs {PREFIX}TOKEN, or every stranger would be its operator; "
-                "`openssl rand -hex 16` makes a good one"
-            )
-        if self.spectators != "public":
-            raise InvalidInput(
-                f"a demo is open to strangers: leave {PREFIX}SPECTATORS out, or leave out "
-                f"{PREFIX}DEMO"
-            )
+    def of(self, kind: type[S]) -> S:
+        """Return the settings of a feature by their class; its defaults if there are none."""
+        return next((values for values in self.features if isinstance(values, kind)), kind())
 
     @property
     def viewers_per_address(self) -> int:
@@ -216,32 +172,90 @@ def read_settings(environ: Mapping[str, str] = os.environ, **options: Any) -> Se
 
     Args:
         environ: the environment.
-        options: the attributes of `Settings`, by their names.
+        options: the attributes of `Settings` and of the settings of features, by their names.
 
     Raises:
         InvalidInput: for a value that cannot be, or a refusal to start with it.
     """
-    names = [attribute.name for attribute in fields(Settings)]
-    given: dict[str, Any] = {name: environ.get(PREFIX + name.upper()) or None for name in names}
-    given |= {name: value for name, value in options.items() if value is not None}
-    given = {name: value for name, value in given.items() if value is not None}
-    if isinstance(given.get("demo"), str):
-        given["demo"] = _yes_or_no("demo", given["demo"])
-    if given.get("demo"):
-        given = {**_DEMO_DEFAULTS, **given}
-    if isinstance(given.get("port"), str):
-        given["port"] = _port(given["port"])
-    for name, (_, _, what) in _WHOLE_NUMBERS.items():
-        if isinstance(given.get(name), str):
-            given[name] = _whole_number(name, what, given[name])
+    features, without = read_feature_settings(environ, **options), _without(environ, options)
+    names = {declared.name for declared in fields(Settings)}
+    of_features = {declared.name for settings in features for declared in fields(settings)}
+    given = _given((names | options.keys()) - of_features - {"features"}, environ, options)
+    stricter = _stricter_defaults(features, without)
+    values = {name: value for name, value in stricter.items() if name in names} | given
+    values |= read_texts(Settings, values)
+    if isinstance(values.get("port"), str):
+        values["port"] = _port(values["port"])
     for name in ("allowed_hosts", "trusted_proxies"):
-        if isinstance(given.get(name), str):
-            hosts = given[name].lower().split(",")
-            given[name] = tuple(host.strip() for host in hosts if host.strip())
-    if isinstance(given.get("without"), str):
-        given["without"] = _names(given["without"])
-    data = given.pop("data", None) or platformdirs.user_data_path("racing-hexapods", False)
-    return Settings(data=Path(data).expanduser().absolute(), **given)
+        if isinstance(values.get(name), str):
+            hosts = values[name].lower().split(",")
+            values[name] = tuple(host.strip() for host in hosts if host.strip())
+    values["without"] = without
+    data = values.pop("data", None) or platformdirs.user_data_path("racing-hexapods", False)
+    return Settings(data=Path(data).expanduser().absolute(), features=features, **values)
+
+
+def read_feature_settings(
+    environ: Mapping[str, str] = os.environ, **options: Any
+) -> tuple[FeatureSettings, ...]:
+    """Return the settings of all features alone; arguments and errors as of `read_settings`."""
+    without = _without(environ, options)
+    kinds = _kinds_of_features(without)
+    names = {declared.name for kind in kinds for declared in fields(kind)}
+    given = _given(names, environ, options)
+
+    def read(defaults: Mapping[str, Any]) -> tuple[FeatureSettings, ...]:
+        return tuple(kind(**read_texts(kind, {**defaults, **given})) for kind in kinds)
+
+    return read(_stricter_defaults(read({}), without))
+
+
+def _kinds_of_features(without: Collection[str]) -> list[type[FeatureSettings]]:
+    """Return the classes of the settings of features.
+
+    Raises:
+        InvalidInput: if a setting of one is there already.
+    """
+    names = {declared.name for declared in fields(Settings)}
+    kinds = []
+    for kind in installed_settings(without):
+        added = {declared.name for declared in fields(kind)}
+        if twice := sorted(names & added):
+            if kind.feature in without:
+                continue
+            raise InvalidInput(
+                f"the feature {kind.feature} has the setting {variable_of(twice[0])}, which is "
+                f"there already; leave {kind.feature} out by {PREFIX}WITHOUT"
+            )
+        names |= added
+        kinds.append(kind)
+    return kinds
+
+
+def _given(
+    names: Collection[str], environ: Mapping[str, str], options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return what is set of these settings, by name: options before variables."""
+    given = {name: text for name in names if (text := environ.get(variable_of(name)))}
+    return given | {
+        name: value for name, value in options.items() if name in names and value is not None
+    }
+
+
+def _without(environ: Mapping[str, str], options: Mapping[str, Any]) -> tuple[str, ...]:
+    without = options.get("without") or read_without(environ)
+    return _names(without) if isinstance(without, str) else tuple(without)
+
+
+def _stricter_defaults(
+    features: Iterable[FeatureSettings], without: Collection[str]
+) -> dict[str, Any]:
+    return {
+        name: value
+        for feature in features
+        if feature.feature not in without
+        for name, value in feature.stricter_defaults().items()
+    }
 
 
 def read_without(environ: Mapping[str, str] = os.environ) -> tuple[str, ...]:
@@ -249,18 +263,13 @@ def read_without(environ: Mapping[str, str] = os.environ) -> tuple[str, ...]:
     return _names(environ.get(f"{PREFIX}WITHOUT", ""))
 
 
-def is_demo(environ: Mapping[str, str] = os.environ) -> bool:
-    """Whether an environment makes a server a demo; errors as `read_settings`."""
-    return _yes_or_no("demo", environ.get(f"{PREFIX}DEMO") or _NO[0])
-
-
 def remove_secrets() -> None:
-    """Remove the token and the database's URL from the environment, for this process's children.
+    """Remove settings that `repr` hides from the environment, for this process's children.
 
     Their memory is overwritten: a fork has a copy of it, which `/proc/PID/environ` shows.
     """
-    for secret in (one.name for one in fields(Settings) if not one.repr):
-        name = PREFIX + secret.upper()
+    declared = [*fields(Settings), *chain(*map(fields, installed_settings(read_without())))]
+    for name in (variable_of(setting.name) for setting in declared if not setting.repr):
         if name not in os.environ:
             continue
         if sys.platform != "win32":
@@ -293,18 +302,6 @@ def _port(text: str) -> int:
 
 def _invalid_port(given: int | str) -> InvalidInput:
     return InvalidInput(f"the port must be from 0 to {MAX_PORT}, not {given!r}")
-
-
-def _whole_number(name: str, what: str, text: str) -> int:
-    if not text.isascii() or not text.isdigit():
-        raise InvalidInput(f"{PREFIX}{name.upper()} must be a whole number{what}, not {text!r}")
-    return int(text[:18])
-
-
-def _yes_or_no(name: str, text: str) -> bool:
-    if text.lower() not in (*_YES, *_NO):
-        raise InvalidInput(f"{PREFIX}{name.upper()} must be 1 or 0, not {text!r}")
-    return text.lower() in _YES
 
 
 def _check_host(name: str) -> None:

@@ -55,13 +55,6 @@ def test_an_empty_variable_is_none() -> None:
         ({"HOST": "192.168.1.5"}, ["HEXAPODS_TOKEN"]),
         ({"HOST": "hexapods.example"}, ["HEXAPODS_TOKEN"]),
         ({"PORT": "99999"}, ["from 0 to 65535"]),
-        ({"DEMO": "1"}, ["HEXAPODS_TOKEN", "stranger"]),
-        ({"DEMO": "1", "HOST": "0.0.0.0"}, ["HEXAPODS_TOKEN"]),
-        ({"DEMO": "1", "TOKEN": TOKEN, "WITHOUT": "demo"}, ["HEXAPODS_WITHOUT", "one of both"]),
-        ({"DEMO": "perhaps"}, ["HEXAPODS_DEMO", "1 or 0"]),
-        ({"DEMO": "1", "TOKEN": TOKEN, "SPECTATORS": "token"}, ["HEXAPODS_SPECTATORS"]),
-        ({"DEMO": "1", "TOKEN": TOKEN, "DEMO_HOURS": "25"}, ["from 1 to 24"]),
-        ({"DEMO": "1", "TOKEN": TOKEN, "DEMO_STEPS_PER_HOUR": "0"}, ["at least 1"]),
         ({"PORT": "-1"}, ["from 0 to 65535"]),
         ({"PORT": "web"}, ["from 0 to 65535"]),
         ({"TOKEN": "fifteen-letters"}, ["16 to 200"]),
@@ -129,16 +122,3 @@ def test_secrets_can_be_removed_from_the_environment(monkeypatch: pytest.MonkeyP
 def test_a_quota_is_in_megabytes() -> None:
     assert read_settings({"HEXAPODS_QUOTA_MB": "500"}).quota_mb == 500
     assert read_settings({}).quota_mb is None
-
-
-def test_a_demo_is_stricter_unless_it_is_told_otherwise() -> None:
-    environ = {"HEXAPODS_DEMO": "yes", "HEXAPODS_TOKEN": TOKEN}
-    demo, usual = read_settings(environ), read_settings({})
-    assert demo.demo
-    assert demo.starts_per_minute < usual.starts_per_minute
-    assert demo.what_ifs_per_minute < usual.what_ifs_per_minute
-    assert demo.max_viewers < usual.max_viewers
-    assert demo.quota_mb == 4000
-    given = read_settings({**environ, "HEXAPODS_QUOTA_MB": "90", "HEXAPODS_STARTS_PER_MINUTE": "7"})
-    assert (given.quota_mb, given.starts_per_minute) == (90, 7)
-    assert not read_settings({"HEXAPODS_DEMO": "0"}).demo

@@ -11,7 +11,8 @@ from app.api.policy import policy_of, work_of
 from app.api.problems import problem
 from app.limits.addresses import client_of
 from app.limits.token_bucket import RateLimiter
-from app.settings import PREFIX, Settings
+from app.setting_fields import PREFIX
+from app.settings import Settings
 
 
 class RateLimit(HttpMiddleware):

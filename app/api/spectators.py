@@ -11,7 +11,8 @@ from starlette.responses import JSONResponse, Response
 from app.api.answers import SpectatorsView
 from app.api.deps import ServicesDep, StageDep
 from app.api.policy import WATCH, api_router, policy
-from app.settings import PREFIX, Settings, is_loopback
+from app.setting_fields import PREFIX
+from app.settings import Settings, is_loopback
 
 _WILDCARDS = ("0.0.0.0", "::")  # noqa: S104 - compared, not bound
 _NEEDS_TOKEN = (

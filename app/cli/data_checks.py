@@ -13,7 +13,8 @@ from app.cli.machine_checks import CheckFailed
 from app.events.damage import damaged_rows, damaged_runs
 from app.feature import Feature
 from app.installed_features import load
-from app.settings import PREFIX, ROBOTS_FOLDER, Settings
+from app.setting_fields import PREFIX
+from app.settings import ROBOTS_FOLDER, Settings
 from app.storage.database.opening import ENTRIES
 from app.storage.database.read_only import open_read_only
 from app.storage.database.robots import damaged_robots

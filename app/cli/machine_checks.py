@@ -13,7 +13,8 @@ from collections.abc import Callable, Mapping
 from importlib.metadata import Distribution, PackageNotFoundError, distribution, version
 from pathlib import Path
 
-from app.settings import PREFIX, Settings, is_loopback
+from app.setting_fields import PREFIX
+from app.settings import Settings, is_loopback
 from hexapods import __version__, assets
 from hexapods.exports.registry import missing_extras
 

@@ -6,12 +6,23 @@ import secrets
 import sys
 import threading
 import time
+from collections.abc import Iterator
+from dataclasses import fields
 from functools import partial
 from typing import Any
 
 from app.cli import without_garbage_collection
 from app.cli.options import CommandParser, integer
-from app.settings import Settings, is_demo, is_loopback, read_settings, remove_secrets
+from app.feature_settings import FeatureSettings, installed_settings
+from app.setting_fields import Switch, kind_of
+from app.settings import (
+    Settings,
+    is_loopback,
+    read_feature_settings,
+    read_settings,
+    read_without,
+    remove_secrets,
+)
 
 THREADS_END_S = 2.0
 """Time for threads to end that still compute for requests once everything else has ended."""
@@ -31,13 +42,10 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         help="let the local network watch: bind every address, make a token if none is set, "
         "print the links",
     )
-    parser.add_argument(
-        "--demo",
-        action="store_true",
-        help="let strangers train within an allowance, and delete what they make after a day "
-        "(or HEXAPODS_DEMO=1); print the links, with a token that is made if none is set, on "
-        "loopback alone",
-    )
+    for name, switch in _switches_with_options():
+        parser.add_argument(
+            f"--{name.replace('_', '-')}", action="store_true", default=None, help=switch.option
+        )
     parser.set_defaults(run=run)
 
 
@@ -51,10 +59,14 @@ def run(options: argparse.Namespace) -> int:
     if options.share:
         given["host"] = options.host or "0.0.0.0"  # noqa: S104 - that is what --share is for
         given["token"] = read_token() or secrets.token_urlsafe(24)
-    given["demo"] = options.demo or None
+    given |= {name: getattr(options, name) for name, _ in _switches_with_options()}
+    of_features = read_feature_settings(**given)
     # Of a token of the environment no link is printed unless it is asked for: it would be in a log.
-    shows_links = options.share or options.demo
-    if (options.demo or is_demo()) and "token" not in given and read_token() is None:
+    shows_links = options.share or any(
+        settings.audience and _is_by_option(settings, options) for settings in of_features
+    )
+    needs_token = any(settings.needs_token for settings in of_features)
+    if needs_token and "token" not in given and read_token() is None:
         host = options.host or os.environ.get("HEXAPODS_HOST") or Settings.host
         if is_loopback(host):
             given["token"], shows_links = secrets.token_urlsafe(24), True
@@ -66,6 +78,20 @@ def run(options: argparse.Namespace) -> int:
     serve(settings, on_ready=partial(show_links, settings) if shows_links else None)
     _end_with_threads()
     return 0
+
+
+def _switches_with_options() -> Iterator[tuple[str, Switch]]:
+    """Yield by name the settings of features that an option turns on."""
+    for settings in installed_settings(read_without()):
+        for declared in fields(settings):
+            kind = kind_of(declared)
+            if isinstance(kind, Switch) and kind.option is not None:
+                yield declared.name, kind
+
+
+def _is_by_option(settings: FeatureSettings, options: argparse.Namespace) -> bool:
+    """Whether an option of the command has turned on one of these settings."""
+    return any(getattr(options, declared.name, None) for declared in fields(settings))
 
 
 def _end_with_threads() -> None:
@@ -94,9 +120,8 @@ def show_links(settings: Settings, port: int) -> None:
 
     address = shared_address(settings, port)
     print(f"Operator (may start and stop):  {address}?token={settings.token}")
-    if settings.demo:
-        print(f"Visitors (may train, a day):    {address}")
-    else:
-        print(f"Spectators (may watch):         {address}")
+    audiences = [of_feature.audience for of_feature in settings.features if of_feature.audience]
+    for audience in audiences or ["Spectators (may watch)"]:
+        print(f"{audience + ':':32}{address}")
     qr_code(address).terminal(out=sys.stdout, compact=True)
     sys.stdout.flush()

@@ -5,7 +5,8 @@ import urllib.error
 import urllib.request
 from typing import Any
 
-from app.settings import PREFIX, Settings
+from app.setting_fields import PREFIX
+from app.settings import Settings
 from app.storage.server_lock import read_address_file
 from hexapods.domain.errors import InvalidInput
 

@@ -8,7 +8,8 @@ import sys
 from typing import Any
 
 from app.limits.connections import Connection, ConnectionTable
-from app.settings import PREFIX, Settings
+from app.setting_fields import PREFIX
+from app.settings import Settings
 from hexapods.domain.errors import InvalidInput
 
 ACCEPTS_AT_ONCE = 64

@@ -35,6 +35,7 @@ from app.features.classroom.room_stages import RoomStages
 from app.features.classroom.rooms import Rooms
 from app.features.demo.access import VISITOR_NAME
 from app.features.demo.rows import VisitorRows, VisitorRun
+from app.features.demo.settings import DemoSettings
 from app.features.demo.visitors import _sha256
 from app.features.tournaments.tournaments import Tournaments
 from app.limits.fair_semaphore import FairSemaphore
@@ -57,7 +58,7 @@ SERVERS: dict[str, dict[str, Any]] = {
     "no token": {},
     "public": {"token": TOKEN},
     "token-only": {"token": TOKEN, "spectators": "token"},
-    "demo": {"token": TOKEN, "demo": True},
+    "demo": {"token": TOKEN, "features": (DemoSettings(demo=True),)},
 }
 WITH_PREFIX = {"token-only", "demo"}
 """Servers of which the routes of a room's stage are tried, too."""

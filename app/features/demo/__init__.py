@@ -5,6 +5,7 @@ at the first start, and forgotten when the last of its runs is deleted.
 
 - `feature` is what the core sees of it; `access` says what visitors may do.
 - `routes`, with `response_models`, are those over REST.
+- `settings` are its HEXAPODS_… variables.
 - `visitors` lets them start runs within their `allowance`; `expiry` deletes what is a day old.
 - `tables`, with `rows`, and `migrations` are in the database.
 """

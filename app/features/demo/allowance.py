@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import timedelta
 
-from app.settings import Settings
+from app.features.demo.settings import DemoSettings
 from app.storage.errors import Busy, Forbidden
 from app.storage.run import Run
 from hexapods.domain.errors import InvalidInput
@@ -28,8 +28,8 @@ class Allowance:
         visitors_per_address: so many visitors' steps and starts one address has, as of a class.
     """
 
-    steps_per_hour: int = Settings.demo_steps_per_hour
-    hours: int = Settings.demo_hours
+    steps_per_hour: int = DemoSettings.demo_steps_per_hour
+    hours: int = DemoSettings.demo_hours
     steps_per_start: int = 10_000
     least_steps: int = 200
     unended: int = 2
@@ -38,8 +38,8 @@ class Allowance:
     visitors_per_address: int = 32
 
     @classmethod
-    def of(cls, settings: Settings) -> "Allowance":
-        """Return the allowance of a server."""
+    def of(cls, settings: DemoSettings) -> "Allowance":
+        """Return the allowance of a demo with these settings."""
         return cls(settings.demo_steps_per_hour, settings.demo_hours)
 
     @property

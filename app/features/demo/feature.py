@@ -23,6 +23,7 @@ from app.features.demo.access import Visitor, VisitorAccess
 from app.features.demo.allowance import Allowance
 from app.features.demo.expiry import Expiry
 from app.features.demo.rows import VisitorRows
+from app.features.demo.settings import DemoSettings
 from app.features.demo.tables import METADATA
 from app.features.demo.visitors import Visitors
 from app.jobs.queue import Owner
@@ -56,9 +57,11 @@ class Demo(Feature):
 
     def __init__(self, core: Services) -> None:
         super().__init__(core)
-        self.visitors = core.provide(Visitors(core.store, Allowance.of(core.settings)))
+        settings = core.settings.of(DemoSettings)
+        self._is_demo = settings.demo
+        self.visitors = core.provide(Visitors(core.store, Allowance.of(settings)))
         self.visitors.is_hidden = lambda run_id: core.features.is_hidden(run_id, None)
-        self._others = [feature for feature in core.features if core.settings.demo]
+        self._others = [feature for feature in core.features if self._is_demo]
         self.expiry = core.provide(Expiry(core.store, core.jobs, self.visitors, self._others))
 
     @classmethod
@@ -87,8 +90,7 @@ class Demo(Feature):
                 await cleaning
 
     def provider(self) -> VisitorAccess | None:
-        settings = self.core.settings
-        return VisitorAccess(self.visitors, settings) if settings.demo else None
+        return VisitorAccess(self.visitors, self.core.settings) if self._is_demo else None
 
     def owner_of(self, run_id: str) -> Owner | None:
         return self.visitors.owner_of(run_id)
@@ -125,7 +127,7 @@ class Demo(Feature):
         return self.visitors.unfinished()
 
     def robots_txt(self) -> str | None:
-        return routes.ROBOTS_TXT if self.core.settings.demo else None
+        return routes.ROBOTS_TXT if self._is_demo else None
 
     def metrics(self) -> Iterable[Metric]:
         yield GaugeMetricFamily(
@@ -139,7 +141,7 @@ class Demo(Feature):
 
     async def _keep_clean(self) -> None:
         """Clean up a demo for as long as there is one, or something is left of one."""
-        while self.core.settings.demo or self.visitors.count:
+        while self._is_demo or self.visitors.count:
             await asyncio.sleep(expiry.EVERY_S)
             await self._clean_up()
 

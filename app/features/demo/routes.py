@@ -11,6 +11,7 @@ from app.features.demo.access import Visitor
 from app.features.demo.allowance import HOUR
 from app.features.demo.expiry import Expiry
 from app.features.demo.response_models import AllowanceView, VisitorList
+from app.features.demo.settings import DemoSettings
 from app.features.demo.visitors import Visitors
 from app.storage.errors import Forbidden, NotFound
 
@@ -84,5 +85,5 @@ def end_visitor(services: ServicesDep, visitor_id: VisitorPath) -> None:
 
 
 def _check_demo(services: Services) -> None:
-    if not services.settings.demo:
+    if not services.settings.of(DemoSettings).demo:
         raise NotFound("this server is no demo; `hexapods serve --demo` makes one")

@@ -3,6 +3,7 @@
 import pytest
 
 from app.features.demo.allowance import Allowance, in_words
+from app.features.demo.settings import DemoSettings
 from app.settings import read_settings
 from app.storage.errors import Busy, Forbidden
 from app.storage.run import Run
@@ -70,6 +71,6 @@ def test_operators_choose_steps_and_hours() -> None:
         "HEXAPODS_DEMO_STEPS_PER_HOUR": "3000",
         "HEXAPODS_DEMO_HOURS": "2",
     }
-    chosen = Allowance.of(read_settings(environ))
+    chosen = Allowance.of(read_settings(environ).of(DemoSettings))
     assert (chosen.steps_per_hour, chosen.lifetime.total_seconds()) == (3000, 7200)
     assert chosen.steps_per_hour_of_address == 96_000

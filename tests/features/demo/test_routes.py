@@ -11,6 +11,7 @@ import pytest
 
 from app.features.demo.access import VISITOR_NAME
 from app.features.demo.response_models import AllowanceView, VisitorList
+from app.features.demo.settings import DemoSettings
 from app.settings import Settings
 from tests.api.calls import WALK, Api
 from tests.api.conftest import running
@@ -30,9 +31,8 @@ def demo_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def demo(demo_folder: Path) -> Iterator[Api]:
     """A demo whose visitors have a thousand steps an hour."""
-    settings = Settings(
-        data=demo_folder, job_niceness=0, token=TOKEN, demo=True, demo_steps_per_hour=1000
-    )
+    is_demo = DemoSettings(demo=True, demo_steps_per_hour=1000)
+    settings = Settings(data=demo_folder, job_niceness=0, token=TOKEN, features=(is_demo,))
     with running(settings) as api:
         yield api
 

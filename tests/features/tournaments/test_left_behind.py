@@ -5,6 +5,7 @@ from pathlib import Path
 
 from sqlalchemy import update
 
+from app.features.demo.settings import DemoSettings
 from app.features.tournaments.tables import TOURNAMENTS
 from app.settings import Settings
 from tests.api.conftest import running
@@ -16,7 +17,8 @@ def test_a_demo_without_the_classroom_keeps_the_tournaments_of_rooms(tmp_path: P
     operator = {"Authorization": f"Bearer {token}"}
 
     def demo(*without: str) -> Settings:
-        return Settings(data=tmp_path, token=token, demo=True, without=without)
+        is_demo = DemoSettings(demo=True)
+        return Settings(data=tmp_path, token=token, features=(is_demo,), without=without)
 
     with running(demo()) as api:
         code = api.call("POST", "/rooms", json={}, headers=operator).json()["code"]
