@@ -14,8 +14,7 @@ from typing import Any
 from app.cli.exit_codes import FAILED, INTERRUPTED
 from app.cli.files import check_writable
 from app.cli.options import CommandParser, add_observation, integer, settings_from, split
-from app.cli.terminal import progress, show_table
-from app.cli.trials import RATE_WINDOW_S, discard, workers_text
+from app.cli.terminal import RATE_WINDOW_S, discard, progress, show_table, workers_text
 from hexapods.benchmarking.config import benchmark_config
 from hexapods.benchmarking.protocol import DEFAULT_PROTOCOL, PLAIN_SEED, PROTOCOLS, protocol
 from hexapods.benchmarking.score_file import HEAD, encode

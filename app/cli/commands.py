@@ -19,8 +19,7 @@ from hexapods.domain.errors import InvalidInput
 CORE_COMMANDS: Mapping[str, str] = {
     name: f"app.cli.{name.replace('-', '_')}"
     for name in (
-        *("serve", "train", "race", "experiment", "sweep", "tune", "benchmark", "best-known"),
-        *("runs", "verify", "doctor", "bench"),
+        *("serve", "train", "race", "benchmark", "best-known", "runs", "verify", "doctor", "bench"),
     )
 }
 GROUP = "hexapods.commands"

@@ -23,10 +23,14 @@ from rich.table import Table
 from rich.text import Text
 
 from hexapods.agents.appearance import name_of, title_of
+from hexapods.experiments.cluster import ClusterSpec
+from hexapods.machine import cores
 from hexapods.races import Race
 from hexapods.runs.clocks import CLOCK_TITLES, Clock
 from hexapods.runs.lane import PLANNING_MODEL_TITLES, plans_with
 
+RATE_WINDOW_S = 300.0
+"""Time over which a rate is averaged: work of one command takes a second to half a minute."""
 _BETWEEN = 2
 """Width of what is between two columns."""
 _INDENT = 2
@@ -175,3 +179,15 @@ def show_lanes(race: Race, clock: Clock) -> None:
     print(f"SHA-256 of its recording: {race.recording_sha256}")
     if race.best_known_m is not None:
         print(f"Best known, total: {race.best_known_m:.2f} m")
+
+
+def workers_text(cluster: ClusterSpec) -> str:
+    """Describe where work is done: `on 2 workers`."""
+    if cluster.scheduler is not None:
+        return f"on the cluster of {cluster.scheduler}"
+    workers = cluster.workers or cores()
+    return f"on {workers} worker{'s' if workers > 1 else ''}"
+
+
+def discard(_: str) -> None:
+    """Print nothing; used with `--json`."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from app.cli.exit_codes import FAILED, INTERRUPTED
-from app.cli.terminal import progress, show_table
+from app.cli.terminal import RATE_WINDOW_S, discard, progress, show_table, workers_text
 from hexapods.domain.errors import InvalidInput
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import DISTURBED, REPORT, ExperimentConfig
@@ -20,7 +20,6 @@ from hexapods.interruption import stop_signals
 from hexapods.machine import cores
 
 STOPPING = (signal.SIGINT, signal.SIGTERM)
-RATE_WINDOW_S = 300.0  # trials of one experiment take from a second to half a minute
 _HEAD = ("setting", "seeds", "total m", "95\u00a0%")
 
 
@@ -60,14 +59,6 @@ def run_experiment(
     else:
         _print_summary(summary, path)
     return FAILED if summary["trials"]["failed"] else 0
-
-
-def workers_text(cluster: ClusterSpec) -> str:
-    """Describe where trials run: `on 2 workers`."""
-    if cluster.scheduler is not None:
-        return f"on the cluster of {cluster.scheduler}"
-    workers = cluster.workers or cores()
-    return f"on {workers} worker{'s' if workers > 1 else ''}"
 
 
 def _run(
@@ -178,7 +169,3 @@ def _shares(one: Mapping[str, Any] | None) -> tuple[str, str]:
 def share_text(share: Mapping[str, Any] | None) -> str:
     """Return the interquartile mean of a share as text, with a no-break space: `96 %`."""
     return "" if share is None else f"{100 * share['iqm']:.0f}\u00a0%"
-
-
-def discard(_: str) -> None:
-    """Print nothing; used with `--json`."""

@@ -2,15 +2,15 @@
 
 import argparse
 
-from app.cli.experiment import agents_from
 from app.cli.options import CommandParser, add_list, add_settings, settings_from
-from app.cli.trial_options import (
+from app.features.experiments.command_trials import run_experiment
+from app.features.experiments.experiment_command import agents_from
+from app.features.experiments.trial_options import (
     add_machine_options,
     add_trial_options,
     cluster_from,
     trial_grid_from,
 )
-from app.cli.trials import run_experiment
 from hexapods.domain.settings import declared_fields
 from hexapods.experiments.config import GRID, experiment_config
 from hexapods.runs.config import TrainingConfig

@@ -21,17 +21,14 @@ from app.cli.options import (
     read_robot,
     split,
 )
-from app.cli.terminal import progress, show_table
-from app.cli.trial_options import add_machine_options, cluster_from
-from app.cli.trials import (
-    RATE_WINDOW_S,
+from app.cli.terminal import RATE_WINDOW_S, discard, progress, show_table, workers_text
+from app.features.experiments.command_trials import (
     STOPPING,
-    discard,
     print_failures,
     report_errors,
     share_text,
-    workers_text,
 )
+from app.features.experiments.trial_options import add_machine_options, cluster_from
 from hexapods.domain.checks import check_whole
 from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.robot import PRESETS

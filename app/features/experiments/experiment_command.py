@@ -3,13 +3,13 @@
 import argparse
 
 from app.cli.options import CommandParser, parser_of, split
-from app.cli.trial_options import (
+from app.features.experiments.command_trials import run_experiment
+from app.features.experiments.trial_options import (
     add_machine_options,
     add_trial_options,
     cluster_from,
     trial_grid_from,
 )
-from app.cli.trials import run_experiment
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.world import WORLDS

@@ -1,0 +1,7 @@
+"""The commands `experiment`, `sweep` and `tune`."""
+
+from collections.abc import Mapping
+
+COMMANDS: Mapping[str, str] = {
+    name: f"app.features.experiments.{name}_command" for name in ("experiment", "sweep", "tune")
+}

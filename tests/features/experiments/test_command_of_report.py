@@ -1,0 +1,55 @@
+"""The command that a report shows repeats its experiment."""
+
+import shlex
+from typing import Any
+
+import pytest
+
+from app.cli.options import CommandParser, settings_from
+from app.features.experiments import experiment_command, sweep_command
+from app.features.experiments.trial_options import trial_grid_from
+from hexapods.domain.gait import GaitSpec
+from hexapods.domain.records import to_json
+from hexapods.domain.robot import robot
+from hexapods.experiments.config import GRID, ExperimentConfig, experiment_config
+from hexapods.experiments.report.page import command
+from tests.experiments.sample_experiments import ROBOTS
+
+LRO = "left-right-origin"
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("table1", {}),
+        ("figure4", {"seeds": 7, "seed": 3, "observations": ("commanded",)}),
+        ("figure4", {"agents": ("q-learning", "tests.own_agents:Restless")}),
+        ("sweep", {"alpha": (0.1, 0.3), "steps": (100, 200), "robots": ROBOTS}),
+        ("sweep", {"robots": (robot("stiff"), robot({"friction": 0.3, "preset": "compliant"}))}),
+        ("sweep", {"gaits": (LRO, GaitSpec(1, 2, pairs=((1, 2), (3, 4), (5, 6))))}),
+        ("league", {}),
+        ("league", {"agents": ("linear-model",), "steps": (50, 100), "tolerance": 0.1}),
+        ("league", {"simulator": "kinematic", "worlds": ("noise",)}),
+        ("recovery", {"worlds": ("limp:legs=1,4", "ice", "slope:degrees=4+payload:kg=1")}),
+    ],
+)
+def test_the_command_on_the_page_reproduces_the_experiment(
+    name: str, given: dict[str, Any]
+) -> None:
+    tried = experiment_config(name, given)
+    typed = shlex.split(command(to_json(tried)))
+    assert _understood(typed) == tried
+
+
+def _understood(typed: list[str]) -> ExperimentConfig:
+    """Parse a command line as `hexapods` does."""
+    parser = CommandParser()
+    commands = parser.add_subparsers(dest="command")
+    experiment_command.add_to(commands)
+    sweep_command.add_to(commands)
+    options = parser.parse_args(typed[1:])
+    if options.command == "experiment":
+        return experiment_command.config_from(options)
+    grid = {n: getattr(options, n) for n in GRID} | settings_from(options)
+    agents = experiment_command.agents_from(options.agent)
+    return experiment_config("sweep", {**trial_grid_from(options), **grid, "agents": agents})
