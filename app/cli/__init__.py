@@ -116,6 +116,7 @@ def _parser(arguments: Sequence[str] = ()) -> argparse.ArgumentParser:
     commands = parser.add_subparsers(
         dest="command", required=True, metavar="COMMAND", parser_class=CommandParser
     )
-    for module in command_modules(arguments[0] if arguments else None).values():
-        importlib.import_module(module).add_to(commands)
+    if list(arguments) != ["--version"]:  # which needs no command
+        for module in command_modules(arguments[0] if arguments else None).values():
+            importlib.import_module(module).add_to(commands)
     return parser
