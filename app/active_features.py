@@ -14,6 +14,7 @@ from app.installed_features import Catalogue
 from app.jobs.queue import Owner
 from app.storage.database.migration import migrate_feature
 from app.storage.database.store import RunStore
+from hexapods.domain.records import Record
 
 if TYPE_CHECKING:
     from app.api.deps import Services
@@ -73,6 +74,11 @@ class Features:
     def page_folders(self) -> dict[str, Path]:
         """Folders of the pages of features of other packages, by the feature's name."""
         return {feature.name: feature.page for feature in self.classes if feature.page is not None}
+
+    def stage_members(self) -> dict[str, Record]:
+        """Return what each stage keeps for features, by name, as it begins."""
+        kinds = {name: kind for one in self.classes for name, kind in one.stage_members.items()}
+        return {name: kind() for name, kind in kinds.items()}
 
     def owner_of(self, run_id: str) -> Owner | None:
         """Return who waits for a run; None for an operator.

@@ -32,6 +32,7 @@ from app.settings import Settings
 from app.storage.database.schema import RUNS
 from app.storage.database.store import RunStore
 from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.records import Record
 
 if TYPE_CHECKING:
     from app.api.deps import Services, StartRequest
@@ -56,6 +57,9 @@ class Feature:
         damage_advice: by name of its tables, what helps against damaged rows.
         state_events: names of its events of which only the newest counts.
         event_bodies: models of the data of its events, by the event's name.
+        stage_members: records that each stage keeps for it, by their name in the stage's state:
+            operators set them by `PUT /stage`, who watches is told of them. They begin with their
+            defaults.
         page: of another package the folder with its part of the page: `feature.json` and its
             modules; that of the others is `static/features/NAME`.
         option_types: types of what `options` returns, by name: `defaults.NAME` of a default.
@@ -71,6 +75,7 @@ class Feature:
     damage_advice: ClassVar[Mapping[str, str]] = {}
     state_events: ClassVar[Collection[str]] = ()
     event_bodies: ClassVar[Mapping[str, type[BaseModel]]] = {}
+    stage_members: ClassVar[Mapping[str, type[Record]]] = {}
     option_types: ClassVar[Mapping[str, Any]] = {}
     page: ClassVar[Path | None] = None
 

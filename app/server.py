@@ -119,6 +119,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     """
     recordings, bus = Recordings(store), RunMetrics()
     stopping = Stopping()
+    features = Features(load(settings.without), store)
     new_stage = partial(
         SharedStage,
         store,
@@ -126,9 +127,9 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         bus,
         roles=Roles(settings.token, store.sessions, is_public=settings.spectators == "public"),
         viewer_slots=ClientSlots(settings.max_viewers, settings.viewers_per_address),
+        members=features.stage_members(),
     )
     stages = [shared := new_stage()]
-    features = Features(load(settings.without), store)
     jobs = Jobs(
         store,
         recordings,
@@ -253,10 +254,11 @@ def _api_routes(
     router, prefix = api_router(), "/api/v1"
     modules = (
         *(trainings, races, experiments, runs, exports, replays),
-        *(stage, spectators, events, robot_preview),
+        *(spectators, events, robot_preview),
     )
     routers = [module.router for module in modules]
-    routers += [options.option_routes(features), start_routes(agents)]
+    routers += [stage.stage_routes(features), options.option_routes(features)]
+    routers.append(start_routes(agents))
     operations = {operation for added in routers for operation in _operations(added)}
     # First, so that their fixed paths, such as `/runs/NAME`, are not taken for a run's id.
     kinds = start_kinds(agents)

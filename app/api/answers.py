@@ -15,7 +15,6 @@ from pydantic import BaseModel, ConfigDict, Field, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from app.stage.presentation import Presentation
 from app.stage.state_machine import Origin, Phase
 from app.storage.run import State
 from hexapods.domain.disturbance_documents import AnyDisturbance
@@ -241,7 +240,6 @@ class StageView(Answer):
     next_run_id: str | None
     holder: str | None
     announced: Announcement | None
-    presentation: Presentation
 
 
 class SeedsView(Answer):

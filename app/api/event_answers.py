@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from datetime import datetime
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model
@@ -214,9 +215,24 @@ class EventBodies(Answer):
     robots: RobotsEvent
 
 
+@cache
+def stage_view(features: tuple[type[Feature], ...]) -> type[StageView]:
+    """Return the model of the stage's state, with what it keeps for features."""
+    members: dict[str, Any] = {
+        name: (kind, ...) for feature in features for name, kind in feature.stage_members.items()
+    }
+    return create_model("StageView", __base__=StageView, __doc__=StageView.__doc__, **members)
+
+
 def event_bodies(features: Iterable[type[Feature]]) -> type[EventBodies]:
-    """Return `EventBodies` with the events of features."""
-    bodies: dict[str, Any] = {
+    """Return `EventBodies` with the events of features, and with what the stage keeps for them."""
+    features = tuple(features)
+    stage = stage_view(features)
+    snapshot = create_model(
+        "SnapshotView", __base__=SnapshotView, __doc__=SnapshotView.__doc__, stage=(stage, ...)
+    )
+    bodies: dict[str, Any] = {"snapshot": (snapshot, ...), "stage": (stage, ...)}
+    bodies |= {
         name: (body, ...) for feature in features for name, body in feature.event_bodies.items()
     }
     return create_model("EventBodies", __base__=EventBodies, __doc__=EventBodies.__doc__, **bodies)

@@ -21,7 +21,6 @@ from app.api.fields import (
     number,
 )
 from app.jobs.submissions import BranchStart, LaneStart, RaceStart, TrainingStart
-from app.stage.presentation import Presentation
 from app.storage.run import ANNOTATIONS
 from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.errors import InvalidInput
@@ -259,5 +258,4 @@ class StageBody(Body):
         ]
         | None
     ) = None
-    presentation: Annotated[Presentation, known_members(Presentation)] | None = None
     stay: Annotated[bool, Field(strict=True, description="keep the run that is on stage")] = False

@@ -1,25 +1,44 @@
 """Routes of the stage, which shows one run to all viewers."""
 
+from collections.abc import Sequence
+from typing import Annotated, Any
+
+from fastapi import APIRouter
+from pydantic import create_model
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import StageView
 from app.api.deps import StageDep
+from app.api.event_answers import stage_view
+from app.api.fields import known_members
 from app.api.policy import OPERATOR, WATCH_STAGE, api_router, policy
 from app.api.schemas import StageBody
-
-router = api_router(prefix="/stage", tags=["stage"])
-
-
-@router.get("", response_model=StageView, summary="Get the stage's state")
-@policy(access=WATCH_STAGE)
-def get_stage(shared: StageDep) -> Response:
-    """Return the state of the stage: run, time, speed and clock."""
-    return JSONResponse(shared.stage.state())
+from app.feature import Feature
 
 
-@router.put("", response_model=StageView, summary="Show a run, or change the stage's playback")
-@policy(access=OPERATOR)
-def put_stage(shared: StageDep, body: StageBody) -> Response:
-    """Change the given fields; the others are unchanged."""
-    shared.stage.set(**dict(body))
-    return JSONResponse(shared.stage.state())
+def stage_routes(features: Sequence[type[Feature]]) -> APIRouter:
+    """Return the routes of the stage, with what it keeps for features."""
+    router = api_router(prefix="/stage", tags=["stage"])
+    view = stage_view(tuple(features))
+    kinds = {name: kind for one in features for name, kind in one.stage_members.items()}
+    added: dict[str, Any] = {
+        name: (Annotated[kind, known_members(kind)] | None, None) for name, kind in kinds.items()
+    }
+    stage_body = create_model("StageBody", __base__=StageBody, __doc__=StageBody.__doc__, **added)
+
+    @router.get("", response_model=view, summary="Get the stage's state")
+    @policy(access=WATCH_STAGE)
+    def get_stage(shared: StageDep) -> Response:
+        """Return the state of the stage: run, time, speed and clock."""
+        return JSONResponse(shared.stage.state())
+
+    @router.put("", response_model=view, summary="Show a run, or change the stage's playback")
+    @policy(access=OPERATOR)
+    def put_stage(shared: StageDep, body: stage_body) -> Response:  # type: ignore[valid-type]
+        """Change the given fields; the others are unchanged."""
+        changes: dict[str, Any] = dict(body)
+        members = {name: changes.pop(name) for name in kinds}
+        given = {name: member for name, member in members.items() if member is not None}
+        shared.stage.set(**changes, members=given)
+        return JSONResponse(shared.stage.state())
+
+    return router

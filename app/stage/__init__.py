@@ -5,7 +5,6 @@
 - `playback` makes the show of a stored run, and keeps replays.
 - `roles` says who may operate a stage and who may watch it.
 - `timeline` gives a race over time for the page's chart.
-- `presentation` is the state of presenters' windows.
 
 To add a phase: a row of `TRANSITIONS` in `state_machine`, and what the page says in it
 (`static/js/narrative/narrative.js`).

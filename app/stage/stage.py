@@ -3,19 +3,19 @@
 import logging
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime, timedelta
+from types import MappingProxyType
 from typing import Any, Literal
 
 from app.events.bus import Channel, Event, Subscription
 from app.stage.playback import show_of
-from app.stage.presentation import Presentation
 from app.stage.state_machine import Origin, StagedRun, StageState
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
 from hexapods.domain.errors import HexapodError
-from hexapods.domain.records import to_json
+from hexapods.domain.records import Record, to_json
 from hexapods.domain.world import UNDISTURBED, World
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
@@ -31,6 +31,7 @@ _MAX_FRAME_S = 0.25
 _RUN_EVENTS = frozenset({"run", "run-deleted"})
 _RECENT_RUNS = 20
 _logger = logging.getLogger(__name__)
+_NO_MEMBERS: Mapping[str, Record] = MappingProxyType({})
 _SAME_END = timedelta(seconds=15)
 """The runs that the end of a server interrupts end within less."""
 
@@ -47,6 +48,7 @@ class Stage:
         channel: tells of changed and deleted runs; receives a `stage` event at each change.
         now: monotonic clock of playback [s].
         announces: whether it shows earlier races by itself.
+        members: by name of a member of its state, what it keeps for those who use it.
     """
 
     def __init__(
@@ -57,6 +59,7 @@ class Stage:
         now: Callable[[], float] = time.monotonic,
         *,
         announces: bool = True,
+        members: Mapping[str, Record] = _NO_MEMBERS,
     ) -> None:
         self._store, self._recordings, self._now = store, recordings, now
         self._channel, self._announces = channel, announces
@@ -70,7 +73,7 @@ class Stage:
         """All that happens in the run on stage, as far as it is known."""
         self._changes = channel.subscribe(run_ids=())
         """Events about the runs of the playlist."""
-        self._presentation = Presentation()
+        self._members = dict(members)
         self._playing = True
         self._speed: float | None = None
         """Speed chosen by a user; None for the show's automatic speed."""
@@ -146,7 +149,7 @@ class Stage:
         speed: float | Literal["time-lapse"] | None = None,
         clock: Clock | None = None,
         end_at_time_out: bool | None = None,
-        presentation: Presentation | None = None,
+        members: Mapping[str, Record] = _NO_MEMBERS,
         stay: bool = False,
     ) -> None:
         """Execute playback commands, which the API has validated; None leaves a setting unchanged.
@@ -160,7 +163,7 @@ class Stage:
             clock: times a race; see `hexapods.runs.clocks`.
             end_at_time_out: whether the show of a race ends with its photo finish, where the
                 ranking is settled, or goes on until its last lane has ended.
-            presentation: what presenters' windows show beside the stage.
+            members: of those that it keeps for others, the new ones.
             stay: keep the run on stage, as if a person had chosen it.
 
         Raises:
@@ -180,8 +183,7 @@ class Stage:
                 self._speed = None if isinstance(speed, str) else speed
             if end_at_time_out is not None:
                 self._show.ends_at_time_out = end_at_time_out
-            if presentation is not None:
-                self._presentation = presentation
+            self._members |= members
             if playing and self._show.ended and time_s is None:
                 time_s = 0.0
             if playing is not None:
@@ -212,7 +214,7 @@ class Stage:
                 "next_run_id": ids[1] if len(ids) > 1 else None,
                 "holder": ids[-1] if state.is_held else None,
                 "announced": self._announcement(),
-                "presentation": to_json(self._presentation),
+                **{name: to_json(member) for name, member in self._members.items()},
             }
 
     def frame(self) -> StageFrame:

@@ -1,7 +1,9 @@
 """A stage with all by which many people watch it: viewer, events, roles and address."""
 
 import asyncio
+from collections.abc import Mapping
 from contextlib import ExitStack
+from types import MappingProxyType
 from typing import Self
 
 from app.events.bus import Channel, EventBus
@@ -13,6 +15,7 @@ from app.storage.recordings import Recordings
 from app.viewer.hub import Hub
 from app.viewer.session import Session
 from app.viewer.stage_loop import StageLoop
+from hexapods.domain.records import Record
 from hexapods.drawing.scene import StageScene
 from hexapods.drawing.track import Position
 from hexapods.drawing.viser_internals.server import in_process_viser
@@ -44,6 +47,7 @@ class SharedStage:
         path: str = "",
         session_path: str | None = None,
         announces: bool = True,
+        members: Mapping[str, Record] = MappingProxyType({}),
     ) -> None:
         """Create it with an empty stage; entering the context starts the rest.
 
@@ -56,11 +60,12 @@ class SharedStage:
             path: see the class.
             session_path: path of the stage whose sessions operators have here; by default its own.
             announces: whether it shows earlier races by itself.
+            members: by name, what the stage keeps for those who use it.
         """
         self.path, self.roles = path, roles
         self.session_path = path if session_path is None else session_path
         self.channel = Channel(bus)
-        self.stage = Stage(store, recordings, self.channel, announces=announces)
+        self.stage = Stage(store, recordings, self.channel, announces=announces, members=members)
         self.hub = Hub(
             follow_position=self._follow_position,
             slots=viewer_slots,

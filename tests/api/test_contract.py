@@ -16,13 +16,12 @@ from app.api.answers import (
     ExperimentView,
     RaceView,
     RunPage,
-    StageView,
     TrainingPage,
     TrainingView,
 )
 from app.api.contract import operations, problems_of
 from app.api.deps import EventListener, Services
-from app.api.event_answers import event_bodies
+from app.api.event_answers import event_bodies, stage_view
 from app.api.events import get_events
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.options import options_view
@@ -216,7 +215,7 @@ def real_responses(api: Api, training: dict[str, Any]) -> Iterator[tuple[Any, An
     yield RecordingView, api.get(f"/races/{race['id']}/recording")
     for clock in ("paper", "wall", "free"):
         yield TimelineView, api.get(f"/races/{race['id']}/timeline?clock={clock}")
-    yield StageView, api.get("/stage")
+    yield stage_view(load().classes), api.get("/stage")
     body = {"experiment": "sweep", "seeds": 2, "steps": 20, "gaits": "left-right-origin"}
     experiment = api.start("/experiments", {**body, "simulator": "kinematic", "workers": 1})
     yield ExperimentView, experiment

@@ -1,0 +1,5 @@
+"""Fixtures of the API's tests, for those of this feature's routes."""
+
+from tests.api.conftest import api, data, made_once, serve, shared, trained
+
+__all__ = ["api", "data", "made_once", "serve", "shared", "trained"]

@@ -1,0 +1,36 @@
+"""What presenters' windows show is kept with the stage, and told to all who watch it."""
+
+from pathlib import Path
+
+from app.settings import Settings
+from tests.api.calls import Api, refused
+from tests.api.conftest import running
+
+START = {"card": None, "shows_why": False, "is_blank": False, "code": "large"}
+
+
+def test_it_is_set_and_told_with_the_stage(api: Api) -> None:
+    assert api.get("/stage")["presentation"] == START
+    shown = {**START, "card": 3, "code": "small"}
+    assert api.call("PUT", "/stage", json={"presentation": shown}).json()["presentation"] == shown
+    held = api.call("PUT", "/stage", json={"playing": False}).json()
+    assert (held["presentation"], held["playing"]) == (shown, False)
+    api.call("PUT", "/stage", json={"playing": True, "presentation": {}})
+    assert api.get("/stage")["presentation"] == START
+
+
+def test_what_is_not_valid_is_refused(api: Api) -> None:
+    for presentation in ({"card": 0}, {"card": 100}, {"code": "huge"}, {"shows_why": 1}):
+        refused(api.call("PUT", "/stage", json={"presentation": presentation}), 422)
+    answer = api.call("PUT", "/stage", json={"presentation": {"lights": "off"}})
+    refused(answer, 422, "choose one of: card, shows_why, is_blank, code")
+    assert api.get("/stage")["presentation"] == START
+
+
+def test_without_the_feature_the_stage_has_none(tmp_path: Path) -> None:
+    with running(Settings(data=tmp_path, without=("presenter",))) as api:
+        assert "presentation" not in api.get("/stage")
+        refused(api.call("PUT", "/stage", json={"presentation": START}), 422, "presentation")
+        assert api.call("PUT", "/stage", json={"playing": False}).json()["playing"] is False
+        described = api.client.get("/openapi.json").json()["components"]["schemas"]
+        assert "presentation" not in described["StageView"]["properties"]
