@@ -24,7 +24,6 @@ from app.api import (
     docs,
     events,
     experiments,
-    exports,
     monitoring,
     options,
     pages,
@@ -59,7 +58,6 @@ from app.api.unfinished import IncompleteBodyGuard
 from app.api.wellformed import MalformedRequestGuard
 from app.events import logs
 from app.events.run_metrics import RunMetrics
-from app.exports.file_renderer import FileRenderer
 from app.feature import Feature, blaming
 from app.installed_features import load
 from app.jobs.jobs import Jobs
@@ -159,7 +157,6 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         idempotency=Idempotency(store),
         agents=usable_agents(),
         replays=replays,
-        renderer=FileRenderer(check=stopping.check),
         stopping=stopping,
         what_if_limiter=what_if_limiter(settings),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
@@ -253,7 +250,7 @@ def _api_routes(
     """Return the routes that are the same in all apps; FastAPI takes long to build them."""
     router, prefix = api_router(), "/api/v1"
     modules = (
-        *(trainings, races, experiments, runs, exports, replays),
+        *(trainings, races, experiments, runs, replays),
         *(spectators, events, robot_preview),
     )
     routers = [module.router for module in modules]
@@ -309,8 +306,8 @@ async def _end_long_requests(app: FastAPI) -> None:
     services: Services = app.state.services
     services.stopping.set()
     app.state.work_slots.close()
-    for user in (*services.features, services.renderer):
-        await asyncio.to_thread(user.close)
+    for feature in services.features:
+        await asyncio.to_thread(feature.close)
 
 
 def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> None:

@@ -1,7 +1,7 @@
 """The REST interface: routes parse a request, call a service, and shape the answer.
 
 - Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments` (with `runs` in
-  common), `robot_preview`, `replays`, `exports`, `stage`, `spectators`, `events`, `options`,
+  common), `robot_preview`, `replays`, `stage`, `spectators`, `events`, `options`,
   `monitoring`; `pages` and `docs`.
 - Requests: `agent_bodies`, `schemas`, `experiment_body`, `fields`, `descriptions`, `formats`.
 - Answers: `answers`, `recorded_answers`, `experiment_answers`, `option_answers` (from

@@ -17,7 +17,6 @@ from app.api.identity import Identity
 from app.api.stage_paths import stage_of
 from app.cache import BytesCache
 from app.events.run_metrics import RunMetrics
-from app.exports.file_renderer import FileRenderer
 from app.jobs.jobs import Jobs
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
@@ -59,7 +58,6 @@ class Services:
         stages: all stages, the first of which has the path "".
         agents: names of the agents that were registered at server start.
         replays: encodes runs for pages that play them by themselves.
-        renderer: renders large files, such as videos.
         stopping: ends what takes long in threads when the server stops.
         what_if_limiter: limits what-ifs of spectators, by their number and time.
         listeners: slots of event streams, of all stages.
@@ -80,7 +78,6 @@ class Services:
     idempotency: Idempotency
     agents: tuple[str, ...]
     replays: ReplayFrames
-    renderer: FileRenderer
     stopping: Stopping
     what_if_limiter: RateLimiter
     listeners: ClientSlots["EventListener"]

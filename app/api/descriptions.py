@@ -12,7 +12,6 @@ from hexapods.domain.settings import declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS
 from hexapods.experiments.config import EXPERIMENTS, MAX_SEEDS
-from hexapods.exports.registry import EXPORTS
 from hexapods.runs.clocks import CLOCKS
 from hexapods.runs.config import SIMULATORS, TrainingConfig
 from hexapods.runs.gait_analysis import MAX_WINDOW_S
@@ -34,11 +33,6 @@ def _one_of(names: Iterable[str]) -> str:
 
 
 VALID: dict[str, str] = {
-    **{
-        name: setting.valid
-        for export in EXPORTS.values()
-        for name, setting in export.settings.items()
-    },
     **{name: setting.valid for name, setting in declared_fields(TrainingConfig).items()},
     **{name: setting.valid for name, setting in declared_fields(LaneConfig).items()},
     "name": NAMES,

@@ -1,6 +1,6 @@
 """Response models of `/options`, as those of `app.api.answers`."""
 
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
@@ -210,22 +210,6 @@ class AgentOption(Described):
     live_settings: dict[str, SettingOption]
 
 
-class ExportOption(Answer):
-    """A type of file that a race or training which has ended can be exported as.
-
-    Attributes:
-        address: below `/api/v1/runs/{run_id}/`.
-        method: of the request; POST is for operators only.
-        install: the command that installs what the server lacks; null if it lacks nothing.
-    """
-
-    title: str
-    address: str
-    method: Literal["GET", "POST"]
-    ending: str
-    install: str | None
-
-
 class OptionsView(Answer):
     """Options, defaults, limits and help texts of all forms.
 
@@ -233,7 +217,6 @@ class OptionsView(Answer):
         limits: [lowest, highest]; `settings` says which of them are not valid themselves.
         robots_version: increases with each change of the stored robots.
         titles: names of fields that are no declared settings.
-        exports: files of a recorded walk.
     """
 
     version: str
@@ -252,4 +235,3 @@ class OptionsView(Answer):
     limits: dict[str, tuple[float | None, float | None]]
     help: dict[str, str]
     titles: dict[str, str]
-    exports: list[ExportOption]

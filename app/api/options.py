@@ -62,7 +62,6 @@ from hexapods.experiments.config import (
     settings_by_name,
 )
 from hexapods.experiments.names import TITLES
-from hexapods.exports.registry import EXPORTS
 from hexapods.runs.clocks import CLOCK_TITLES
 from hexapods.runs.config import (
     RACE_STEPS,
@@ -180,7 +179,6 @@ def catalogue(
         "limits": _limits(settings),
         "help": {name: setting.about.help for name, setting in settings.items()} | FIELD_HELP,
         "titles": FIELD_TITLES,
-        "exports": _exports(),
     }
 
 
@@ -334,20 +332,6 @@ def _training_defaults() -> dict[str, Any]:
 def _race_defaults() -> dict[str, Any]:
     lanes = [{"agent": name, **({"training": {}} if learns(name) else {})} for name in PAPERS_LANES]
     return {"steps": RACE_STEPS, "seed": 0, "lanes": lanes}
-
-
-def _exports() -> list[dict[str, Any]]:
-    return [
-        {
-            "title": file.title,
-            "address": one.address(name, file),
-            "method": one.method,
-            "ending": file.ending,
-            "install": file.install,
-        }
-        for name, one in EXPORTS.items()
-        for file in one.files
-    ]
 
 
 def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | None]]:

@@ -2,16 +2,19 @@
 
 A feature names its commands in a module `app/features/NAME/commands.py`, and another package in a
 module of its own, which an entry point of the group `hexapods.commands` gives with the feature's
-name: `COMMANDS` has by command the module with its `add_to`. Neither imports anything else, since
-`hexapods --version` and each command of the core would wait for it.
+name: `COMMANDS` has by command the module with its `add_to`. `VERBS`, if it is there, has by
+command of the core the modules whose `add_to` adds verbs to it. Neither imports anything else,
+since `hexapods --version` and each command of the core would wait for it.
 """
 
 import importlib
 import os
 import pkgutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import entry_points
 from importlib.util import find_spec
+from types import ModuleType
+from typing import NamedTuple
 
 from app.settings import read_without
 from hexapods.domain.errors import InvalidInput
@@ -46,7 +49,7 @@ def command_modules(
         return {name: CORE_COMMANDS[name]}
     without = read_without(environ)
     modules = dict(CORE_COMMANDS)
-    for feature, commands in _commands_of_features():
+    for feature, commands, _ in _added():
         if feature in without:
             if name in commands:
                 raise InvalidInput(
@@ -63,16 +66,48 @@ def command_modules(
     return modules if name is None or name not in modules else {name: modules[name]}
 
 
-def _commands_of_features() -> Iterator[tuple[str, Mapping[str, str]]]:
-    """Yield the names of features that have commands, with these; left-out features too."""
+def verb_modules(command: str, environ: Mapping[str, str] = os.environ) -> list[str]:
+    """Return the modules of the verbs that features add to a command of the core.
+
+    Args:
+        command: the command.
+        environ: environment, of which HEXAPODS_WITHOUT leaves features out.
+
+    Raises:
+        InvalidInput: if the commands of a feature cannot be imported.
+    """
+    without = read_without(environ)
+    return [
+        module
+        for feature, _, verbs in _added()
+        if feature not in without
+        for module in verbs.get(command, ())
+    ]
+
+
+class _Added(NamedTuple):
+    """What a feature adds: its name, the modules of its commands, and those of its verbs."""
+
+    feature: str
+    commands: Mapping[str, str]
+    verbs: Mapping[str, Sequence[str]]
+
+    @classmethod
+    def by(cls, feature: str, module: ModuleType) -> "_Added":
+        """Return what a feature names in a module."""
+        return cls(feature, module.COMMANDS, getattr(module, "VERBS", {}))
+
+
+def _added() -> Iterator[_Added]:
+    """Yield what each feature adds that has commands; left-out features too."""
     package = importlib.import_module(_PACKAGE)
     for feature in sorted(module.name for module in pkgutil.iter_modules(package.__path__)):
         path = f"{_PACKAGE}.{feature}.commands"
         if find_spec(path) is not None:
-            yield feature, importlib.import_module(path).COMMANDS
+            yield _Added.by(feature, importlib.import_module(path))
     for entry in entry_points(group=GROUP):
         try:
-            yield entry.name, entry.load().COMMANDS
+            yield _Added.by(entry.name, entry.load())
         except Exception as error:
             raise InvalidInput(
                 f"the commands of the feature {entry.name} cannot be imported from {entry.value}: "

@@ -16,7 +16,6 @@ from pathlib import Path
 from app.setting_fields import PREFIX
 from app.settings import Settings, is_loopback
 from hexapods import __version__, assets
-from hexapods.exports.registry import missing_extras
 
 _PYTHON = (3, 11)
 _PHYSICS_TIMEOUT_S = 60.0
@@ -155,18 +154,6 @@ def _cores() -> str:
     return f"{usable} of {there} processor cores may be used; a job takes one each"
 
 
-def _exports() -> str:
-    """Say which files of a walk need a package that is missing; all of them are optional."""
-    missing = missing_extras()
-    needs = [
-        f"{', '.join(title for title in missing if missing[title] == install)}: `{install}`"
-        for install in dict.fromkeys(missing.values())
-    ]
-    if not needs:
-        return "the packages for all files of a walk are installed"
-    return f"packages for some files of a walk are not installed: {'; '.join(needs)}"
-
-
 def check_settings(settings: Settings) -> str:
     """Check that only operators are operators, and say where the server would listen.
 
@@ -200,5 +187,4 @@ CHECKS: Mapping[str, Callable[[], str]] = {
     "physics": _physics,
     "browser": _browser,
     "cores": _cores,
-    "exports": _exports,
 }

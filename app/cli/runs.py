@@ -5,6 +5,7 @@ command makes them itself.
 """
 
 import argparse
+import importlib
 import json
 import sys
 from collections.abc import Mapping
@@ -12,7 +13,7 @@ from datetime import datetime
 from typing import cast
 from urllib.parse import quote
 
-from app.cli import run_files, servos
+from app.cli.commands import verb_modules
 from app.cli.options import CommandParser, integer
 from app.cli.server_client import call_server
 from app.cli.stored_runs import add_data, add_run, find_run, open_for_reading
@@ -39,9 +40,7 @@ _HEAD = ("run", "kind", "state", "steps", "result", "began", "name")
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser(
-        "runs", help="list, show and delete runs, and export them as files", description=__doc__
-    )
+    parser = commands.add_parser("runs", help="list, show and delete runs", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     listing = verbs.add_parser("list", help="list runs")
     listing.add_argument("--kind", choices=KINDS, help="only runs of this kind")
@@ -64,8 +63,8 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
         verb.add_argument("--json", action="store_true", help="print JSON")
     for verb in (showing, deleting):
         add_run(verb)
-    run_files.add_to(verbs)
-    servos.add_to(verbs)
+    for module in verb_modules("runs"):
+        importlib.import_module(module).add_to(verbs)
 
 
 def _list(options: argparse.Namespace) -> int:

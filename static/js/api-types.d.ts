@@ -3042,13 +3042,10 @@ export interface OptionsView {
   titles: {
     [k: string]: string;
   };
-  /**
-   * files of a recorded walk.
-   */
-  exports: ExportOption[];
   tournament_fields: {
     [k: string]: SettingOption;
   };
+  exports: ExportOption[];
   leg_fields: {
     [k: string]: SettingOption;
   };

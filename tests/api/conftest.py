@@ -100,8 +100,8 @@ def _close(client: TestClient) -> None:
     """End what requests have opened, as the lifespan does: stages that draw, and pools."""
     _close_rooms(client)
     services = _services_of(client)
-    for user in (*services.features, services.renderer):
-        user.close()
+    for feature in services.features:
+        feature.close()
     client.close()
 
 

@@ -39,7 +39,7 @@ def uploads(api: Api) -> list[tuple[str, str]]:
 def test_uploads_are_refused_before_they_are_read(full: tuple[Api, str]) -> None:
     api, _ = full
     paths = uploads(api)
-    assert {"/api/v1/import", "/api/v1/lessons", "/api/v1/robots"} <= {path for path, _ in paths}
+    assert {"/api/v1/trainings/import"} <= {path for path, _ in paths}
     for path, media_type in [*paths, ("/api/v1/lessons", "application/json")]:
         answer = api.client.post(path, content=BROKEN, headers={"Content-Type": media_type})
         refused(answer, 507, "data folder")

@@ -108,38 +108,17 @@ def test_an_invalid_annotation_is_refused_and_changes_nothing(api: Api) -> None:
     refused(api.call("GET", "/runs?sort=name&cursor=abc"), 422, "must be the next_cursor")
 
 
-def test_several_runs_are_exported_deleted_and_taken_in_again(api: Api) -> None:
+def test_several_runs_are_deleted(api: Api) -> None:
     options = {"steps": 10, "evaluate_every": 0}
     runs = [api.finished(api.train(name=f"Heron {n}", **options)) for n in range(2)]
     live = api.slow_training(name="Heron, live")
     query = "&".join(f"id={run['id']}" for run in runs)
-    exported = api.call("GET", f"/runs/export?{query}")
-    assert exported.status_code == 200
-    assert exported.headers["content-disposition"] == 'attachment; filename="2-runs.zip"'
-    refused(api.call("GET", f"/runs/export?{query}&id={live['id']}"), 409, "stop it first")
-    refused(api.call("GET", f"/runs/export?{query}&id=none"), 404, "none")
-
     done = api.call("DELETE", f"/runs?{query}&id={live['id']}&id=none").json()
     assert done["deleted"] == [run["id"] for run in runs]
     reasons = {one["id"]: one["reason"] for one in done["kept"]}
     assert reasons.keys() == {live["id"], "none"}
     assert "stop it first" in reasons[live["id"]]
     api.stop(live)
-
-    events = api.client.app.state.services.bus.subscribe(names={"run"})  # type: ignore[attr-defined]
-    taken = api.call("POST", "/runs/import", content=exported.content)
-    assert taken.status_code == 201
-    assert taken.json()["items"] == runs
-    once = {"content": exported.content, "headers": {"Idempotency-Key": "taken-once"}}
-    copies, again = (api.call("POST", "/runs/import", **once) for _ in range(2))
-    assert copies.json() == again.json()
-    assert len({run["id"] for run in [*runs, *copies.json()["items"]]}) == 4
-    refused(api.call("POST", "/runs/import", **{**once, "content": b"PK"}), 422, "another request")
-    api.call("DELETE", f"/runs?id={copies.json()['items'][0]['id']}")
-    refused(api.call("POST", "/runs/import", **once), 410, "was deleted; send a new key")
-    assert {event.run_id for event in events.drain()} >= {run["id"] for run in runs}
-    refused(api.call("POST", "/runs/import", content=b"PK"), 422, "no archive of a run")
-    refused(api.call("POST", "/runs/import", content=b""), 422, "end the .zip file")
     refused(api.call("DELETE", "/runs"), 422, "id is missing", "the id of a run")
     many = "&".join("id=a" for _ in range(101))
     refused(api.call("DELETE", f"/runs?{many}"), 422, "up to 100 of them")

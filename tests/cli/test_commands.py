@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import main
-from app.cli.commands import CORE_COMMANDS, command_modules
+from app.cli.commands import CORE_COMMANDS, command_modules, verb_modules
 from hexapods.domain.errors import InvalidInput
 
 COMMAND = '''"""Say what the journal says."""
@@ -68,6 +68,21 @@ def test_a_command_of_the_core_cannot_be_replaced(install: Callable[[str], None]
     assert command_modules("train") == {"train": "app.cli.train"}
     with pytest.raises(InvalidInput, match="the feature notes has the command train"):
         command_modules()
+
+
+def test_a_verb_of_another_package_runs_unless_its_feature_is_left_out(
+    install: Callable[[str], None],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    install('COMMANDS = {}\nVERBS = {"runs": ["hexapods_notes.journal_command"]}')
+    assert main(["runs", "journal"]) == 0
+    assert capsys.readouterr().out == "Dear journal,\n"
+    monkeypatch.setenv("HEXAPODS_WITHOUT", "notes")
+    assert "hexapods_notes.journal_command" not in verb_modules("runs")
+    with pytest.raises(SystemExit):
+        main(["runs", "journal"])
+    assert "invalid choice: 'journal'" in capsys.readouterr().err
 
 
 def test_commands_that_cannot_be_imported_are_named(

@@ -56,10 +56,10 @@ def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
     assert all(line.startswith("✓ ") for line in lines)
     names = [line[2:].partition(":")[0] for line in lines]
     assert names[:5] == ["python", "packages", "engine", "physics", "browser"]
-    assert names[5:8] == ["cores", "exports", "settings"]
+    assert names[5:7] == ["cores", "settings"]
     checked = ["features", "data folder", "room", "lock", "database", "rows", "robots", "address"]
-    checked.append("visitors")
-    assert names[8:] == checked
+    checked += ["visitors", "exports"]
+    assert names[7:] == checked
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,9 +1,7 @@
-"""`hexapods runs`, `export` and `import` beside a server, which makes the changes."""
+"""`hexapods runs` beside a server, which makes the changes."""
 
-import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -46,21 +44,12 @@ def unchanged(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Served
 
 def test_changes_are_made_by_the_running_server(server: Served, data: Path, tmp_path: Path) -> None:
     here = ("--data", str(data))
-    output("export", RACED, "--out", "run.zip", *here, folder=tmp_path)
     with server.client.stream("GET", "/api/v1/events") as events:
         lines = events.iter_lines()
         done = hexapods("runs", "delete", RACED, *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
         assert done.stdout == f"Deleted race {RACED}.\n", done.stderr
         assert any(line == "event: run-deleted" for line in lines), "the page was told"
     assert server.client.get(f"/api/v1/races/{RACED}").status_code == 404
-    done = hexapods("import", "run.zip", "--json", *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
-    assert json.loads(done.stdout)["id"] == RACED, done.stderr
-    shown = server.client.get(f"/api/v1/races/{RACED}").json()
-    assert shown["result"]["lanes"][1]["agent"] == "greedy"
-    assert server.client.get(f"/api/v1/races/{RACED}/recording").status_code == 200
-    exported = server.client.get(f"/api/v1/races/{RACED}/export")
-    assert exported.content == (tmp_path / "run.zip").read_bytes()
-    assert "race-" in exported.headers["content-disposition"]
 
 
 def test_refusals_of_the_server_are_reported(
@@ -72,24 +61,9 @@ def test_refusals_of_the_server_are_reported(
         delete = ("runs", "delete", RACED, *here)
         said = refusal(*delete, folder=tmp_path, run=in_process, HEXAPODS_TOKEN=token)
         assert "needs its token: set HEXAPODS_TOKEN" in said
-    (tmp_path / "junk.zip").write_bytes(b"milk")
-    said = refusal("import", "junk.zip", *here, folder=tmp_path, HEXAPODS_TOKEN=TOKEN)
-    assert "is no archive of a run" in said
-    assert server.address in said
+        assert server.address in said
     listed = output("runs", "list", *here, folder=tmp_path, run=in_process)
     assert [run["id"] for run in listed["items"]] == [TRAINING, RACED]
-
-
-def test_import_route_checks_token_archive_and_size(unchanged: tuple[Served, Path]) -> None:
-    server, _ = unchanged
-    bearer = {"Authorization": f"Bearer {TOKEN}"}
-    post: Any = server.client.post
-    assert post("/api/v1/import", content=b"x").status_code == 401
-    assert post("/api/v1/import", content=b"", headers=bearer).status_code == 422
-    assert post("/api/v1/import", content=b"PK\5\6" * 9, headers=bearer).status_code == 422
-    large = post("/api/v1/import", content=bytes((64 << 20) + 1), headers=bearer)
-    assert large.status_code == 413
-    assert server.client.get("/api/v1/trainings/import/export").status_code == 404
 
 
 def test_full_quota_refuses_starts(data: Path) -> None:

@@ -7,10 +7,9 @@ import re
 import numpy as np
 import pytest
 
-from app.exports.stored_walks import source_of
 from app.jobs.stopping import Stopping
 from app.stage.playback import Replays
-from app.storage.errors import Busy, Conflict
+from app.storage.errors import Busy
 from app.viewer.replay_frames import ReplayFrames
 from hexapods.domain.errors import TooLong
 from hexapods.drawing.robot_mesh import RobotMesh
@@ -117,10 +116,3 @@ def test_a_server_that_stops_encodes_no_more(parts: StageParts) -> None:
     with pytest.raises(Busy, match="stopping"):
         page_of(frames, run.id)
     assert frames.segment(run.id, "paper", 0, 0) == known
-
-
-def test_a_race_under_way_has_no_page(parts: StageParts) -> None:
-    run, advance = parts.running_race(LANES)
-    advance()
-    with pytest.raises(Conflict, match="can be had as a file once it ended"):
-        source_of(parts.store.find(run.id), parts.recordings, frames_of(parts).encoded)

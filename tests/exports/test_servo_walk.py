@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.exports.stored_walks import recorded_walks
 from hexapods.domain.creatures import PRESETS
 from hexapods.domain.errors import InvalidInput, TooLong
 from hexapods.exports import servo_walk as module
@@ -21,6 +20,7 @@ from hexapods.exports.servo_files import arduino_header, joint_trajectory, servo
 from hexapods.exports.servo_map import ServoMap
 from hexapods.exports.servo_map_file import load_servo_map, read_servo_map
 from hexapods.exports.servo_walk import FRAME_S, ServoWalk, servo_walk
+from tests.exports.conftest import recorded_walks
 from tests.exports.servo_maps import JOINTS, map_text
 from tests.stage.stage_parts import StageParts
 
@@ -54,7 +54,7 @@ def test_another_lane_is_chosen_by_its_number(raced: RecordedWalks) -> None:
 
 def test_a_practice_begins_after_its_gap(parts: StageParts) -> None:
     run = parts.finished_training(steps=30)
-    walks = recorded_walks(parts.store.find(run.id), parts.recordings)
+    walks = recorded_walks(parts, run)
     (lane,) = walks.lanes
     assert servo_walk(walks, servo_map()).steps == (1, 30)
     gap = dataclasses.replace(lane, steps=[*lane.steps[:20], *lane.steps[25:]])
@@ -189,7 +189,7 @@ def test_the_example_of_the_document_runs(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_freenoves_servos_walk_as_its_map_says(parts: StageParts) -> None:
     run = parts.finished_race(("greedy",), steps=3, simulator="mujoco", robot=PRESETS["freenove"])
-    walks = recorded_walks(parts.store.find(run.id), parts.recordings)
+    walks = recorded_walks(parts, run)
     walk = servo_walk(walks, load_servo_map("freenove", JOINTS))
     assert walk.pulses_us.min() > 500
     assert walk.pulses_us.max() < 2500

@@ -12,14 +12,12 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 
-from app.exports.stored_walks import recorded_walks
-from app.storage.errors import Conflict
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.kinematics import legs_of
 from hexapods.exports import extras, registry
 from hexapods.exports.recorded_walks import RecordedWalks, checked_lane
 from hexapods.exports.trajectory import column_names, trajectory_csv, trajectory_parquet
-from tests.exports.conftest import AGENTS
+from tests.exports.conftest import recorded_walks
 from tests.stage.stage_parts import StageParts
 
 
@@ -92,22 +90,11 @@ def test_a_lane_is_taken_alone(raced: RecordedWalks) -> None:
 
 def test_a_practice_has_its_recorded_steps(parts: StageParts) -> None:
     run = parts.finished_training(steps=30)
-    walks = recorded_walks(parts.store.find(run.id), parts.recordings)
+    walks = recorded_walks(parts, run)
     _, rows = table_of(walks)
     assert {int(row[1]) for row in rows} == set(range(31))
     with pytest.raises(InvalidInput, match="lane must be 0, not 1"):
         checked_lane(walks, 1)
-
-
-def test_what_runs_or_has_no_recording_is_refused(parts: StageParts) -> None:
-    run, advance = parts.running_race(AGENTS)
-    advance()
-    with pytest.raises(Conflict, match="is running; its walk can be had as a file once it ended"):
-        recorded_walks(parts.store.find(run.id), parts.recordings)
-    config: Any = parts.store.get(run.id).config
-    ended = parts.create(config, state="finished")
-    with pytest.raises(Conflict, match="is finished and has no recording"):
-        recorded_walks(parts.store.find(ended.id), parts.recordings)
 
 
 def test_a_missing_package_names_its_extra() -> None:

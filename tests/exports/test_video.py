@@ -3,32 +3,21 @@
 import io
 import pickle
 import sys
-import tempfile
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from multiprocessing import get_context
-from pathlib import Path
 
 import av
 import numpy as np
-import psutil
 import pytest
 from PIL import Image, ImageSequence
 
-from app.exports.file_renderer import FileRenderer
-from app.exports.stored_walks import recorded_walks
-from app.storage.errors import Busy
-from hexapods import processes
-from hexapods.domain.errors import HexapodError, InvalidInput
+from hexapods.domain.errors import InvalidInput
 from hexapods.exports import video
-from hexapods.exports.export_format import Execution
 from hexapods.exports.extras import MissingExtra
 from hexapods.exports.options import VideoOptions
 from hexapods.exports.recorded_walks import RecordedWalks
 from hexapods.exports.video import render_video, shown_poses
-from tests.jobs.waiting import wait_until
+from tests.exports.conftest import recorded_walks
 from tests.stage.stage_parts import StageParts
-from tests.timeouts import LONG_S
 
 pytestmark = pytest.mark.promises
 
@@ -36,16 +25,10 @@ SMALL = VideoOptions(width=160, height=120, fps=5, clock="free")
 PICTURES = 11  # 6 steps of 0.32 s at 5 a second, and the end
 
 
-def rendered_by(renderer: FileRenderer, walks: RecordedWalks, options: VideoOptions) -> bytes:
-    return render_video(walks, options, "mp4", Execution(write_file=renderer.render))
-
-
 def test_an_mp4_opens_in_another_reader_and_moves(raced: RecordedWalks) -> None:
-    renderer = FileRenderer()
-    with av.open(io.BytesIO(rendered_by(renderer, raced, SMALL)), "r") as video:
+    with av.open(io.BytesIO(render_video(raced, SMALL, "mp4")), "r") as video:
         stream = video.streams.video[0]
         pictures = [frame.to_ndarray(format="rgb24").astype(int) for frame in video.decode(stream)]
-    renderer.close()
 
     assert (stream.codec_context.name, stream.width, stream.height) == ("h264", 160, 120)
     assert stream.average_rate == 5
@@ -76,7 +59,7 @@ def test_pictures_show_the_recorded_poses(raced: RecordedWalks) -> None:
 
 def test_a_gap_in_a_practice_is_left_out(parts: StageParts) -> None:
     run = parts.finished_training(steps=700)
-    walks = recorded_walks(parts.store.find(run.id), parts.recordings)
+    walks = recorded_walks(parts, run)
     times_s = shown_poses(walks, VideoOptions(fps=1), 1000).times_s
     assert times_s[-1] == pytest.approx(700 * 0.32)
     assert len(times_s) == pytest.approx(520 * 0.32, abs=2)
@@ -87,59 +70,12 @@ def test_a_long_walk_is_shown_whole_but_faster_unless_its_speed_is_chosen(
 ) -> None:
     assert shown_poses(raced, SMALL, 900).times_s[1] == pytest.approx(1 / 5), "at its own speed"
     run = parts.finished_training(steps=700)
-    walks = recorded_walks(parts.store.find(run.id), parts.recordings)
+    walks = recorded_walks(parts, run)
     times_s = shown_poses(walks, VideoOptions(), 900).times_s
     assert 800 < len(times_s) <= 900
     assert times_s[-1] == pytest.approx(700 * 0.32)
     with pytest.raises(InvalidInput, match="more than 900 frames; choose a higher speed"):
         shown_poses(walks, VideoOptions(playback_speed=1.0), 900)
-
-
-def test_a_video_that_is_rendered_ends_with_the_renderer(
-    raced: RecordedWalks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    renderer = FileRenderer()
-    long = replace(SMALL, width=1920, height=1080, playback_speed=0.05)
-    with ThreadPoolExecutor(1) as threads:
-        rendered = threads.submit(rendered_by, renderer, raced, long)
-        wait_until(lambda: [*tmp_path.rglob("video.mp4")])
-        (worker,) = map(psutil.Process, renderer._pool.pids)
-        worker_and_encoder = [worker, *worker.children()]
-        assert len(worker_and_encoder) == 2
-        with pytest.raises(Busy, match="another video is being rendered"):
-            rendered_by(renderer, raced, SMALL)
-        renderer.close()
-        with pytest.raises(Busy, match="one of them ended"):
-            rendered.result()
-    assert [*tmp_path.iterdir()] == []
-    assert psutil.wait_procs(worker_and_encoder, LONG_S)[1] == []
-    with pytest.raises(Busy, match="the server is stopping"):
-        rendered_by(renderer, raced, SMALL)
-
-
-def test_a_video_that_takes_too_long_or_cannot_be_encoded_fails_alone(
-    raced: RecordedWalks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    encoder = tmp_path / "encoder"
-    encoder.write_text(f"#!/bin/sh\necho $$ > {tmp_path / 'pid'}\nexec sleep 600")
-    encoder.chmod(0o700)
-    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(encoder))
-    # The fork server has the environment that was there when it was started.
-    monkeypatch.setattr(processes, "process_context", lambda: get_context("spawn"))
-    stuck = FileRenderer(timeout_s=2.0)
-    with pytest.raises(Busy, match="it took over 2 s"):
-        rendered_by(stuck, raced, SMALL)
-    assert not stuck._rendering.locked()
-    pid = (tmp_path / "pid").read_text() if (tmp_path / "pid").exists() else ""
-    wait_until(lambda: not pid or not psutil.pid_exists(int(pid)))
-    stuck.close()
-    encoder.write_text("#!/bin/sh\nexit 1")
-    renderer = FileRenderer()
-    with pytest.raises(HexapodError, match="a video failed: OSError") as failure:
-        rendered_by(renderer, raced, SMALL)
-    assert not isinstance(failure.value, InvalidInput)
-    renderer.close()
 
 
 def test_what_cannot_be_rendered_is_refused(

@@ -349,8 +349,8 @@ def test_a_table_enters_whose_practice_is_known(school: Contest) -> None:
     assert fields_of(problem) == ["training_id"]
     teacher.call("DELETE", f"/trainings/{first['id']}")
     refused(enter(teacher, tournament, **body), 422, "practice is not known")
-    archive = teacher.call("GET", f"/trainings/{run['id']}/export").content
-    imported = teacher.call("POST", "/import", content=archive).json()
+    table = teacher.call("GET", f"/trainings/{run['id']}/q-table?format=npz").content
+    imported = teacher.call("POST", "/trainings/import", content=table).json()
     body = {"agent": "q-learning", "training_id": imported["id"]}
     refused(enter(teacher, tournament, **body), 422, "was imported")
     teacher.call("DELETE", f"/trainings/{run['id']}")

@@ -13,7 +13,8 @@ from app.api.fields import Declared
 from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, Policy, api_router, with_policy
 from app.api.runs import RunPath
-from app.exports.stored_walks import source_of
+from app.features.exports.file_renderer import FileRenderer
+from app.features.exports.stored_walks import source_of
 from app.storage.errors import Conflict
 from hexapods.domain.errors import TooLong
 from hexapods.exports.export_format import Execution, ExportFormat, FileType, Load
@@ -71,7 +72,7 @@ def _endpoint(one: ExportFormat) -> Callable[..., Response]:
         run = services.store.find(run_id)
         source = source_of(run, services.recordings, services.replays.encoded)
         execution = Execution(
-            one.max_served_frames, services.stopping.check, services.renderer.render
+            one.max_served_frames, services.stopping.check, services.of(FileRenderer).render
         )
         try:
             chunks = one.write(source, query.file, query.options, execution)

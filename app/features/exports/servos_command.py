@@ -54,7 +54,7 @@ def write_servos(given: argparse.Namespace) -> int:
             outside of its limits, or the file cannot be written.
     """
     # Imported here, as these modules would slow the start of other commands.
-    from app.exports.stored_walks import recorded_walks  # noqa: PLC0415
+    from app.features.exports.stored_walks import recorded_walks  # noqa: PLC0415
     from app.storage.recordings import Recordings  # noqa: PLC0415
     from hexapods.exports.servo_map_file import load_servo_map  # noqa: PLC0415
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from app.api.policy import policies
 from hexapods.exports.registry import EXPORTS
 from tests.api.calls import Api, refused
 
@@ -93,3 +94,9 @@ def test_what_has_no_trajectory_is_refused(api: Api, raced: dict[str, Any]) -> N
     queued = api.race(lanes=[{"agent": "q-learning", "training": {"steps": 10_000_000}}])
     refused(trajectory(queued["id"]), 409, "its walk can be had as a file once it ended")
     api.stop(queued, *(api.get(f"/trainings/{one}") for one in queued["waiting_for"]))
+
+
+def test_each_file_has_the_slots_of_what_it_costs(api: Api) -> None:
+    of_routes = policies(api.client.app)  # type: ignore[arg-type]
+    assert of_routes["get", "/api/v1/runs/{run_id}/page"].work == "encoding"
+    assert of_routes["get", "/api/v1/runs/{run_id}/trajectory"].work == "download"

@@ -41,7 +41,7 @@ def _add(
 def _write(given: argparse.Namespace, export: ExportFormat) -> int:
     """Write the file; works beside a running server."""
     # Imported here, as these modules would slow the start of other commands.
-    from app.exports.stored_walks import source_of  # noqa: PLC0415
+    from app.features.exports.stored_walks import source_of  # noqa: PLC0415
     from app.stage.playback import Replays  # noqa: PLC0415
     from app.storage.recordings import Recordings  # noqa: PLC0415
 
