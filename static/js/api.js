@@ -1,9 +1,10 @@
 // Client of the server: its REST API, one function per request.
 import { computed, effect, untracked } from "@preact/signals";
 
-/** @import { Annotations, Curve, Curves, Disturbance, Explanation } from "./types.js" */
-/** @import { Kind, Loss, Options } from "./types.js" */
-/** @import { Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage, StateTable } from "./types.js" */
+/** @import { Signal } from "@preact/signals" */
+/** @import { Annotations, Curve, Curves, Disturbance } from "./types.js" */
+/** @import { Kind, Options } from "./types.js" */
+/** @import { Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage } from "./types.js" */
 /** @import { Timeline, Verb } from "./types.js" */
 
 /**
@@ -123,6 +124,36 @@ export function askForNewest({ key, ask, forget = () => {}, pause_ms }) {
     stop();
   };
 }
+
+/**
+ * The server's reply to the newest question. `again`: the server needs longer, and is asked again.
+ * @template Answer
+ * @typedef {{ answer: Answer | null, error: Error | null, again: boolean }} Reply
+ */
+
+/**
+ * Keep the answer to the newest question in a signal.
+ * @template Answer
+ * @param {() => string} key "" where there is nothing to ask for
+ * @param {(key: string) => Promise<Answer>} ask
+ * @param {Signal<Reply<Answer>>} reply
+ * @param {() => number} pause_ms after an answer
+ */
+export const keepAnswer = (key, ask, reply, pause_ms) => askForNewest({
+  key,
+  ask: async (of) => {
+    try {
+      reply.value = { answer: await ask(of), error: null, again: false };
+    } catch (failure) {
+      const error = /** @type {RequestError} */ (failure);
+      const again = needsLonger(error);
+      reply.value = { answer: again ? reply.value.answer : null, error, again };
+      throw error;
+    }
+  },
+  forget: () => (reply.value = { answer: null, error: null, again: false }),
+  pause_ms,
+});
 
 /** No answer came: the server or the network is down. */
 class Unreachable extends RequestError {
@@ -314,27 +345,3 @@ export const getSpectators = () => call("GET", "spectators");
 export const getStage = () => call("GET", "stage");
 /** @type {(changes: Partial<Stage> & { time_s?: number }) => Promise<Stage | null>} */
 export const putStage = (changes) => call("PUT", "stage", changes);
-
-/**
- * A step of a run, explained.
- * @type {(of: { run_id: string, lane: number, step: number }) => Promise<Explanation>}
- */
-export const getExplanation = ({ run_id, lane, step }) => {
-  const query = new URLSearchParams({ step: `${step}`, lane: `${lane}` });
-  return call("GET", `runs/${encodeURIComponent(run_id)}/explain?${query}`);
-};
-
-/** Why a lane loses its race. @type {(of: { run_id: string, lane: number, clock: string }) => Promise<Loss>} */
-export const getLoss = ({ run_id, lane, clock }) => {
-  const query = new URLSearchParams({ lane: `${lane}`, clock });
-  return call("GET", `races/${encodeURIComponent(run_id)}/loss?${query}`);
-};
-
-/**
- * The table of a training after so many steps; null is the newest.
- * @type {(of: { training_id: string, step: number | null, first: number }) => Promise<StateTable>}
- */
-export const getTable = ({ training_id, step, first }) => {
-  const query = new URLSearchParams({ first: `${first}`, ...(step === null ? {} : { step: `${step}` }) });
-  return call("GET", `trainings/${encodeURIComponent(training_id)}/table?${query}`);
-};

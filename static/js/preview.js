@@ -1,18 +1,20 @@
 // What is known of the form's robot, gait and foot grid before anything runs: support, reach, states, speed.
 import { effect, signal, untracked } from "@preact/signals";
-import { previewRobot } from "./api.js";
+import { keepAnswer, previewRobot } from "./api.js";
 import { bodyFields, offerLearner, setField, wrong } from "./form.js";
 import { listed, metres, millimetres, whole } from "./format.js";
-import { keepAnswer } from "./steps.js";
+import { isPlaying } from "./on-stage.js";
 import { connection, options } from "./store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Reply } from "./steps.js" */
+/** @import { Reply } from "./api.js" */
 /** @import { FormValue, Preview } from "./types.js" */
 
 /** @type {Signal<Reply<Preview>>} */
 export const preview = signal({ answer: null, error: null, again: false });
 
+/** While the stage plays, previews are asked for at most so often [ms]. */
+const EVERY_MS = 500;
 const BODY_FIELDS = ["gait", "robot", "divisions", "grid_side_m"];
 
 /** Keep the preview of the form, and offer a learner by it, until the function that is returned is called. */
@@ -26,6 +28,7 @@ export function followPreview() {
       },
       (key) => previewRobot(JSON.parse(key)),
       preview,
+      () => (isPlaying.value ? EVERY_MS : 0),
     ),
     effect(() => {
       const { answer } = preview.value;

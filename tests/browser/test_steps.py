@@ -213,7 +213,8 @@ def test_why_a_learner_loses_is_asked_on_the_board(
     expect(told.get_by_text("Why does it lose?")).to_be_focused()
     assert dashboard.violations() == []
     dashboard.page.set_viewport_size({"width": 360, "height": 780})
-    assert dashboard.scroll_width() == 360
+    # The page learns of its new width a moment later.
+    dashboard.page.wait_for_function("document.documentElement.scrollWidth === 360")
 
     # Where the server cannot tell it, it says so.
     dashboard.page.route(

@@ -1,7 +1,7 @@
 // The editor of the robot's body: what is edited and can be undone, what was typed that is no number, and what the
 // server tells of it. Nothing is changed in the form until the body is used.
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
-import { isLasting, previewRobot } from "../../js/api.js";
+import { isLasting, keepAnswer, previewRobot } from "../../js/api.js";
 import {
   addLeg, changeAll, changeLeg, changeTorso, isBox, makeBox, mirrorOf, numbersOf, openBody, partsOf, removeLeg, robotOf,
   sharedPart,
@@ -12,15 +12,13 @@ import { bodyIsOpen } from "./dialogs.js";
 import { parseSetting } from "../../js/parse.js";
 import { isSame, storedRobot } from "../../js/robots.js";
 import { limitsOf } from "../../js/settings.js";
-import { keepAnswer } from "../../js/steps.js";
 import { connection, served } from "../../js/store.js";
 import { messageOf } from "../../js/titles.js";
 
 /** @import { ReadonlySignal, Signal } from "@preact/signals" */
-/** @import { RequestError } from "../../js/api.js" */
+/** @import { Reply, RequestError } from "../../js/api.js" */
 /** @import { Body } from "./body.js" */
 /** @import { Objection } from "./body-words.js" */
-/** @import { Reply } from "../../js/steps.js" */
 /** @import { FormValue, GaitConfig, Preview, RobotConfig, SettingOption } from "../../js/types.js" */
 
 /** What the server tells: of which question, and under which gait. */

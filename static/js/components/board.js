@@ -13,8 +13,8 @@ import { agentOf, laneTitle, learns } from "../settings.js";
 import { runs, scene, served } from "../store.js";
 import { choicesOf, clockTitle, flatParts, planningModelTitle } from "../titles.js";
 import { practisedSteps } from "../training.js";
-import { explainingTab, isAtLeast, openExplanation } from "../workspace.js";
-import { html, Icon, Loaded } from "./elements.js";
+import { isAtLeast } from "../workspace.js";
+import { html, Icon, Loaded, Slot } from "./elements.js";
 import { LearningChart } from "./learning.js";
 import { RaceChart } from "./race-chart.js";
 
@@ -73,13 +73,6 @@ function Standings({ rows }) {
     </table>
     ${isToldAll() && html`<p class="dim fine">Solid: walking. Hatched: thinking.</p>`}
   `;
-}
-
-/** Open the explanation of the lane. @param {number} lane */
-async function explainLoss(lane) {
-  const [{ chosenLane }, { isSought }] = await Promise.all([import("../steps.js"), import("../loss.js")]);
-  [chosenLane.value, isSought.value] = [lane, true];
-  openExplanation();
 }
 
 /** Disturbances of the race, and the race of which it is a branch. */
@@ -141,10 +134,8 @@ function Lane({ row, longest }) {
         <td colspan="5">
           <${TimeStrip} spent=${row.spent} longest=${longest} />
           ${linesBelow(row).map(([kind, words]) => html`<p class=${kind}>${words}</p>`)}
-          ${explainingTab.value !== null && isLoser(row.lane) && isAtLeast("try") && !page.isPresenting.value && html`
-            <button class="link" onClick=${() => explainLoss(row.lane)}>
-              Why does it lose?<span class="sr-only"> ${row.title}</span>
-            </button>
+          ${isLoser(row.lane) && isAtLeast("try") && !page.isPresenting.value && html`
+            <${Slot} name="lane that loses" row=${row} />
           `}
         </td>
       </tr>

@@ -1,13 +1,12 @@
-// The view that compares runs: which, their learning curves, results, settings, policies, and replays.
+// The view that compares runs: which, their learning curves, results, settings, and replays.
 import { compared, comparable, followCompared, leaveOut, leftOut, MAX_COMPARED } from "../../compare.js";
 import { count } from "../../format.js";
 import { commonFacts } from "../../run-words.js";
 import { isActive } from "../../selectors.js";
-import { html } from "../elements.js";
+import { html, Slot } from "../elements.js";
 import { ReplayLink } from "../replay-link.js";
 import { Curves } from "./curves.js";
 import { Key } from "./key.js";
-import { Policies } from "./policies.js";
 import { RaceThem } from "./race-them.js";
 import { Results, Settings } from "./tables.js";
 
@@ -46,7 +45,7 @@ const Parts = () => html`
   <${Curves} />
   <${Results} />
   <${Settings} />
-  <${Policies} />
+  <${Slot} name="comparison" />
 `;
 
 const Nothing = () => html`
@@ -54,7 +53,7 @@ const Nothing = () => html`
     <h2 id="compare-title">Compare runs</h2>
     <p class="dim">
       Select two runs or more in the list, and press Compare: their learning curves are laid over each other, and
-      settings, results and policies stand side by side.
+      settings and results stand side by side.
     </p>
     <a class="secondary button" href="#runs">Go to the list</a>
   </section>

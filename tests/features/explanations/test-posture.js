@@ -3,14 +3,14 @@ import assert from "node:assert/strict";
 import { afterEach, beforeEach, test } from "node:test";
 import {
   chosenState, chooseState, followChosenState, giveUpState, moveAt, whyNoGhost,
-} from "../../static/js/posture.js";
-import { clickedCell, drawHere } from "../../static/js/page.js";
-import { page } from "../../static/js/page-state.js";
-import { chosenLane, chosenMoment } from "../../static/js/steps.js";
-import { applyEvent, options } from "../../static/js/store.js";
-import { makeRun, OPTIONS } from "./options.js";
+} from "../../../static/features/explanations/posture.js";
+import { clickedCell, drawHere } from "../../../static/js/page.js";
+import { page } from "../../../static/js/page-state.js";
+import { chosenLane, chosenMoment } from "../../../static/features/explanations/steps.js";
+import { applyEvent, options } from "../../../static/js/store.js";
+import { makeRun, OPTIONS } from "../../page/options.js";
 
-/** @import { Message } from "../../static/js/replay-frames.js" */
+/** @import { Message } from "../../../static/js/replay-frames.js" */
 
 const GRID = {
   pairs: [[1, 4], [2, 5], [3, 6]], cell_names: ["home", "front left", "front right", "back left", "back right"],

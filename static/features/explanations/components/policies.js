@@ -1,15 +1,15 @@
 // The policies of two trainings: the states in which their best moves differ.
 import { computed, signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
-import { comparable } from "../../compare.js";
-import { askAgain, differencesOf, followTables, haveSameStates, tableOf } from "../../compare-policies.js";
-import { count, percentage, whole } from "../../format.js";
-import { fineMillimetres, moveInWords, stateCells, stateInWords } from "../../steps.js";
-import { html } from "../elements.js";
-import { Key } from "./key.js";
+import { comparable } from "../../../js/compare.js";
+import { askAgain, differencesOf, followTables, haveSameStates, tableOf } from "../policies.js";
+import { count, percentage, whole } from "../../../js/format.js";
+import { fineMillimetres, moveInWords, stateCells, stateInWords } from "../steps.js";
+import { html } from "../../../js/components/elements.js";
+import { Key } from "../../../js/components/compare/key.js";
 
-/** @import { DifferentState, WholeTable } from "../../compare-policies.js" */
-/** @import { Changed, FootCells } from "../../types.js" */
+/** @import { DifferentState, WholeTable } from "../policies.js" */
+/** @import { Changed, FootCells } from "../../../js/types.js" */
 
 const FIRST_ROWS = 12;
 

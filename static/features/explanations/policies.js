@@ -1,14 +1,15 @@
 // The tables of two trainings, and the states in which their best moves differ.
 import { effect, signal } from "@preact/signals";
-import { getTable, isLasting, patiently } from "./api.js";
-import { isSame } from "./robots.js";
+import { isLasting, patiently } from "../../js/api.js";
+import { getTable } from "./api.js";
+import { isSame } from "../../js/robots.js";
 import { columnOf } from "./steps.js";
-import { connection } from "./store.js";
-import { messageOf } from "./titles.js";
+import { connection } from "../../js/store.js";
+import { messageOf } from "../../js/titles.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { RequestError } from "./api.js" */
-/** @import { FootCells, Move, Run, StateTable } from "./types.js" */
+/** @import { RequestError } from "../../js/api.js" */
+/** @import { FootCells, Move, Run, StateTable } from "../../js/types.js" */
 
 /** More rows are not asked for, as a large table has many answers. */
 export const MAX_STATES = 5000;

@@ -1,12 +1,12 @@
 // An explained step: the move, its reason, and the update of the values, as the rule with its numbers.
-import { agentOf } from "../../settings.js";
-import { count } from "../../format.js";
-import { comparedNumber, fineMillimetres, moveInWords, ruleNumber, stateInWords } from "../../steps.js";
-import { percent, shareOf, valueColours } from "../../scale.js";
-import { isAtLeast } from "../../workspace.js";
-import { html } from "../elements.js";
+import { agentOf } from "../../../js/settings.js";
+import { count } from "../../../js/format.js";
+import { comparedNumber, fineMillimetres, moveInWords, ruleNumber, stateInWords } from "../steps.js";
+import { percent, shareOf, valueColours } from "../../../js/scale.js";
+import { isAtLeast } from "../../../js/workspace.js";
+import { html } from "../../../js/components/elements.js";
 
-/** @import { Belief, Explanation, FootCells, Move, ValueUpdate } from "../../types.js" */
+/** @import { Belief, Explanation, FootCells, Move, ValueUpdate } from "../../../js/types.js" */
 
 /** Products are not broken over two lines. @param {string} text */
 const unbroken = (text) => text.replaceAll(" · ", "\u00a0·\u00a0");

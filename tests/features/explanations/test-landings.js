@@ -1,9 +1,11 @@
 // The table of a learner that values landings.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { landingOf, landingRange, MAX_LANDINGS, pairsOfLanding, rankedLandings } from "../../static/js/landings.js";
+import {
+  landingOf, landingRange, MAX_LANDINGS, pairsOfLanding, rankedLandings,
+} from "../../../static/features/explanations/landings.js";
 
-/** @import { StateTable } from "../../static/js/types.js" */
+/** @import { StateTable } from "../../../static/js/types.js" */
 
 const NAMES = ["home", "front left", "front right", "back left", "back right"];
 

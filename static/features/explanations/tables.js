@@ -1,14 +1,14 @@
 // The tables of all learners of a race, to be looked at side by side.
 import { computed, signal } from "@preact/signals";
-import { getTable, needsLonger } from "./api.js";
-import { shownRun } from "./on-stage.js";
-import { cellKind, keepAnswer, triedMoves, valueRange } from "./steps.js";
-import { connection, runs } from "./store.js";
+import { keepAnswer, needsLonger } from "../../js/api.js";
+import { getTable } from "./api.js";
+import { shownRun } from "../../js/on-stage.js";
+import { cellKind, triedMoves, valueRange } from "./steps.js";
+import { connection, runs } from "../../js/store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { RequestError } from "./api.js" */
-/** @import { Reply } from "./steps.js" */
-/** @import { StateTable } from "./types.js" */
+/** @import { Reply, RequestError } from "../../js/api.js" */
+/** @import { StateTable } from "../../js/types.js" */
 
 /** A lane with the training whose table it races with. @typedef {{ agent: string, training_id: string }} TrainedLane */
 /** @typedef {TrainedLane & { table: StateTable }} LaneTable */

@@ -1,13 +1,13 @@
 // The tables of all learners of a race side by side, each as a map of its values.
 import { useEffect } from "preact/hooks";
-import { percentage, whole } from "../../format.js";
-import { valueColours } from "../../scale.js";
-import { agentOf } from "../../settings.js";
-import { followLaneTables, laneTables, mapOf, trainedLanes } from "../../tables.js";
-import { html } from "../elements.js";
+import { percentage, whole } from "../../../js/format.js";
+import { valueColours } from "../../../js/scale.js";
+import { agentOf } from "../../../js/settings.js";
+import { followLaneTables, laneTables, mapOf, trainedLanes } from "../tables.js";
+import { html } from "../../../js/components/elements.js";
 import { Trouble, Waiting } from "./navigator.js";
 
-/** @import { LaneTable, TableMap } from "../../tables.js" */
+/** @import { LaneTable, TableMap } from "../tables.js" */
 
 /** Size of a value in the map [px], and of a landing, of which there is one in a row. */
 const [WIDTH, WIDTH_OF_LANDING, HEIGHT] = [8, 40, 3];

@@ -1,18 +1,15 @@
 // One step at a time: which one is looked at, how answers are asked for, and how the table is read.
 import assert from "node:assert/strict";
 import { beforeEach, mock, test } from "node:test";
-import { signal } from "@preact/signals";
 import {
   cellInWords, cellKind, chosenLane, chosenMoment, chooseStep, columnOf, comparedNumber, fineMillimetres, followMoment,
-  followStage, keepAnswer, lastStep, moment, moveOf, ruleNumber, stateCells, stateIndex, tableMoment, triedMoves,
+  followStage, lastStep, moment, moveOf, ruleNumber, stateCells, stateIndex, tableMoment, triedMoves,
   valueRange,
-} from "../../static/js/steps.js";
-import { applyEvent, connection, options } from "../../static/js/store.js";
-import { makeRun, OPTIONS } from "./options.js";
+} from "../../../static/features/explanations/steps.js";
+import { applyEvent, connection, options } from "../../../static/js/store.js";
+import { makeRun, OPTIONS } from "../../page/options.js";
 
-/** @import { StateTable } from "../../static/js/types.js" */
-/** @import { Signal } from "@preact/signals" */
-/** @import { Reply } from "../../static/js/steps.js" */
+/** @import { StateTable } from "../../../static/js/types.js" */
 
 const STAGE = { run_id: null, next_run_id: null, playing: true, speed: 1, clock: "paper" };
 
@@ -75,55 +72,6 @@ test("a lane of a race shows the table of its training, if it has one", () => {
 
 const settled = () => new Promise((resolve) => {
   setImmediate(resolve);
-});
-
-test("one answer is asked for at a time, always the newest", async () => {
-  mock.timers.enable({ apis: ["setTimeout"] });
-  const key = signal("1");
-  /** @type {Signal<Reply<string>>} */
-  const reply = signal({ answer: null, error: null, again: false });
-  /** @type {string[]} */
-  const asked = [];
-  const stop = keepAnswer(() => key.value, (one) => {
-    asked.push(one);
-    return Promise.resolve(`answer to ${one}`);
-  }, reply);
-  key.value = "2";
-  key.value = "3";
-  await settled();
-  assert.deepEqual([asked, reply.value.answer], [["1"], "answer to 1"]);
-  mock.timers.tick(1000);
-  await settled();
-  assert.deepEqual([asked, reply.value.answer], [["1", "3"], "answer to 3"]);
-  key.value = "";
-  mock.timers.tick(1000);
-  assert.equal(reply.value.answer, null);
-  stop();
-  key.value = "4";
-  assert.deepEqual(asked, ["1", "3"]);
-  mock.timers.reset();
-});
-
-test("a server that needs longer, or is out of order, is asked again, another refusal is not", async () => {
-  mock.timers.enable({ apis: ["setTimeout"] });
-  const key = signal("1");
-  /** @type {Signal<Reply<string>>} */
-  const reply = signal({ answer: null, error: null, again: false });
-  const statuses = [429, 503, 409];
-  /** @type {string[]} */
-  const asked = [];
-  const stop = keepAnswer(() => key.value, (one) => {
-    asked.push(one);
-    return Promise.reject(Object.assign(new Error("no"), { status: statuses[asked.length - 1] }));
-  }, reply);
-  for (let round = 0; round < 5; round += 1) {
-    await settled();
-    assert.equal(reply.value.again, round < 1);
-    mock.timers.tick(1000);
-  }
-  assert.deepEqual([asked.length, reply.value.error?.message], [3, "no"]);
-  stop();
-  mock.timers.reset();
 });
 
 test("the table of a lane's training is asked for once, however far its race is", async () => {

@@ -1,16 +1,16 @@
 // The state that was chosen in the table, or in the scene: where it is seen, and how to give it up.
-import { ghost, whyNoGhost } from "../../posture.js";
-import { moveInWords, stateInWords } from "../../steps.js";
-import { messageOf } from "../../titles.js";
-import { html } from "../elements.js";
+import { ghost, whyNoGhost } from "../posture.js";
+import { moveInWords, stateInWords } from "../steps.js";
+import { messageOf } from "../../../js/titles.js";
+import { html } from "../../../js/components/elements.js";
 
-/** @import { ChosenState } from "../../posture.js" */
-/** @import { FootCells } from "../../types.js" */
+/** @import { ChosenState } from "../posture.js" */
+/** @import { FootCells } from "../../../js/types.js" */
 
 /**
  * @param {object} props
- * @param {import("../../posture.js").ChosenState | null} props.chosen
- * @param {import("../../types.js").FootCells} props.grid
+ * @param {import("../posture.js").ChosenState | null} props.chosen
+ * @param {import("../../../js/types.js").FootCells} props.grid
  * @param {boolean} props.isRead whether its row is the one that is told above
  * @param {(event: Event) => void} props.onGiveUp
  */

@@ -1,18 +1,18 @@
 // The whole table of the learner, before the step that is looked at.
 import { useEffect } from "preact/hooks";
-import { whole } from "../../format.js";
-import { chooseState, chosenState, giveUpState } from "../../posture.js";
+import { whole } from "../../../js/format.js";
+import { chooseState, chosenState, giveUpState } from "../posture.js";
 import {
   explanation, firstState, isFollowing, moment, stateIndex, table, tableMoment,
-} from "../../steps.js";
-import { html } from "../elements.js";
+} from "../steps.js";
+import { html } from "../../../js/components/elements.js";
 import { Heatmap } from "./heatmap.js";
 import { Landings } from "./landings.js";
 import { Navigator, Trouble, useMoment, Waiting } from "./navigator.js";
 import { SideBySide } from "./side-by-side.js";
 
-/** @import { Moment } from "../../steps.js" */
-/** @import { StateTable } from "../../types.js" */
+/** @import { Moment } from "../steps.js" */
+/** @import { StateTable } from "../../../js/types.js" */
 
 export function Table() {
   useMoment();

@@ -1,25 +1,20 @@
 // One step of a run and its table: which step is looked at, its explanation, and how the table is drawn and read.
 import { computed, signal } from "@preact/signals";
-import { askForNewest, getExplanation, getTable, needsLonger } from "./api.js";
-import { count, THIN_SPACE } from "./format.js";
-import { isPlaying, shownRun } from "./on-stage.js";
-import { connection, runs, scene } from "./store.js";
-import { cellName } from "./training.js";
+import { keepAnswer } from "../../js/api.js";
+import { getExplanation, getTable } from "./api.js";
+import { count, THIN_SPACE } from "../../js/format.js";
+import { isPlaying, shownRun } from "../../js/on-stage.js";
+import { connection, runs, scene } from "../../js/store.js";
+import { cellName } from "../../js/training.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { RequestError } from "./api.js" */
-/** @import { Explanation, FootCells, Move, StateTable } from "./types.js" */
+/** @import { Reply } from "../../js/api.js" */
+/** @import { Explanation, FootCells, Move, StateTable } from "../../js/types.js" */
 
 /**
  * A step to look at: counted from 1; 0 is before the first.
  * @typedef {{ run_id: string, lane: number, step: number }} Moment
  */
-/**
- * The server's reply about a moment. `again`: the server needs longer, and is asked again.
- * @template Answer
- * @typedef {{ answer: Answer | null, error: Error | null, again: boolean }} Reply
- */
-
 /** While the stage plays, answers are asked for at most so often [ms]. */
 const EVERY_MS = 500;
 
@@ -88,30 +83,6 @@ export const tableMoment = computed(() => {
   return training_id ? { training_id, step: null } : null;
 });
 
-/**
- * Keep the answer to the newest question in a signal.
- * @template Answer
- * @param {() => string} key "" where there is nothing to ask for
- * @param {(key: string) => Promise<Answer>} ask
- * @param {Signal<Reply<Answer>>} reply
- * @param {() => number} [pause_ms] after an answer
- */
-export const keepAnswer = (key, ask, reply, pause_ms = pauseOfStage) => askForNewest({
-  key,
-  ask: async (of) => {
-    try {
-      reply.value = { answer: await ask(of), error: null, again: false };
-    } catch (failure) {
-      const error = /** @type {RequestError} */ (failure);
-      const again = needsLonger(error);
-      reply.value = { answer: again ? reply.value.answer : null, error, again };
-      throw error;
-    }
-  },
-  forget: () => (reply.value = { answer: null, error: null, again: false }),
-  pause_ms,
-});
-
 const pauseOfStage = () => (isPlaying.value && isFollowing.value ? EVERY_MS : 0);
 
 /** Keep the explanation and the table of the moment, until the function that is returned is called. */
@@ -122,6 +93,7 @@ export function followMoment() {
       () => (isLive() && moment.value && moment.value.step > 0 ? JSON.stringify(moment.value) : ""),
       (key) => getExplanation(JSON.parse(key)),
       explanation,
+      pauseOfStage,
     ),
     keepAnswer(
       () => (isLive() && tableMoment.value
@@ -129,6 +101,7 @@ export function followMoment() {
         : ""),
       (key) => getTable(JSON.parse(key)),
       table,
+      pauseOfStage,
     ),
   ];
   return () => stops.forEach((stop) => stop());

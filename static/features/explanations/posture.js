@@ -1,20 +1,20 @@
 // The state of the table that was chosen with a click. A click in the table puts a ghost of the robot into that state,
 // in the 3D view; one on a foot grid in the 3D view chooses the present state and that move.
 import { batch, computed, effect, signal } from "@preact/signals";
-import { getReplayFrames } from "./api.js";
-import { page } from "./page-state.js";
-import { clickedCell, drawHere } from "./page.js";
-import { plan } from "./replay.js";
-import { decode } from "./replay-frames.js";
-import { clock, conditionsShown } from "./on-stage.js";
-import { chosenLane, explanation, followStage, keepAnswer, stageMoment } from "./steps.js";
-import { scene } from "./store.js";
+import { getReplayFrames, keepAnswer } from "../../js/api.js";
+import { page } from "../../js/page-state.js";
+import { clickedCell, drawHere } from "../../js/page.js";
+import { plan } from "../../js/replay.js";
+import { decode } from "../../js/replay-frames.js";
+import { clock, conditionsShown } from "../../js/on-stage.js";
+import { chosenLane, explanation, followStage, stageMoment } from "./steps.js";
+import { scene } from "../../js/store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Frames, Message } from "./replay-frames.js" */
-/** @import { Reply } from "./steps.js" */
-/** @import { FootCells, Move } from "./types.js" */
-/** @import { Click } from "./page.js" */
+/** @import { Frames, Message } from "../../js/replay-frames.js" */
+/** @import { Reply } from "../../js/api.js" */
+/** @import { FootCells, Move } from "../../js/types.js" */
+/** @import { Click } from "../../js/page.js" */
 
 /**
  * @typedef {object} ChosenState
@@ -135,6 +135,7 @@ const keepGhost = () => keepAnswer(
     return decode(await getReplayFrames(run_id, "posture", query));
   },
   ghost,
+  () => 0,
 );
 
 /** Draw the ghost that was answered, and remove the one before. */

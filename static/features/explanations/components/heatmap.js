@@ -1,16 +1,16 @@
 // The table as a heatmap: a row a state, a column a move. Read by pointer, finger and keys, one cell at a time.
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
-import { valueColours } from "../../scale.js";
+import { valueColours } from "../../../js/scale.js";
 import {
   cellInWords, cellKind, columnOf, fineMillimetres, moveOf, stateCells, stateIndex, triedMoves, valueRange,
-} from "../../steps.js";
-import { percentage, sentence, whole } from "../../format.js";
-import { theme } from "../../page.js";
-import { html } from "../elements.js";
+} from "../steps.js";
+import { percentage, sentence, whole } from "../../../js/format.js";
+import { theme } from "../../../js/page.js";
+import { html } from "../../../js/components/elements.js";
 import { ChosenStateNote } from "./chosen-state.js";
 
-/** @import { StateTable } from "../../types.js" */
-/** @import { ChosenState } from "../../posture.js" */
+/** @import { StateTable } from "../../../js/types.js" */
+/** @import { ChosenState } from "../posture.js" */
 
 const ROW_PX = 12;
 const GAP_PX = 2;
@@ -38,11 +38,11 @@ const clamped = (value, last) => Math.min(Math.max(value, 0), last);
 
 /**
  * @param {object} props
- * @param {import("../../types.js").StateTable} props.shown
+ * @param {import("../../../js/types.js").StateTable} props.shown
  * @param {number[] | null} props.cells the state that is looked at: the cell of each pair
- * @param {import("../../types.js").Move | null} props.move the move that was made there
- * @param {import("../../posture.js").ChosenState | null} props.chosen the state and move that were chosen with a click
- * @param {(cells: number[], move: import("../../types.js").Move) => void} props.onChoose
+ * @param {import("../../../js/types.js").Move | null} props.move the move that was made there
+ * @param {import("../posture.js").ChosenState | null} props.chosen the state and move that were chosen with a click
+ * @param {(cells: number[], move: import("../../../js/types.js").Move) => void} props.onChoose
  * @param {() => void} props.onGiveUp
  */
 export function Heatmap({ shown, cells, move, chosen, onChoose, onGiveUp }) {

@@ -1,14 +1,14 @@
 // Why a learner with a table loses: what it had tried, what better moves would have brought, and why it passed them.
 import { useEffect, useRef } from "preact/hooks";
-import { distanceApart, sentence } from "../../format.js";
-import { followLoss, isAbout, isOpen, isSought, loss, lostLane } from "../../loss.js";
-import { standings } from "../../race.js";
-import { messageOf, clockTitle } from "../../titles.js";
-import { html } from "../elements.js";
+import { distanceApart, sentence } from "../../../js/format.js";
+import { followLoss, isAbout, isOpen, isSought, loss, lostLane } from "../loss.js";
+import { standings } from "../../../js/race.js";
+import { messageOf, clockTitle } from "../../../js/titles.js";
+import { html } from "../../../js/components/elements.js";
 import { Trouble } from "./navigator.js";
 
-/** @import { RequestError } from "../../api.js" */
-/** @import { Loss } from "../../types.js" */
+/** @import { RequestError } from "../../../js/api.js" */
+/** @import { Loss } from "../../../js/types.js" */
 
 /** A lane without a table, or that cannot be walked again: the server says which. */
 const NOT_AVAILABLE = 409;

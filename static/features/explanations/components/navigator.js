@@ -1,15 +1,15 @@
 // Which step is looked at: that of the stage, or one that is chosen here.
 import { useEffect } from "preact/hooks";
-import { setStage } from "../../actions.js";
-import { whole } from "../../format.js";
-import { canPlay, shownRun } from "../../on-stage.js";
-import { followChosenState } from "../../posture.js";
-import { ownStage, scene } from "../../store.js";
-import { chosenLane, chooseStep, followMoment, followStage, isFollowing, lastStep } from "../../steps.js";
-import { messageOf } from "../../titles.js";
-import { html, Icon, Segments } from "../elements.js";
+import { setStage } from "../../../js/actions.js";
+import { whole } from "../../../js/format.js";
+import { canPlay, shownRun } from "../../../js/on-stage.js";
+import { followChosenState } from "../posture.js";
+import { ownStage, scene } from "../../../js/store.js";
+import { chosenLane, chooseStep, followMoment, followStage, isFollowing, lastStep } from "../steps.js";
+import { messageOf } from "../../../js/titles.js";
+import { html, Icon, Segments } from "../../../js/components/elements.js";
 
-/** @import { Moment } from "../../steps.js" */
+/** @import { Moment } from "../steps.js" */
 
 /** Number of the open tabs that show the moment. */
 let users = 0;

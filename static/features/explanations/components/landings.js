@@ -1,12 +1,12 @@
 // The table of a learner that values landings: a row a landing, the best first.
-import { whole } from "../../format.js";
-import { landingOf, landingRange, MAX_LANDINGS, pairsOfLanding, rankedLandings } from "../../landings.js";
-import { valueColours } from "../../scale.js";
-import { fineMillimetres, legsInWords } from "../../steps.js";
-import { html } from "../elements.js";
+import { whole } from "../../../js/format.js";
+import { landingOf, landingRange, MAX_LANDINGS, pairsOfLanding, rankedLandings } from "../landings.js";
+import { valueColours } from "../../../js/scale.js";
+import { fineMillimetres, legsInWords } from "../steps.js";
+import { html } from "../../../js/components/elements.js";
 
-/** @import { Explanation, StateTable } from "../../types.js" */
-/** @import { Landing } from "../../landings.js" */
+/** @import { Explanation, StateTable } from "../../../js/types.js" */
+/** @import { Landing } from "../landings.js" */
 
 /**
  * @param {object} props

@@ -1,18 +1,18 @@
 // One step explained: the move, what it was worth, why it was made, and the update of the values.
 import { useEffect } from "preact/hooks";
-import { sentence, whole } from "../../format.js";
-import { moveTold } from "../../headline.js";
-import { agentOf } from "../../settings.js";
-import { explanation, fineMillimetres, isFollowing, moment, moveInWords } from "../../steps.js";
-import { isAtLeast } from "../../workspace.js";
-import { html } from "../elements.js";
-import { ActionValues } from "../learning.js";
+import { sentence, whole } from "../../../js/format.js";
+import { moveTold } from "../../../js/headline.js";
+import { agentOf } from "../../../js/settings.js";
+import { explanation, fineMillimetres, isFollowing, moment, moveInWords } from "../steps.js";
+import { isAtLeast } from "../../../js/workspace.js";
+import { html } from "../../../js/components/elements.js";
+import { ActionValues } from "./action-values.js";
 import { ExplainedStep } from "./explanation.js";
 import { WhyLost } from "./loss.js";
 import { Navigator, Trouble, useMoment, Waiting } from "./navigator.js";
 
-/** @import { Moment } from "../../steps.js" */
-/** @import { Explanation } from "../../types.js" */
+/** @import { Moment } from "../steps.js" */
+/** @import { Explanation } from "../../../js/types.js" */
 
 export function Why() {
   useMoment();

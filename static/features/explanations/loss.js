@@ -1,14 +1,15 @@
 // Why a learner loses: the question about a lane of the race that is shown, and the server's answer.
 import { computed, signal } from "@preact/signals";
+import { keepAnswer } from "../../js/api.js";
 import { getLoss } from "./api.js";
-import { clock, raceInView } from "./on-stage.js";
-import { isLoser } from "./race.js";
-import { keepAnswer, moment } from "./steps.js";
-import { connection } from "./store.js";
+import { clock, raceInView } from "../../js/on-stage.js";
+import { isLoser } from "../../js/race.js";
+import { moment } from "./steps.js";
+import { connection } from "../../js/store.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Reply } from "./steps.js" */
-/** @import { Loss } from "./types.js" */
+/** @import { Reply } from "../../js/api.js" */
+/** @import { Loss } from "../../js/types.js" */
 
 /** Lane of a race under a clock. @typedef {{ run_id: string, lane: number, clock: string }} LostLane */
 

@@ -1,7 +1,7 @@
 // Landings: where the feet stand when a step ends, and what a learner that values them makes of each.
 import { stateCells, stateIndex } from "./steps.js";
 
-/** @import { Explanation, StateTable } from "./types.js" */
+/** @import { Explanation, StateTable } from "../../js/types.js" */
 
 /** Rows of a table of landings that are shown at once; six legs one by one have 15,625. */
 export const MAX_LANDINGS = 500;

@@ -1,11 +1,11 @@
 // The tables of the learners of a race as maps, to be looked at side by side.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { applyEvent, options } from "../../static/js/store.js";
-import { mapOf, trainedLanes } from "../../static/js/tables.js";
-import { makeRun, makeSceneLane, OPTIONS } from "./options.js";
+import { applyEvent, options } from "../../../static/js/store.js";
+import { mapOf, trainedLanes } from "../../../static/features/explanations/tables.js";
+import { makeRun, makeSceneLane, OPTIONS } from "../../page/options.js";
 
-/** @import { StateTable } from "../../static/js/types.js" */
+/** @import { StateTable } from "../../../static/js/types.js" */
 
 beforeEach(() => (options.value = OPTIONS));
 

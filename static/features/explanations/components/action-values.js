@@ -1,0 +1,99 @@
+// The action values of the learner in view in its present state: one for each group of legs and each place.
+import { bestMove, cellName } from "../../../js/training.js";
+import { count, millimetres, whole } from "../../../js/format.js";
+import { valueColours } from "../../../js/scale.js";
+import { shownRun } from "../../../js/on-stage.js";
+import { agentOf } from "../../../js/settings.js";
+import { options, scene } from "../../../js/store.js";
+import { isAtLeast } from "../../../js/workspace.js";
+import { HexapodGlyph, html } from "../../../js/components/elements.js";
+
+/** @import { ActionValues as Known } from "../../../js/types.js" */
+
+const ABOUT = "Millimetres forward that it expects from moving a group of legs to a place, and from what follows";
+
+export function ActionValues() {
+  const known = scene.value?.action_values;
+  return known && html`
+    <section class="panel action-values" aria-labelledby="action-values-title">
+      <h3 id="action-values-title" title=${ABOUT}>Values in this state [mm]</h3>
+      <${Values} known=${known} />
+      ${known.visits && isAtLeast("study") && html`<${ValuesKey} />`}
+      ${isAtLeast("study") && html`<p class="next-move"><${NextMove} known=${known} /></p>`}
+    </section>
+  `;
+}
+
+/** @param {{ known: Known }} props */
+function Values({ known }) {
+  const { pairs, cell_names } = known;
+  const gait = options.value?.gaits.find(({ name }) => name === shownRun.value?.config?.gait);
+  return html`
+    <div class="scroller" tabindex="0" role="region" aria-label="Value of each move">
+      <table class="values">
+        <thead>
+          <tr><td></td>${cell_names.map((_, cell) => html`<th scope="col">${cellName(known, cell)}</th>`)}</tr>
+        </thead>
+        <tbody>
+          ${pairs.map((legs, pair) => html`
+            <tr>
+              <th scope="row">
+                ${gait && html`<${HexapodGlyph} gait=${gait} only=${pair} />`}
+                <span>Legs ${legs.join(" + ")}</span>
+              </th>
+              ${cell_names.map((_, cell) => html`<${Value} known=${known} pair=${pair} cell=${cell} />`)}
+            </tr>
+          `)}
+        </tbody>
+      </table>
+    </div>
+  `;
+}
+
+/** @param {{ known: Known, pair: number, cell: number }} props */
+function Value({ known, pair, cell }) {
+  const value = known.values_m[pair][cell];
+  if (known.current[pair] === cell) return html`<td class="here">here</td>`;
+  if (value === null || value === undefined) return html`<td></td>`;
+  const best = bestMove(known);
+  const isBest = best.pair === pair && best.cell === cell;
+  const isNext = known.next?.pair === pair && known.next?.cell === cell;
+  const visits = known.visits?.[pair]?.[cell] ?? null;
+  const mark = isNext ? "next" : isBest ? "best" : "";
+  const nextMove = isNext && html`<span class="sr-only">, its next move</span>`;
+  // A move without a try has the table's first value, which is no estimate.
+  if (visits === 0) return html`<td class=${`untried ${mark}`}>never${nextMove}</td>`;
+  return html`
+    <td class=${mark} style=${valueColours(value, known.low, known.high)}>
+      ${millimetres(value)}${visits !== null && html`
+        <small aria-hidden="true">${whole(visits)}×</small><span class="sr-only">, tried ${count(visits, "time")}</span>
+      `}${nextMove}
+    </td>
+  `;
+}
+
+const ValuesKey = () => html`
+  <p class="values-key dim">
+    <span><i class="untried" aria-hidden="true"></i>never tried</span>
+    <span><b>12</b> <small>5×</small> worth 12 mm, tried 5 times</span>
+  </p>
+`;
+
+/** The learner's next move in words. @param {{ known: Known }} props */
+function NextMove({ known }) {
+  const { pairs, values_m, visits, lane, agent } = known;
+  const best = bestMove(known);
+  const { pair, cell } = known.next ?? best;
+  if (pair < 0) return null;
+  const value = values_m[pair][cell] ?? 0;
+  const tried = visits?.[pair]?.[cell] ?? 0;
+  const { name = agentOf(agent).title, done, halted } = scene.value?.lanes?.[lane] ?? {};
+  const legs = new Intl.ListFormat("en").format(pairs[pair].map(String));
+  const move = `${name} ${done || halted ? "would" : "will"} move legs ${legs} to ${cellName(known, cell, " mm")}`;
+  const times = tried === 1 ? "once" : count(tried, "time");
+  return html`
+    <b>${move}${value < best.value ? " to explore" : ""}.</b> ${tried
+      ? `It has tried that ${times} from here, and expects ${millimetres(value)} mm from it and what follows.`
+      : "It has never tried that from here."}
+  `;
+}
