@@ -50,7 +50,6 @@ from app.api.policy import (
     guard_everything,
 )
 from app.api.problem_pages import ProblemPages
-from app.api.rate_limit import what_if_limiter
 from app.api.request_headers import DeclaredHeaders
 from app.api.stage_paths import StagePaths, stage_of
 from app.api.starts import start_kinds, start_routes
@@ -158,7 +157,6 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
         agents=usable_agents(),
         replays=replays,
         stopping=stopping,
-        what_if_limiter=what_if_limiter(settings),
         listeners=ClientSlots(settings.max_viewers, settings.viewers_per_address),
         new_stage=lambda path: new_stage(path=path, session_path="", announces=False),
         features=features,
@@ -179,8 +177,7 @@ def create_app(settings: Settings, store: RunStore) -> FastAPI:
     problems.install(app)
     providers = features.providers
     contract.install(app, app.state.services.agents, settings, features.classes, providers)
-    what_ifs = app.state.services.what_if_limiter
-    guards = RouteGuards(settings, app.state.work_slots, what_ifs, features, app.exception_handlers)
+    guards = RouteGuards(settings, app.state.work_slots, features, app.exception_handlers)
     guard_everything(app, guards)
     # The middleware that is added last runs first.
     app.add_middleware(HostGuard, settings=settings)

@@ -58,8 +58,6 @@ class Settings:
             allows beside the server's own.
         max_connections_per_address: of these, how many one address may have; None for half.
         starts_per_minute: how often one address may start something that costs the machine work.
-        what_ifs_per_minute: how many what-ifs the spectators of one address may ask; operators may
-            ask any number.
         job_niceness: by how much the priority of jobs is lower than the server's own, 0 to 19.
         log_level: below which records are left out of the log.
         quota_mb: how much the data folder may take, in MB; None for as much as the disk has.
@@ -81,7 +79,6 @@ class Settings:
     max_connections: int | None = whole_number(None, 1)
     max_connections_per_address: int | None = whole_number(None, 1)
     starts_per_minute: int = whole_number(1200, 1)
-    what_ifs_per_minute: int = whole_number(30, 1)
     job_niceness: int = whole_number(15, 0, 19)
     max_viewers: int = whole_number(300, 1)
     log_level: LogLevel = choice("info", get_args(LogLevel))

@@ -8,9 +8,9 @@
   `option_texts` and `robot_options`), `event_answers`, `curves`, `problems` (RFC 9457), `templates`
   (web pages), `compression`; `budgeted_chunks` (of what slow clients read).
 - `contract` completes the OpenAPI document; `deps` injects services and the stage.
-- `policy` says of each route who may use it and what it costs. `guards` run when a route was
-  matched, before its body is read: `auth` (roles, and those whom features know by `identity`),
-  `rate_limit`, `memory_limit`, `concurrency_limit`.
+- `policy` says of each route who may use it and what it costs, by kinds of `work`. `guards`
+  run when a route was matched, before its body is read: `auth` (roles, and those whom features know
+  by `identity`), `rate_limit`, `memory_limit`, `concurrency_limit`.
 - Middleware before the routes: `middleware` (its base, security headers), `stage_paths` (which
   stage), `request_headers`, `cookies`, `host_check`, `wellformed`, `problem_pages`, `unfinished`.
 

@@ -6,48 +6,23 @@ occupies none. No work is begun for a client that has left.
 
 import asyncio
 from collections.abc import Awaitable, Callable
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from starlette.datastructures import Headers
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.middleware import HttpMiddleware
-from app.api.policy import Work, work_of
+from app.api.policy import work_of
 from app.api.problems import problem
 from app.api.rate_limit import too_many
+from app.api.work import Work
 from app.limits.addresses import client_of
 from app.limits.connections import set_client
 from app.limits.fair_semaphore import FairSemaphore, NotAdmitted
 from app.stage.roles import Role
 from app.storage.errors import Busy
 
-
-class Slots(NamedTuple):
-    """Slots of one kind of work: all of them, and how many one address may hold."""
-
-    size: int
-    per_address: int
-
-
-SLOTS: dict[Role, dict[Work, Slots]] = {
-    "operator": {
-        "encoding": Slots(2, 2),
-        "download": Slots(2, 2),
-        "analysis": Slots(4, 4),
-        "other": Slots(16, 16),
-    },
-    "spectator": {
-        "what-if": Slots(1, 1),
-        "encoding": Slots(1, 1),
-        "download": Slots(2, 1),
-        "analysis": Slots(2, 1),
-        "other": Slots(2, 2),
-    },
-}
-"""Few, as Python threads share one interpreter lock and delay each other. One address cannot hold
-all that others need for reading."""
-PROBE_SLOTS = Slots(2, 2)
 MAX_WAITING = 200
 """Requests of one address that may wait for a kind of work: thirty pages behind one address send
 six each at most."""
@@ -64,22 +39,26 @@ class WorkSlots:
     """The semaphores of all kinds of work, by role."""
 
     def __init__(self) -> None:
-        """Create them with all slots free."""
-        self._semaphores = {
-            (role, work): FairSemaphore(*slots, MAX_WAITING)
-            for role, kinds in SLOTS.items()
-            for work, slots in kinds.items()
-        }
-        self._probes = FairSemaphore(*PROBE_SLOTS, MAX_WAITING)
+        """Create none yet: those of a kind are made for its first request."""
+        self._semaphores: dict[tuple[Role, Work], FairSemaphore] = {}
+        self._is_closed = False
 
     def of(self, scope: Scope) -> FairSemaphore:
         """Return the semaphore of a request; to be called inside `TokenGuard`."""
-        work = work_of(scope)
-        return self._probes if work == "probe" else self._semaphores[scope["state"]["role"], work]
+        role, work = scope["state"]["role"], work_of(scope)
+        semaphore = self._semaphores.get((role, work))
+        if semaphore is None:
+            slots = work.operators if role == "operator" else None
+            semaphore = FairSemaphore(*(slots or work.spectators), MAX_WAITING)
+            self._semaphores[role, work] = semaphore
+            if self._is_closed:
+                semaphore.close()
+        return semaphore
 
     def close(self) -> None:
         """Send away all requests that wait, and any new one: the server stops."""
-        for semaphore in (self._probes, *self._semaphores.values()):
+        self._is_closed = True
+        for semaphore in self._semaphores.values():
             semaphore.close()
 
 

@@ -21,7 +21,6 @@ from app.jobs.jobs import Jobs
 from app.jobs.stopping import Stopping
 from app.limits.client_slots import ClientSlots
 from app.limits.memory_budget import MemoryBudget
-from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 from app.stage.roles import Role
 from app.storage.database.store import RunStore
@@ -59,7 +58,6 @@ class Services:
         agents: names of the agents that were registered at server start.
         replays: encodes runs for pages that play them by themselves.
         stopping: ends what takes long in threads when the server stops.
-        what_if_limiter: limits what-ifs of spectators, by their number and time.
         listeners: slots of event streams, of all stages.
         new_stage: makes a further stage with a path, which uses the sessions of the first.
         features: those of the server.
@@ -79,7 +77,6 @@ class Services:
     agents: tuple[str, ...]
     replays: ReplayFrames
     stopping: Stopping
-    what_if_limiter: RateLimiter
     listeners: ClientSlots["EventListener"]
     new_stage: Callable[[str], SharedStage]
     features: Features

@@ -14,6 +14,7 @@ from app.api.formats import attachment, file_response, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.runs import RunPath, find, run_routes, start_run
 from app.api.schemas import TrialBody
+from app.api.work import ANALYSIS, DOWNLOAD
 from app.jobs.trial_runs import trial_start
 from app.storage.artifact_file import ArtifactFile, chunks
 from app.storage.errors import Conflict, NotFound
@@ -54,7 +55,7 @@ router = run_routes("experiment")
 
 
 @router.get("/{run_id}/summary", summary="Get an experiment's summary", response_model=SummaryView)
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     """Return the newest summary, which is recomputed every few seconds while trials run."""
     run = find(services, "experiment", run_id)
@@ -75,7 +76,7 @@ def get_summary(services: ServicesDep, run_id: RunPath) -> Response:
     response_class=Response,
     responses=answers(200, {"text/html": TEXT}, headers=ATTACHMENT),
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_report(services: ServicesDep, run_id: RunPath) -> Response:
     """Return the whole report as one file, once the experiment has ended."""
     run = find(services, "experiment", run_id)
@@ -88,7 +89,7 @@ def get_report(services: ServicesDep, run_id: RunPath) -> Response:
     response_class=Response,
     responses=answers(200, _FILE_SCHEMAS, headers=ATTACHMENT),
 )
-@policy(access=WATCH_RUN, work="download")
+@policy(access=WATCH_RUN, work=DOWNLOAD)
 def get_file(
     services: ServicesDep, run_id: RunPath, name: Annotated[str, Path(description="file name")]
 ) -> Response:
@@ -103,7 +104,7 @@ def get_file(
     response_model=TrialsView,
     responses=answers(200, {"text/csv": TEXT}),
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_trials(
     services: ServicesDep,
     request: Request,

@@ -12,7 +12,6 @@ from app.api.concurrency_limit import ConcurrencyLimit, WorkSlots
 from app.api.memory_limit import BodyMemoryLimit
 from app.api.policy import Policy
 from app.api.rate_limit import RateLimit
-from app.limits.token_bucket import RateLimiter
 from app.settings import Settings
 
 
@@ -23,7 +22,6 @@ class RouteGuards:
         self,
         settings: Settings,
         slots: WorkSlots,
-        what_ifs: RateLimiter,
         features: Features,
         handlers: Mapping[Any, Any] | None = None,
     ) -> None:
@@ -32,7 +30,6 @@ class RouteGuards:
         Args:
             settings: of the server.
             slots: of all kinds of work.
-            what_ifs: limits what-ifs of spectators.
             features: know clients who are no operators, and which runs are hidden.
             handlers: exception handlers of the app, by exception: what a route raises, such as a
                 404, is answered inside the guards.
@@ -41,7 +38,7 @@ class RouteGuards:
         expected = {kind: one for kind, one in (handlers or {}).items() if kind is not Exception}
         answered = ExceptionMiddleware(_call_route, expected)
         limited = BodyMemoryLimit(ConcurrencyLimit(answered, slots))
-        counted = RateLimit(limited, settings, what_ifs)
+        counted = RateLimit(limited, settings)
         self._first = TokenGuard(counted, settings, features)
 
     async def __call__(

@@ -12,19 +12,19 @@ from urllib.parse import parse_qsl
 from starlette.types import ASGIApp, Scope
 
 from app.api.policy import Access
+from app.limits.addresses import client_of
 
 
 class Identity(Protocol):
     """A client whom a feature knows."""
 
     @property
-    def limited_as(self) -> str | None:
-        """Key of its own token buckets; None to count as its address."""
-        ...
-
-    @property
     def page_role(self) -> str:
         """Role of the client's pages, which show by it what the client can do."""
+        ...
+
+    def allowance_key(self, scope: Scope) -> str | None:
+        """Return whose allowance a request is charged to; None to count as its address."""
         ...
 
     def refusal(self, scope: Scope, access: Access, as_spectator: ASGIApp | None) -> ASGIApp | None:
@@ -59,6 +59,16 @@ class IdentityProvider(Protocol):
         As security requirements of OpenAPI: each names schemes, and an empty one means nothing.
         """
         ...
+
+
+def charged_client(scope: Scope) -> str:
+    """Return whose allowance a request is charged to: an identity's, or that of an address.
+
+    Many who are known by more than their address may share one.
+    """
+    identity: Identity | None = scope["state"]["identity"]
+    key = None if identity is None else identity.allowance_key(scope)
+    return client_of(scope) if key is None else key
 
 
 def run_ids_of(scope: Scope) -> Iterator[str]:

@@ -24,6 +24,7 @@ from app.api.contract import TEXT, answers
 from app.api.deps import Services, ServicesDep
 from app.api.policy import PUBLIC, WATCH, api_router, policy
 from app.api.problems import problem
+from app.api.work import PROBE
 from app.events.damage import damage_counts
 from app.storage.run import STATES
 from hexapods import __version__
@@ -33,14 +34,14 @@ router = api_router(tags=["health"])
 
 
 @router.get("/healthz", response_model=HealthView, summary="Liveness probe")
-@policy(access=PUBLIC, work="probe")
+@policy(access=PUBLIC, work=PROBE)
 async def get_health() -> Response:
     """Return 200 as long as the server responds at all."""
     return JSONResponse({"status": "ok", "version": __version__})
 
 
 @router.get("/readyz", response_model=HealthView, summary="Readiness probe")
-@policy(access=PUBLIC, work="probe")
+@policy(access=PUBLIC, work=PROBE)
 def get_readiness(services: ServicesDep) -> Response:
     """Return 503 with the reason while something that runs need is unavailable."""
     trouble = _unready_reason(services)

@@ -8,7 +8,7 @@ written, under the decorator that adds it, and a route without one cannot be def
     def start_race(...): ...
 
 A route runs the guards (`guards`) when it was matched and before its body is read. Features define
-accesses of their own, and identities who may use them (`identity`).
+accesses and kinds of work (`work`) of their own, and identities who may use them (`identity`).
 """
 
 from collections.abc import Awaitable, Callable
@@ -23,19 +23,8 @@ from starlette.routing import BaseRoute, Match, Mount, Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.stage_paths import path_of
+from app.api.work import OTHER, Work
 
-Work = Literal["probe", "what-if", "encoding", "download", "analysis", "other"]
-"""Kinds of work, each of which has slots of its own.
-
-- `probe`: liveness and readiness, in milliseconds: a busy server is not taken for a dead one.
-- `what-if`: of spectators, each of which takes all cores: an operator's waits for one of them.
-- `encoding`: files of long runs that take up to minutes before their first byte, and robots' files
-  that are read. Each counts as a start.
-- `download`: files that are computed chunk by chunk while a client reads them.
-- `analysis`: any other view of what a run recorded, which takes seconds if that is long, and what
-  is told of a robot before it walks, if it is large.
-- `other`: listings, commands and files of the page, in milliseconds.
-"""
 READ_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 _ATTRIBUTE = "policy"
 E = TypeVar("E", bound=Callable[..., Any])
@@ -101,7 +90,7 @@ class Policy:
     """
 
     access: Access
-    work: Work | Callable[[Scope], Work] = "other"
+    work: Work | Callable[[Scope], Work] = OTHER
     starts: bool = False
     takes_file: bool = False
     opens_session: bool = False
@@ -124,7 +113,7 @@ class MissingPolicy(TypeError):
 def policy(
     *,
     access: Access,
-    work: Work | Callable[[Scope], Work] = "other",
+    work: Work | Callable[[Scope], Work] = OTHER,
     starts: bool = False,
     takes_file: bool = False,
     opens_session: bool = False,
@@ -177,8 +166,8 @@ def work_of(scope: Scope) -> Work:
     if "work" not in state:
         work = policy_of(scope).work
         work = work(scope) if callable(work) else work
-        is_unlimited = work == "what-if" and state["role"] == "operator"
-        state["work"] = "other" if is_unlimited else work
+        is_unlimited = work.operators is None and state["role"] == "operator"
+        state["work"] = OTHER if is_unlimited else work
     work_of_request: Work = state["work"]
     return work_of_request
 

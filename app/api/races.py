@@ -14,9 +14,10 @@ from app.api.compression import gzipped
 from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment, negotiated
-from app.api.policy import WATCH_RUN, Work, policy
+from app.api.policy import WATCH_RUN, policy
 from app.api.recorded_answers import RecordingView, TimelineView
 from app.api.runs import RunPath, find, run_routes
+from app.api.work import ANALYSIS, DOWNLOAD, ENCODING, Work
 from app.stage.playback import original_of
 from app.stage.timeline import timeline
 from app.storage.artifact_file import ArtifactFile
@@ -35,7 +36,7 @@ def _work_of_recording(scope: Scope) -> Work:
     """Return the kind of work of a recording: as a stream for viser it takes long to encode."""
     # Decoded as the endpoint decodes it, so that percent-encoding cannot bypass the limit.
     formats = QueryParams(scope["query_string"]).getlist("format")
-    return "encoding" if "viser" in formats else "download"
+    return ENCODING if "viser" in formats else DOWNLOAD
 
 
 @router.get(
@@ -72,7 +73,7 @@ def get_recording(
     summary="Get each lane's distance over time under one clock",
     response_model=TimelineView,
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_timeline(
     services: ServicesDep,
     request: Request,

@@ -13,6 +13,7 @@ from app.api.fields import RunId
 from app.api.policy import WATCH_RUN, api_router, policy
 from app.api.recorded_answers import ReplayView
 from app.api.runs import RunPath
+from app.api.work import ANALYSIS
 from hexapods.runs.clocks import Clock
 from hexapods.shows.replay import HIGHEST_LEVEL, LOWEST_LEVEL
 
@@ -29,7 +30,7 @@ GhostQuery = Annotated[RunId | None, Query(description=VALID["ghost"])]
 @router.get(
     "", summary="Get a replay's plan: intervals, steps and marks", response_model=ReplayView
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_replay(
     services: ServicesDep, run_id: RunPath, clock: ClockQuery = "paper", ghost: GhostQuery = None
 ) -> Response:
@@ -47,7 +48,7 @@ def get_replay(
     response_class=Response,
     responses=_FRAMES,
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_replay_scene(
     services: ServicesDep, request: Request, run_id: RunPath, ghost: GhostQuery = None
 ) -> Response:
@@ -58,7 +59,7 @@ def get_replay_scene(
 @router.get(
     "/moment", summary="Get one frame of a replay", response_class=Response, responses=_FRAMES
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_replay_moment(
     *,
     services: ServicesDep,
@@ -78,7 +79,7 @@ def get_replay_moment(
     response_class=Response,
     responses=_FRAMES,
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_replay_posture(
     *,
     services: ServicesDep,
@@ -120,7 +121,7 @@ def _segment_key(
     response_class=Response,
     responses=_FRAMES,
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_replay_segment(
     *,
     services: ServicesDep,

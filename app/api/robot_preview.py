@@ -10,6 +10,7 @@ from starlette.responses import JSONResponse, Response
 
 from app.api.fields import Body, record_fields
 from app.api.policy import QUESTION, api_router, policy
+from app.api.work import ANALYSIS
 from hexapods.domain.records import to_json
 from hexapods.runs.config import WalkingProblem
 from hexapods.runs.preview import Preview, preview
@@ -27,7 +28,7 @@ _PreviewBody: Any = create_model(
     summary="Tell support, reach, states and speed of a robot before it walks",
     response_model=Preview,
 )
-@policy(access=QUESTION, work="analysis")
+@policy(access=QUESTION, work=ANALYSIS)
 def preview_robot(body: _PreviewBody) -> Response:
     """Return what follows from robot, gait and foot grid; nothing is simulated.
 

@@ -16,6 +16,7 @@ from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.recorded_answers import CurveView, QTableView
 from app.api.runs import RunPath, find, located, run_routes
+from app.api.work import ANALYSIS
 from app.jobs import table_import
 from app.storage.artifact_file import closing_after
 from app.storage.errors import Conflict
@@ -94,7 +95,7 @@ def disturb_training(
     response_model=CurveView,
     responses=answers(200, {"text/csv": TEXT}),
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_curve(
     services: ServicesDep,
     request: Request,
@@ -128,7 +129,7 @@ def _best_known_m(run: Run) -> float | None:
     response_model=QTableView,
     responses=answers(200, {"text/csv": TEXT, tables.MEDIA_TYPE: BINARY}),
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_table(
     services: ServicesDep,
     request: Request,

@@ -1,7 +1,7 @@
 """The roles of a stage's clients: operators by its token or a session, and spectators.
 
-Spectators have read access, and may ask what-ifs; operators may also start, change, stop and delete
-runs.
+Spectators have read access, and may ask questions; operators may also start, change, stop and
+delete runs.
 """
 
 import hashlib

@@ -11,7 +11,7 @@ import asyncio
 import json
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -26,8 +26,11 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.types import Message, Receive, Scope, Send
 
 from app.api import memory_limit
+from app.api.concurrency_limit import WorkSlots
 from app.api.cookies import NAME
 from app.api.deps import Services
+from app.api.policy import work_of
+from app.api.work import PROBE
 from app.features.classroom.access import ROOM_NAME
 from app.features.classroom.lesson import read_lesson
 from app.features.classroom.room_rows import RoomRows, RoomRun
@@ -38,6 +41,7 @@ from app.features.demo.rows import VisitorRows, VisitorRun
 from app.features.demo.settings import DemoSettings
 from app.features.demo.visitors import _sha256
 from app.features.tournaments.tournaments import Tournaments
+from app.features.what_if.settings import WhatIfSettings
 from app.limits.fair_semaphore import FairSemaphore
 from app.limits.token_bucket import RateLimiter
 from app.server import create_app
@@ -58,7 +62,7 @@ SERVERS: dict[str, dict[str, Any]] = {
     "no token": {},
     "public": {"token": TOKEN},
     "token-only": {"token": TOKEN, "spectators": "token"},
-    "demo": {"token": TOKEN, "features": (DemoSettings(demo=True),)},
+    "demo": {"token": TOKEN},
 }
 WITH_PREFIX = {"token-only", "demo"}
 """Servers of which the routes of a room's stage are tried, too."""
@@ -142,7 +146,10 @@ def recorded() -> dict[str, Any]:
                 Settings(
                     data=Path(folder),
                     starts_per_minute=STARTS,
-                    what_ifs_per_minute=WHAT_IFS,
+                    features=(
+                        WhatIfSettings(what_ifs_per_minute=WHAT_IFS),
+                        DemoSettings(demo=server == "demo"),
+                    ),
                     **settings,
                 ),
                 store,
@@ -331,24 +338,22 @@ def _recorder() -> Iterator[None]:
             (WebSocketRoute, "handle", _handle_websocket),
         ):
             stack.enter_context(patch.object(changed, name, replacement))
-        stack.enter_context(patch("app.server.WorkSlots", _named_slots()))
+        stack.enter_context(patch("app.server.WorkSlots", _NamedSlots))
         yield
 
 
 _slot_names: dict[int, str] = {}
 
 
-def _named_slots() -> Callable[[], Any]:
-    from app.api.concurrency_limit import WorkSlots
+class _NamedSlots(WorkSlots):
+    """Slots whose names are known."""
 
-    def make() -> Any:
-        slots = WorkSlots()
-        for (role, work), semaphore in slots._semaphores.items():  # noqa: SLF001
-            _slot_names[id(semaphore)] = f"{role}/{work}"
-        _slot_names[id(slots._probes)] = "probe"  # noqa: SLF001
-        return slots
-
-    return make
+    def of(self, scope: Scope) -> FairSemaphore:
+        semaphore = super().of(scope)
+        work = work_of(scope)
+        name = "probe" if work is PROBE else f"{scope['state']['role']}/{work.name}"
+        _slot_names[id(semaphore)] = name
+        return semaphore
 
 
 async def _handle(route: Any, scope: Scope, receive: Receive, send: Send) -> None:

@@ -8,12 +8,11 @@ from starlette.types import Message, Receive, Scope, Send
 
 from app.api.concurrency_limit import (
     MAX_WAITING,
-    PROBE_SLOTS,
-    SLOTS,
     ConcurrencyLimit,
     WorkSlots,
 )
 from app.api.policy import QUESTION, WATCH, Policy, policies, work_of
+from app.api.work import ENCODING, OTHER, PROBE, Slots, Work
 from app.limits.connections import ConnectionTable
 from app.server import create_app
 from app.settings import Settings
@@ -22,14 +21,16 @@ from tests.api.guarding import admitted
 from tests.storage.stores import temporary_store
 
 STOP = "/api/v1/trainings/x/stop"
-OTHER, PROBE = Policy(access=WATCH), Policy(access=WATCH, work="probe")
-FILE = Policy(access=WATCH, work="encoding")
-WHAT_IF = Policy(access=QUESTION, work="what-if")
-READING = SLOTS["spectator"]["other"].size
+READ, PROBED = Policy(access=WATCH), Policy(access=WATCH, work=PROBE)
+FILE = Policy(access=WATCH, work=ENCODING)
+SINGLE = Work(name="question", spectators=Slots(1, 1), operators=None)
+"""As a feature may define one."""
+ASKED = Policy(access=QUESTION, work=SINGLE)
+READING = OTHER.spectators.size
 
 
 def scope(
-    role: str, address: str, method: str = "GET", path: str = "/", policy: Policy = OTHER
+    role: str, address: str, method: str = "GET", path: str = "/", policy: Policy = READ
 ) -> Scope:
     request = {"type": "http", "method": method, "path": path, "query_string": b""}
     return {**request, "state": admitted(role, policy), "client": (address, 1)}
@@ -65,19 +66,19 @@ def test_spectators_do_not_delay_operators() -> None:
     assert asyncio.run(scenario()) == (READING, 2)
 
 
-def test_what_ifs_of_spectators_do_not_delay_what_spectators_read() -> None:
+def test_questions_of_spectators_do_not_delay_what_spectators_read() -> None:
     async def scenario() -> dict[str, int]:
-        working = {"what-if": 0, "read": 0}
+        working = {"question": 0, "read": 0}
 
         async def work(scope: Scope, receive: Receive, send: Send) -> None:
-            working["what-if" if scope["method"] == "POST" else "read"] += 1
+            working["question" if scope["method"] == "POST" else "read"] += 1
             await asyncio.Event().wait()
 
         app = ConcurrencyLimit(work, WorkSlots())
-        what_ifs = [scope("spectator", str(n), "POST", policy=WHAT_IF) for n in range(20)]
+        questions = [scope("spectator", str(n), "POST", policy=ASKED) for n in range(20)]
         tasks = [
             asyncio.ensure_future(app(one, nothing, ignore))
-            for one in (*what_ifs, scope("spectator", "a"))
+            for one in (*questions, scope("spectator", "a"))
         ]
         await asyncio.sleep(0.01)
         for task in tasks:
@@ -85,7 +86,7 @@ def test_what_ifs_of_spectators_do_not_delay_what_spectators_read() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return working
 
-    assert asyncio.run(scenario()) == {"what-if": SLOTS["spectator"]["what-if"].size, "read": 1}
+    assert asyncio.run(scenario()) == {"question": SINGLE.spectators.size, "read": 1}
 
 
 def test_requests_do_not_delay_probes() -> None:
@@ -101,7 +102,7 @@ def test_requests_do_not_delay_probes() -> None:
 
         app = ConcurrencyLimit(work, WorkSlots())
         requests = [scope("spectator", "a") for _ in range(50)]
-        requests += [scope("spectator", "a", path="/readyz", policy=PROBE) for _ in range(50)]
+        requests += [scope("spectator", "a", path="/readyz", policy=PROBED) for _ in range(50)]
         tasks = [asyncio.ensure_future(app(one, nothing, ignore)) for one in requests]
         await asyncio.sleep(0.01)
         for task in tasks:
@@ -109,7 +110,7 @@ def test_requests_do_not_delay_probes() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return probed
 
-    assert asyncio.run(scenario()) == PROBE_SLOTS.size
+    assert asyncio.run(scenario()) == PROBE.spectators.size
 
 
 def test_files_that_take_long_delay_nothing_else() -> None:
@@ -138,7 +139,7 @@ def test_files_that_take_long_delay_nothing_else() -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
         return working
 
-    files = sum(kinds["encoding"].size for kinds in SLOTS.values())
+    files = ENCODING.spectators.size + (ENCODING.operators or ENCODING.spectators).size
     assert asyncio.run(scenario()) == {"file": files, "command": 1, "read": 1}
 
 
@@ -223,7 +224,7 @@ def test_each_kind_of_work_has_slots_of_its_own() -> None:
 
     def kind(role: str, method: str, path: str, query: bytes = b"") -> str:
         asked = scope(role, "a", policy=of_routes[method, path])
-        return work_of({**asked, "query_string": query})
+        return work_of({**asked, "query_string": query}).name
 
     assert {path: kind("spectator", "get", path) for path in kinds} == kinds
     recording = "/api/v1/races/{run_id}/recording"

@@ -11,6 +11,7 @@ from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, WATCH, WATCH_RUN, api_router, policy
 from app.api.runs import RunIdsQuery, RunPath, find, located, phrase
+from app.api.work import DOWNLOAD
 from app.features.archives import archive
 from app.features.archives.transfer import export_chunks, export_many, import_runs
 from app.storage.run import KINDS, IdempotencyKey, Kind, Run, robots_of
@@ -26,7 +27,7 @@ class ImportedView(Answer):
 
 
 def _export(kind: Kind) -> Callable[..., Response]:
-    @policy(access=WATCH_RUN, work="download")
+    @policy(access=WATCH_RUN, work=DOWNLOAD)
     def export(services: ServicesDep, run_id: RunPath) -> Response:
         """Return a `.zip` that another server's import, or `hexapods import`, accepts."""
         run = find(services, kind, run_id)
@@ -59,7 +60,7 @@ for _kind in KINDS:
         409: {},
     },
 )
-@policy(access=WATCH, work="download")
+@policy(access=WATCH, work=DOWNLOAD)
 def export_runs(services: ServicesDep, ids: RunIdsQuery) -> Response:
     """Return one `.zip` with the archive of each, which `POST /runs/import` accepts."""
     data = export_many(services.store, ids, services.downloads)

@@ -18,14 +18,17 @@ from starlette.requests import Request
 from starlette.types import ASGIApp, Scope
 
 from app.api.cookies import SessionCookie, cookies_of, is_secure, name_of_server
+from app.api.deps import Services
 from app.api.identity import Identity
-from app.api.policy import ANY_PAGE, QUESTION, WATCH_RUN, WATCH_STAGE, Access, Work
+from app.api.policy import ANY_PAGE, QUESTION, WATCH_RUN, WATCH_STAGE, Access
 from app.api.problems import as_sentence, problem
 from app.api.stage_paths import stage_of
+from app.api.work import OTHER, Work
 from app.features.classroom.names import CODE, normalized
 from app.features.classroom.room import Deed, Room
 from app.features.classroom.room_rows import Seat
 from app.features.classroom.rooms import Rooms
+from app.features.classroom.what_ifs import WhatIfs
 from app.settings import Settings
 from app.storage.errors import NotFound
 
@@ -87,10 +90,13 @@ class Participant:
         self._codes = frozenset(dict(seats))
         self.asks_what_if = False
 
-    @property
-    def limited_as(self) -> str:
-        """Key of its token bucket of what-ifs: many participants may share an address."""
-        return " ".join(f"{code} {seed}" for code, seed in self.seats)
+    def allowance_key(self, scope: Scope) -> str | None:
+        """Return the seat in the room of the path: many participants may share an address.
+
+        Who has seats in several rooms has the same allowance in a room whatever cookies are sent.
+        """
+        code = normalized(scope["path_params"].get("code", ""))
+        return f"{code} {dict(self.seats)[code]}" if code in self._codes else None
 
     def refusal(self, scope: Scope, access: Access, as_spectator: ASGIApp | None) -> ASGIApp | None:
         """Return the refusal of a participant's request: by default of all that is a change."""
@@ -218,8 +224,10 @@ ReaderDep = Annotated[tuple[Seat, ...] | None, Depends(_reader)]
 def work_of_card(scope: Scope) -> Work:
     """Return the kind of work of what a card runs: a what-if, or a run that is queued."""
     identity: Identity | None = scope["state"]["identity"]
-    is_what_if = isinstance(identity, Participant) and identity.asks_what_if
-    return "what-if" if is_what_if else "other"
+    if not (isinstance(identity, Participant) and identity.asks_what_if):
+        return OTHER
+    services: Services = scope["app"].state.services
+    return services.of(WhatIfs).work
 
 
 def room_cookie(scope: Scope, code: str, *, is_secure: bool) -> SessionCookie:

@@ -15,8 +15,8 @@ from app.api.cookies import SessionCookie, is_secure
 from app.api.deps import EventListener, IdempotencyKeyHeader, Services, ServicesDep
 from app.api.events import EVENT_STREAM, client_slot, stream_events
 from app.api.formats import attachment, negotiated
+from app.api.identity import charged_client
 from app.api.policy import OPERATOR, WATCH, api_router, policy
-from app.api.rate_limit import asker_of
 from app.api.runs import delete_each, located
 from app.api.spectators import address_for_others, link_of
 from app.features.classroom.access import (
@@ -356,7 +356,7 @@ def start_run(
     number, shown = (room.card, room.shown) if card is None else (card, room.lesson.cards[card])
     given = starts.given(shown, settings)
     if shown.go == "what-if":
-        what_if, asker = starts.what_if(shown, given), asker_of(request.scope)
+        what_if, asker = starts.what_if(shown, given), charged_client(request.scope)
 
         def compute() -> dict[str, Any]:
             return services.of(WhatIfs).ask(what_if, asker)

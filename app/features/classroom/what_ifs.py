@@ -1,7 +1,8 @@
 """What-ifs of cards, as far as that feature is there."""
 
-from typing import Any, Protocol, cast
+from typing import Any, ClassVar, Protocol, cast
 
+from app.api.work import OTHER, Work
 from app.feature import Feature
 from app.storage.errors import NotFound
 from hexapods.runs.config import TrainingConfig
@@ -9,6 +10,8 @@ from hexapods.runs.config import TrainingConfig
 
 class _WhatIfFeature(Protocol):
     """What cards need of the feature: importing its class would make it a part of this one."""
+
+    work: ClassVar[Work]
 
     def ask_as_spectator(self, training: TrainingConfig, client: str) -> dict[str, Any]: ...
 
@@ -19,6 +22,11 @@ class WhatIfs:
     def __init__(self, feature: Feature | None) -> None:
         """Create it with the feature of what-ifs; None if it is left out."""
         self._feature = cast("_WhatIfFeature | None", feature)
+
+    @property
+    def work(self) -> Work:
+        """Kind of work of a what-if."""
+        return OTHER if self._feature is None else self._feature.work
 
     def ask(self, training: TrainingConfig, client: str) -> dict[str, Any]:
         """Return the answer to a what-if, a `ComparisonView`.

@@ -30,11 +30,8 @@ class Visitor:
 
     Attributes:
         cookie: with the visitor's key, empty before the first start.
-        limited_as: None: visitors count by their addresses.
         page_role: of the visitor's pages; that of a spectator on the stage of others.
     """
-
-    limited_as: str | None = None
 
     def __init__(self, cookie: SessionCookie, visitors: Visitors, *, is_at_home: bool) -> None:
         """Create the identity of one request.
@@ -46,6 +43,9 @@ class Visitor:
         """
         self.cookie, self._visitors, self._is_at_home = cookie, visitors, is_at_home
         self.page_role = "visitor" if is_at_home else "spectator"
+
+    def allowance_key(self, scope: Scope) -> None:
+        """Return None: visitors count by their addresses."""
 
     def refusal(self, scope: Scope, access: Access, as_spectator: ASGIApp | None) -> ASGIApp | None:
         """Return the refusal of a request; None if spectators may send it, or this visitor may."""

@@ -8,6 +8,7 @@ from starlette.responses import Response
 from app.api.deps import ServicesDep
 from app.api.policy import WATCH_RUN, api_router, policy
 from app.api.runs import RunPath, find
+from app.api.work import ANALYSIS
 from app.features.explanations.explanation_json import MAX_VALUES_SHOWN
 from app.features.explanations.response_models import ExplanationView, LossView, TableView
 from app.features.explanations.service import Explanations
@@ -23,7 +24,7 @@ races = api_router(prefix="/races", tags=["races"])
     summary="Explain why a step was taken and what was learned from it",
     response_model=ExplanationView,
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def explain_step(
     services: ServicesDep,
     run_id: RunPath,
@@ -50,7 +51,7 @@ def explain_step(
         "`count` choose which."
     ),
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_table_at(
     services: ServicesDep,
     run_id: RunPath,
@@ -69,7 +70,7 @@ def get_table_at(
     summary="Explain why a learner with a table loses a race",
     response_model=LossView,
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def explain_loss(
     services: ServicesDep,
     run_id: RunPath,

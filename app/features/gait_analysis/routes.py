@@ -11,6 +11,7 @@ from app.api.deps import Services, ServicesDep
 from app.api.descriptions import VALID
 from app.api.policy import WATCH_RUN, api_router, policy
 from app.api.runs import RunPath
+from app.api.work import ANALYSIS
 from app.storage.errors import Conflict, Damaged
 from app.storage.run import DamagedRun, Run, world_of
 from hexapods.domain.records import Record, to_json
@@ -68,7 +69,7 @@ class GaitAnalysis(Record):
     summary="Analyse the gait: footfalls, speed, posture, torque, energy",
     response_model=GaitAnalysis,
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_gait(
     services: ServicesDep,
     run_id: RunPath,

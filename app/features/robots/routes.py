@@ -13,6 +13,7 @@ from app.api.fields import Body, Name
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, WATCH, api_router, policy
 from app.api.schemas import PatchBody, one_given
+from app.api.work import ANALYSIS, ENCODING
 from app.features.robots.response_models import (
     StoredRobotsView,
     StoredRobotView,
@@ -81,7 +82,7 @@ class RobotChangeBody(PatchBody):
         }
     },
 )
-@policy(access=OPERATOR, work="encoding", takes_file=True)
+@policy(access=OPERATOR, work=ENCODING, takes_file=True)
 def store_robot(
     services: ServicesDep,
     body: BodyDep,
@@ -113,7 +114,7 @@ def list_robots(
 
 
 @router.get("/{robot_id:robot}", summary="Get a stored robot", response_model=WholeRobotView)
-@policy(access=WATCH, work="analysis")
+@policy(access=WATCH, work=ANALYSIS)
 def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
     """Return a stored robot with all its numbers, and what is known of it before it walks."""
     robots = services.store.robots
@@ -125,7 +126,7 @@ def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
     summary="Rename or hide a stored robot, give it another gait, or correct it",
     response_model=StoredRobotView,
 )
-@policy(access=OPERATOR, work="encoding")
+@policy(access=OPERATOR, work=ENCODING)
 def change_robot(services: ServicesDep, robot_id: RobotPath, body: RobotChangeBody) -> Response:
     """Change what is said of a robot, which keeps its id, or how its file is read.
 
@@ -161,7 +162,7 @@ def delete_robot(services: ServicesDep, robot_id: RobotPath) -> None:
     response_class=Response,
     responses=answers(200, {"application/json": {"type": "object"}}, headers=ATTACHMENT),
 )
-@policy(access=WATCH, work="analysis")
+@policy(access=WATCH, work=ANALYSIS)
 def get_robot_file(services: ServicesDep, robot_id: RobotPath) -> Response:
     """Return its document, which `POST /robots` and `hexapods robots import` store elsewhere."""
     data = services.store.robots.document(robot_id)

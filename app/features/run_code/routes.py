@@ -7,6 +7,7 @@ from app.api.answers import Answer
 from app.api.deps import ServicesDep
 from app.api.policy import WATCH_RUN, api_router, policy
 from app.api.runs import RunPath
+from app.api.work import ANALYSIS
 from app.features.run_code.run_code import run_code
 
 router = api_router(prefix="/runs", tags=["runs"])
@@ -22,7 +23,7 @@ class CodeView(Answer):
 @router.get(
     "/{run_id}/code", summary="Get commands and Python that repeat a run", response_model=CodeView
 )
-@policy(access=WATCH_RUN, work="analysis")
+@policy(access=WATCH_RUN, work=ANALYSIS)
 def get_code(services: ServicesDep, request: Request, run_id: RunPath) -> Response:
     """Return what makes exactly this run, on the command line and in Python.
 

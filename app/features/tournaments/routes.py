@@ -11,6 +11,7 @@ from app.api.contract import ATTACHMENT, BINARY, TEXT, answers
 from app.api.deps import Services, ServicesDep
 from app.api.formats import attachment
 from app.api.policy import ANY_PAGE, OPERATOR, api_router, policy
+from app.api.work import DOWNLOAD
 from app.features.tournaments.access import (
     ENTER_TOURNAMENT,
     WATCH_TOURNAMENT,
@@ -120,7 +121,7 @@ def end_tournament(
     response_class=Response,
     responses=answers(200, {MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
 )
-@policy(access=WATCH_TOURNAMENT, work="download")
+@policy(access=WATCH_TOURNAMENT, work=DOWNLOAD)
 def get_tournament_file(
     services: ServicesDep, tournament_id: TournamentPath, reader: ReaderDep
 ) -> Response:

@@ -9,22 +9,30 @@ from app.api.deps import Services
 from app.api.starts import StartKind
 from app.feature import Feature
 from app.features.what_if import routes
+from app.features.what_if.allowance import WHAT_IF, Allowance
 from app.features.what_if.estimate import Estimates
 from app.features.what_if.response_models import WhatIfDefaults
+from app.features.what_if.settings import WhatIfSettings
 from app.features.what_if.what_if import MAX_STEPS, SEEDS, WhatIf
 from app.jobs.process_pool import ProcessPool
 from hexapods.runs.config import TrainingConfig
 
 
 class WhatIfFeature(Feature):
-    """What-ifs of spectators and operators, and estimates of how long runs take."""
+    """What-ifs of spectators and operators, and estimates of how long runs take.
+
+    Attributes:
+        work: kind of work of a what-if, for features that let their clients ask.
+    """
 
     name = "what_if"
+    work = WHAT_IF
     option_types: ClassVar[Mapping[str, Any]] = {"defaults.what_if": WhatIfDefaults}
 
     def __init__(self, core: Services) -> None:
         super().__init__(core)
         self._what_if = core.provide(WhatIf(ProcessPool()))
+        core.provide(Allowance(core.settings.of(WhatIfSettings)))
         estimates = Estimates(ProcessPool(count=1), core.jobs.cores, core.stopping)
         self._estimates = core.provide(estimates)
 

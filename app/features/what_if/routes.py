@@ -1,6 +1,7 @@
 """Routes of what-ifs and of estimates, whose bodies are those that start runs."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from fastapi import APIRouter, Request
@@ -9,9 +10,10 @@ from starlette.responses import JSONResponse, Response
 from app.api.agent_bodies import agent_bodies
 from app.api.answers import ComparisonView
 from app.api.deps import RoleDep, Services, ServicesDep
+from app.api.identity import charged_client
 from app.api.policy import OPERATOR, QUESTION, api_router, policy
-from app.api.rate_limit import what_ifs_used_up, whole_seconds
 from app.api.starts import StartKind
+from app.features.what_if.allowance import WHAT_IF, Allowance
 from app.features.what_if.estimate import Estimates
 from app.features.what_if.response_models import EstimateView
 from app.features.what_if.what_if import (
@@ -22,8 +24,6 @@ from app.features.what_if.what_if import (
     WhatIf,
     WhatIfRequester,
 )
-from app.limits.addresses import client_of
-from app.storage.errors import Busy
 from hexapods.domain.errors import InvalidInput
 
 _ESTIMATES: Mapping[str, tuple[str, str]] = {
@@ -60,7 +60,7 @@ def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
             f"{OPERATORS_LIMIT_S:g} s: settings that take longer are refused."
         ),
     )
-    @policy(access=QUESTION, work="what-if")
+    @policy(access=QUESTION, work=WHAT_IF)
     def ask(
         services: ServicesDep, request: Request, role: RoleDep, body: training_body
     ) -> Response:
@@ -69,7 +69,7 @@ def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
             raise InvalidInput("a what-if begins with an empty table; leave out continue_from")
         requester = WhatIfRequester(check=services.stopping.check)
         if role == "spectator":
-            requester = spectator(services, client_of(request.scope))
+            requester = spectator(services, charged_client(request.scope))
         return JSONResponse(services.of(WhatIf).ask(body.start().config, requester))
 
     return router
@@ -112,12 +112,10 @@ def spectator(services: Services, client: str) -> WhatIfRequester:
     Raises:
         Busy: if those before have taken more than its allowance.
     """
-    limiter = services.what_if_limiter
-    if (wait_s := limiter.debt_s(client)) > 0:
-        detail = what_ifs_used_up(services.settings.what_ifs_per_minute, wait_s)
-        raise Busy(detail, whole_seconds(wait_s))
-
-    def charge(seconds: float) -> None:
-        limiter.charge(client, max(0.0, seconds - 1.0))
-
-    return WhatIfRequester(is_operator=False, check=services.stopping.check, charge=charge)
+    allowance = services.of(Allowance)
+    allowance.check(client)
+    return WhatIfRequester(
+        is_operator=False,
+        check=services.stopping.check,
+        charge=partial(allowance.charge, client),
+    )

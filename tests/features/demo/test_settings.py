@@ -14,7 +14,6 @@ def test_a_demo_is_stricter_unless_it_is_told_otherwise() -> None:
     demo, usual = read_settings(environ), read_settings({})
     assert demo.of(DemoSettings).demo
     assert demo.starts_per_minute < usual.starts_per_minute
-    assert demo.what_ifs_per_minute < usual.what_ifs_per_minute
     assert demo.max_viewers < usual.max_viewers
     assert demo.quota_mb == 4000
     given = read_settings({**environ, "HEXAPODS_QUOTA_MB": "90", "HEXAPODS_STARTS_PER_MINUTE": "7"})

@@ -12,6 +12,7 @@ from app.api.answers import ComparisonView
 from app.api.deps import Services
 from app.features.what_if.estimate import Estimates
 from app.features.what_if.response_models import EstimateView
+from app.features.what_if.settings import WhatIfSettings
 from app.features.what_if.what_if import MAX_STEPS, SEEDS, WhatIf
 from app.jobs.submissions import TrainingStart
 from app.server import create_app
@@ -48,7 +49,7 @@ def test_what_if_compares_chosen_with_default_settings(api: Api) -> None:
 
 
 def test_what_ifs_of_spectators_are_limited_by_address(serve: Serve) -> None:
-    api = serve(what_ifs_per_minute=3, token=TOKEN)
+    api = serve(features=(WhatIfSettings(what_ifs_per_minute=3),), token=TOKEN)
     for _ in range(3):
         refused(api.call("POST", "/what-if", json={}), 422)
     answer = api.call("POST", "/what-if", json={})
