@@ -13,13 +13,9 @@ from app.api.fields import Declared
 from app.api.formats import attachment, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, Policy, api_router, with_policy
 from app.api.runs import RunPath
-<<<<<<< HEAD:app/features/exports/routes.py
+from app.api.work import DOWNLOAD, ENCODING
 from app.features.exports.file_renderer import FileRenderer
 from app.features.exports.stored_walks import source_of
-=======
-from app.api.work import DOWNLOAD, ENCODING
-from app.exports.stored_walks import source_of
->>>>>>> 969aeb4e (Let features define kinds of work, with slots and an allowance of their own):app/api/exports.py
 from app.storage.errors import Conflict
 from hexapods.domain.errors import TooLong
 from hexapods.exports.export_format import Execution, ExportFormat, FileType, Load

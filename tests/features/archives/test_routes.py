@@ -1,6 +1,7 @@
 """Export and import of runs over REST."""
 
 from app.api.policy import policies
+from app.api.work import DOWNLOAD
 from tests.api.calls import Api, refused
 
 
@@ -35,5 +36,5 @@ def test_several_runs_are_exported_and_taken_in_again(api: Api) -> None:
 
 def test_archives_have_the_slots_of_downloads(api: Api) -> None:
     of_routes = policies(api.client.app)  # type: ignore[arg-type]
-    assert of_routes["get", "/api/v1/runs/export"].work == "download"
-    assert of_routes["get", "/api/v1/races/{run_id}/export"].work == "download"
+    assert of_routes["get", "/api/v1/runs/export"].work == DOWNLOAD
+    assert of_routes["get", "/api/v1/races/{run_id}/export"].work == DOWNLOAD

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from app.api.policy import policies
+from app.api.work import DOWNLOAD, ENCODING
 from hexapods.exports.registry import EXPORTS
 from tests.api.calls import Api, refused
 
@@ -98,5 +99,5 @@ def test_what_has_no_trajectory_is_refused(api: Api, raced: dict[str, Any]) -> N
 
 def test_each_file_has_the_slots_of_what_it_costs(api: Api) -> None:
     of_routes = policies(api.client.app)  # type: ignore[arg-type]
-    assert of_routes["get", "/api/v1/runs/{run_id}/page"].work == "encoding"
-    assert of_routes["get", "/api/v1/runs/{run_id}/trajectory"].work == "download"
+    assert of_routes["get", "/api/v1/runs/{run_id}/page"].work == ENCODING
+    assert of_routes["get", "/api/v1/runs/{run_id}/trajectory"].work == DOWNLOAD
