@@ -4,7 +4,7 @@ import { computed, effect, untracked } from "@preact/signals";
 /** @import { Signal } from "@preact/signals" */
 /** @import { Annotations, Curve, Curves, Disturbance } from "./types.js" */
 /** @import { Kind, Options } from "./types.js" */
-/** @import { Page, Preview, Rates, ReplayPlan, Run, Spectators, Stage } from "./types.js" */
+/** @import { Page, Preview, Rates, ReplayPlan, Run, Stage } from "./types.js" */
 /** @import { Timeline, Verb } from "./types.js" */
 
 /**
@@ -339,8 +339,6 @@ export const postExport = async (id, address) =>
   (await request("POST", `runs/${encodeURIComponent(id)}/${address}`)).blob();
 
 
-/** @returns {Promise<Spectators>} */
-export const getSpectators = () => call("GET", "spectators");
 /** @returns {Promise<Stage>} */
 export const getStage = () => call("GET", "stage");
 /** @type {(changes: Partial<Stage> & { time_s?: number }) => Promise<Stage | null>} */

@@ -2,8 +2,8 @@
 // the core asks it what features add, and knows none of them. `feature.json` declares what a feature adds, and is in
 // the page itself, so that it takes no request; its code is loaded when it is first needed. `feature.js` is there for
 // what has to run from the start, and adds to the declaration.
-import { computed, signal } from "@preact/signals";
-import { declareFields, declareWords } from "./page-state.js";
+import { computed, effect, signal } from "@preact/signals";
+import { declareFields, declareWords, page } from "./page-state.js";
 import { addHandlers } from "./store.js";
 
 /** @import { Deck, Feature, MenuRow, Run, RunKind, SlotPart } from "./types.js" */
@@ -75,9 +75,41 @@ export async function imported(feature, source) {
   return (await import(`../features/${feature}/${path}`))[name];
 }
 
+/** Load what features have for a field of the page's state, and run it once, when the field is first set. */
+export function followFields() {
+  for (const { name, whenSet = {} } of features.peek()) {
+    for (const [field, source] of Object.entries(whenSet)) {
+      let hasRun = false;
+      effect(() => {
+        if (hasRun || !isSet(field)) return;
+        imported(name, source).then((follow) => {
+          if (!hasRun) follow();
+          hasRun = true;
+        }, () => {});
+      });
+    }
+  }
+}
+
+/** Whether a field of the page's state is set. @param {string} field */
+const isSet = (field) => Boolean(/** @type {any} */ (page)[field].value);
+
+/** What a key does by a feature, as the page is now; undefined where it does nothing. @param {string} key */
+export function actionOfKey(key) {
+  for (const { name, keys = {} } of features.value) {
+    const { call, while: field } = keys[key] ?? {};
+    if (call && (!field || isSet(field))) return () => imported(name, call).then((act) => act());
+  }
+  return undefined;
+}
+
+/** The keys of features that the help lists: [key, what it does]. */
+export const helpOfKeys = () => features.value.flatMap(({ keys = {} }) =>
+  Object.entries(keys).flatMap(([key, { does }]) => (does ? [[key.toUpperCase(), does]] : [])));
+
 /**
  * The named parts of one kind of all features, each with the name of its feature.
- * @template {"tabs" | "views" | "dialogs"} Kind
+ * @template {"tabs" | "views" | "dialogs" | "panels"} Kind
  * @param {Kind} kind
  * @returns {Record<string, NonNullable<Feature[Kind]>[string] & { feature: string }>}
  */
@@ -118,7 +150,7 @@ export const kindOf = ({ kind }) => features.value.find(({ kinds = {} }) => kind
 /** @type {Deck} */
 const NO_DECK = { cards: signal([]), number: signal(null), open: () => {}, Question: () => null };
 
-/** The cards that a presenter shows: of the feature that has any. */
+/** Cards that are shown one after the other: of the feature that has any. */
 export const deck = computed(() => features.value.find((feature) => feature.deck)?.deck ?? NO_DECK);
 
 /** Dialogs that were wanted, by name: they are loaded then, and stay. @type {{ value: string[] }} */

@@ -7,9 +7,9 @@ import { html } from "./components/elements.js";
 import { listenForKeys, listenForMenus } from "./components/keyboard.js";
 import { openForm } from "./form.js";
 import { windowTitle } from "./on-stage.js";
-import { addCodeFor, features, installFeatures } from "./features.js";
+import { addCodeFor, features, followFields, installFeatures } from "./features.js";
 import { followHistory, page, reload } from "./page-state.js";
-import { followPresenter, followTheme } from "./page.js";
+import { followTheme } from "./page.js";
 import { announceOutcomes, headline } from "./headline.js";
 import { followTimeline } from "./race.js";
 import { followReplay } from "./replay.js";
@@ -40,11 +40,6 @@ function reloadAfterUpgrade() {
   });
 }
 
-/** Follow the presentation on the pages that show or command it. */
-const followPresentations = () => effect(() => {
-  if (page.isPresenting.value) import("./presentation.js").then((own) => untracked(own.followPresentation), () => {});
-});
-
 /** Load the code of features that pages of this role need; if that fails, again once the connection is back. */
 const followRole = () => effect(() => {
   const isLive = connection.value === "live";
@@ -58,10 +53,9 @@ const followTitle = () => effect(() => {
 
 await installFeatures();
 followHistory();
+followFields();
 features.value.forEach(({ follow }) => follow?.());
 followTheme();
-followPresenter();
-followPresentations();
 followRole();
 reloadAfterUpgrade();
 followRuns(stageIds);

@@ -125,10 +125,6 @@ const FIELDS = {
   camera: { part: "query", name: "camera", initial: "leader", ...CAMERA },
   /** What is hidden of the page. */
   hidden: { part: "query", name: "hidden", initial: /** @type {string[]} */ ([]), ...severalOf(HIDEABLE) },
-  /** Whether the page is presented: full screen, large type. */
-  isPresenting: { part: "query", name: "present", initial: false, ...FLAG },
-  /** Whether the page is the remote of a presentation. */
-  isRemote: { part: "query", name: "remote", initial: false, ...FLAG },
   /** How the list of runs is grouped; null where the browser's own choice holds. */
   grouping: { part: "runs", name: "group", initial: null, ...oneOf([null, ...GROUPINGS]) },
   /** The columns of the list of runs; null where the browser's own choice holds. */

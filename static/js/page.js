@@ -1,7 +1,7 @@
-// What concerns this page alone and is in no link: dialogs, the full screen, the window's size, what the browser keeps;
+// What concerns this page alone and is in no link: dialogs, large type, the window's size, what the browser keeps;
 // and texts and links that are copied, which is told for a few seconds.
 import { computed, effect, signal } from "@preact/signals";
-import { change, linkTo, page, showAddress } from "./page-state.js";
+import { linkTo, page, showAddress } from "./page-state.js";
 import { replayLink } from "./replay.js";
 
 /** @import { Signal } from "@preact/signals" */
@@ -34,34 +34,8 @@ export function storedText(key, byDefault) {
 /** Whether single keys act, "on" or "off"; they can interfere with speech input. */
 export const shortcuts = storedText("shortcuts", "on");
 
-// ---- the presenter view: full screen, large type
-
-/** Whether the page fills the screen. */
-export const isFullScreen = signal(false);
-
-/** Fill the screen, where the browser allows it. */
-export const enterFullScreen = () => document.documentElement.requestFullscreen?.().catch(() => {});
-
-export function present() {
-  change({ view: "race", isPresenting: true });
-  helpIsOpen.value = false;
-  enterFullScreen();
-}
-
-export const leavePresenter = () => change({ isPresenting: false });
-
-/** Keep the style sheet's mark of the presenter view, which ends with the full screen and with the view of the race. */
-export function followPresenter() {
-  document.addEventListener("fullscreenchange", () => {
-    isFullScreen.value = document.fullscreenElement !== null;
-    if (!isFullScreen.value) leavePresenter();
-  });
-  effect(() => {
-    if (page.view.value !== "race") leavePresenter();
-    document.documentElement.toggleAttribute("data-presenting", page.isPresenting.value);
-    if (!page.isPresenting.value && document.fullscreenElement) document.exitFullscreen().catch(() => {});
-  });
-}
+/** Whether the page is shown in large type and without controls, as to a class. */
+export const isProjected = signal(false);
 
 // ---- the layout
 

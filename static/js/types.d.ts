@@ -267,6 +267,19 @@ export interface ViewPart extends LoadedPart {
   /** Whether the header has a link to it. */
   isInHeader?: boolean;
 }
+/** What is shown in place of the panel while a field of the page's state is set. */
+export interface PanelPart extends LoadedPart {
+  /** Who has it; everybody without one. */
+  for?: "operator";
+}
+/** What a key of the view of the race does: it calls a function of a module that it loads. */
+export interface FeatureKey {
+  call: FeatureSource;
+  /** The field of the page's state that must be set. */
+  while?: string;
+  /** What the help says of it; it lists no others. */
+  does?: string;
+}
 export interface MenuRow {
   title: string | (() => string);
   /** Its place among the rows of features. */
@@ -309,7 +322,7 @@ export interface RunKind {
   /** Its files: [label, address]. */
   downloads: (run: Pick<Run, "id">) => [string, string][];
 }
-/** Cards that are shown one after the other, for whoever presents. */
+/** Cards that are shown one after the other. */
 export interface Deck {
   cards: ReadonlySignal<DeckCard[]>;
   /** The number of the open card, from 1; null without one. */
@@ -343,6 +356,12 @@ export interface Feature {
   tabs?: Record<string, TabKind & LoadedPart>;
   views?: Record<string, ViewPart>;
   dialogs?: Record<string, LoadedPart>;
+  /** By the field of the page's state. */
+  panels?: Record<string, PanelPart>;
+  /** By the key; Escape leaves what is on top. */
+  keys?: Record<string, FeatureKey>;
+  /** By a field of the page's state: what is loaded and called once, when the field is first set. */
+  whenSet?: Record<string, FeatureSource>;
   menu?: MenuRow[];
   /** Rows of the menu of each run; what they call gets the run. */
   runMenu?: MenuRow[];

@@ -37,7 +37,7 @@
     if (data.type === "hexapods:draw") return;
     setTheme(data.theme);
     setView(data.view);
-    root.toggleAttribute("data-presenting", data.isPresenting === true);
+    root.toggleAttribute("data-projected", data.isProjected === true);
   });
   setTheme(query.get("theme"));
   if (query.has("playbackPath")) root.dataset.playback = "";

@@ -25,6 +25,7 @@ WORDS = {
     "demo": "demo",
     "what_if": "What if",
     "robots": "Edit the body|Your robot",
+    "presenter": "Present|Remote",
 }
 """How the page speaks of a feature."""
 

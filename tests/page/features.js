@@ -31,6 +31,7 @@ export const EXAMPLE = {
   name: "example",
   fields: {
     page_number: { part: "query", name: "page", is: "whole" },
+    is_lit: { part: "query", name: "lit", is: "flag", initial: false },
     experiment: { part: "experiments", name: null, is: "texts" },
     report: { part: "experiments", name: "run", is: "text", isEntry: true },
   },

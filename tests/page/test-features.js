@@ -2,7 +2,9 @@
 import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
-import { features, fillersOf, hasFeature, imported, install, menuRows, partsOf } from "../../static/js/features.js";
+import {
+  actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, menuRows, partsOf,
+} from "../../static/js/features.js";
 import { change, ignored, page, read } from "../../static/js/page-state.js";
 import { applyEvent, eventNames } from "../../static/js/store.js";
 import { allTabs, depth, openTab, pinnedTab, setDepth, tab } from "../../static/js/workspace.js";
@@ -57,6 +59,7 @@ const WORDS = {
   gait_analysis: /gait.analysis/i,
   guide: /guide\//,
   run_code: /as code|showCode/i,
+  presenter: /presenter|presentation|isPresenting|isRemote|\bremote\b/i,
   robots: /body.?editor|your robots|edit.?(the.)?body|robotsAreOpen/i,
 };
 
@@ -69,11 +72,13 @@ test("no module of the core names a feature", () => {
 });
 
 test("what a feature declares is there", async () => {
-  for (const { name, tabs = {}, views = {}, dialogs = {}, slots = {}, menu = [], runMenu = [], needs = [] } of ALL) {
+  for (const { name, needs = [], menu = [], runMenu = [], keys = {}, whenSet = {}, ...feature } of ALL) {
+    const { tabs = {}, views = {}, dialogs = {}, panels = {}, slots = {} } = feature;
     assert.deepEqual(needs.filter((other) => !NAMES.includes(other)), [], name);
-    const parts = [tabs, views, dialogs, slots].flatMap((kind) => Object.values(kind));
+    const parts = [tabs, views, dialogs, panels, slots].flatMap((kind) => Object.values(kind));
     const shown = parts.flatMap((part) => ("show" in part ? [part.show] : []));
-    for (const source of [...shown, ...[...menu, ...runMenu].flatMap(({ call }) => call ?? [])]) {
+    const called = [...menu, ...runMenu, ...Object.values(keys)].flatMap(({ call }) => call ?? []);
+    for (const source of [...shown, ...called, ...Object.values(whenSet)]) {
       assert.equal(typeof await imported(name, source), "function", `${name}: ${source}`);
     }
     const styles = parts.flatMap((part) => ("style" in part && part.style ? [part.style] : []));
@@ -108,6 +113,18 @@ test("a feature adds tabs, views, fields, places and events; one that needs a mi
   assert.ok(eventNames().includes("example"));
   applyEvent("example", { value: 7 });
   assert.deepEqual(heard, [7]);
+});
+
+test("a key of a feature acts while a field of the page's state is set, and the help lists it", () => {
+  const before = features.value;
+  const call = "none.js#none";
+  features.value = [{ ...EXAMPLE, keys: { x: { call, does: "cross out" }, y: { call, while: "is_lit" } } }];
+  const acting = () => ["x", "y", "z"].filter((key) => actionOfKey(key));
+  assert.deepEqual([acting(), helpOfKeys()], [["x"], [["X", "cross out"]]]);
+  change(/** @type {object} */ ({ is_lit: true }));
+  assert.deepEqual(acting(), ["x", "y"]);
+  change(/** @type {object} */ ({ is_lit: false }));
+  features.value = before;
 });
 
 test("a tab whose feature is left out is none, whoever names it", () => {

@@ -42,11 +42,11 @@ test("the address that was opened is read first, and stays one entry of the hist
 });
 
 test("a link is read as the state that wrote it, each field of it", () => {
-  /** @type {Partial<import("../../static/js/page-state.js").PageState> & { page_number: number }} */
+  /** @type {Partial<import("../../static/js/page-state.js").PageState> & { page_number: number, is_lit: boolean }} */
   const changes = {
     form: new URLSearchParams("alpha=0,7&disturb=limp:legs%3D1,4&disturb=slope:degrees%3D8&steps="),
     run: "a", ghost: "b", moment: 2.25, clock: "free", end: "all", depth: "study", tab: "why", pinned: "gait",
-    camera: "2", hidden: ["panel", "card"], page_number: 3, isPresenting: true, isRemote: true,
+    camera: "2", hidden: ["panel", "card"], page_number: 3, is_lit: true,
   };
   const ofViews = {
     experiments: { experiment: new URLSearchParams("alpha=0.1;0.3&name=A %26 B"), report: "c" },
@@ -82,12 +82,12 @@ test("a panel that a link of version 0.1 opened is a tab now, unless it was clos
 });
 
 test("links of earlier versions open", () => {
-  open("/?gait=wave&alpha=0.3&run=a&ghost=b&t=2.50&present#experiments?experiment=sweep&alpha=0.1,0.3&run=c");
-  const { form, experiment, view, run, ghost, moment, isPresenting, report } = document();
-  assert.deepEqual([view, run, ghost, moment, isPresenting, report], ["experiments", "a", "b", 2.5, true, "c"]);
+  open("/?gait=wave&alpha=0.3&run=a&ghost=b&t=2.50&lit#experiments?experiment=sweep&alpha=0.1,0.3&run=c");
+  const { form, experiment, view, run, ghost, moment, is_lit, report } = document();
+  assert.deepEqual([view, run, ghost, moment, is_lit, report], ["experiments", "a", "b", 2.5, true, "c"]);
   assert.deepEqual([form, experiment], ["gait=wave&alpha=0.3", "experiment=sweep&alpha=0.1%2C0.3"]);
-  open("/?present=#compare?runs=a,b");
-  assert.deepEqual([page.isPresenting.value, page.compared.value], [true, ["a", "b"]]);
+  open("/?lit=#compare?runs=a,b");
+  assert.deepEqual([document().is_lit, page.compared.value], [true, ["a", "b"]]);
 });
 
 test("a link can be read by people", () => {

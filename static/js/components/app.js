@@ -4,13 +4,13 @@ import { computed, effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { menuRows, partsOf, runRow, wantedDialogs } from "../features.js";
 import { page } from "../page-state.js";
-import { clickedCell, helpIsOpen, isPhone, nextTheme, present, share, theme, toastMessage } from "../page.js";
+import { clickedCell, helpIsOpen, isPhone, isProjected, nextTheme, share, theme, toastMessage } from "../page.js";
 import { isOperator } from "../selectors.js";
 import { connection, isLockedOut, options, viewers } from "../store.js";
 import { depth, DEPTH_KINDS, isAtLeast, isPanelHidden, openTab, setDepth, toggleHidden } from "../workspace.js";
 import { html, Icon, Loaded, loaded, withStyle, loadPart, Part, Slot } from "./elements.js";
 import { toggleHelp } from "./keyboard.js";
-import { Panel, ThumbTabs } from "./panel.js";
+import { Panel, replacement, ThumbTabs } from "./panel.js";
 import { Stage } from "./stage.js";
 import { TimeBar } from "./time-bar.js";
 
@@ -70,10 +70,10 @@ function Workspace({ isHidden }) {
     <div class=${`workspace ${isPanelHidden.value ? "alone" : ""}`} hidden=${isHidden}>
       <${Stage} />
       <${TimeBar} />
-      ${page.isPresenting.value && html`<${Loaded} name="presenter's desk" load=${loadDesk} />`}
-      ${!page.isPresenting.value && !page.isRemote.value && html`<${Slot} name="card" />`}
+      ${isProjected.value && html`<${Slot} name="desk" />`}
+      ${!isProjected.value && !replacement.value && html`<${Slot} name="card" />`}
       <${Panel} />
-      ${isPhone.value && !page.isRemote.value && html`<${ThumbTabs} />`}
+      ${isPhone.value && !replacement.value && html`<${ThumbTabs} />`}
     </div>
   `;
 }
@@ -87,8 +87,6 @@ const Help = () => (helpIsOpen.value || loaded.value.help) && html`<${Loaded} na
 const Dialogs = () => Object.entries(partsOf("dialogs"))
   .filter(([name]) => wantedDialogs.value.includes(name))
   .map(([name, part]) => html`<${Part} key=${name} part=${part} />`);
-
-const loadDesk = () => withStyle("style/presenter.css", import("./desk.js")).then(({ Desk }) => Desk);
 
 // ---- the views that are loaded when they are first opened: most visits do not
 
@@ -134,9 +132,7 @@ const Header = () => html`
       <button class="quiet roomy" onClick=${share} title="Copy a link that opens the page as it is">
         <${Icon} name="link" />Share
       </button>
-      <button class="quiet roomy" onClick=${present} title="Full screen and large type, for a class">
-        <${Icon} name="present" />Present
-      </button>
+      <${Slot} name="buttons of the header" />
     `}
     <${Menu} />
   </header>
@@ -151,7 +147,7 @@ const DepthChoice = () => html`
   </div>
 `;
 
-/** What is seldom wanted; on small screens also the views, the link and the presenter's window. */
+/** What is seldom wanted; on small screens also the views and the link. */
 function Menu() {
   /** Close it, before what was chosen moves the focus. @param {() => unknown} act */
   const item = (act) => (/** @type {Event & { currentTarget: HTMLElement }} */ { currentTarget }) => {
@@ -166,10 +162,6 @@ function Menu() {
           <a class="phone-only" href=${href} onClick=${item(() => {})}>${title}</a>
         `)}
         <button class="quiet" onClick=${item(share)}><${Icon} name="link" />Copy a link to this</button>
-        <button class="quiet" onClick=${item(present)}><${Icon} name="present" />Present</button>
-        ${isOperator.value && html`
-          <button class="quiet" onClick=${item(() => (page.isRemote.value = true))}>Remote of the presentation</button>
-        `}
         ${menuRows.value.filter((row) => !row.for || isOperator.value).map((row) => html`
           <${Row} key=${row.order} row=${row} item=${item} />
         `)}
@@ -192,7 +184,8 @@ function Menu() {
 function Row({ row, item }) {
   const title = typeof row.title === "function" ? row.title() : row.title;
   if (row.href) return html`<a href=${row.href} onClick=${item(() => {})}>${title}</a>`;
-  return html`<button class="quiet" onClick=${item(() => runRow(row))}>${title}</button>`;
+  const icon = row.icon && html`<${Icon} name=${row.icon} />`;
+  return html`<button class="quiet" onClick=${item(() => runRow(row))}>${icon}${title}</button>`;
 }
 
 function Connection() {

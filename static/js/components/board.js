@@ -7,6 +7,7 @@ import { narrative, whyMarching } from "../headline.js";
 import { isLoser, isOver, isTimedOut, standings } from "../race.js";
 import { canPlay, clock, originalRace, raceInView, raceScene, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
+import { isProjected } from "../page.js";
 import { earlyEndOf } from "../narrative/states.js";
 import { isActive, simulatedPerDecision } from "../selectors.js";
 import { agentOf, laneTitle, learns } from "../settings.js";
@@ -26,8 +27,8 @@ const loadFiles = () => import("./run-files.js").then(({ RunFiles }) => RunFiles
 export function Board() {
   const rows = standings.value;
   const isPractice = shownRun.value?.kind === "training";
-  // In a presenter's window the lanes have the room: a chart has small type.
-  const hasChart = !rows || !page.isPresenting.value;
+  // Where the page is projected the lanes have the room: a chart has small type.
+  const hasChart = !rows || !isProjected.value;
   return html`
     <section class="board-tab" aria-label="Scoreboard">
       ${rows ? html`<${Standings} rows=${rows} />` : html`<${StartList} />`}
@@ -44,7 +45,7 @@ export function Board() {
 }
 
 /** Whether small print is shown: those who watch a race that is over read its result, and have read it before. */
-const isToldAll = () => !page.isPresenting.value && (isAtLeast("try") || !isTimedOut.value);
+const isToldAll = () => !isProjected.value && (isAtLeast("try") || !isTimedOut.value);
 
 // ---- the lanes
 
@@ -53,7 +54,7 @@ function Standings({ rows }) {
   const longest = Math.max(...rows.map((row) => row.elapsed_s ?? 0), 1e-9);
   const isDeep = isAtLeast("study");
   return html`
-    ${!page.isPresenting.value && html`<${BranchWords} />`}
+    ${!isProjected.value && html`<${BranchWords} />`}
     <table class="board">
       <caption class="sr-only">Standings (${clockTitle(clock.value)})</caption>
       <thead class=${isDeep ? "" : "sr-only"}>
@@ -134,7 +135,7 @@ function Lane({ row, longest }) {
         <td colspan="5">
           <${TimeStrip} spent=${row.spent} longest=${longest} />
           ${linesBelow(row).map(([kind, words]) => html`<p class=${kind}>${words}</p>`)}
-          ${isLoser(row.lane) && isAtLeast("try") && !page.isPresenting.value && html`
+          ${isLoser(row.lane) && isAtLeast("try") && !isProjected.value && html`
             <${Slot} name="lane that loses" row=${row} />
           `}
         </td>
@@ -146,7 +147,7 @@ function Lane({ row, longest }) {
 /** The lane's robot, which those who try follow with a press. @param {{ row: Standing }} props */
 function LaneName({ row }) {
   const name = html`<span class="swatch"></span>${row.title}`;
-  if (!isAtLeast("try") || page.isPresenting.value) return html`<span>${name}</span>`;
+  if (!isAtLeast("try") || isProjected.value) return html`<span>${name}</span>`;
   const target = String(row.lane + 1);
   const isFollowed = page.camera.value === target;
   return html`

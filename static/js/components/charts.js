@@ -4,6 +4,7 @@ import { crosshair, fileNameOf, tableOf, thinnedPath, valuesIn, within, zoomOf }
 import { metres, sentence, whole as wholeNumber } from "../format.js";
 import { cssColour, LineLabels, MarkLines, placeCaptions, roomFor, widthOf } from "./line-labels.js";
 import { page } from "../page-state.js";
+import { isProjected } from "../page.js";
 import { thinned, ticks } from "../scale.js";
 import { served } from "../store.js";
 import { isAtLeast } from "../workspace.js";
@@ -215,7 +216,7 @@ function useSize() {
   // Not at each drawing, which would compute styles in between.
   const larger = useMemo(
     () => parseFloat(getComputedStyle(document.documentElement).fontSize) / USUAL_FONT_PX,
-    [width, page.isPresenting.value],
+    [width, isProjected.value],
   );
   return [host, Math.round(width / larger), larger];
 }

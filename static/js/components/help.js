@@ -1,4 +1,5 @@
 // The help dialog: keys, what the page shows, and where to read on.
+import { helpOfKeys } from "../features.js";
 import { helpIsOpen, shortcuts } from "../page.js";
 import { Dialog, html, Slot } from "./elements.js";
 import { explainingTab } from "../workspace.js";
@@ -17,7 +18,7 @@ const pageKeys = () => [
   ["R", "press the main button"],
   ["D", "show more: Watch, Try, Study"],
   ["\\", "hide the panel, or show it"],
-  ["P", "present: full screen and large type"],
+  ...helpOfKeys(),
   ["?", "show this list; Escape closes what is on top"],
 ];
 

@@ -1,7 +1,8 @@
 // Keys that act on the whole page, pressed on it or forwarded by the stage's frame; menus, which close by themselves.
 import { runPrimaryAction, togglePause } from "../actions.js";
+import { actionOfKey } from "../features.js";
 import { page } from "../page-state.js";
-import { helpIsOpen, leavePresenter, present, shortcuts } from "../page.js";
+import { helpIsOpen, shortcuts } from "../page.js";
 import { stepReplay } from "../replay.js";
 import { closeLegs, legsAreOpen, openLegs } from "../legs.js";
 import { isOperator } from "../selectors.js";
@@ -29,17 +30,6 @@ const RACE_KEYS = {
   "d": nextDepth,
   "l": () => isAtLeast("try") && openLegs(),
   "\\": () => toggleHidden("panel"),
-  "p": () => (page.isPresenting.value ? leavePresenter : present)(),
-};
-
-const loadPresentation = () => import("../presentation.js");
-const next = () => loadPresentation().then(({ turnPage }) => turnPage(1));
-const previous = () => loadPresentation().then(({ turnPage }) => turnPage(-1));
-
-/** Keys of the presenter's window, as those of a remote control for slides. @type {Record<string, () => unknown>} */
-const PRESENTER_KEYS = {
-  ArrowRight: next, PageDown: next, ArrowLeft: previous, PageUp: previous,
-  q: () => loadPresentation().then(({ turnCode }) => turnCode()),
 };
 
 /** Perform the action of a key; false if it has none. @param {string} pressed */
@@ -55,7 +45,7 @@ function press(pressed) {
     page.camera.value = key;
     return true;
   }
-  const action = (page.isPresenting.value ? PRESENTER_KEYS[key] : undefined) ?? RACE_KEYS[key];
+  const action = actionOfKey(key) ?? RACE_KEYS[key];
   action?.();
   return action !== undefined;
 }
@@ -90,9 +80,9 @@ function leaveTop() {
     closeLegs();
     return true;
   }
-  if (!page.isPresenting.value) return false;
-  leavePresenter();
-  return true;
+  const leave = actionOfKey("Escape");
+  leave?.();
+  return leave !== undefined;
 }
 
 /** Menus close with Escape, and when a click or the focus goes elsewhere. */

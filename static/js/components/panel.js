@@ -1,30 +1,31 @@
 // The panel beside the stage: who leads and why, the tabs, what the open tab shows, and what can be done.
+import { computed } from "@preact/signals";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import { partsOf } from "../features.js";
-import { sentence } from "../format.js";
 import { moveTold, narrative } from "../headline.js";
-import { clock, isStale, phase, shownRun } from "../on-stage.js";
+import { phase, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
-import { isPhone } from "../page.js";
-import { isTimedOut } from "../race.js";
+import { isPhone, isProjected } from "../page.js";
 import { isOperator } from "../selectors.js";
-import { scene } from "../store.js";
 import { scale } from "../time.js";
-import { clockTitle } from "../titles.js";
 import {
   canPin, explainingTab, isAtLeast, isPanelHidden, openExplanation, openTab, pinnedTab, tab, tabAbout, tabs, tabTitle,
   togglePin,
 } from "../workspace.js";
 import { Board } from "./board.js";
-import { html, Icon, Loaded, withStyle, Part } from "./elements.js";
+import { html, Icon, Loaded, Part, Slot } from "./elements.js";
 import { Foot } from "./foot.js";
 
 /** @import { FunctionComponent } from "preact" */
 
+/** What a feature shows in place of the panel, by a field of the page's state; undefined where none does. */
+export const replacement = computed(() => Object.entries(partsOf("panels")).find(([field, part]) =>
+  /** @type {any} */ (page)[field].value && (part.for !== "operator" || isOperator.value))?.[1]);
+
 export function Panel() {
   if (isPanelHidden.value) return null;
-  if (page.isRemote.value && isOperator.value) {
-    return html`<aside class="panel-column" aria-label="Panel"><${Loaded} name="remote" load=${loadRemote} /></aside>`;
+  if (replacement.value) {
+    return html`<aside class="panel-column" aria-label="Panel"><${Part} part=${replacement.value} /></aside>`;
   }
   return html`
     <aside class=${`panel-column ${pinnedTab.value ? "two" : ""}`} aria-label="Panel">
@@ -32,7 +33,9 @@ export function Panel() {
       ${isAtLeast("try") && !isPhone.value && html`<${Tabs} />`}
       <${Body} name=${tab.value} key=${tab.value} />
       ${pinnedTab.value && html`<${Pinned} name=${pinnedTab.value} key=${`pinned ${pinnedTab.value}`} />`}
-      <div class="foot">${page.isPresenting.value ? html`<${Facts} />` : html`<${Foot} />`}</div>
+      <div class="foot">
+        ${isProjected.value ? html`<${Slot} name="foot of what is projected" />` : html`<${Foot} />`}
+      </div>
     </aside>
   `;
 }
@@ -128,7 +131,6 @@ export function ThumbTabs() {
 
 // ---- what the open tab shows
 
-const loadRemote = () => withStyle("style/presenter.css", import("./remote.js")).then(({ Remote }) => Remote);
 const loadTrain = () => import("./train-tab.js").then(({ TrainTab }) => TrainTab);
 const loadWorld = () => import("./world-tab.js").then(({ WorldTab }) => WorldTab);
 
@@ -186,23 +188,4 @@ function useFade(host) {
     return () => watcher.disconnect();
   }, []);
   return follows;
-}
-
-// ---- in place of the actions in a presenter's window
-
-/** By what a race is ranked and timed, and how long it still takes. */
-function Facts() {
-  const { rule } = narrative.value;
-  if (rule === null) return null;
-  const { time_s = 0, time_out_s = null } = scene.value ?? {};
-  const left = time_out_s === null || isStale.value ? null : Math.max(0, time_out_s - time_s);
-  return html`
-    <dl class="facts-of-race">
-      <div><dt>Rule</dt><dd>${rule}</dd></div>
-      <div><dt>Clock</dt><dd>${sentence(clockTitle(clock.value))}. Solid: walking, hatched: thinking.</dd></div>
-      ${left !== null && html`
-        <div><dt>Time-out</dt><dd class="num">${isTimedOut.value ? "reached" : `in ${left.toFixed(1)} s`}</dd></div>
-      `}
-    </dl>
-  `;
 }

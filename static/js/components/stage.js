@@ -6,7 +6,7 @@ import { form } from "../form.js";
 import { narrative } from "../headline.js";
 import { page } from "../page-state.js";
 import { closeLegs, legPoints, legsAreOpen, legsOf, picked } from "../legs.js";
-import { clickedCell, drawHere, shownTheme } from "../page.js";
+import { clickedCell, drawHere, isProjected, shownTheme } from "../page.js";
 import { isTimedOut } from "../race.js";
 import { closeReplay, drawIn, isBuffering, plan, replayProblem } from "../replay.js";
 import { isDecided, isStale } from "../on-stage.js";
@@ -41,10 +41,10 @@ export function Stage() {
   useEffect(() => {
     const message = {
       type: "hexapods:show", view: followed, theme: shownTheme.value, lanes: colours.split(" "),
-      covered: covered.value, isPresenting: page.isPresenting.value, legsOf: legsOf.value,
+      covered: covered.value, isProjected: isProjected.value, legsOf: legsOf.value,
     };
     frame.current?.contentWindow?.postMessage(message, location.origin);
-  }, [followed, shownTheme.value, status, colours, covered.value, page.isPresenting.value, legsOf.value]);
+  }, [followed, shownTheme.value, status, colours, covered.value, isProjected.value, legsOf.value]);
 
   const awayWords = awayInWords(status);
   return html`
@@ -91,7 +91,7 @@ function useFrame(frame, setStatus) {
     /** @type {Record<string, (data: any) => void>} */
     const takers = {
       "hexapods:click": ({ node, instance }) => {
-        if (page.isPresenting.peek()) return;
+        if (isProjected.peek()) return;
         if (isAtLeast("study")) clearTimeout(picking);
         clickedCell.value = { node, instance, run_id: scene.peek()?.run_id ?? null };
       },
@@ -120,8 +120,8 @@ function useFrame(frame, setStatus) {
   }, []);
 }
 
-/** Those who try disturb what they click; who presents does not. */
-const canPick = () => isAtLeast("try") && !page.isPresenting.peek();
+/** Those who try disturb what they click, but not on a page that is projected. */
+const canPick = () => isAtLeast("try") && !isProjected.peek();
 
 /** The view of the frame while this page draws a replay of its own. */
 const ELSEWHERE = "elsewhere";

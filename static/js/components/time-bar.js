@@ -4,7 +4,7 @@ import { endAtTimeOut, setStage, skipToEnd } from "../actions.js";
 import { narrative } from "../headline.js";
 import { canPlay, clock, isStale, shownRun } from "../on-stage.js";
 import { page } from "../page-state.js";
-import { isPhone } from "../page.js";
+import { isPhone, isProjected } from "../page.js";
 import { closeReplay, openReplay, stepReplay } from "../replay.js";
 import { percent, shareOf, ticks } from "../scale.js";
 import { isOperator, isGuest } from "../selectors.js";
@@ -90,9 +90,9 @@ const StepButtons = () => html`
 const SMALL_PX = 12;
 const LABEL_GAP_PX = 6;
 
-/** The width of a text of the bar, whose type is larger in a presenter's window. @param {string} text */
+/** The width of a text of the bar, whose type is larger where the page is projected. @param {string} text */
 const textWidth = (text, weight = 600) =>
-  widthOf(text, weight) * (page.isPresenting.value ? rootFontSize() / SMALL_PX : 1);
+  widthOf(text, weight) * (isProjected.value ? rootFontSize() / SMALL_PX : 1);
 const rootFontSize = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
 
 /** @param {{ known: Scale }} props */

@@ -1,5 +1,5 @@
 // Every sentence about the run on stage and the moment of it that is shown: one table of states × what is said, from
-// what the API tells. The page, the presenter's window, phones and projectors show what it returns, and say no more.
+// what the API tells. The page, phones and projectors show what it returns, and say no more.
 import { sentence, times, whole } from "../format.js";
 import { rowsOf } from "./moment.js";
 import { earlyEndOf, isActive, isTimedOutIn } from "./states.js";

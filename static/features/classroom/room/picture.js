@@ -79,7 +79,7 @@ export function Picture({ source }) {
     return () => removeEventListener("message", onMessage);
   }, []);
   useEffect(() => {
-    const message = { type: "hexapods:show", view, theme: shownTheme.value, isPresenting: source === "stage" };
+    const message = { type: "hexapods:show", view, theme: shownTheme.value, isProjected: source === "stage" };
     frame.current?.contentWindow?.postMessage(message, globalThis.origin);
   }, [shownTheme.value, status]);
   return html`

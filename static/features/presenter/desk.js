@@ -1,17 +1,17 @@
 // The presenter's desk below the stage: the card, what comes next, and how others can watch.
 import { useEffect, useState } from "preact/hooks";
-import { getSpectators } from "../api.js";
-import { canStart, primaryAction, runPrimaryAction } from "../actions.js";
-import { narrative } from "../headline.js";
-import { deck } from "../features.js";
-import { presentation, toggleBlank, turnCode, turnPage } from "../presentation.js";
-import { canPlay } from "../on-stage.js";
-import { enterFullScreen, isFullScreen, leavePresenter } from "../page.js";
-import { isOperator } from "../selectors.js";
-import { connection, isAway, viewers } from "../store.js";
-import { html } from "./elements.js";
+import { call } from "../../js/api.js";
+import { canStart, primaryAction, runPrimaryAction } from "../../js/actions.js";
+import { narrative } from "../../js/headline.js";
+import { deck } from "../../js/features.js";
+import { presentation, toggleBlank, turnCode, turnPage } from "./presentation.js";
+import { canPlay } from "../../js/on-stage.js";
+import { enterFullScreen, isFullScreen, leavePresenter } from "./presenting.js";
+import { isOperator } from "../../js/selectors.js";
+import { connection, isAway, viewers } from "../../js/store.js";
+import { html } from "../../js/components/elements.js";
 
-/** @import { Spectators } from "../types.js" */
+/** @import { Spectators } from "../../js/types.js" */
 
 export function Desk() {
   const { code, is_blank } = presentation.value;
@@ -35,7 +35,7 @@ export function useSpectators() {
   const state = connection.value;
   useEffect(() => {
     if (state !== "live") return;
-    getSpectators().then(setKnown, ({ message }) => setKnown(/** @type {any} */ ({ problem: message })));
+    call("GET", "spectators").then(setKnown, ({ message }) => setKnown(/** @type {any} */ ({ problem: message })));
   }, [state]);
   return known;
 }

@@ -1,12 +1,12 @@
 // The presenter's remote, on a phone: it commands the stage that all share, and every presenter's window of it.
-import { canStart, endAtTimeOut, primaryAction, runPrimaryAction, togglePlaying } from "../actions.js";
-import { deck } from "../features.js";
-import { isPlaying } from "../on-stage.js";
-import { CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "../presentation.js";
-import { page } from "../page-state.js";
-import { commonStage } from "../store.js";
-import { html, Icon, Segments } from "./elements.js";
-import { Problem } from "./foot.js";
+import { canStart, endAtTimeOut, primaryAction, runPrimaryAction, togglePlaying } from "../../js/actions.js";
+import { deck } from "../../js/features.js";
+import { isPlaying } from "../../js/on-stage.js";
+import { CODES, presentation, tell, toggleBlank, toggleWhy, turnPage } from "./presentation.js";
+import { page } from "../../js/page-state.js";
+import { commonStage } from "../../js/store.js";
+import { html, Icon, Segments } from "../../js/components/elements.js";
+import { Problem } from "../../js/components/foot.js";
 
 export function Remote() {
   const { card, shows_why, is_blank, code } = presentation.value;

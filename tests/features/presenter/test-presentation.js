@@ -4,14 +4,14 @@ import { beforeEach, test } from "node:test";
 import { signal } from "@preact/signals";
 import {
   followPresentation, presentation, tell, toggleBlank, toggleWhy, turnCode, turnPage,
-} from "../../static/js/presentation.js";
-import { install } from "../../static/js/features.js";
-import { change, page, read } from "../../static/js/page-state.js";
-import { applyEvent, options } from "../../static/js/store.js";
-import { EXAMPLE } from "./features.js";
-import { makeRun, makeSceneLane, makeStage, OPTIONS } from "./options.js";
+} from "../../../static/features/presenter/presentation.js";
+import { install } from "../../../static/js/features.js";
+import { change, page, read } from "../../../static/js/page-state.js";
+import { applyEvent, options } from "../../../static/js/store.js";
+import { ALL, EXAMPLE } from "../../page/features.js";
+import { makeRun, makeSceneLane, makeStage, OPTIONS } from "../../page/options.js";
 
-/** @import { Presentation } from "../../static/js/types.js" */
+/** @import { Presentation } from "../../../static/js/types.js" */
 
 const START = makeStage().presentation;
 /** What the server was told. @type {Presentation[]} */
@@ -24,8 +24,9 @@ globalThis.fetch = (_, { body = "" } = {}) => {
 /** @type {import("@preact/signals").Signal<number | null>} */
 const open = signal(null);
 const cards = signal(["One", "Two", "Three"].map((title) => ({ title, text: title })));
+const { fields } = ALL.find(({ name }) => name === "presenter") ?? {};
 install([{
-  ...EXAMPLE, deck: { cards, number: open, open: (number) => { open.value = number; }, Question: () => null },
+  ...EXAMPLE, fields, deck: { cards, number: open, open: (number) => { open.value = number; }, Question: () => null },
 }]);
 followPresentation();
 
@@ -43,6 +44,13 @@ beforeEach(() => {
   open.value = null;
   showCard({});
   told = [];
+});
+
+test("links of earlier versions present the page, or make it the remote", () => {
+  read({ search: "?run=a&present", hash: "" });
+  assert.deepEqual([page.isPresenting.value, page.isRemote.value], [true, false]);
+  read({ search: "?present=&remote", hash: "" });
+  assert.deepEqual([page.isPresenting.value, page.isRemote.value], [true, true]);
 });
 
 test("before it is told, no card is shown, and the code is large", () => {

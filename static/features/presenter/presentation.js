@@ -1,16 +1,16 @@
 // The presentation on the stage that all share: which card is shown, and how; told by the presenter's own keys, or by a
 // remote on another device. Every presenter's window of this stage follows it.
 import { computed, effect } from "@preact/signals";
-import { setShared } from "./actions.js";
-import { deck } from "./features.js";
-import { change, page } from "./page-state.js";
-import { isTimedOut } from "./race.js";
-import { isOperator } from "./selectors.js";
-import { commonStage } from "./store.js";
-import { explainingTab } from "./workspace.js";
+import { setShared } from "../../js/actions.js";
+import { deck } from "../../js/features.js";
+import { change, page } from "../../js/page-state.js";
+import { isTimedOut } from "../../js/race.js";
+import { isOperator } from "../../js/selectors.js";
+import { commonStage } from "../../js/store.js";
+import { explainingTab } from "../../js/workspace.js";
 
-/** @import { PageState } from "./page-state.js" */
-/** @import { Presentation } from "./types.js" */
+/** @import { PageState } from "../../js/page-state.js" */
+/** @import { Presentation } from "../../js/types.js" */
 
 /** @type {Presentation} */
 const NOTHING = { card: null, shows_why: false, is_blank: false, code: "large" };
@@ -30,17 +30,15 @@ export function turnPage(direction) {
   if (next >= 1 && next <= deck.peek().cards.peek().length) tell({ card: next, shows_why: false });
 }
 
+export const nextCard = () => turnPage(1);
+export const previousCard = () => turnPage(-1);
 export const turnCode = () =>
   tell({ code: CODES[(CODES.indexOf(presentation.peek().code) + 1) % CODES.length] });
 export const toggleWhy = () => tell({ shows_why: !presentation.peek().shows_why });
 export const toggleBlank = () => tell({ is_blank: !presentation.peek().is_blank });
 
-let isFollowing = false;
-
 /** Let this page, while it is presented, show what the presentation says; then it is as it was before. */
 export function followPresentation() {
-  if (isFollowing) return;
-  isFollowing = true;
   /** @type {Partial<PageState> | null} */
   let before = null;
   effect(() => {
