@@ -28,6 +28,7 @@ OF_FEATURE = {
     "what_if": "/api/v1/what-if",
     "guide": "/guide/page",
     "robots": "/api/v1/robots/{robot_id}",
+    "presenter": "/static/features/presenter/desk.js",
 }
 """An address of each."""
 NAMES = tuple(OF_FEATURE)
