@@ -196,7 +196,7 @@ const parse = (text) => {
  * @returns {Promise<Response>}
  * @throws {RequestError}
  */
-async function request(method, path, body, headers = {}) {
+export async function request(method, path, body, headers = {}) {
   /** @type {Record<string, string>} */
   const type = body === undefined || body instanceof Blob ? {} : { "Content-Type": "application/json" };
   const response = await fetch(new URL(path, base()), {
@@ -298,16 +298,6 @@ export const startAgain = (id) => start(`runs/${encodeURIComponent(id)}/again`, 
 export const idQuery = (ids) => new URLSearchParams(ids.map((id) => ["id", id]));
 /** @type {(ids: string[]) => Promise<{ deleted: string[], kept: { id: string, reason: string }[] }>} */
 export const deleteRuns = (ids) => call("DELETE", `runs?${idQuery(ids)}`);
-/**
- * Take in an archive of one run or several.
- * @type {(file: Blob) => Promise<{ items: Run[] }>}
- */
-export const importRuns = (file) => start("runs/import", file);
-/**
- * Add a training out of the file of a Q-table.
- * @type {(file: Blob, name: string) => Promise<Run>}
- */
-export const importTable = (file, name) => call("POST", `trainings/import?${new URLSearchParams({ name })}`, file);
 
 /** A few points of the curves of several trainings. @type {(ids: string[]) => Promise<Curves>} */
 export const getCurves = (ids) => call("GET", `runs/curves?${idQuery(ids)}`);
@@ -333,11 +323,6 @@ export async function getReplayFrames(id, address, query) {
   const path = `runs/${encodeURIComponent(id)}/replay/${address}?${new URLSearchParams(query)}`;
   return (await request("GET", path)).arrayBuffer();
 }
-
-/** Have an export of a run computed, in up to minutes. @type {(id: string, address: string) => Promise<Blob>} */
-export const postExport = async (id, address) =>
-  (await request("POST", `runs/${encodeURIComponent(id)}/${address}`)).blob();
-
 
 /** @returns {Promise<Stage>} */
 export const getStage = () => call("GET", "stage");

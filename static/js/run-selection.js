@@ -2,7 +2,6 @@
 import { computed } from "@preact/signals";
 import { attempt } from "./actions.js";
 import * as api from "./api.js";
-import { exportAddress } from "./files.js";
 import { listed } from "./format.js";
 import { page } from "./page-state.js";
 import { listedRuns } from "./run-list.js";
@@ -45,16 +44,6 @@ export function setSelected(id, isOn, isRange = false) {
 
 /** Those that can be deleted: they have ended, or are damaged. */
 export const deletable = computed(() => selected.value.filter((run) => "damaged" in run || !isActive(run)));
-
-const exportable = computed(() => deletable.value.filter((run) => !("damaged" in run)));
-
-/** The address of an archive of the selected runs that have one; null if there are none, or too many. */
-export const exported = computed(() => {
-  const [, most] = served().limits.archive_runs;
-  const { length } = exportable.value;
-  const isPossible = length > 0 && length <= (most ?? Infinity);
-  return { count: length, most, address: isPossible ? exportAddress(exportable.value.map(({ id }) => id)) : null };
-});
 
 /** Delete the selected runs; those that are kept stay selected, and the reasons are told. */
 export const deleteSelected = () =>

@@ -60,6 +60,8 @@ const WORDS = {
   guide: /guide\//,
   run_code: /as code|showCode/i,
   presenter: /presenter|presentation|isPresenting|isRemote|\bremote\b/i,
+  archives: /archive_|archive of|\.zip|import(Runs|Files|Table)|runs\/(im|ex)port/i,
+  exports: /served\(\)\.exports|ExportOption|MP4/,
   robots: /body.?editor|your robots|edit.?(the.)?body|robotsAreOpen/i,
 };
 

@@ -1,13 +1,12 @@
 // The list of runs: filters, and which of the known runs are in its pages.
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { importFiles, imports } from "../../static/js/run-import.js";
 import { page } from "../../static/js/page-state.js";
 import {
   clearFilters, filters, isFiltered, knownTags, setFilters, shownRuns,
 } from "../../static/js/run-list.js";
 import {
-  clearSelection, deletable, deleteSelected, exported, selectAll, selected, setSelected,
+  clearSelection, deletable, deleteSelected, selectAll, selected, setSelected,
 } from "../../static/js/run-selection.js";
 import { problems } from "../../static/js/actions.js";
 import { applyEvent, options } from "../../static/js/store.js";
@@ -98,12 +97,10 @@ test("a range is selected from the run before, and nothing is done with what is 
   selectAll();
   assert.equal(selected.value.length, 6);
   assert.equal(deletable.value.length, 5, "all but the race that runs");
-  assert.deepEqual([exported.value.count, exported.value.address], [4, null], "more than an archive has");
   shown({ kind: "training" });
   setSelected(UNKNOWN.id, false);
   setFilters({ search: "tripod" });
   assert.deepEqual(chosen(), [TRAINING.id]);
-  assert.match(exported.value.address ?? "", new RegExp(`runs/export\\?id=${TRAINING.id}$`));
 });
 
 /** @type {(answer: (address: string, request: any) => [number, object]) => void} */
@@ -122,21 +119,4 @@ test("what is deleted goes, and what is kept is told with its reason", async () 
   assert.deepEqual(shown({}), [RACE.id, UNKNOWN.id]);
   assert.equal(problems.value.selection?.message, "Not deleted: a race waits for it.");
   assert.deepEqual(selected.value.map(({ id }) => id), [UNKNOWN.id], "it stays selected");
-});
-
-test("each file tells what came of it, and a large one is not even sent", async () => {
-  const sent = /** @type {string[]} */ ([]);
-  answerBy((address, { body }) => {
-    sent.push(new URL(address).pathname);
-    return body.name === "bad.zip" ? [422, { detail: "It is no archive." }] : [201, { items: [TRAINING, RACE] }];
-  });
-  const big = new File([new Uint8Array(2 ** 20 + 1)], "big.zip");
-  await importFiles([new File(["a"], "two.zip"), new File(["b"], "bad.zip"), big]);
-  assert.deepEqual(imports.value.map(({ name, state }) => [name, state]), [
-    ["two.zip", "done"], ["bad.zip", "refused"], ["big.zip", "refused"],
-  ]);
-  assert.deepEqual(imports.value.map(({ words }) => words), [
-    "has brought 2 runs.", "It is no archive.", "The file has 2 MiB; the most is 1 MiB here.",
-  ]);
-  assert.equal(sent.length, 2);
 });

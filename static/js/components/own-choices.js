@@ -6,7 +6,7 @@ import { closeReplay, openReplay } from "../replay.js";
 import { clock, shownRun } from "../on-stage.js";
 import { isActive, isWalk } from "../selectors.js";
 import { isAway, scene } from "../store.js";
-import { html, Icon } from "./elements.js";
+import { html, Icon, Slot } from "./elements.js";
 
 /** @import { Run } from "../types.js" */
 
@@ -37,6 +37,7 @@ const Files = ({ run }) => html`
     <summary>Download it</summary>
     <div class="own-choices">
       ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download>${label}</a>`)}
+      <${Slot} name="files of a walk" run=${run} look="to-report" />
     </div>
   </details>
 `;

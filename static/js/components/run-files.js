@@ -2,7 +2,7 @@
 import { downloads } from "../files.js";
 import { shownRun } from "../on-stage.js";
 import { isActive } from "../selectors.js";
-import { html } from "./elements.js";
+import { html, Slot } from "./elements.js";
 
 export function RunFiles() {
   const run = shownRun.value;
@@ -12,6 +12,7 @@ export function RunFiles() {
       <summary>Download this ${run.kind}</summary>
       <div class="own-choices">
         ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download>${label}</a>`)}
+        <${Slot} name="files of a walk" run=${run} look="to-report" />
       </div>
     </details>
   `;

@@ -6,10 +6,8 @@ import {
   clearFilters, filters, isFiltered, knownTags, listedRuns, runGroups, runList, setFilters,
 } from "../../run-list.js";
 import { clearSelection, selectAll, selected, setSelected } from "../../run-selection.js";
-import { isOperator } from "../../selectors.js";
 import { connection } from "../../store.js";
-import { html } from "../elements.js";
-import { Imports } from "./import.js";
+import { html, Slot } from "../elements.js";
 import { RunRow } from "./row.js";
 
 /** @import { Group } from "../../run-groups.js" */
@@ -40,7 +38,7 @@ export function List() {
         </p>
       `}
       <${Tags} />
-      <${Imports} />
+      <${Slot} name="list of runs" />
       ${groups.length === 0
         ? html`<${NoRuns} />`
         : html`
@@ -133,7 +131,7 @@ const FirstVisit = () => html`
   <p><b>No runs yet.</b></p>
   <p>
     Every run is kept here, with its curve, its table, its recording or its
-    report. <a href="#">Start the first one</a>${isOperator.value && ", or drop the file of an exported one here"}.
+    report. <a href="#">Start the first one</a><${Slot} name="first run" />.
   </p>
 `;
 

@@ -1,18 +1,19 @@
 // The menu of a run: all that can be done with it, and its files.
 import { useEffect, useRef, useState } from "preact/hooks";
-import { attempt, copySettings, deleteRun, pending, runAgain } from "../../actions.js";
-import { archiveAddress, downloads, notInstalled, rendered, saveExport } from "../../files.js";
-import { listed } from "../../format.js";
+import { copySettings, deleteRun, pending, runAgain } from "../../actions.js";
+import { fillersOf, kindOf, rowsOfRuns, runRow } from "../../features.js";
+import { downloads } from "../../files.js";
 import { addressOf } from "../../page-state.js";
 import { isActive, isOperator, isWalk, mayChange, mayStart } from "../../selectors.js";
-import { html } from "../elements.js";
+import { html, Slot } from "../elements.js";
 import { edit } from "./annotations.js";
-import { kindOf, rowsOfRuns, runRow } from "../../features.js";
 
 /** @import { AnyRun } from "../../runs.js" */
-/** @import { ExportOption, Run } from "../../types.js" */
+/** @import { Run } from "../../types.js" */
 
 const MARGIN_PX = 8;
+/** The place of the files that each run has once it has ended. */
+const OF_ENDED = "files of a run that has ended";
 
 /** Place the body of an open menu in the window, wherever its list is scrolled to. @param {HTMLDetailsElement} menu */
 function place(menu) {
@@ -30,13 +31,16 @@ export function RunMenu({ run, label }) {
   useEffect(() => {
     if (!isOpen || !menu.current) return undefined;
     const { current } = menu;
-    place(current);
+    // What features add to it may come later.
+    const body = new ResizeObserver(() => place(current));
+    body.observe(/** @type {HTMLElement} */ (current.querySelector(".menu-body")));
     // It stays in the window, and would be beside another run.
     const close = (/** @type {Event} */ { target }) =>
       !(target instanceof Node && current.contains(target)) && current.removeAttribute("open");
     addEventListener("scroll", close, true);
     addEventListener("resize", close);
     return () => {
+      body.disconnect();
       removeEventListener("scroll", close, true);
       removeEventListener("resize", close);
     };
@@ -74,44 +78,23 @@ function Items({ run }) {
     `}
     <${Downloads} run=${run} />
     ${isOperator.value && isWalk(run) && !isActive(run) && run.progress.done > 0 && html`
-      ${rendered().map((file) => html`<${RenderButton} key=${file.title} run=${run} file=${file} />`)}
-      ${notInstalled().map(([install, titles]) => html`
-        <p class="dim">${listed(titles)}: not installed on the server; <code>${install}</code> adds it.</p>
-      `)}
+      <${Slot} name="files of a walk for operators" run=${run} />
     `}
     ${mayChange(run) && !isActive(run) && html`<${DeleteButton} run=${run} />`}
-  `;
-}
-
-/**
- * Has a file computed; the menu says so until it is there, and why there is none is told in the row.
- * @param {{ run: Run, file: ExportOption }} props
- */
-function RenderButton({ run, file }) {
-  const [isRendering, setRendering] = useState(false);
-  const onClick = async () => {
-    setRendering(true);
-    await attempt(run.id, () => saveExport(run, file));
-    setRendering(false);
-  };
-  return html`
-    <button disabled=${pending.value[run.id]} onClick=${onClick} aria-live="polite">
-      ${isRendering ? `${file.title}: being rendered…` : file.title}
-    </button>
   `;
 }
 
 /** @param {{ run: Run }} props */
 function Downloads({ run }) {
   const hasEnded = !isActive(run);
-  const hasBegun = run.progress.done > 0 || run.result;
-  const files = [
-    ...(!isWalk(run) || (hasEnded && hasBegun) ? downloads(run) : []),
-    ...(hasEnded ? [["Archive (zip)", archiveAddress(run)]] : []),
-  ];
+  const hasWalked = isWalk(run) && hasEnded && (run.progress.done > 0 || Boolean(run.result));
+  const files = hasWalked || !isWalk(run) ? downloads(run) : [];
+  const hasFiles = files.length > 0 || (hasEnded && fillersOf(OF_ENDED).length > 0);
   return html`
-    <p class="menu-part dim">${files.length ? "Download" : "Nothing to download."}</p>
+    <p class="menu-part dim">${hasFiles ? "Download" : "Nothing to download."}</p>
     ${files.map(([label, href]) => html`<a href=${href} download>${label}</a>`)}
+    ${hasWalked && html`<${Slot} name="files of a walk" run=${run} />`}
+    ${hasEnded && html`<${Slot} name=${OF_ENDED} run=${run} />`}
   `;
 }
 

@@ -8,9 +8,8 @@ import { page } from "../../page-state.js";
 import { isPhone } from "../../page.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
-import { html, Icon, Segments } from "../elements.js";
+import { html, Icon, Segments, Slot } from "../elements.js";
 import { Details } from "./details.js";
-import { ImportButton, useDrop } from "./import.js";
 import { List } from "./list.js";
 import { SelectionBar } from "./selection.js";
 import { allKinds } from "../../features.js";
@@ -32,17 +31,16 @@ followThumbnails();
 followDetails();
 
 export function Runs() {
-  const isDragging = useDrop();
   const isCovered = isPhone.value && page.isOverList.value;
   return html`
-    <div class=${`runs ${isDragging ? "drop" : ""}`}>
+    <div class="runs">
       <section class="list-column" aria-labelledby="runs-title" inert=${isCovered}>
         <${Head} />
         <${List} />
         ${isPhone.value && html`<${SelectionBar} />`}
       </section>
       ${(!isPhone.value || isCovered) && html`<${Details} />`}
-      ${isDragging && html`<p class="drop-note" role="status">Drop to take in: archives of runs, or Q-tables</p>`}
+      <${Slot} name="view of runs" />
     </div>
   `;
 }
@@ -60,7 +58,7 @@ function Head() {
       <${Choice} label="Groups" choices=${Object.entries(GROUPING_TITLES)} value=${grouping.value}
         onValue=${setGrouping} />
       <${ViewMenu} />
-      ${isOperator.value && html`<${ImportButton} />`}
+      ${isOperator.value && html`<${Slot} name="head of the list of runs" />`}
     </div>
   `;
 }

@@ -3,30 +3,22 @@ import { useState } from "preact/hooks";
 import { pending } from "../../actions.js";
 import { count } from "../../format.js";
 import { openDetails } from "../../run-details.js";
-import {
-  clearSelection, deletable, deleteSelected, exported, selected, tagSelected,
-} from "../../run-selection.js";
+import { clearSelection, deletable, deleteSelected, selected, tagSelected } from "../../run-selection.js";
 import { isOperator } from "../../selectors.js";
 import { served } from "../../store.js";
-import { html } from "../elements.js";
+import { html, Slot } from "../elements.js";
 import { Problem } from "../foot.js";
 
 /** @import { Changed } from "../../types.js" */
 
 export const SelectionActions = () => html`
   <div class="selection-actions" role="group" aria-label="Selected runs">
-    <${ExportThem} />
+    <${Slot} name="actions on selected runs" />
     ${isOperator.value && html`<${TagThem} />`}
     ${isOperator.value && deletable.value.length > 0 && html`<${DeleteThem} />`}
     <${Problem} at="selection" />
   </div>
 `;
-
-function ExportThem() {
-  const { count: exportable, most, address } = exported.value;
-  if (address) return html`<a class="secondary compact button" href=${address} download>Export ${exportable}</a>`;
-  return html`<span class="dim">${exportable ? `An export has up to ${most} runs.` : "None has ended yet."}</span>`;
-}
 
 function TagThem() {
   const [tag, setTag] = useState("");

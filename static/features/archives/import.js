@@ -1,8 +1,8 @@
 // Import of runs: by a button, by dropping files anywhere, and what came of each file.
 import { useEffect, useState } from "preact/hooks";
-import { dismissImport, importFiles, imports } from "../../run-import.js";
-import { isOperator } from "../../selectors.js";
-import { html, Icon } from "../elements.js";
+import { html, Icon } from "../../js/components/elements.js";
+import { isOperator } from "../../js/selectors.js";
+import { dismissImport, importFiles, imports } from "./imports.js";
 
 export function ImportButton() {
   /** @param {{ target: HTMLInputElement }} event */
@@ -34,8 +34,10 @@ export const Imports = () => html`
   </ul>
 `;
 
-/** Take in files that are dropped on the page while this view is open; whether files are dragged over it. */
-export function useDrop() {
+export const DropHint = () => isOperator.value && html`, or drop the file of an exported one here`;
+
+/** Takes in files that are dropped on the page while this view is open, and says so while files are dragged over it. */
+export function Drop() {
   const [isDragging, setDragging] = useState(false);
   useEffect(() => {
     /** @param {DragEvent} event */
@@ -60,5 +62,6 @@ export function useDrop() {
       for (const [name, listener] of Object.entries(listeners)) removeEventListener(name, listener);
     };
   }, []);
-  return isDragging;
+  return isDragging &&
+    html`<p class="drop-note" role="status">Drop to take in: archives of runs, or Q-tables</p>`;
 }

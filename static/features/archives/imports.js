@@ -1,13 +1,13 @@
 // Files that are taken in as runs: archives of runs, and Q-tables.
 import { signal } from "@preact/signals";
+import { count } from "../../js/format.js";
+import { served } from "../../js/store.js";
+import { titleOf } from "../../js/run-words.js";
+import { messageOf } from "../../js/titles.js";
 import * as api from "./api.js";
-import { count } from "./format.js";
-import { served } from "./store.js";
-import { titleOf } from "./run-words.js";
-import { messageOf } from "./titles.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Run } from "./types.js" */
+/** @import { Run } from "../../js/types.js" */
 
 /**
  * A file, and what came of it.
