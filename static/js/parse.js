@@ -275,3 +275,12 @@ export function makeTexts(ofForm) {
     }),
   };
 }
+
+/** The lines of a text that are not empty. @param {string} text */
+export const linesOf = (text) => text.split("\n").map((line) => line.trim()).filter(Boolean);
+
+/** A typed number; null where there is none. @param {string} text */
+export const numberOf = (text) => {
+  const value = Number(text.replace(",", "."));
+  return text.trim() && Number.isFinite(value) ? value : null;
+};

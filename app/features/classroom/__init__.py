@@ -8,11 +8,12 @@
 - `room` are a room, its participants and what they may do; `rooms` keeps them: with `seats` the
   participants by their cookies, with `room_runs` their runs, and who may see them; `room_stages`
   opens a stage for each open room, with the roles and sessions of the server's first one.
-- `card_starts` makes what a card runs, and `what_ifs` answers what it asks; `answers` checks
-  predictions and scores them; `results` are those of a room; `names` draws codes and names.
+- `questions` has the kinds of questions: what an answer is, and how it is scored; `card_starts`
+  makes what a card runs, and `what_ifs` answers what it asks; `results` are those of a room, and
+  `names` draws codes and names.
 - Over REST: `lesson_routes`, `room_routes`, `pages`, `request_bodies`, `response_models`,
   `room_views`. In the database: `tables`, with `lesson_rows` and `room_rows`, and `migrations`.
 
-To add a lesson that is built in: a file in `built_in`. A question type: `Kind` and `Ask` in
-`lesson`, its check and score in `answers`, and how the page asks and shows it.
+To add a lesson that is built in: a file in `built_in`. A kind of question: `Kind` and a class in
+`questions`, and an entry in `static/features/classroom/room/questions.js`.
 """

@@ -11,31 +11,29 @@ from annotated_types import MaxLen, MinLen
 from pydantic import Field, TypeAdapter, ValidationError
 
 from app.features.classroom.card_settings import check_bounds
-from app.features.classroom.markdown import as_html, check_markdown
+from app.features.classroom.markdown import (
+    Markdown,
+    Title,
+    as_html,
+    check_line,
+    check_markdown,
+)
 from app.features.classroom.page_state import PageState, Tab
+from app.features.classroom.questions import MAX_CHOICES, Ask, Number, check_question, check_right
 from app.storage.json_text import is_finite
 from hexapods.domain.errors import InvalidInput, UnknownName
 from hexapods.domain.records import Record
 from hexapods.domain.settings import MAX_SETTING_NAME
-from hexapods.domain.text import MAX_NAME, visible
+from hexapods.domain.text import MAX_NAME
 
 _GIVEN_REFERENCE = "#/components/schemas/Given{model}"
 GIVEN_LESSON: dict[str, Any] = {"$ref": _GIVEN_REFERENCE.format(model="Lesson")}
 """Schema of a lesson as it is sent."""
 MAX_CARDS = 60
 MAX_AIMS = 12
-MAX_TEXT = 8_000
-"""Characters of a text of a card."""
-MAX_SHORT = 300
-"""Characters of a title, an aim or a choice of an answer."""
-MAX_CHOICES = 20
 MAX_MAY = 30
 LANGUAGE = r"^[a-z]{2,3}(-[A-Za-z0-9]{2,8}){0,3}$"
-Title = Annotated[str, MinLen(1), MaxLen(MAX_SHORT)]
-Markdown = Annotated[str, MaxLen(MAX_TEXT)]
-Number = Annotated[float, Field(allow_inf_nan=False)]
 Go = Literal["training", "race", "what-if"]
-Kind = Literal["choice", "number", "point", "curve"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,27 +51,6 @@ class Bounds(Record):
     choices: Annotated[tuple[Number | str | bool, ...], MinLen(1), MaxLen(MAX_CHOICES)] | None = (
         None
     )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Ask(Record):
-    """A question, to which each participant gives one answer before the reveal.
-
-    Attributes:
-        kind: of answer: one of the choices, a number, a point on a chart, or a curve.
-        text: the question, in Markdown.
-        choices: of which one is the answer, of kind `choice` alone; a name of an agent stands for
-            the race that it wins.
-        minimum, maximum: between which a number is.
-        unit: of the number; `m` and `cm` are compared with distances.
-    """
-
-    kind: Kind
-    text: Markdown
-    choices: Annotated[tuple[Title, ...], MaxLen(MAX_CHOICES)] = ()
-    minimum: Number | None = None
-    maximum: Number | None = None
-    unit: Annotated[str, MaxLen(20)] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,9 +161,9 @@ def read_lesson(data: Any) -> Lesson:
         raise InvalidInput("a lesson is plain values: texts, numbers, lists, objects") from None
     except ValidationError as error:
         raise InvalidInput(_sentence(error)) from None
-    _check_line("title", lesson.title)
+    check_line("title", lesson.title)
     for number, aim in enumerate(lesson.aims):
-        _check_line(f"aims.{number}", aim)
+        check_line(f"aims.{number}", aim)
     for number, card in enumerate(lesson.cards):
         _check_card(card, f"cards.{number}")
     return lesson
@@ -221,45 +198,18 @@ def _without_nothing(value: Any) -> Any:
 
 def _check_card(card: Card, where: str) -> None:
     if card.title is not None:
-        _check_line(f"{where}.title", card.title)
+        check_line(f"{where}.title", card.title)
     check_markdown(card.text, f"{where}.text")
     check_markdown(card.revealed.text, f"{where}.reveal")
     if card.ask is not None:
-        _check_ask(card.ask, f"{where}.ask")
+        check_question(card.ask, f"{where}.ask")
     for name, bounds in card.may.items():
         try:
             check_bounds(name, bounds, card.form)
         except InvalidInput as error:
             raise InvalidInput(f"{where}.may.{name[:MAX_SETTING_NAME]}: {error}") from error
-    answer, ask = card.revealed.answer, card.ask
-    if answer is not None and ask is not None:
-        if ask.kind == "choice" and answer not in ask.choices:
-            raise UnknownName(f"answer of {where}.reveal", answer, ask.choices)
-        if ask.kind == "number" and isinstance(answer, str):
-            raise InvalidInput(f"{where}.reveal.answer must be a number, as the question asks one")
-
-
-def _check_ask(ask: Ask, where: str) -> None:
-    check_markdown(ask.text, f"{where}.text")
-    for number, choice in enumerate(ask.choices):
-        _check_line(f"{where}.choices.{number}", choice)
-    if ask.kind == "choice" and len(set(ask.choices)) < max(2, len(ask.choices)):
-        raise InvalidInput(f"{where}.choices must be a list of 2 to {MAX_CHOICES} different texts")
-    if ask.kind != "choice" and ask.choices:
-        raise InvalidInput(f"{where}.choices are of the kind choice alone, not of {ask.kind}")
-    low, high = ask.minimum, ask.maximum
-    if ask.kind != "number" and (low is not None or high is not None):
-        raise InvalidInput(f"{where}.minimum and maximum are of the kind number alone")
-    if low is not None and high is not None and low >= high:
-        raise InvalidInput(f"{where}.minimum must be less than its maximum, {high:g}")
-
-
-def _check_line(where: str, text: str) -> None:
-    if visible(text) != text or not text.strip():
-        raise InvalidInput(
-            f"{where} must be one line of text of at most {MAX_SHORT} characters, without control "
-            "characters or other invisible characters"
-        )
+    if card.ask is not None and card.revealed.answer is not None:
+        check_right(card.ask, card.revealed.answer, f"{where}.reveal")
 
 
 def _sentence(error: ValidationError) -> str:

@@ -1,15 +1,41 @@
-"""The texts of lessons: Markdown without HTML, pictures and links that run scripts."""
+"""The texts of lessons: lines, and Markdown without HTML, pictures and links that run scripts."""
 
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 from urllib.parse import urlsplit
 
+from annotated_types import MaxLen, MinLen
+
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.text import visible
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
 
+MAX_TEXT = 8_000
+"""Characters of a text of a card."""
+MAX_SHORT = 300
+"""Characters of a title, an aim or a choice of an answer."""
+Title = Annotated[str, MinLen(1), MaxLen(MAX_SHORT)]
+Markdown = Annotated[str, MaxLen(MAX_TEXT)]
 _SCHEMES = ("http", "https", "mailto")
+
+
+def check_line(where: str, text: str) -> None:
+    """Check a title, an aim or a choice, which is no Markdown.
+
+    Args:
+        where: name of the field, for the message.
+        text: what it says.
+
+    Raises:
+        InvalidInput: if it is no line that can be seen.
+    """
+    if visible(text) != text or not text.strip():
+        raise InvalidInput(
+            f"{where} must be one line of text of at most {MAX_SHORT} characters, without control "
+            "characters or other invisible characters"
+        )
 
 
 def check_markdown(text: str, where: str) -> None:

@@ -56,7 +56,7 @@ class FreezeBody(Body):
 class PredictionBody(CardBody):
     """An answer to the question of the card that is shown.
 
-    A choice is its text, a number a number, a point [x, y], and a curve a list of points.
+    What an answer is, the kind of the question says.
     """
 
     value: JsonValue

@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, JsonValue
 
 from app.api.answers import Answer, ComparisonView, Count
-from app.features.classroom.lesson import Ask, Card, Lesson
+from app.features.classroom.lesson import Card, Lesson
+from app.features.classroom.questions import Ask, Score
 from app.storage.run import Kind, State
 
 
@@ -229,22 +230,6 @@ class PredictionView(Answer):
     value: JsonValue
 
 
-class ScoreView(Answer):
-    """How an answer compares with all seeds; null where that does not apply.
-
-    Attributes:
-        is_right: whether it is the answer that the lesson gives.
-        share: of races, the share of seeds in which the chosen agent won.
-        quantile: share of the seeds below the number.
-        error: difference from the lesson's answer, or else from the interquartile mean.
-    """
-
-    is_right: bool | None
-    share: float | None
-    quantile: float | None
-    error: float | None
-
-
 class RunOutcome(Answer):
     """A participant's run on a card.
 
@@ -280,7 +265,7 @@ class ResultEntry(Answer):
     name: str | None
     is_own: bool
     prediction: JsonValue
-    score: ScoreView | None
+    score: Score | None
     run: RunOutcome | None
 
 

@@ -4,11 +4,10 @@ import csv
 import io
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from app.features.classroom.answers import Score, WalkOutcome, scorer
-from app.features.classroom.lesson import Ask
+from app.features.classroom.questions import Ask, Score, WalkOutcome, scorer
 from app.features.classroom.room import Room
 from app.features.classroom.room_rows import RoomRun
 from app.storage.database.store import RunStore
@@ -23,6 +22,8 @@ if TYPE_CHECKING:
 
 _SEED_OF_INTERVALS = 0
 MEDIA_TYPE = "text/csv"
+SCORES = tuple(one.name for one in fields(Score))
+"""Names of the figures of a score."""
 
 
 class RunResult(NamedTuple):
@@ -141,7 +142,7 @@ def as_csv(results: Sequence[CardResults]) -> str:
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(
         [
-            *("card", "seed", "prediction", "is_right", "share", "quantile", "error"),
+            *("card", "seed", "prediction", *SCORES),
             *("run_id", "kind", "state", "settings", "distance_m", "winners"),
         ]
     )
@@ -154,7 +155,7 @@ def as_csv(results: Sequence[CardResults]) -> str:
                 prediction = json.dumps(prediction)
             of_run = [None] * 4 if run is None else [run.id, run.kind, run.state, _text(run.given)]
             row = [
-                *(result.card, one.seed, prediction, *score),
+                *(result.card, one.seed, prediction, *(getattr(score, name) for name in SCORES)),
                 *(*of_run, outcome.distance_m, " ".join(outcome.winners)),
             ]
             writer.writerow([text_cell(cell) if isinstance(cell, str) else cell for cell in row])
@@ -172,7 +173,8 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
     seen = [outcome for seed, outcome in ended.items() if reader.sees(room, seed)]
     ranked = sorted(one.distance_m for one in seen if one.distance_m is not None)
     is_open = reader.is_teacher or card in room.revealed
-    score = scorer(room.lesson.cards[card], seen)
+    asked = room.lesson.cards[card]
+    score = asked.ask and scorer(asked.ask, asked.revealed.answer, seen)
     entries = []
     for seed, participant in sorted(room.participants.items()):
         is_own = seed == reader.seed
@@ -184,12 +186,12 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
         if run is not None and is_open and run.outcome.distance_m is not None:
             over = sum(one > run.outcome.distance_m for one in ranked)
             run = run._replace(rank=1 + over)
-        scored = None if prediction is None or not is_open else score(prediction)
+        scored = score(prediction) if score and prediction is not None and is_open else None
         entries.append(Entry(seed, name, is_own, prediction, scored, run))
     return CardResults(
         card=card,
-        title=room.lesson.cards[card].title or "",
-        ask=room.lesson.cards[card].ask,
+        title=asked.title or "",
+        ask=asked.ask,
         is_revealed=card in room.revealed,
         participants=len(room.participants),
         predicted=sum(one == card for _, one in room.predictions),
@@ -197,7 +199,7 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
         entries=entries,
         distances_m=ranked if is_open else [],
         interval=_interval(ranked) if is_open and ranked else None,
-        answer=room.lesson.cards[card].revealed.answer if is_open else None,
+        answer=asked.revealed.answer if is_open else None,
     )
 
 

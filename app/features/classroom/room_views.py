@@ -121,7 +121,7 @@ def _card(one: CardResults) -> dict[str, Any]:
 
 def _entry(one: Entry) -> dict[str, Any]:
     run, score = one.run, one.score
-    shown = {**one._asdict(), "score": None if score is None else score._asdict()}
+    shown = {**one._asdict(), "score": None if score is None else to_json(score)}
     return {**shown, "run": None if run is None else _run(run, is_own=one.is_own)}
 
 

@@ -11,10 +11,10 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from app.feature import DeleteRuns
-from app.features.classroom.answers import check_answer
 from app.features.classroom.lesson import Lesson, plain, read_lesson
 from app.features.classroom.lessons import FoundLesson
 from app.features.classroom.names import Choose, new_code, normalized
+from app.features.classroom.questions import check_answer
 from app.features.classroom.room import Deed, Room
 from app.features.classroom.room_rows import ParticipantRow, PredictionRow, RoomRow, RoomRows, Seat
 from app.features.classroom.room_runs import RoomRuns

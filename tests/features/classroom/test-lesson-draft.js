@@ -2,11 +2,12 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import {
-  addCard, begin, changeCard, changeLesson, chosen, chosenCard, discard, documentOf, draft, linesOf, moveCard, numberOf,
-  pageAsState, removeCard, toSend,
+  addCard, begin, changeCard, changeLesson, chosen, chosenCard, discard, documentOf, draft, moveCard, pageAsState,
+  removeCard, toSend,
 } from "../../../static/features/classroom/lessons/draft.js";
 import { paragraphs } from "../../../static/features/classroom/lessons/markdown.js";
 import { isShown, linked } from "../../../static/features/classroom/lesson.js";
+import { linesOf, numberOf } from "../../../static/js/parse.js";
 import { asTexts, change, read } from "../../../static/js/page-state.js";
 import { installOnly } from "../../page/features.js";
 import { setDepth } from "../../../static/js/workspace.js";

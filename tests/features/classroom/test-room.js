@@ -5,8 +5,8 @@ import {
   afterKey, drawn, HIGHEST_M, inWords, KNOTS, knotsOf, LOWEST_M, pointAt, stepsOf,
 } from "../../../static/features/classroom/room/chart.js";
 import { chosenSettings, givenInWords } from "../../../static/features/classroom/room/allowed-settings.js";
-import { answerInWords, draftOf } from "../../../static/features/classroom/room/questions.js";
-import { axisOf, predictedMetres, scoreInWords, tally } from "../../../static/features/classroom/room/scores.js";
+import { answerInWords, draftOf, KINDS, scoreInWords } from "../../../static/features/classroom/room/questions.js";
+import { axisOf } from "../../../static/features/classroom/room/scores.js";
 import { options } from "../../../static/js/store.js";
 import { OPTIONS } from "../../page/options.js";
 
@@ -83,10 +83,11 @@ test("a score is told against all seeds, or against the answer of the lesson", (
 });
 
 test("predictions stand on the axis of the distances only if they are distances", () => {
-  assert.deepEqual(predictedMetres(makeAsk({ unit: "cm" }), [40, null, "x"]), [0.4]);
-  assert.equal(predictedMetres(makeAsk({ unit: "states" }), [25]), null);
-  assert.equal(predictedMetres(makeAsk({ kind: "choice" }), ["a"]), null);
-  assert.deepEqual(tally(makeAsk({ choices: ["a", "b"] }), ["b", "b", "c"]), [["a", 0], ["b", 2]]);
+  const { choice, number } = KINDS;
+  assert.deepEqual(number.metresOf?.(makeAsk({ unit: "cm" }), [40, null, "x"]), [0.4]);
+  assert.equal(number.metresOf?.(makeAsk({ unit: "states" }), [25]), null);
+  assert.equal(choice.metresOf, undefined);
+  assert.deepEqual(choice.tally?.(makeAsk({ choices: ["a", "b"] }), ["b", "b", "c"]), [["a", 0], ["b", 2]]);
   assert.equal(axisOf([-0.1, 0.5]).low, -0.1);
   assert.ok(axisOf([-0.1, 0.5]).high > 0.5);
 });

@@ -1,5 +1,6 @@
 // The settings that the card lets be changed, and within which bounds.
-import { changeCard, numberOf } from "../lessons/draft.js";
+import { changeCard } from "../lessons/draft.js";
+import { numberOf } from "../../../js/parse.js";
 import { agentOf, rangeOf } from "../../../js/settings.js";
 import { options } from "../../../js/store.js";
 import { labelOf } from "../../../js/titles.js";

@@ -1,5 +1,6 @@
 // The card that is edited: texts, what it takes of the page, what may be changed, the question, and what Go runs.
-import { changeCard, chosenCard, numberOf, pageAsState } from "../lessons/draft.js";
+import { changeCard, chosenCard, pageAsState } from "../lessons/draft.js";
+import { KINDS } from "../room/questions.js";
 import { allTabs, tabTitle } from "../../../js/workspace.js";
 import { html, Segments } from "../../../js/components/elements.js";
 import { AskEditor } from "./ask-editor.js";
@@ -84,24 +85,15 @@ function Reveal({ card }) {
   const { reveal = null } = card;
   /** @type {any} */
   const { text, answer = null } = typeof reveal === "string" ? { text: reveal } : reveal ?? { text: "" };
-  const kind = card.ask?.kind;
+  const { ask = null } = card;
+  const RightAnswer = ask && KINDS[ask.kind].RightAnswer;
   const change = (/** @type {any} */ changes) => changeCard({ reveal: { text, answer, ...changes } });
   return html`
     <label for="card-reveal">Revealed afterwards, in Markdown</label>
     <textarea id="card-reveal" rows="3" maxlength="8000" value=${text ?? ""}
       onInput=${(/** @type {any} */ { target }) => change({ text: target.value })}></textarea>
-    ${kind === "choice" && html`
-      <label for="card-answer">The right answer, if the runs do not tell it</label>
-      <select id="card-answer" value=${answer ?? ""}
-        onChange=${(/** @type {any} */ { target }) => change({ answer: target.value || null })}>
-        <option value="">None: it follows from the runs</option>
-        ${(card.ask?.choices ?? []).map((one) => html`<option key=${one} value=${one}>${one}</option>`)}
-      </select>
-    `}
-    ${kind === "number" && html`
-      <label for="card-answer">The right number, if the runs do not tell it</label>
-      <input id="card-answer" type="text" inputmode="decimal" value=${answer ?? ""}
-        onChange=${(/** @type {any} */ { target }) => change({ answer: numberOf(target.value) })} />
+    ${RightAnswer && html`
+      <${RightAnswer} ask=${ask} answer=${answer} change=${(/** @type {any} */ right) => change({ answer: right })} />
     `}
   `;
 }

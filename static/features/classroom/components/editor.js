@@ -2,7 +2,8 @@
 import { shortAddress } from "../../../js/format.js";
 import { copy } from "../../../js/page.js";
 import { lessonFile } from "../api.js";
-import { addCard, changeLesson, chosen, draft, linesOf, moveCard, removeCard } from "../lessons/draft.js";
+import { addCard, changeLesson, chosen, draft, moveCard, removeCard } from "../lessons/draft.js";
+import { linesOf } from "../../../js/parse.js";
 import { askForRoom, isBusy, leave, problem, save, saved } from "../lessons/list.js";
 import { html, Icon } from "../../../js/components/elements.js";
 import { CardEditor } from "./card-editor.js";

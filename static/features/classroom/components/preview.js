@@ -2,7 +2,7 @@
 import { chosen, chosenCard, draft } from "../lessons/draft.js";
 import { paragraphs } from "../lessons/markdown.js";
 import { May } from "../room/allowed-settings.js";
-import { Answer } from "../room/questions.js";
+import { Answer, KINDS } from "../room/questions.js";
 import { useEffect } from "preact/hooks";
 import { html, withStyle } from "../../../js/components/elements.js";
 
@@ -12,7 +12,7 @@ export function Preview() {
   const card = chosenCard.value;
   useEffect(() => { withStyle("style/card.css", Promise.resolve()); }, []);
   if (card === null) return null;
-  const isAsked = card.ask && (card.ask.kind !== "choice" || (card.ask.choices ?? []).length > 0);
+  const isAsked = card.ask && (KINDS[card.ask.kind].isComplete?.(card.ask) ?? true);
   return html`
     <section class="preview" aria-labelledby="preview-title">
       <h2 id="preview-title" class="dim">As a phone shows it</h2>

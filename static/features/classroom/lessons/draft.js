@@ -80,17 +80,6 @@ export function moveCard(direction) {
   chosen.value = to;
 }
 
-// ---- what is typed
-
-/** The lines of a text that are not empty. @param {string} text */
-export const linesOf = (text) => text.split("\n").map((line) => line.trim()).filter(Boolean);
-
-/** A typed number; null where there is none. @param {string} text */
-export const numberOf = (text) => {
-  const value = Number(text.replace(",", "."));
-  return text.trim() && Number.isFinite(value) ? value : null;
-};
-
 // ---- what a card takes of the page
 
 /** The page as it is, as the state of a card: what differs from the defaults. */

@@ -8,8 +8,7 @@ import { Deeds, Next } from "./card-actions.js";
 import { Away, Door } from "./join.js";
 import { May } from "./allowed-settings.js";
 import { CLOSER, closerLink, replayed } from "./picture.js";
-import { Answer } from "./questions.js";
-import { scoreInWords } from "./scores.js";
+import { Answer, KINDS, scoreInWords } from "./questions.js";
 import {
   goesOn, isRevealed, lastRunId, ownAnswer, ownEntry, ownRun, ownWhatIf, room, shownResults,
 } from "./room.js";
@@ -94,8 +93,7 @@ function Question({ card, number, text }) {
 /** The learning curve of the own run, once it has ended, where the question is a chart. @param {LessonCard} card */
 function useOwnCurve({ ask }) {
   const [curve, setCurve] = useState(/** @type {number[][]} */ ([]));
-  const isChart = ask?.kind === "curve" || ask?.kind === "point";
-  const id = isChart && ownRun.value?.state === "finished" ? ownRun.value.id : null;
+  const id = ask && KINDS[ask.kind].onChart && ownRun.value?.state === "finished" ? ownRun.value.id : null;
   useEffect(() => {
     if (id === null) return;
     getCurve(id).then(({ evaluations }) =>

@@ -6,14 +6,14 @@ import { html, Icon, Slot } from "../../../js/components/elements.js";
 import { Prose } from "../components/prose.js";
 import { codeInGroups, count, metres, shortAddress } from "../../../js/format.js";
 import { Away } from "./join.js";
-import { stepsOf } from "./chart.js";
+import { Axes, lineOf, stepsOf } from "./chart.js";
 import { Picture } from "./picture.js";
-import { Axes, lineOf } from "./questions.js";
+import { KINDS } from "./questions.js";
 import { isShownToEnd } from "../../../js/narrative/states.js";
 import { agentOf } from "../../../js/settings.js";
 import { scene } from "../../../js/store.js";
 import { isRevealed, room, shownResults } from "./room.js";
-import { axisOf, predictedMetres, tally } from "./scores.js";
+import { axisOf } from "./scores.js";
 
 /** @import { Ask, CardResults, Classroom, LessonCard, ResultEntry } from "../../../js/types.js" */
 
@@ -98,11 +98,12 @@ const Shown = ({ known }) => html`
 /** The question, and how many have locked an answer. @param {{ known: Classroom, ask: Ask }} props */
 function Asked({ known, ask }) {
   const values = (shownResults.value?.entries ?? []).map(({ prediction }) => prediction).filter((one) => one !== null);
+  const { tally } = KINDS[ask.kind];
   const most = Math.max(1, values.length);
   return html`
     <section class="asked" aria-label="Question">
       <${Prose} text=${known.html.ask} />
-      ${ask.kind === "choice" && html`
+      ${tally && html`
         <ul class=${`asked-choices ${isRevealed.value ? "counted" : ""}`}>
           ${tally(ask, isRevealed.value ? values : []).map(([choice, number]) => html`
             <li key=${choice} class=${isRevealed.value && shownResults.value?.answer === choice ? "right" : ""}
@@ -122,7 +123,7 @@ function Asked({ known, ask }) {
 function Side({ known }) {
   const { shown, predicted, participants, started } = known;
   const found = shownResults.value;
-  if (isRevealed.value && ["curve", "point"].includes(shown.ask?.kind ?? "")) {
+  if (isRevealed.value && shown.ask && KINDS[shown.ask.kind].onChart) {
     return html`<${Beside}><${Lines} card=${shown} entries=${found?.entries ?? []} /><//>`;
   }
   const hasDots = (found?.distances_m ?? []).length > 0;
@@ -166,7 +167,7 @@ function Lit({ known }) {
 function Landing({ card: { ask = null, go } }) {
   const { distances_m, interval, entries } = /** @type {CardResults} */ (shownResults.value);
   const values = entries.map(({ prediction }) => prediction).filter((one) => one !== null);
-  const predicted = isRevealed.value ? predictedMetres(ask, values) : null;
+  const predicted = (isRevealed.value && ask && KINDS[ask.kind].metresOf?.(ask, values)) || null;
   const { low, high } = axisOf([...distances_m, ...(predicted ?? [])]);
   const typical = interval && { iqm: interval.iqm_m, low: interval.low_m, high: interval.high_m };
   const greatest = { low, high, size: DOTS };
@@ -208,7 +209,7 @@ function Lines({ card, entries }) {
   }, [ids.join()]);
   const steps = stepsOf(card);
   const predicted = entries.map(({ prediction }) => prediction).filter(Array.isArray);
-  const isPoint = card.ask?.kind === "point";
+  const { onChart } = KINDS[/** @type {Ask} */ (card.ask).kind];
   return html`
     <svg class="draw-chart lines" viewBox="0 0 340 200" role="img"
       aria-label=${`${predicted.length} predictions over ${curves.length} learning curves`}>
@@ -216,9 +217,7 @@ function Lines({ card, entries }) {
       ${curves.filter((one) => one.length > 1).map((one) => html`
         <path class="actual" d=${`M${lineOf(one, steps)}`} />
       `)}
-      ${predicted.map((/** @type {any} */ one) => (isPoint
-        ? html`<circle class="own-point" r="4" transform=${`translate(${lineOf([one], steps)})`} />`
-        : html`<path class="predicted-curve" d=${`M${lineOf(one, steps)}`} />`))}
+      ${predicted.map((one) => onChart?.(one, steps))}
     </svg>
     <p class="key"><span class="predicted-key">predicted</span><span class="actual-key">learned</span></p>
   `;

@@ -1,73 +1,45 @@
-// The question of a card by its kind: a choice, a number, a point on a chart, a curve that is drawn.
+// The kinds of questions: how each is asked, answered, told, shown to a class, and written in a lesson.
 import { signal } from "@preact/signals";
-import { useRef, useState } from "preact/hooks";
 import { html } from "../../../js/components/elements.js";
-import { metres, whole } from "../../../js/format.js";
-import { parseNumber } from "../../../js/parse.js";
+import { distanceApart, metres, percentage } from "../../../js/format.js";
+import { linesOf, numberOf, parseNumber } from "../../../js/parse.js";
 import { agentOf, rangeOf } from "../../../js/settings.js";
 import { setEntry } from "../../../js/store.js";
-import { afterKey, drawn, HIGHEST_M, inWords, knotsOf, LOWEST_M, marksOf, placeOf, pointAt, stepsOf } from "./chart.js";
+import { Curve, inWords, knotsOf, lineOf, Point, stepsOf } from "./chart.js";
+import { errorInWords, PER_METRE } from "./scores.js";
 
 /** @import { Signal } from "@preact/signals" */
-/** @import { Ask, LessonCard } from "../../../js/types.js" */
+/** @import { ComponentChildren, FunctionComponent } from "preact" */
+/** @import { Ask, LessonCard, ResultEntry } from "../../../js/types.js" */
 
-/** Card → what is chosen, typed or drawn, and not locked yet. @type {Signal<Record<string, any>>} */
-const drafts = signal({});
-
-const MOST = 1e9;
-
-/** Limits of a number. @param {Ask} ask */
-const limitsOf = ({ minimum, maximum }) => ({
-  minimum: minimum ?? -MOST, maximum: maximum ?? MOST, excludes_minimum: false, excludes_maximum: false,
-});
-
+/** @typedef {NonNullable<ResultEntry["score"]>} Score */
 /**
- * What would be locked; undefined as long as that is no answer.
- * @param {LessonCard} card
- * @param {number} number
+ * What a control of a question is drawn with. `locked`: the answer once it cannot be changed; undefined before.
+ * `actual`: the learning curve of the own run.
+ * @typedef {{
+ *   card: LessonCard, ask: Ask, draft: any, locked: any, onValue: (value: any) => unknown, actual: number[][],
+ * }} ControlProps
  */
-export function draftOf(card, number) {
-  const draft = drafts.value[`${number}`];
-  if (draft === undefined || !card.ask) return undefined;
-  if (card.ask.kind === "number") return parseNumber(draft, limitsOf(card.ask), false).value;
-  if (card.ask.kind === "curve") {
-    return knotsOf(stepsOf(card)).map((x, n) => [x, draft[n]]);
-  }
-  return draft;
-}
-
-/** An answer in words. @param {Ask} ask @param {any} value */
-export function answerInWords({ kind, unit }, value) {
-  if (kind === "number") return unit === "m" ? metres(value) : [value, unit].filter(Boolean).join("\u00a0");
-  if (kind === "point") return inWords(value);
-  if (kind === "curve") return `from ${metres(value[0][1])} to ${metres(value.at(-1)[1])}`;
-  // The name of an agent stands for its win.
-  return agentOf(String(value)).title;
-}
-
 /**
- * The control of a question; a chart shows the answer also once it is locked, beside what came of it.
- * @param {object} props
- * @param {LessonCard} props.card
- * @param {number} props.number
- * @param {any} props.locked the locked answer; undefined before
- * @param {number[][]} [props.actual] the learning curve of the own run
+ * A kind of question. Values and drafts are of the kind; all from `tally` on may be left out.
+ * @typedef {object} QuestionKind
+ * @property {string} title on the page that writes lessons
+ * @property {FunctionComponent<any>} Control gets `ControlProps`
+ * @property {(draft: any, ask: Ask, card: LessonCard) => any} answerOf undefined as long as it is no answer
+ * @property {(value: any, ask: Ask) => string} inWords
+ * @property {(score: Score, ask: Ask, value: any) => string | null} scoreInWords against all seeds
+ * @property {(ask: Ask, values: unknown[]) => [string, number][]} [tally] how many gave which answer
+ * @property {(value: any, steps: number) => ComponentChildren} [onChart] an answer among the curves of the class
+ * @property {(ask: Ask, values: unknown[]) => number[] | null} [metresOf] answers as distances, if they are
+ * @property {(before: any) => Partial<Ask>} [fieldsOf] of a new question; the one before had another kind
+ * @property {(ask: Ask) => boolean} [isComplete] whether it can be asked
+ * @property {FunctionComponent<any>} [Editor] of its fields; gets `ask` and `change`
+ * @property {FunctionComponent<any>} [RightAnswer] of a lesson; gets `ask`, `answer` and `change`
  */
-export function Answer({ card, number, locked, actual = [] }) {
-  const { ask } = /** @type {{ ask: Ask }} */ (card);
-  const onValue = (/** @type {any} */ value) => setEntry(drafts, `${number}`, value);
-  const draft = drafts.value[`${number}`];
-  if (ask.kind === "choice") return html`<${Choice} ask=${ask} locked=${locked} draft=${draft} onValue=${onValue} />`;
-  if (ask.kind === "number") {
-    return locked === undefined
-      ? html`<${NumberAnswer} ask=${ask} draft=${draft ?? ""} onValue=${onValue} />`
-      : html`<p class="locked-answer">${answerInWords(ask, locked)}</p>`;
-  }
-  const props = { steps: stepsOf(card), locked, draft, onValue, actual };
-  return ask.kind === "point" ? html`<${Point} ...${props} />` : html`<${Curve} ...${props} />`;
-}
 
-/** @param {{ ask: Ask, locked: any, draft: any, onValue: (value: string) => unknown }} props */
+// ---- one of several texts, which may be names of agents that race
+
+/** @param {ControlProps} props */
 const Choice = ({ ask, locked, draft, onValue }) => html`
   <div class="choices" role="group" aria-label="Your prediction">
     ${(ask.choices ?? []).map((choice) => html`
@@ -77,8 +49,56 @@ const Choice = ({ ask, locked, draft, onValue }) => html`
   </div>
 `;
 
-/** @param {{ ask: Ask, draft: string, onValue: (text: string) => unknown }} props */
-function NumberAnswer({ ask, draft, onValue }) {
+/** @param {{ ask: Ask, change: (changes: Partial<Ask>) => unknown }} props */
+const ChoiceEditor = ({ ask, change }) => html`
+  <label for="ask-choices">Answers to choose from, one a line; the name of an agent stands for its win</label>
+  <textarea id="ask-choices" rows="3" value=${(ask.choices ?? []).join("\n")}
+    onChange=${(/** @type {any} */ { target }) => change({ choices: linesOf(target.value) })}></textarea>
+`;
+
+/** @param {{ ask: Ask, answer: any, change: (answer: string | null) => unknown }} props */
+const RightChoice = ({ ask, answer, change }) => html`
+  <label for="card-answer">The right answer, if the runs do not tell it</label>
+  <select id="card-answer" value=${answer ?? ""}
+    onChange=${(/** @type {any} */ { target }) => change(target.value || null)}>
+    <option value="">None: it follows from the runs</option>
+    ${(ask.choices ?? []).map((one) => html`<option key=${one} value=${one}>${one}</option>`)}
+  </select>
+`;
+
+/** @type {QuestionKind} */
+const CHOICE = {
+  title: "Choice",
+  Control: Choice,
+  answerOf: (draft) => draft,
+  // The name of an agent stands for its win.
+  inWords: (value) => agentOf(String(value)).title,
+  scoreInWords: ({ share }, _, value) =>
+    (share === null ? null : `${agentOf(String(value)).title} won in ${percentage(share)} of all races.`),
+  tally: (ask, values) =>
+    (ask.choices ?? []).map((choice) => [choice, values.filter((value) => value === choice).length]),
+  fieldsOf: (before) => ({ choices: before?.choices ?? [] }),
+  isComplete: ({ choices }) => (choices ?? []).length > 0,
+  Editor: ChoiceEditor,
+  RightAnswer: RightChoice,
+};
+
+// ---- a number
+
+const MOST = 1e9;
+
+/** Limits of a number. @param {Ask} ask */
+const limitsOf = ({ minimum, maximum }) => ({
+  minimum: minimum ?? -MOST, maximum: maximum ?? MOST, excludes_minimum: false, excludes_maximum: false,
+});
+
+/** @type {QuestionKind["inWords"]} */
+const numberInWords = (value, { unit }) =>
+  (unit === "m" ? metres(value) : [value, unit].filter(Boolean).join("\u00a0"));
+
+/** @param {ControlProps} props */
+function NumberControl({ ask, draft = "", locked, onValue }) {
+  if (locked !== undefined) return html`<p class="locked-answer">${numberInWords(locked, ask)}</p>`;
   const limits = limitsOf(ask);
   const { mistake } = draft.trim() ? parseNumber(draft, limits, false) : { mistake: undefined };
   const isLimited = ask.minimum !== null && ask.minimum !== undefined;
@@ -99,139 +119,120 @@ function NumberAnswer({ ask, draft, onValue }) {
   `;
 }
 
-// ---- charts: distance against steps of practice
+/** @param {{ ask: Ask, change: (changes: Partial<Ask>) => unknown }} props */
+const NumberEditor = ({ ask, change }) => html`
+  <div class="number-rules">
+    ${[["minimum", "Least"], ["maximum", "Most"]].map(([name, title]) => html`
+      <label key=${name}>${title}
+        <input type="text" inputmode="decimal" value=${/** @type {any} */ (ask)[name] ?? ""}
+          onChange=${(/** @type {any} */ { target }) => change({ [name]: numberOf(target.value) })} />
+      </label>
+    `)}
+    <label>Unit
+      <input type="text" maxlength="20" value=${ask.unit ?? ""}
+        onChange=${(/** @type {any} */ { target }) => change({ unit: target.value.trim() || null })} />
+    </label>
+  </div>
+`;
 
-/** Size of the drawing; the picture is scaled to the width that there is. */
-const [WIDTH, HEIGHT, LEFT, BOTTOM] = [340, 200, 44, 26];
+/** @param {{ answer: any, change: (answer: number | null) => unknown }} props */
+const RightNumber = ({ answer, change }) => html`
+  <label for="card-answer">The right number, if the runs do not tell it</label>
+  <input id="card-answer" type="text" inputmode="decimal" value=${answer ?? ""}
+    onChange=${(/** @type {any} */ { target }) => change(numberOf(target.value))} />
+`;
 
-/** @param {number[]} point @param {number} steps */
-const placed = (point, steps) => {
-  const [across, down] = placeOf(point, steps);
-  return [LEFT + across * (WIDTH - LEFT - 8), 8 + down * (HEIGHT - BOTTOM - 8)];
+/** @type {QuestionKind} */
+const NUMBER = {
+  title: "Number",
+  Control: NumberControl,
+  answerOf: (draft, ask) => parseNumber(draft, limitsOf(ask), false).value,
+  inWords: numberInWords,
+  scoreInWords({ quantile, error }, { unit }) {
+    if (quantile === null || error === null) return null;
+    const below = `${percentage(quantile)} of all robots went less far than you said`;
+    return `${below}; you were ${errorInWords(error, unit)} from the typical one.`;
+  },
+  metresOf({ unit }, values) {
+    const per = PER_METRE[unit ?? "m"];
+    return per ? values.flatMap((value) => (typeof value === "number" ? [value / per] : [])) : null;
+  },
+  fieldsOf: () => ({ unit: "m" }),
+  Editor: NumberEditor,
+  RightAnswer: RightNumber,
 };
 
-/** @param {number[][]} points @param {number} steps */
-export const lineOf = (points, steps) => points.map((point) => placed(point, steps).join(" ")).join(" L");
+// ---- a point on a chart, and a curve that is drawn
 
-/** The axes with their numbers. @param {{ steps: number }} props */
-export function Axes({ steps }) {
-  const { xs, ys } = marksOf(steps);
-  return html`
-    ${ys.map((y) => html`
-      <line class="grid" x1=${LEFT} x2=${WIDTH - 8} y1=${placed([0, y], steps)[1]} y2=${placed([0, y], steps)[1]} />
-      <text class="mark-text" x=${LEFT - 6} y=${placed([0, y], steps)[1] + 4} text-anchor="end">${y.toFixed(1)}</text>
-    `)}
-    ${xs.map((x) => html`
-      <text class="mark-text" x=${placed([x, 0], steps)[0]} y=${HEIGHT - 6}
-        text-anchor=${x === xs.at(-1) ? "end" : "middle"}>${x === xs.at(-1) ? `${whole(x)} steps` : whole(x)}</text>
-    `)}
-    <text class="mark-text" x=${LEFT + 4} y="16">distance in m</text>
-  `;
-}
+/** @type {QuestionKind["scoreInWords"]} */
+const fromCurve = ({ error }) =>
+  (error === null ? null : `On average you were ${distanceApart(error)} from the typical curve.`);
 
-/** @param {PointerEvent} event @param {number} steps */
-function pointOf({ currentTarget, clientX, clientY }, steps) {
-  const box = /** @type {Element} */ (currentTarget).getBoundingClientRect();
-  const x = ((clientX - box.left) / box.width) * WIDTH;
-  const y = ((clientY - box.top) / box.height) * HEIGHT;
-  return pointAt((x - LEFT) / (WIDTH - LEFT - 8), (y - 8) / (HEIGHT - BOTTOM - 8), steps);
-}
+/** @type {QuestionKind} */
+const POINT = {
+  title: "Point",
+  Control: Point,
+  answerOf: (draft) => draft,
+  inWords,
+  scoreInWords: fromCurve,
+  onChart: (value, steps) =>
+    html`<circle class="own-point" r="4" transform=${`translate(${lineOf([value], steps)})`} />`,
+};
+
+/** @type {QuestionKind} */
+const CURVE = {
+  title: "Curve",
+  Control: Curve,
+  answerOf: (draft, _, card) => knotsOf(stepsOf(card)).map((x, n) => [x, draft[n]]),
+  inWords: (value) => `from ${metres(value[0][1])} to ${metres(value.at(-1)[1])}`,
+  scoreInWords: fromCurve,
+  onChart: (value, steps) => html`<path class="predicted-curve" d=${`M${lineOf(value, steps)}`} />`,
+};
+
+// ---- all kinds
+
+/** By the name that lessons have for them. @type {Record<Ask["kind"], QuestionKind>} */
+export const KINDS = { choice: CHOICE, number: NUMBER, point: POINT, curve: CURVE };
+
+/** Card → what is chosen, typed or drawn, and not locked yet. @type {Signal<Record<string, any>>} */
+const drafts = signal({});
 
 /**
- * @typedef {object} ChartProps
- * @property {number} steps
- * @property {any} locked
- * @property {any} draft
- * @property {(value: any) => unknown} onValue
- * @property {number[][]} actual
+ * What would be locked; undefined as long as that is no answer.
+ * @param {LessonCard} card
+ * @param {number} number
  */
-
-/** @param {ChartProps} props */
-function Point({ steps, locked, draft, onValue, actual }) {
-  const shown = locked ?? draft;
-  const isOpen = locked === undefined;
-  const at = shown && placed(shown, steps);
-  const [x, y] = shown ?? [Math.round(steps / 2), 0];
-  const take = (/** @type {any} */ event) => isOpen && (event.type === "pointerdown" || event.buttons) &&
-    onValue(pointOf(event, steps));
-  return html`
-    <svg class=${`draw-chart ${isOpen ? "open" : ""}`} viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} role="img"
-      aria-label=${shown ? `Your point: ${inWords(shown)}` : "No point yet"}
-      onPointerDown=${take} onPointerMove=${take}>
-      <${Axes} steps=${steps} />
-      ${actual.length > 1 && html`<path class="actual" d=${`M${lineOf(actual, steps)}`} />`}
-      ${at && html`<circle class="own-point" cx=${at[0]} cy=${at[1]} r="8" />`}
-    </svg>
-    ${isOpen && html`
-      <div class="point-sliders">
-        <label>Steps of practice
-          <input type="range" min="0" max=${steps} step=${Math.max(1, Math.round(steps / 50))} value=${x}
-            onInput=${(/** @type {any} */ { target }) => onValue([Number(target.value), y])} /></label>
-        <label>Distance in metres
-          <input type="range" min=${LOWEST_M} max=${HIGHEST_M} step="0.01" value=${y}
-            onInput=${(/** @type {any} */ { target }) => onValue([x, Number(target.value)])} /></label>
-      </div>
-    `}
-    <p class="dim">${shown ? `Your point: ${inWords(shown)}` : "Tap where you expect it."}</p>
-  `;
+export function draftOf(card, number) {
+  const draft = drafts.value[`${number}`];
+  const { ask } = card;
+  return draft === undefined || !ask ? undefined : KINDS[ask.kind].answerOf(draft, ask, card);
 }
 
-/** @param {ChartProps} props */
-function Curve({ steps, locked, draft, onValue, actual }) {
-  const isOpen = locked === undefined;
-  /** @type {number[] | null} */
-  const heights = locked?.map((/** @type {number[]} */ [, y]) => y) ?? draft ?? null;
-  const [chosen, pen] = usePen(heights, steps, onValue);
-  const closed = { role: "img", "aria-label": `Your curve, ${heights ? "drawn" : "not drawn"}` };
-  const points = heights && knotsOf(steps).map((x, n) => [x, heights[n]]);
+/** An answer in words. @param {Ask} ask @param {any} value */
+export const answerInWords = (ask, value) => KINDS[ask.kind].inWords(value, ask);
+
+/**
+ * The control of a question; a chart shows the answer also once it is locked, beside what came of it.
+ * @param {{ card: LessonCard, number: number, locked: any, actual?: number[][] }} props see `ControlProps`
+ */
+export function Answer({ card, number, locked, actual = [] }) {
+  const { ask } = /** @type {{ ask: Ask }} */ (card);
   return html`
-    <svg class=${`draw-chart ${isOpen ? "open" : ""}`} viewBox=${`0 0 ${WIDTH} ${HEIGHT}`} ...${isOpen ? pen : closed}>
-      <${Axes} steps=${steps} />
-      ${actual.length > 1 && html`<path class="actual" d=${`M${lineOf(actual, steps)}`} />`}
-      ${points && html`<path class="own-curve" d=${`M${lineOf(points, steps)}`} />`}
-      ${isOpen && points?.map((point, n) => html`
-        <circle class=${`knot ${n === chosen ? "chosen" : ""}`} cx=${placed(point, steps)[0]}
-          cy=${placed(point, steps)[1]} r="4" />
-      `)}
-    </svg>
-    <p class="dim">
-      ${isOpen && !points ? "Draw with a finger from left to right, or with the arrow keys." : "Your curve"}
-      ${actual.length > 1 && html` · <span class="actual-key">your robot</span>`}
-    </p>
+    <${KINDS[ask.kind].Control} card=${card} ask=${ask} draft=${drafts.value[`${number}`]} locked=${locked}
+      onValue=${(/** @type {any} */ value) => setEntry(drafts, `${number}`, value)} actual=${actual} />
   `;
 }
 
 /**
- * Draw a curve by a pointer, or by keys as a slider: the number of the chosen point, and the attributes of the chart.
- * @param {number[] | null} heights
- * @param {number} steps
- * @param {(heights: number[]) => unknown} onValue
- * @returns {[number, object]}
+ * What a prediction was worth, against the answer of the lesson or all seeds.
+ * @param {ResultEntry} entry with a score
+ * @param {Ask} ask
  */
-function usePen(heights, steps, onValue) {
-  const last = useRef(/** @type {[number, number] | null} */ (null));
-  const [chosen, setChosen] = useState(0);
-  const stroke = (/** @type {any} */ event) => {
-    if (event.type === "pointerdown") event.currentTarget.setPointerCapture(event.pointerId);
-    else if (!last.current) return;
-    const to = pointOf(event, steps);
-    onValue(drawn(heights, last.current ?? to, to, steps));
-    last.current = to;
-  };
-  /** @param {KeyboardEvent} event */
-  const onKeyDown = (event) => {
-    const after = afterKey(event.key, heights, chosen);
-    if (!after) return;
-    event.preventDefault();
-    setChosen(after.chosen);
-    if (after.heights) onValue(after.heights);
-  };
-  const lift = () => (last.current = null);
-  const here = [knotsOf(steps)[chosen], heights?.[chosen] ?? 0];
-  return [chosen, {
-    role: "slider", tabindex: 0, onKeyDown,
-    onPointerDown: stroke, onPointerMove: stroke, onPointerUp: lift, onPointerCancel: lift,
-    "aria-label": "Your curve: left and right choose a step, up and down its distance",
-    "aria-valuemin": LOWEST_M, "aria-valuemax": HIGHEST_M, "aria-valuenow": here[1], "aria-valuetext": inWords(here),
-  }];
+export function scoreInWords({ score, prediction }, ask) {
+  const known = /** @type {Score} */ (score);
+  if (known.is_right !== null) {
+    const off = known.error ? ` It is ${errorInWords(known.error, ask.unit ?? "")} off.` : "";
+    return known.is_right ? "You were right." : `That was not it.${off}`;
+  }
+  return KINDS[ask.kind].scoreInWords(known, ask, prediction) ?? "Your prediction is kept.";
 }

@@ -2,8 +2,9 @@
 
 import pytest
 
-from app.features.classroom.answers import WalkOutcome, scorer
 from app.features.classroom.lesson import Card, read_lesson
+from app.features.classroom.questions import Score, Scorer, WalkOutcome
+from app.features.classroom.questions import scorer as scorer_of
 
 OUTCOMES = [WalkOutcome(0.1 * n, curve=[(50, 0.0), (100, 0.1 * n)]) for n in range(1, 6)]
 """Distances 0.1 to 0.5 m; their interquartile mean is 0.3 m."""
@@ -12,6 +13,11 @@ OUTCOMES = [WalkOutcome(0.1 * n, curve=[(50, 0.0), (100, 0.1 * n)]) for n in ran
 def card(ask: dict[str, object], **fields: object) -> Card:
     asked = {"text": "?", **ask}
     return read_lesson({"title": "x", "cards": [{"text": "", "ask": asked, **fields}]}).cards[0]
+
+
+def scorer(card: Card, outcomes: list[WalkOutcome]) -> Scorer:
+    assert card.ask is not None
+    return scorer_of(card.ask, card.revealed.answer, outcomes)
 
 
 @pytest.mark.parametrize(("unit", "answer"), [("m", 0.2), (None, 0.2), ("cm", 20.0)])
@@ -24,13 +30,13 @@ def test_a_number_is_compared_with_all_distances(unit: str | None, answer: float
 
 def test_a_number_of_another_unit_is_not_compared_with_distances() -> None:
     score = scorer(card({"kind": "number", "unit": "°"}), OUTCOMES)(20)
-    assert score == (None, None, None, None)
+    assert score == Score()
 
 
 def test_an_answer_of_the_lesson_decides() -> None:
     asks = card({"kind": "number"}, reveal={"answer": 16})
     assert scorer(asks, OUTCOMES)(16).is_right
-    assert scorer(asks, OUTCOMES)(12) == (False, None, None, 4)
+    assert scorer(asks, OUTCOMES)(12) == Score(is_right=False, error=4)
     choice = card({"kind": "choice", "choices": ["a", "b"]}, reveal={"answer": "b"})
     assert [scorer(choice, [])(one).is_right for one in ("a", "b")] == [False, True]
 
@@ -56,4 +62,4 @@ def test_points_and_curves_are_compared_with_the_mean_curve() -> None:
 
 def test_without_a_run_there_is_no_score() -> None:
     for kind, answer in (("number", 1), ("point", [1, 2]), ("curve", [[0, 0], [1, 1]])):
-        assert scorer(card({"kind": kind}), [])(answer) == (None, None, None, None)
+        assert scorer(card({"kind": kind}), [])(answer) == Score()
