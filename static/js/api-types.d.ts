@@ -135,7 +135,7 @@ export interface Announcement {
  */
 export interface Ask {
   /**
-   * of answer: one of the choices, a number, a point on a chart, or a curve.
+   * of answer: a text of the choices, a number, a point [x, y] on a chart, or a curve, a list of points.
    */
   kind: "choice" | "number" | "point" | "curve";
   /**
@@ -397,27 +397,27 @@ export interface ResultEntry {
   /**
    * of the prediction; for participants after the reveal.
    */
-  score: ScoreView | null;
+  score: Score | null;
   run: RunOutcome | null;
 }
 /**
  * How an answer compares with all seeds; null where that does not apply.
  */
-export interface ScoreView {
+export interface Score {
   /**
    * whether it is the answer that the lesson gives.
    */
   is_right: boolean | null;
   /**
-   * of races, the share of seeds in which the chosen agent won.
+   * of races, the share of seeds in which the chosen agent won (a draw counts in part).
    */
   share: number | null;
   /**
-   * share of the seeds below the number.
+   * share of the seeds below the number; one that is equal counts half.
    */
   quantile: number | null;
   /**
-   * difference from the lesson's answer, or else from the interquartile mean.
+   * absolute difference from the answer of the lesson, or else from the interquartile mean, in the unit of the question; of a point or a curve the mean over its points [m].
    */
   error: number | null;
 }
@@ -2491,7 +2491,7 @@ export interface GaitOption {
  */
 export interface GivenAsk {
   /**
-   * of answer: one of the choices, a number, a point on a chart, or a curve.
+   * of answer: a text of the choices, a number, a point [x, y] on a chart, or a curve, a list of points.
    */
   kind: "choice" | "number" | "point" | "curve";
   /**
