@@ -231,8 +231,11 @@ def test_each_kind_of_work_has_slots_of_its_own() -> None:
     assert kind("spectator", "get", recording, b"format=vise%72") == "encoding"
     assert kind("operator", "post", "/api/v1/trainings/{run_id}/stop") == "other"
     assert kind("spectator", "post", "/api/v1/robots/preview") == "analysis"
-    assert kind("spectator", "post", "/api/v1/what-if") == "what-if"
-    assert kind("operator", "post", "/api/v1/what-if") == "other"
+
+
+def test_where_operators_have_no_slots_of_a_kind_theirs_is_other_work() -> None:
+    assert work_of(scope("spectator", "a", policy=ASKED)) is SINGLE
+    assert work_of(scope("operator", "a", policy=ASKED)) is OTHER
 
 
 def test_nothing_is_begun_for_a_client_that_has_left() -> None:

@@ -10,6 +10,8 @@ from starlette.testclient import TestClient
 
 from app.api.answers import ComparisonView
 from app.api.deps import Services
+from app.api.policy import policies
+from app.features.what_if.allowance import WHAT_IF
 from app.features.what_if.estimate import Estimates
 from app.features.what_if.response_models import EstimateView
 from app.features.what_if.settings import WhatIfSettings
@@ -63,6 +65,11 @@ def test_what_ifs_of_spectators_are_limited_by_address(serve: Serve) -> None:
     other = serve(token=TOKEN).call("POST", "/what-if", json={**WALK, "steps": 5})
     assert other.status_code == 200, other.text
     assert len(other.json()["chosen"]["distances_m"]) == other.json()["seeds"]
+
+
+def test_they_have_a_kind_of_work_of_their_own(api: Api) -> None:
+    of_routes = policies(api.client.app)  # type: ignore[arg-type]
+    assert of_routes["post", "/api/v1/what-if"].work is WHAT_IF
 
 
 def test_answers_match_their_models(api: Api) -> None:
