@@ -1,10 +1,10 @@
 """The `hexapods` command line: each command parses its options and makes one call.
 
 Commands: `serve`, `train`, `race`, `benchmark`, `best_known`, `runs` (list, show, delete), `verify`
-(score files in `verify_benchmark`), `doctor` (with checks in `machine_checks` and `data_checks`),
-`bench` (with the measurements in `benchmarks`).
-Their module docstrings are the descriptions in `--help`.
-Features add commands of their own, and verbs of these (`commands`).
+(by a `verifier` of each kind of file; score files in `verify_benchmark`), `doctor` (with checks in
+`machine_checks` and `data_checks`), `bench` (with the measurements in `benchmarks`).
+Most descriptions in `--help` are module docstrings.
+Features add commands of their own, and verbs and verifiers of these (`commands`).
 Shared: `options` (options and parsers of their values), `files` (files that users name),
 `stored_runs` (runs of a data folder), `robot_names` (stored robots by name), `server_client`
 (requests to a running server), `terminal` (progress bars and tables), `exit_codes`.

@@ -3,8 +3,9 @@
 A feature names its commands in a module `app/features/NAME/commands.py`, and another package in a
 module of its own, which an entry point of the group `hexapods.commands` gives with the feature's
 name: `COMMANDS` has by command the module with its `add_to`. `VERBS`, if it is there, has by
-command of the core the modules whose `add_to` adds verbs to it. Neither imports anything else,
-since `hexapods --version` and each command of the core would wait for it.
+command of the core the modules whose `add_to` adds verbs to it; `VERIFIERS` has modules with a
+`VERIFIER`, by which `hexapods verify` repeats another kind of file. Neither imports anything else,
+since each command of the core would wait for it.
 """
 
 import importlib
@@ -49,7 +50,7 @@ def command_modules(
         return {name: CORE_COMMANDS[name]}
     without = read_without(environ)
     modules = dict(CORE_COMMANDS)
-    for feature, commands, _ in _added():
+    for feature, commands, *_ in _added():
         if feature in without:
             if name in commands:
                 raise InvalidInput(
@@ -79,23 +80,40 @@ def verb_modules(command: str, environ: Mapping[str, str] = os.environ) -> list[
     without = read_without(environ)
     return [
         module
-        for feature, _, verbs in _added()
+        for feature, _, verbs, _ in _added()
         if feature not in without
         for module in verbs.get(command, ())
     ]
 
 
+def verifier_modules(environ: Mapping[str, str] = os.environ) -> list[str]:
+    """Return the modules of the kinds of files that features let `hexapods verify` repeat.
+
+    Args:
+        environ: environment, of which HEXAPODS_WITHOUT leaves features out.
+
+    Raises:
+        InvalidInput: if the commands of a feature cannot be imported.
+    """
+    without = read_without(environ)
+    return [
+        module for added in _added() if added.feature not in without for module in added.verifiers
+    ]
+
+
 class _Added(NamedTuple):
-    """What a feature adds: its name, the modules of its commands, and those of its verbs."""
+    """What a feature adds: its name, and the modules of its commands, verbs and verifiers."""
 
     feature: str
     commands: Mapping[str, str]
     verbs: Mapping[str, Sequence[str]]
+    verifiers: Sequence[str]
 
     @classmethod
     def by(cls, feature: str, module: ModuleType) -> "_Added":
         """Return what a feature names in a module."""
-        return cls(feature, module.COMMANDS, getattr(module, "VERBS", {}))
+        verbs, verifiers = getattr(module, "VERBS", {}), getattr(module, "VERIFIERS", ())
+        return cls(feature, module.COMMANDS, verbs, verifiers)
 
 
 def _added() -> Iterator[_Added]:

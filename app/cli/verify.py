@@ -1,40 +1,43 @@
-"""`hexapods verify`: repeat a tournament or a benchmark, and compare each number to the last digit.
+"""`hexapods verify`: repeat what is in a file, such as a benchmark's scores, and compare it.
 
-The file is that of a tournament's page, or the score file of `hexapods benchmark`. The exit code is
-0 if everything repeats, and 1 if something differs; each difference is a sentence. On another kind
-of processor, or by other versions, distances may differ in their last digits: where nothing else
-differs and all ranks hold, the exit code is 0 too. See docs/tournaments.md and docs/benchmark.md.
+The core repeats score files, and features repeat files of their own (`app.cli.verifier`).
 """
 
 import argparse
+import importlib
 import json
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from typing import Any
 
-from app.cli.exit_codes import FAILED
+from app.cli.commands import verifier_modules
 from app.cli.files import read_bounded
 from app.cli.options import CommandParser, integer
-from app.cli.terminal import progress, show_table
-from app.cli.verify_benchmark import is_score_file, verify_benchmark
-from hexapods.agents.appearance import name_of
-from hexapods.domain.errors import InvalidInput
-from hexapods.domain.records import to_json
-from hexapods.domain.text import visible
+from app.cli.verifier import Verifier
+from hexapods.domain.json_lists import check_lists
 
-if TYPE_CHECKING:
-    from hexapods.tournaments.tournament_file import TournamentFile
-
+_DESCRIPTION = (
+    "`hexapods verify`: repeat {things}, and compare each number to the last digit. The file is "
+    "{origins}. The exit code is 0 if everything repeats, and 1 if something differs; each "
+    "difference is a sentence. On another kind of processor, or by other versions, distances may "
+    "differ in their last digits: where nothing else differs and all ranks hold, the exit code is "
+    "0 too. See {docs}."
+)
 _MAX_BYTES = 48 << 20
-"""Of a file; tournaments have a few MB, and no more is read of them."""
+"""Of a file; the largest have a few MB, and no more is read of them."""
 
 
 def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     """Add the command's parser."""
-    parser = commands.add_parser(
-        "verify", help="repeat a tournament or a benchmark", description=__doc__
+    verifiers = _verifiers()
+    things = " or ".join(verifier.thing for verifier in verifiers)
+    description = _DESCRIPTION.format(
+        things=things,
+        origins=", or ".join(verifier.origin for verifier in verifiers),
+        docs=" and ".join(verifier.docs for verifier in verifiers),
     )
-    parser.add_argument(
-        "file", metavar="FILE", help="file of a tournament that has ended, or score file"
-    )
+    parser = commands.add_parser("verify", help=f"repeat {things}", description=description)
+    files = ", or ".join(verifier.file for verifier in verifiers)
+    parser.add_argument("file", metavar="FILE", help=files)
     parser.add_argument(
         "--sample",
         type=integer,
@@ -50,84 +53,30 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Repeat a tournament or a benchmark, and print its result and what differs.
+    """Repeat what is in a file, and print its result and what differs.
 
     Raises:
-        HexapodError: if the file is neither, or cannot be repeated.
+        HexapodError: if the file is of no kind that can be repeated, or damaged.
     """
     data = read_bounded(options.file, _MAX_BYTES)
-    if is_score_file(data):
-        return verify_benchmark(data, options)
-    if options.sample is not None:
-        raise InvalidInput("--sample is for score files of benchmarks; leave it out")
-    # Imported here, as SciPy takes a second to import.
-    from hexapods.tournaments.tournament_file import read_file  # noqa: PLC0415
-    from hexapods.tournaments.verification import verification, version_note  # noqa: PLC0415
-
-    tournament = read_file(data, options.file)
-    with progress("draws") as bar:
-        task = bar.add_task("judging again", total=None)
-        outcome = verification(
-            tournament,
-            options.workers,
-            lambda done, total: bar.update(task, completed=done, total=total),
-        )
-    note = version_note(tournament)
-    differences = outcome.differences
-    is_rounded = note is not None and outcome.rounding is not None
-    if options.json:
-        shown = {
-            "title": tournament.title,
-            "repeats": not differences,
-            "ranks_hold": outcome.ranks_hold,
-            "rounding": outcome.rounding,
-            "differences": differences,
-            "version_note": note,
-            "standings": [to_json(one) for one in tournament.standings],
-        }
-        print(json.dumps(shown))
-        return FAILED if differences and not is_rounded else 0
-    _show_ranking(tournament)
-    if outcome.rounding is not None:
-        print(outcome.rounding)
-    for sentence in () if is_rounded else differences:
-        print(sentence)
-    if differences and outcome.rounding is None and outcome.ranks_hold is not None:
-        print(f"The ranks {'hold' if outcome.ranks_hold else 'do not hold'}.")
-    if note is not None:
-        print(note)
-    if is_rounded:
-        print(f"{options.file} repeats but for the last digits of distances.")
-        return 0
-    if differences:
-        print(f"{options.file} does not repeat: see the differences above.")
-        return FAILED
-    judged = f"{len(tournament.entries)} entries on {tournament.rules.draws} draws"
-    print(f"{options.file} repeats to the last digit: {judged}.")
-    return 0
+    return _verifier_of(data, _verifiers()).verify(data, options)
 
 
-def _show_ranking(tournament: "TournamentFile") -> None:
-    """Print the standings as the file has them."""
-    entries = {one.number: one for one in tournament.entries}
-    names = {number: f"{one.name} ({number})" for number, one in entries.items()}
-    rows = []
-    for one in tournament.standings:
-        entered = entries[one.number].entry if one.number in entries else None
-        rows.append(
-            (
-                _ranks(one.best_rank, one.worst_rank),
-                names.get(one.number, f"({one.number})"),
-                "" if entered is None else visible(name_of(entered.agent, entered.settings)),
-                f"{one.iqm_m:.3f}",
-                f"{one.low_m:.3f}–{one.high_m:.3f}",
-                str(one.failures or ""),
-                ", ".join(str(other) for other in one.not_separable) or "–",
-            )
-        )
-    head = ("rank", "name", "agent", "IQM m", "95\u00a0%", "failed", "not separable from")
-    show_table(tournament.title, head, rows, text=(1, 2, 6))
+def _verifiers() -> Sequence[Verifier]:
+    """Return the verifiers of features, and last that of benchmarks."""
+    modules = [*verifier_modules(), "app.cli.verify_benchmark"]
+    return [importlib.import_module(module).VERIFIER for module in modules]
 
 
-def _ranks(best: int, worst: int) -> str:
-    return str(best) if best == worst else f"{best}–{worst}"
+def _verifier_of(data: bytes, verifiers: Iterable[Verifier]) -> Verifier:
+    """Return the verifier that recognizes a file, or else the first, which says what is wrong."""
+    content: Any = None
+    try:
+        check_lists(data)
+        content = json.loads(data)
+    except (ValueError, RecursionError):
+        pass
+    first, *further = verifiers
+    if isinstance(content, dict):
+        return next((one for one in (first, *further) if one.recognizes(content)), first)
+    return first

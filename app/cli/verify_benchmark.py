@@ -5,34 +5,15 @@ import json
 
 from app.cli.exit_codes import FAILED
 from app.cli.terminal import progress
+from app.cli.verifier import Verifier
 from hexapods.benchmarking.score_file import HEAD, decode, row_of
 from hexapods.benchmarking.verification import verification, version_note
-from hexapods.domain.json_lists import check_lists
 from hexapods.domain.text import counted
 
 _MAX_TOLD = 20
 
 
-def is_score_file(data: bytes) -> bool:
-    """Whether a file says that it is of a benchmark's protocol; it may be damaged."""
-    try:
-        check_lists(data)
-        content = json.loads(data)
-    except (ValueError, RecursionError):
-        return False
-    return isinstance(content, dict) and "protocol" in content
-
-
-def verify_benchmark(data: bytes, options: argparse.Namespace) -> int:
-    """Repeat a benchmark, and print its row and what differs.
-
-    Args:
-        data: content of the score file.
-        options: `file`, `workers`, `sample` and `json` of the command.
-
-    Raises:
-        HexapodError: if it cannot be read or repeated.
-    """
+def _verify(data: bytes, options: argparse.Namespace) -> int:
     content = decode(data, options.file)
     with progress("runs") as bar:
         task = bar.add_task("repeating", total=None)
@@ -73,3 +54,13 @@ def verify_benchmark(data: bytes, options: argparse.Namespace) -> int:
     else:
         print(f"{options.file} does not repeat: see the differences above.")
     return 0 if repeats or is_rounded else FAILED
+
+
+VERIFIER = Verifier(
+    thing="a benchmark",
+    file="score file",
+    origin="the score file of `hexapods benchmark`",
+    docs="docs/benchmark.md",
+    recognizes=lambda content: "protocol" in content,
+    verify=_verify,
+)

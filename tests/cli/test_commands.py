@@ -85,6 +85,40 @@ def test_a_verb_of_another_package_runs_unless_its_feature_is_left_out(
     assert "invalid choice: 'journal'" in capsys.readouterr().err
 
 
+VERIFIER = """
+from app.cli.verifier import Verifier
+
+VERIFIER = Verifier(
+    thing="a diary",
+    file="diary",
+    origin="a diary in JSON",
+    docs="the diary",
+    recognizes=lambda content: "dear" in content,
+    verify=lambda data, options: print(f"{options.file} has {len(data)} bytes") or 0,
+)
+"""
+
+
+def test_verify_repeats_files_of_features(
+    install: Callable[[str], None],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    install('COMMANDS = {}\nVERIFIERS = ["hexapods_notes.diary"]')
+    (tmp_path / "hexapods_notes" / "diary.py").write_text(VERIFIER)
+    file = tmp_path / "diary.json"
+    file.write_text('{"dear": "me"}')
+    assert main(["verify", str(file)]) == 0
+    assert capsys.readouterr().out == f"{file} has 14 bytes\n"
+    with pytest.raises(SystemExit):
+        main(["verify", "--help"])
+    assert "a diary or a benchmark" in capsys.readouterr().out
+    monkeypatch.setenv("HEXAPODS_WITHOUT", "notes, tournaments")
+    assert main(["verify", str(file)]) == 2
+    assert "diary.json is no score file that can be read" in capsys.readouterr().err
+
+
 def test_commands_that_cannot_be_imported_are_named(
     install: Callable[[str], None], capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -8,6 +8,7 @@
 - `entered_tables`: the tables of trainings that enter.
 - `ended_file`: a tournament that has ended as a file.
 - `room_directory`: rooms of the classroom, where there is one.
+- On the command line (`commands`): `verify_command`, which repeats such a file.
 - Over REST: `routes`, `pages`, `request_bodies`, `response_models`, `views`. In the database:
   `tables`, with `rows`, and `migrations`.
 """

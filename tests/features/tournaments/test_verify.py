@@ -1,4 +1,4 @@
-"""`hexapods verify`, as a user runs it."""
+"""`hexapods verify` of a tournament's file, as a user runs it."""
 
 import json
 from dataclasses import replace
@@ -61,6 +61,8 @@ def test_bad_input_is_refused(folder: Path) -> None:
         "verify", "other.json", folder=folder
     )
     assert "cannot read none.json" in refusal("verify", "none.json", folder=folder)
+    sampled = refusal("verify", "t.json", "--sample", "2", folder=folder, run=in_process)
+    assert "--sample is for score files of benchmarks" in sampled
     assert "workers must be at least 1" in refusal(
         "verify", "t.json", "--workers", "0", folder=folder
     )

@@ -1,0 +1,30 @@
+"""A kind of file that `hexapods verify` repeats, of the core or of a feature."""
+
+import argparse
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verifier:
+    """Repeats files of one kind.
+
+    Attributes:
+        thing: what is repeated, such as `a benchmark`.
+        file: its file, such as `score file`.
+        origin: its file with where it is from, such as `the score file of hexapods benchmark`.
+        docs: what tells of it, such as `docs/benchmark.md`.
+        recognizes: whether the content of a file, an object of JSON, says that it is of this kind;
+            it may be damaged.
+        verify: repeats the content of a file by the command's options (`file`, `workers`, `sample`
+            and `json`), prints its result and what differs, and returns the exit code; raises a
+            HexapodError if it cannot be read or repeated.
+    """
+
+    thing: str
+    file: str
+    origin: str
+    docs: str
+    recognizes: Callable[[Mapping[str, Any]], bool]
+    verify: Callable[[bytes, argparse.Namespace], int]
