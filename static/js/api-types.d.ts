@@ -3913,11 +3913,6 @@ export interface StoredRobotView {
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
-   * legs of each group of this gait.
-   */
-  groups: number[][];
-  legs: StoredLeg[];
-  /**
    * of a robot from a file: what was guessed, in sentences.
    */
   guesses: string[];
@@ -3926,7 +3921,7 @@ export interface StoredRobotView {
    */
   repairs: string[];
   /**
-   * likewise, what a person has corrected; null for nothing.
+   * likewise, what a person has corrected.
    */
   choices: {
     [k: string]: unknown;
@@ -3935,7 +3930,15 @@ export interface StoredRobotView {
    * name of the file that it is from; null if it was made here.
    */
   file: string | null;
+  /**
+   * in UTC.
+   */
   created_at: string;
+  /**
+   * legs of each group of this gait.
+   */
+  groups: number[][];
+  legs: StoredLeg[];
 }
 /**
  * Stored robots, in the order in which they were stored.
@@ -4540,6 +4543,8 @@ export interface VisitorView {
 }
 /**
  * A stored robot with all its numbers, and what is known of it before it walks.
+ *
+ * That is a preview with its gait, on a foot grid that suits its size.
  */
 export interface WholeRobotView {
   /**
@@ -4578,11 +4583,6 @@ export interface WholeRobotView {
         groups?: ("tripod" | "tetrapod" | "trot" | "pace" | "bound" | "one-by-one") | [number, ...number[]][];
       };
   /**
-   * legs of each group of this gait.
-   */
-  groups: number[][];
-  legs: StoredLeg[];
-  /**
    * of a robot from a file: what was guessed, in sentences.
    */
   guesses: string[];
@@ -4591,7 +4591,7 @@ export interface WholeRobotView {
    */
   repairs: string[];
   /**
-   * likewise, what a person has corrected; null for nothing.
+   * likewise, what a person has corrected.
    */
   choices: {
     [k: string]: unknown;
@@ -4600,7 +4600,15 @@ export interface WholeRobotView {
    * name of the file that it is from; null if it was made here.
    */
   file: string | null;
+  /**
+   * in UTC.
+   */
   created_at: string;
+  /**
+   * legs of each group of this gait.
+   */
+  groups: number[][];
+  legs: StoredLeg[];
   /**
    * by value, as a request may have it.
    */

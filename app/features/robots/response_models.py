@@ -1,7 +1,7 @@
 """Answers about stored robots."""
 
 import json
-from datetime import datetime
+from dataclasses import dataclass, field
 from typing import Any
 
 from app.api.answers import Answer
@@ -32,32 +32,19 @@ class StoredLeg(Answer):
     joints: list[str]
 
 
-class StoredRobotView(Answer):
+@dataclass(frozen=True, kw_only=True)
+class StoredRobotView(StoredRobot):
     """A stored robot.
 
     Attributes:
         id: of its content: the same robot has the same id on every server.
-        name: no other robot here has it.
-        hidden: whether it is left out where a robot is chosen.
         gait: one that suits it.
         groups: legs of each group of this gait.
-        guesses: of a robot from a file: what was guessed, in sentences.
-        repairs: likewise, what was repaired.
-        choices: likewise, what a person has corrected; null for nothing.
-        file: name of the file that it is from; null if it was made here.
     """
 
-    id: str
-    name: str
-    hidden: bool
-    gait: AnyGait
+    gait: AnyGait = field()
     groups: list[list[int]]
     legs: list[StoredLeg]
-    guesses: list[str]
-    repairs: list[str]
-    choices: dict[str, Any] | None
-    file: str | None
-    created_at: datetime
 
 
 class StoredRobotsView(Answer):
@@ -87,16 +74,18 @@ class FoundView(Answer):
     reaches_grid: bool
 
 
+@dataclass(frozen=True, kw_only=True)
 class WholeRobotView(StoredRobotView):
     """A stored robot with all its numbers, and what is known of it before it walks.
+
+    That is a preview with its gait, on a foot grid that suits its size.
 
     Attributes:
         found: what was found in its file; null if it was made here.
         robot: by value, as a request may have it.
-        preview: with its gait, on a foot grid that suits its size.
     """
 
-    robot: dict[str, Any]
+    robot: dict[str, Any] = field()  # type: ignore[assignment]
     preview: Preview
     found: FoundView | None
 
