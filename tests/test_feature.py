@@ -27,6 +27,8 @@ OF_FEATURE = {
     "run_code": "/api/v1/runs/{run_id}/code",
     "what_if": "/api/v1/what-if",
     "guide": "/guide/page",
+    "archives": "/api/v1/import",
+    "exports": "/api/v1/runs/{run_id}/trajectory",
     "robots": "/api/v1/robots/{robot_id}",
     "presenter": "/static/features/presenter/desk.js",
 }

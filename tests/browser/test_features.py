@@ -24,6 +24,8 @@ WORDS = {
     "tournaments": "tournament",
     "demo": "demo",
     "what_if": "What if",
+    "exports": "Joints and feet|Video",
+    "archives": "Archive|Import|Export",
     "robots": "Edit the body|Your robot",
     "presenter": "Present|Remote",
 }
