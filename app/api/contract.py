@@ -1,7 +1,7 @@
 """Completes the OpenAPI document: problem responses, security schemes, links, agent names.
 
 Routes declare their own successful responses. The problem responses of an operation are derived
-here from its method, path and parameters, so that a new route has them without declaring them.
+here from its policy, parameters and body, so that a new route has them without declaring them.
 """
 
 import threading
@@ -26,7 +26,6 @@ TEXT: Schema = {"type": "string"}
 _REFERENCE = "#/components/schemas/{model}"
 _METHODS = ("get", "put", "post", "patch", "delete")
 _UNUSED_SCHEMAS = ("HTTPValidationError", "ValidationError")
-_WRITE_METHODS = frozenset(_METHODS) - {"get"}
 
 
 class FieldProblem(BaseModel):
@@ -192,7 +191,7 @@ def _completed(
         successes = {k: v for k, v in operation["responses"].items() if int(k) < 400}
         extra = {s for s in operation["responses"] if int(s) >= 400 and s != "422"}
         of_route = by_operation[method, path]
-        statuses = sorted({*problems_of(method, path, operation, of_route), *map(int, extra)})
+        statuses = sorted({*problems_of(operation, of_route), *map(int, extra)})
         problems = {str(s): {"$ref": f"#/components/responses/{_PROBLEMS[s][0]}"} for s in statuses}
         operation["responses"] = successes | problems
     _link_runs(schema)
@@ -208,26 +207,23 @@ def operations(schema: Schema) -> Iterator[tuple[str, str, Schema]]:
                 yield method, path, methods[method]
 
 
-def problems_of(method: str, path: str, operation: Mapping[str, Any], policy: Policy) -> set[int]:
-    """Return the error statuses of an operation, by its policy, method and parameters."""
+def problems_of(operation: Mapping[str, Any], policy: Policy) -> set[int]:
+    """Return the error statuses of an operation, by its policy, parameters and body."""
     # From what is before all routes (wrong hosts, too many wrong tokens, no free slot), from the
     # store, and from defects.
     statuses = {400, 403, 429, 500, 503}
+    parameters = operation.get("parameters", ())
     if policy.access.spectators != "always":
         statuses |= {401}
-    parameters = [parameter["name"] for parameter in operation.get("parameters", ())]
     if parameters:
         statuses |= {422}
-    if "{" in path or "run_id" in parameters:
-        statuses |= {404}
-    if "}/" in path:
-        # Subresources of a run exist only in some of its states.
-        statuses |= {409}
-    if method in _WRITE_METHODS:
+    if any(parameter["in"] == "path" for parameter in parameters):
+        statuses |= {404, 409} if policy.depends_on_state else {404}
+    if not policy.access.is_read:
         statuses |= {409, 422, 507}
     if "requestBody" in operation:
         statuses |= {404, 413, 415}
-    if "idempotency-key" in parameters and policy.starts:
+    if policy.starts and any(parameter["name"] == "idempotency-key" for parameter in parameters):
         statuses |= {410}  # the run was deleted
     return statuses
 

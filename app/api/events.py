@@ -77,6 +77,7 @@ async def client_slot(
 @router.get(
     "",
     summary="Stream the events of all runs and of the stage",
+    responses={404: {}},
     **EVENT_STREAM,
 )
 @policy(access=WATCH_STAGE)

@@ -87,6 +87,9 @@ class Policy:
         starts: whether it counts as a start: of a run, or of something else that costs the server.
         takes_file: whether its body may be as large as a file.
         opens_session: whether `token` in its query opens an operator's session.
+        depends_on_state: whether what is asked of the thing that the path names can be refused for
+            the state of that thing, such as a recording of a run that waits; not if the thing is
+            shown itself.
     """
 
     access: Access
@@ -94,6 +97,7 @@ class Policy:
     starts: bool = False
     takes_file: bool = False
     opens_session: bool = False
+    depends_on_state: bool = True
 
 
 Guards = Callable[[Policy, ASGIApp, Scope, Receive, Send], Awaitable[None]]
@@ -117,6 +121,7 @@ def policy(
     starts: bool = False,
     takes_file: bool = False,
     opens_session: bool = False,
+    depends_on_state: bool = True,
 ) -> Callable[[E], E]:
     """Put a policy on an endpoint; the arguments are those of `Policy`."""
     return with_policy(
@@ -126,6 +131,7 @@ def policy(
             starts=starts,
             takes_file=takes_file,
             opens_session=opens_session,
+            depends_on_state=depends_on_state,
         )
     )
 

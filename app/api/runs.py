@@ -170,7 +170,7 @@ def get_curves(services: ServicesDep, ids: RunIdsQuery) -> Response:
     summary="Get a run of any kind",
     response_model=AnyRunView,
 )
-@policy(access=WATCH_RUN)
+@policy(access=WATCH_RUN, depends_on_state=False)
 def get_any_run(services: ServicesDep, run_id: RunPath) -> Response:
     """Return a run whose kind is not known."""
     return JSONResponse(services.jobs.view(services.store.find(run_id)))
@@ -224,7 +224,7 @@ def run_routes(kind: Kind) -> APIRouter:
     @router.get(
         "/{run_id}", summary=phrase("Get {}", kind), name=f"get_{kind}", response_model=view
     )
-    @policy(access=WATCH_RUN)
+    @policy(access=WATCH_RUN, depends_on_state=False)
     def get_run(services: ServicesDep, run_id: RunPath) -> Response:
         return JSONResponse(services.jobs.view(find_any(services, kind, run_id)))
 

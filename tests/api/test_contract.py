@@ -25,7 +25,7 @@ from app.api.event_answers import event_bodies, stage_view
 from app.api.events import get_events
 from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.options import options_view
-from app.api.policy import OPERATOR, MissingPolicy, policies, policy
+from app.api.policy import OPERATOR, PUBLIC, WATCH_RUN, MissingPolicy, Policy, policies, policy
 from app.api.problems import STATUSES
 from app.api.recorded_answers import CurveView, QTableView, RecordingView, TimelineView
 from app.installed_features import load
@@ -81,7 +81,7 @@ def test_every_operation_describes_all_its_responses(
     by_operation = policies(app)
     for method, path, operation in operations(described):
         said = {int(status) for status in operation["responses"]}
-        assert problems_of(method, path, operation, by_operation[method, path]) <= said, path
+        assert problems_of(operation, by_operation[method, path]) <= said, path
         assert [status for status in said if 200 <= status < 300], path
         for status, answer in operation["responses"].items():
             content = resolved(described, answer).get("content", {})
@@ -94,6 +94,21 @@ def test_every_operation_describes_all_its_responses(
             for media_type, form in content.items():
                 schema = form.get("schema") or form.get("itemSchema")
                 assert schema, (path, status, media_type)
+
+
+def test_the_policy_says_with_which_statuses_a_route_can_refuse() -> None:
+    of_run = {"parameters": [{"name": "run_id", "in": "path"}]}
+    always = {400, 403, 429, 500, 503}
+    assert problems_of({}, Policy(access=PUBLIC)) == always
+    assert problems_of(of_run, Policy(access=WATCH_RUN)) == always | {401, 404, 409, 422}
+    itself = Policy(access=WATCH_RUN, depends_on_state=False)
+    assert problems_of(of_run, itself) == always | {401, 404, 422}
+    changed = always | {401, 409, 422, 507}
+    assert problems_of({}, Policy(access=OPERATOR)) == changed
+    with_body = {"requestBody": {}, "parameters": [{"name": "idempotency-key", "in": "header"}]}
+    assert problems_of(with_body, Policy(access=OPERATOR)) == changed | {404, 413, 415}
+    starts = Policy(access=OPERATOR, starts=True)
+    assert problems_of(with_body, starts) == changed | {404, 410, 413, 415}
 
 
 def test_every_error_status_is_described(described: dict[str, Any]) -> None:

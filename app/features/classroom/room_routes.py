@@ -149,7 +149,7 @@ def list_rooms(services: ServicesDep, request: Request, reader: ReaderDep) -> Re
 
 
 @router.get("/{code}", summary="Get a room", response_model=RoomView)
-@policy(access=BY_CODE)
+@policy(access=BY_CODE, depends_on_state=False)
 def get_room(
     services: ServicesDep, request: Request, code: CodePath, reader: ReaderDep
 ) -> Response:

@@ -114,7 +114,7 @@ def list_robots(
 
 
 @router.get("/{robot_id:robot}", summary="Get a stored robot", response_model=WholeRobotView)
-@policy(access=WATCH, work=ANALYSIS)
+@policy(access=WATCH, work=ANALYSIS, depends_on_state=False)
 def get_robot(services: ServicesDep, robot_id: RobotPath) -> Response:
     """Return a stored robot with all its numbers, and what is known of it before it walks."""
     robots = services.store.robots

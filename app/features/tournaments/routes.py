@@ -86,7 +86,7 @@ def list_tournaments(services: ServicesDep, reader: ReaderDep) -> Response:
 
 
 @router.get("/{tournament_id}", summary="Get a tournament", response_model=TournamentView)
-@policy(access=WATCH_TOURNAMENT)
+@policy(access=WATCH_TOURNAMENT, depends_on_state=False)
 def get_tournament(
     services: ServicesDep, request: Request, tournament_id: TournamentPath, reader: ReaderDep
 ) -> Response:
