@@ -102,17 +102,30 @@ class Feature:
         return None
 
     @classmethod
+    def start_kinds(cls, agents: tuple[str, ...]) -> Sequence["StartKind"]:
+        """Return the kinds of runs that it adds and that can be started; see `routers`.
+
+        How such a run is stored, computed and shown is in its module `run_kind`.
+        """
+        del agents
+        return ()
+
+    @classmethod
     def routers_of_start(cls, start: "StartKind") -> Sequence[APIRouter]:
         """Return its routes of the API about a kind of run that can be started; see `routers`."""
         del start
         return ()
 
     @classmethod
-    def options(cls) -> Mapping[str, Any]:
+    def options(cls, agents: tuple[str, ...]) -> Mapping[str, Any]:
         """Return what it adds to `GET /options`.
 
         What has the name of an object of the core, such as `limits`, is added to that object.
+
+        Args:
+            agents: names of the registered agents.
         """
+        del agents
         return {}
 
     @classmethod

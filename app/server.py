@@ -23,7 +23,6 @@ from app.api import (
     contract,
     docs,
     events,
-    experiments,
     monitoring,
     options,
     pages,
@@ -247,15 +246,18 @@ def _api_routes(
     """Return the routes that are the same in all apps; FastAPI takes long to build them."""
     router, prefix = api_router(), "/api/v1"
     modules = (
-        *(trainings, races, experiments, runs, replays),
+        *(trainings, races, runs, replays),
         *(spectators, events, robot_preview),
     )
     routers = [module.router for module in modules]
+    kinds = [*start_kinds(agents)]
+    for feature in features:
+        with blaming(feature, "`start_kinds`"):
+            kinds += feature.start_kinds(agents)
     routers += [stage.stage_routes(features), options.option_routes(features)]
-    routers.append(start_routes(agents))
+    routers.append(start_routes(agents, kinds))
     operations = {operation for added in routers for operation in _operations(added)}
     # First, so that their fixed paths, such as `/runs/NAME`, are not taken for a run's id.
-    kinds = start_kinds(agents)
     for feature in features:
         with blaming(feature, "`routers`"):
             of_starts = [added for kind in kinds for added in feature.routers_of_start(kind)]

@@ -23,6 +23,7 @@ OF_FEATURE = {
     "tournaments": "/api/v1/tournaments",
     "demo": "/api/v1/allowance",
     "explanations": "/api/v1/runs/{run_id}/explain",
+    "experiments": "/api/v1/experiments",
     "gait_analysis": "/api/v1/runs/{run_id}/gait",
     "run_code": "/api/v1/runs/{run_id}/code",
     "what_if": "/api/v1/what-if",

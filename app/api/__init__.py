@@ -1,12 +1,13 @@
 """The REST interface: routes parse a request, call a service, and shape the answer.
 
-- Routes: `starts` (whose bodies name agents), `trainings`, `races`, `experiments` (with `runs` in
-  common), `robot_preview`, `replays`, `stage`, `spectators`, `events`, `options`,
+- Routes: `starts` (whose bodies name agents), `trainings`, `races` (with `runs` in common),
+  `robot_preview`, `replays`, `stage`, `spectators`, `events`, `options`,
   `monitoring`; `pages` and `docs`.
-- Requests: `agent_bodies`, `schemas`, `experiment_body`, `fields`, `descriptions`, `formats`.
-- Answers: `answers`, `recorded_answers`, `experiment_answers`, `option_answers` (from
-  `option_texts` and `robot_options`), `event_answers`, `curves`, `problems` (RFC 9457), `templates`
-  (web pages), `compression`; `budgeted_chunks` (of what slow clients read).
+- Requests: `agent_bodies`, `schemas`, `fields`, `descriptions`, `formats`.
+- Answers: `answers`, `run_views` (with kinds of runs that features add), `recorded_answers`,
+  `option_answers` (from `option_texts` and `robot_options`), `event_answers`, `curves`, `problems`
+  (RFC 9457), `templates` (web pages), `compression`; `budgeted_chunks` (of what slow clients
+  read).
 - `contract` completes the OpenAPI document; `deps` injects services and the stage.
 - `policy` says of each route who may use it and what it costs, by kinds of `work`. `guards`
   run when a route was matched, before its body is read: `auth` (roles, and those whom features know

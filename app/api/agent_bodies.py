@@ -8,8 +8,7 @@ from typing import Annotated, Any, Literal, Union
 from pydantic import Field, create_model
 
 from app.api.descriptions import VALID
-from app.api.experiment_body import ExperimentBody
-from app.api.fields import Body, Declared, OneOrMore, SettingsBody, named_in, one_of, record_fields
+from app.api.fields import Body, Declared, SettingsBody, named_in, one_of, record_fields
 from app.api.schemas import (
     WALK,
     BranchBody,
@@ -21,7 +20,6 @@ from app.api.schemas import (
 )
 from hexapods.agents.registry import learns
 from hexapods.domain.settings import REQUIRED, DeclaredSetting
-from hexapods.experiments.config import ExperimentConfig, settings_by_name
 from hexapods.runs.config import TrainingConfig, WalkingProblem, agent_settings, changeable_settings
 from hexapods.runs.lane import LANE_FIELDS, LaneConfig
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
@@ -34,7 +32,6 @@ class AgentBodies:
     Attributes:
         training: of a `TrainingBody`.
         race: of a `RaceBody`, or, with `branch_from`, of a `BranchBody`.
-        experiment: of an `ExperimentBody`.
         change: of a `ChangeBody`.
     """
 
@@ -49,7 +46,6 @@ class AgentBodies:
         lanes = {agent: _lane_body(agent, body) for agent, body in practices.items()}
         self.training: Any = named_in(trainings, "agent", "agent", TrainingConfig.agent)
         self.race: Any = one_of({"race": _race_body(lanes), "branch": BranchBody}, _race_or_branch)
-        self.experiment: Any = _experiment_body(agents)
         self.change: Any = _change_body(agents)
 
 
@@ -67,16 +63,16 @@ def _race_or_branch(value: Any) -> str:
 
 def _practice_body(agent: str) -> type[PracticeBody]:
     fields: dict[str, Any] = {
-        name: (_field([one]), ... if one.default is REQUIRED else one.default)
+        name: (field_of([one]), ... if one.default is REQUIRED else one.default)
         for name, one in agent_settings(agent).items()
     }
-    settings = _settings_body(f"{_camel_case(agent)}Settings", fields)
+    settings = settings_body(f"{_camel_case(agent)}Settings", fields)
     own = record_fields(TrainingConfig, {*WALK, "world", "seed", "agent", "settings"})
     name = f"{_camel_case(agent)}Practice"
     return create_model(name, __base__=PracticeBody, settings=settings, **own)
 
 
-def _settings_body(name: str, fields: Mapping[str, Any]) -> tuple[type[SettingsBody], Any]:
+def settings_body(name: str, fields: Mapping[str, Any]) -> tuple[type[SettingsBody], Any]:
     """Return the type and the default of a body's `settings`: required if one of them is."""
     model = create_model(name, __base__=SettingsBody, __doc__=SettingsBody.__doc__, **fields)
     is_required = any(default is ... for _, default in fields.values())
@@ -104,7 +100,7 @@ def _lane_body(agent: str, practice: type[PracticeBody]) -> type[LaneBody]:
         __base__=LaneBody,
         __doc__=LaneBody.__doc__,
         agent=(_literal(agent), ...),
-        settings=_settings_body(name, _optional_settings(agent)),
+        settings=settings_body(name, _optional_settings(agent)),
         **record_fields(LaneConfig, {"agent", "settings"}, optional=LANE_FIELDS),
         **(training if learns(agent) else {}),
     )
@@ -119,7 +115,7 @@ def with_settings_of(agent: str, base: type[Body], suffix: str) -> type[Body]:
         suffix: end of the model's name, which begins with the agent's.
     """
     name = f"{_camel_case(agent)}{suffix}"
-    settings = _settings_body(f"{name}Settings", _optional_settings(agent))
+    settings = settings_body(f"{name}Settings", _optional_settings(agent))
     fields: dict[str, Any] = {"agent": (_literal(agent), ...), "settings": settings}
     return create_model(name, __base__=base, __doc__=base.__doc__, **fields)
 
@@ -127,7 +123,7 @@ def with_settings_of(agent: str, base: type[Body], suffix: str) -> type[Body]:
 def _optional_settings(agent: str) -> dict[str, Any]:
     """Return fields of an agent's settings, none of them required: a training may say them."""
     return {
-        name: (_field([one]), None if one.default is REQUIRED else one.default)
+        name: (field_of([one]), None if one.default is REQUIRED else one.default)
         for name, one in agent_settings(agent).items()
     }
 
@@ -149,33 +145,18 @@ def _race_body(lanes: Mapping[str, type[LaneBody]]) -> type[RaceBody]:
     return create_model("RaceBody", __base__=RaceBody, __doc__=RaceBody.__doc__, **fields)
 
 
-def _experiment_body(agents: Sequence[str]) -> type[ExperimentBody]:
-    fields: dict[str, Any] = {
-        name: (OneOrMore[_field(declared)], None)  # type: ignore[misc]  # it is made here
-        for name, declared in settings_by_name(agents).items()
-    }
-    doc, settings = ExperimentBody.__doc__, _settings_body("SettingLists", fields)
-    own = record_fields(
-        ExperimentConfig, {"experiment", "settings", "blocks"}, optional={"tolerance", "reward"}
-    )
-    name = "ExperimentBody"
-    model = create_model(name, __base__=ExperimentBody, __doc__=doc, settings=settings, **own)
-    model.registered = agents
-    return model
-
-
 def _change_body(agents: Sequence[str]) -> type[ChangeBody]:
     declared: dict[str, list[DeclaredSetting]] = {}
     for agent in agents:
         for name, setting in changeable_settings(agent).items():
             declared.setdefault(name, []).append(setting)
     del declared["pace"]  # a field of its own
-    fields: dict[str, Any] = {name: (_field(one), None) for name, one in declared.items()}
-    doc, settings = ChangeBody.__doc__, _settings_body("LiveSettings", fields)
+    fields: dict[str, Any] = {name: (field_of(one), None) for name, one in declared.items()}
+    doc, settings = ChangeBody.__doc__, settings_body("LiveSettings", fields)
     return create_model("ChangeBody", __base__=ChangeBody, __doc__=doc, settings=settings)
 
 
-def _field(declared: Sequence[DeclaredSetting]) -> Any:
+def field_of(declared: Sequence[DeclaredSetting]) -> Any:
     """Return the type of a setting: the union of its declarations by the agents that have it."""
     types = {(str(one.annotation), one.about): Annotated[Any, Declared(one)] for one in declared}
     return Union[tuple(types.values())]  # noqa: UP007 - a union of a variable number of types

@@ -1,7 +1,7 @@
 """Response models: the schemas of JSON responses, for the OpenAPI document and the tests.
 
-Those of what runs recorded, of experiments and of `/options` are in `recorded_answers`,
-`experiment_answers` and `option_answers`.
+Those of a run of any kind, of what runs recorded and of `/options` are in `run_views`,
+`recorded_answers` and `option_answers`.
 
 Services build responses from plain types, which are sent unvalidated; these models are used at run
 time only to describe them. Tests validate real responses against the models.
@@ -20,8 +20,6 @@ from app.storage.run import State
 from hexapods.domain.disturbance_documents import AnyDisturbance
 from hexapods.domain.records import described_attributes, summary_of
 from hexapods.domain.settings import Value
-from hexapods.experiments.config import ExperimentConfig
-from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.clocks import Clock
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import LaneConfig, PlanningModel
@@ -86,7 +84,7 @@ class RaceConfigView(RaceConfig):
 
 
 class ProgressView(Answer):
-    """Progress: steps of a training or of all lanes of a race; trials of an experiment."""
+    """Progress: steps of a training or of all lanes of a race, or what else a kind counts."""
 
     done: Count
     total: Count
@@ -147,19 +145,6 @@ class RaceView(RunView):
     waiting_for: list[str]
 
 
-class ExperimentView(RunView):
-    """An experiment."""
-
-    kind: Literal["experiment"]
-    config: ExperimentConfig
-    result: ExperimentResult | None
-    workers: int | None
-
-
-AnyRunView = Annotated[TrainingView | RaceView | ExperimentView, Field(discriminator="kind")]
-"""A run of any kind."""
-
-
 class Page(Answer):
     """Page of a list, with cursor pagination.
 
@@ -180,18 +165,6 @@ class RacePage(Page):
     """Page of races."""
 
     items: list[RaceView]
-
-
-class ExperimentPage(Page):
-    """Page of experiments."""
-
-    items: list[ExperimentView]
-
-
-class RunPage(Page):
-    """Page of runs of every kind."""
-
-    items: list[AnyRunView]
 
 
 class KeptRun(Answer):

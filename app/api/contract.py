@@ -161,7 +161,7 @@ def install(
                 key = (agents, features, len(app.routes))
                 if key not in _generated:
                     _generated[key] = generate()
-                schema = _completed(deepcopy(_generated[key]), agents, features, policies(app))
+                schema = _completed(deepcopy(_generated[key]), features, policies(app))
                 _add_security(schema, policies(app), settings, providers)
                 cache.append(schema)
             return cache[0]
@@ -171,7 +171,6 @@ def install(
 
 def _completed(
     schema: Schema,
-    agents: tuple[str, ...],
     features: tuple[type[Feature], ...],
     by_operation: Mapping[tuple[str, str], Policy],
 ) -> Schema:
@@ -195,7 +194,6 @@ def _completed(
         problems = {str(s): {"$ref": f"#/components/responses/{_PROBLEMS[s][0]}"} for s in statuses}
         operation["responses"] = successes | problems
     _link_runs(schema)
-    _name_agents(schemas, agents)
     return schema
 
 
@@ -249,14 +247,6 @@ def _link_runs(schema: Schema) -> None:
                 for _, of_run, operation in operations(schema)
                 if of_run.startswith(f"{path}/{{run_id}}")
             }
-
-
-def _name_agents(schemas: Schema, agents: tuple[str, ...]) -> None:
-    """Enumerate the registered agents, which are known only when the server starts."""
-    for alternative in schemas["ExperimentBody"]["properties"]["agents"]["anyOf"]:
-        item = alternative.get("items", alternative)
-        if item.get("type") == "string":
-            item["enum"] = list(agents)
 
 
 def _add_security(

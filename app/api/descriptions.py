@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from app.storage.run import KINDS, MAX_KEY_LENGTH, SORTS, STATES
+from app.storage.run import MAX_KEY_LENGTH, SORTS, STATES
+from app.storage.run_kind import run_kinds
 from hexapods.domain import disturbances
 from hexapods.domain.gait import NAMED_GAITS
 from hexapods.domain.observation import OBSERVATIONS
@@ -11,7 +12,6 @@ from hexapods.domain.robot import PRESETS
 from hexapods.domain.settings import declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS
-from hexapods.experiments.config import EXPERIMENTS, MAX_SEEDS
 from hexapods.runs.clocks import CLOCKS
 from hexapods.runs.config import SIMULATORS, TrainingConfig
 from hexapods.runs.gait_analysis import MAX_WINDOW_S
@@ -28,7 +28,8 @@ MAX_CURSOR = 2000
 """Maximum length of a cursor: a name, of which each character takes up to 12, and an id."""
 
 
-def _one_of(names: Iterable[str]) -> str:
+def one_of(names: Iterable[str]) -> str:
+    """Return that a value is one of some names."""
     return f"one of {', '.join(names)}"
 
 
@@ -36,28 +37,22 @@ VALID: dict[str, str] = {
     **{name: setting.valid for name, setting in declared_fields(TrainingConfig).items()},
     **{name: setting.valid for name, setting in declared_fields(LaneConfig).items()},
     "name": NAMES,
-    "gait": f"{_one_of(NAMED_GAITS)}, or {{right_leg, left_leg, and symmetry, pairs or groups}}",
+    "gait": f"{one_of(NAMED_GAITS)}, or {{right_leg, left_leg, and symmetry, pairs or groups}}",
     "right_leg": "a leg's number, from 1 on",
     "left_leg": "a leg's number, from 1 on",
     "symmetry": "origin or vertical",
     "pairs": "a list of [leader, partner], two legs' numbers each",
     "groups": "a list of groups, each a list of legs' numbers, or the name of a rule",
-    "observation": _one_of(OBSERVATIONS),
-    "robot": f"{_one_of(PRESETS)}, or an object that says what differs from a preset or, by its "
+    "observation": one_of(OBSERVATIONS),
+    "robot": f"{one_of(PRESETS)}, or an object that says what differs from a preset or, by its "
     "id, from a stored robot",
-    "simulator": _one_of(SIMULATORS),
+    "simulator": one_of(SIMULATORS),
     "agent": "the name of an agent; GET /api/v1/options lists them",
     "continue_from": "the id of a training that is finished or stopped",
     "training_id": "the id of a training that is finished or stopped",
     "training": "an object: a training's body without what the race says already",
-    "experiment": _one_of(EXPERIMENTS),
-    "seeds": f"a whole number from 1 to {MAX_SEEDS:,}",
-    "gaits": f"a list, each {_one_of(NAMED_GAITS)}, or an object",
-    "observations": f"a list, each {_one_of(OBSERVATIONS)}",
-    "robots": f"a list, each {_one_of(PRESETS)}, or an object that says what differs from one, or "
+    "robots": f"a list, each {one_of(PRESETS)}, or an object that says what differs from one, or "
     "the id of a stored robot",
-    "agents": "a list of agents' names; GET /api/v1/options lists them",
-    "workers": "a whole number, from 1 to the number of cores",
     "lanes": (
         f"a list of 1 to {MAX_LANES} lanes, each {{agent, and training_id, training or settings}}"
     ),
@@ -69,9 +64,9 @@ VALID: dict[str, str] = {
     "cells": "a cell of the foot grid for each group of legs, from 0 on, such as 0,3,1",
     "first": "a whole number, the index of a state, from 0 on",
     "count": "a whole number, 1 or more",
-    "world": f"the name of a world: {_one_of(WORLDS)}",
+    "world": f"the name of a world: {one_of(WORLDS)}",
     "worlds": (
-        f"a list, each the name of a world, {_one_of(WORLDS)}, or what happens, such as "
+        f"a list, each the name of a world, {one_of(WORLDS)}, or what happens, such as "
         "limp:legs=1,4"
     ),
     "disturbances": (
@@ -84,9 +79,9 @@ VALID: dict[str, str] = {
     "time_s": "a number of seconds, 0 or more",
     "playing": "true or false",
     "speed": f"a number from {show.MIN_SPEED} to {show.MAX_SPEED}, or {show.TIME_LAPSE}",
-    "clock": _one_of(CLOCKS),
-    "kind": _one_of(KINDS),
-    "state": _one_of(STATES),
+    "clock": one_of(CLOCKS),
+    "kind": one_of(run_kinds()),
+    "state": one_of(STATES),
     "search": (
         f"a part of the name, id, tags or notes, of at most {MAX_SEARCH} characters; A to Z match "
         "a to z"
@@ -94,7 +89,7 @@ VALID: dict[str, str] = {
     "tag": f"a tag, of at most {MAX_TAG} characters; A to Z match a to z",
     "tags": TAGS,
     "notes": NOTES,
-    "sort": f"{_one_of(SORTS)}: by time of creation, A to Z, or the longest first",
+    "sort": f"{one_of(SORTS)}: by time of creation, A to Z, or the longest first",
     "limit": f"a whole number from 1 to {MAX_PAGE}",
     "cursor": "the next_cursor of the page before",
     "idempotency-key": f"1 to {MAX_KEY_LENGTH} printable ASCII characters without spaces",
@@ -107,7 +102,6 @@ VALID: dict[str, str] = {
     ),
     "part": "practice, or evaluation for the newest one; of a training",
     "settings": "an object with the agent's settings, by name",
-    "key": "the key of a trial, as GET …/trials has it: the setting and the seed's number",
     "format": "a format that the description of the route names",
 }
 

@@ -9,14 +9,14 @@ from pydantic import Field, create_model
 
 from app.api.answers import (
     Answer,
-    AnyRunView,
     Count,
     Settings,
     StageView,
 )
 from app.api.recorded_answers import Evaluation
+from app.api.run_views import AnyRunView, KindName
 from app.feature import Feature
-from app.storage.run import Kind, State
+from app.storage.run import State
 from hexapods.runs.clocks import Clock
 
 
@@ -24,7 +24,7 @@ class DamagedRunView(Answer):
     """A run that cannot be read, and why. It can be deleted."""
 
     id: str
-    kind: Kind | None
+    kind: KindName | None
     name: str | None
     state: State | None
     created_at: datetime | None
@@ -178,14 +178,6 @@ class RatesEvent(Answer):
     settings: Settings = Field(default_factory=dict)
 
 
-class SummaryEvent(Answer):
-    """The summary of an experiment has a new number of trials."""
-
-    run_id: str
-    done: Count
-    total: Count
-
-
 class ViewersEvent(Answer):
     """The number of pages that watch the stage."""
 
@@ -210,7 +202,6 @@ class EventBodies(Answer):
     rates: RatesEvent
     stage: StageView
     scene: SceneView
-    summary: SummaryEvent
     viewers: ViewersEvent
     robots: RobotsEvent
 

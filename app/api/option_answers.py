@@ -1,7 +1,5 @@
 """Response models of `/options`, as those of `app.api.answers`."""
 
-from typing import Any
-
 from pydantic import BaseModel, ConfigDict
 
 from app.api.answers import Answer, Count, Settings
@@ -59,21 +57,6 @@ class RobotOption(Described):
     gaits: list[str]
     recommended_agent: dict[str, str]
     built: dict[str, float]
-
-
-class ExperimentOption(Described):
-    """An experiment, with the fields of its request body and their defaults.
-
-    Attributes:
-        simulator_defaults: by simulator: the defaults that are others there.
-        agents: the agents that it can compare.
-    """
-
-    fields: list[str]
-    grid: list[str]
-    defaults: dict[str, Any]
-    simulator_defaults: dict[str, dict[str, Any]]
-    agents: list[str]
 
 
 class TrainingDefaults(BaseModel):
@@ -229,7 +212,6 @@ class OptionsView(Answer):
     simulators: list[Described]
     observations: list[Described]
     clocks: list[Described]
-    experiments: list[ExperimentOption]
     defaults: DefaultsView
     settings: dict[str, SettingOption]
     limits: dict[str, tuple[float | None, float | None]]

@@ -2,36 +2,6 @@
 
 from hexapods.runs import best_known
 
-EXPERIMENT_TEXTS = {
-    "table1": (
-        "The paper’s Table 1: Q-learning after 500 and after 1000 steps beside greedy and "
-        "two-step, in all four gaits, with the feet measured and with the commands remembered."
-    ),
-    "figure4": (
-        "The paper’s Figure 4: practice in blocks of 250 steps up to 2000, the table saved and "
-        "loaded in between, beside as many steps in one go, and greedy as the line to reach."
-    ),
-    "sweep": (
-        "A grid of any values: every combination is tried over all seeds. The paper names tuning "
-        "as future work."
-    ),
-    "league": (
-        "Learners and searchers in several worlds, with robots that differ a little by seed: "
-        "distance against practice, beside greedy and the best known walk."
-    ),
-    "recovery": (
-        "Learners practise, then something happens to them, and they learn on: how far they walk "
-        "at once, and how soon they walk well again."
-    ),
-    "groups": (
-        "Pairs of legs beside two groups of three: fewer groups have fewer states, 25 instead of "
-        "125, and Q-learning comes level with greedy after 250 steps."
-    ),
-    "bodies": (
-        "Learners on robots with other bodies, each in the gait that suits it: how far they walk, "
-        "and how soon."
-    ),
-}
 GAIT_TEXTS = {
     "left-right-origin": (
         "Three legs on each side of the way; legs that stand opposite each other move together."
@@ -86,32 +56,18 @@ FIELD_HELP = {
     "best_known_where": best_known.COVERAGE,
     "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",
     "agent": "Which agent learns.",
-    "seeds": "How often each setting is tried, each time with other random numbers.",
-    "gaits": "Which gaits are tried.",
-    "robots": "Which robots are tried.",
-    "observations": "Which observations are tried.",
-    "worlds": "Which worlds are tried.",
-    "agents": "Which agents learn or search, and are compared with each other.",
-    "settings": "Combinations of values; each is tried over all seeds.",
-    "trials": "Settings times seeds; agents that look ahead are tried once.",
-    "workers": "How many trials are computed at once; by default one for each core.",
 }
 FIELD_TITLES = {
     "gait": "Gait",
-    "gaits": "Gaits",
     "robot": "Robot",
     "robots": "Robots",
     "simulator": "Simulator",
-    "observations": "Observation",
     "agent": "Learner",
-    "agents": "Agents",
     "lanes": "Lanes",
     "name": "Name",
     "world": "World",
     "worlds": "Worlds",
     "disturb": "Disturbances",
-    "experiment": "Experiment",
-    "seeds": "Seeds",
     "tags": "Tags",
     "notes": "Notes",
 }

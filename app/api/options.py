@@ -18,7 +18,6 @@ from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.option_answers import DefaultsView, OptionsView
 from app.api.option_texts import (
     CLOCK_TEXTS,
-    EXPERIMENT_TEXTS,
     FIELD_HELP,
     FIELD_TITLES,
     OBSERVATION_TEXTS,
@@ -28,7 +27,6 @@ from app.api.option_texts import (
 from app.api.policy import ANY_PAGE, api_router, policy
 from app.api.robot_options import built_in_options, gait_options, stored_options
 from app.feature import Feature
-from app.jobs.submissions import MAX_SETTINGS
 from app.storage.database.robots import RobotStore
 from app.storage.stored_robot import StoredRobot
 from hexapods import __version__
@@ -50,18 +48,6 @@ from hexapods.domain.robot import MAX_LEGS, MIN_LEGS, Robot
 from hexapods.domain.settings import REQUIRED, DeclaredSetting, declare, declared_fields
 from hexapods.domain.text import MAX_NAME, MAX_NOTES, MAX_TAG, MAX_TAGS
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS, is_simulated
-from hexapods.experiments.config import (
-    EXPERIMENTS,
-    GRID,
-    MAX_SEEDS,
-    MAX_TRIALS,
-    ExperimentName,
-    compares,
-    experiment_config,
-    fields_of,
-    settings_by_name,
-)
-from hexapods.experiments.names import TITLES
 from hexapods.runs.clocks import CLOCK_TITLES
 from hexapods.runs.config import (
     RACE_STEPS,
@@ -131,7 +117,7 @@ def _content(
     """
     answer = catalogue(agents, robots.readable(hidden=True), version)
     for feature in features:
-        for name, added in feature.options().items():
+        for name, added in feature.options(agents).items():
             # Limits and texts of a feature stand with those of the core.
             answer[name] = {**answer[name], **added} if name in answer else added
     return CompressedContent(bytes(JSONResponse(answer).body), "application/json")
@@ -173,7 +159,6 @@ def catalogue(
         "simulators": _described(SIMULATOR_TEXTS, SIMULATOR_TITLES),
         "observations": _described(OBSERVATION_TEXTS, _choice_titles("observation")),
         "clocks": _described(CLOCK_TEXTS, CLOCK_TITLES),
-        "experiments": _experiments(agents),
         "defaults": {"training": _training_defaults(), "race": _race_defaults()},
         "settings": {name: setting_option(setting) for name, setting in settings.items()},
         "limits": _limits(settings),
@@ -274,44 +259,6 @@ def _fields_of(kind: type[disturbances.Disturbance]) -> dict[str, dict[str, Any]
     return options
 
 
-def _experiments(agents: Collection[str]) -> list[dict[str, Any]]:
-    """Return the experiments, each with title, description, defaults and fields."""
-    settings = settings_by_name(agents)
-    options = []
-    for name in EXPERIMENTS:
-        defaults = to_json(experiment_config(name, {}))
-        others = _simulator_defaults(name, defaults)
-        defaults["robots"] = [robot["preset"] for robot in defaults["robots"]]
-        fields = [*fields_of(name), *(settings if name == "sweep" else ())]
-        options.append(
-            {
-                "name": name,
-                "title": TITLES[name],
-                "description": EXPERIMENT_TEXTS[name],
-                "fields": fields,
-                "grid": [field for field in (GRID[0], *settings, *GRID[1:]) if field in fields],
-                "defaults": defaults,
-                "simulator_defaults": others,
-                "agents": [one for one in agents if "agents" in fields and compares(name, one)],
-            }
-        )
-    return options
-
-
-def _simulator_defaults(
-    name: ExperimentName, defaults: Mapping[str, Any]
-) -> dict[str, dict[str, Any]]:
-    """Return the defaults of an experiment that are others in a simulator, by simulator."""
-    return {
-        simulator: {
-            field: value
-            for field, value in to_json(experiment_config(name, {"simulator": simulator})).items()
-            if field != "simulator" and value != defaults[field]
-        }
-        for simulator in SIMULATOR_TEXTS
-    }
-
-
 def _described(sentences: Mapping[str, str], titles: Mapping[Any, str]) -> list[dict[str, str]]:
     return [
         {"name": name, "title": titles[name], "description": sentence}
@@ -347,9 +294,6 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "import_bytes": [1, MAX_FILE_BYTES],
         "run_ids": [1, MAX_RUN_IDS],
         "gait_window_s": [0, MAX_WINDOW_S],
-        "seeds": [1, MAX_SEEDS],
-        "trials": [1, MAX_TRIALS],
-        "settings": [1, MAX_SETTINGS],
     }
 
 

@@ -10,6 +10,7 @@ from starlette.datastructures import QueryParams
 from starlette.responses import Response, StreamingResponse
 from starlette.types import Scope
 
+from app.api.answers import RacePage, RaceView
 from app.api.compression import gzipped
 from app.api.contract import BINARY, answers
 from app.api.deps import Services, ServicesDep
@@ -29,7 +30,7 @@ from hexapods.runs.clocks import Clock
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
 
-router = run_routes("race")
+router = run_routes("race", RaceView, RacePage)
 
 
 def _work_of_recording(scope: Scope) -> Work:

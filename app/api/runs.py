@@ -3,24 +3,16 @@
 `/runs` lists and finds runs of every kind; the other routes are of one kind each.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Path, Query, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.answers import (
-    AnyRunView,
     DeletedView,
-    ExperimentPage,
-    ExperimentView,
     Page,
-    RacePage,
-    RaceView,
-    RunPage,
     RunView,
-    TrainingPage,
-    TrainingView,
 )
 from app.api.contract import LOCATION, answers
 from app.api.deps import IdentityDep, RoleDep, Services, ServicesDep, StartRequest, StartRequestDep
@@ -28,6 +20,7 @@ from app.api.descriptions import MAX_CURSOR, MAX_PAGE, MAX_RUN_IDS, MAX_SEARCH, 
 from app.api.fields import RunId
 from app.api.policy import OPERATOR, OWN_RUNS, START, WATCH, WATCH_RUN, Access, api_router, policy
 from app.api.recorded_answers import CurvesView
+from app.api.run_views import AnyRunView, KindName, RunPage
 from app.api.schemas import AnnotationBody
 from app.jobs.jobs import Jobs
 from app.jobs.submissions import CopyStart, Start
@@ -35,6 +28,7 @@ from app.storage.database.listing import Listing
 from app.storage.errors import Conflict, Damaged, NotFound
 from app.storage.json_text import finite
 from app.storage.run import AnyRun, DamagedRun, Kind, Run, Sort, State
+from app.storage.run_kind import with_article
 from hexapods.domain.text import MAX_TAG
 
 MAX_POINTS = 40
@@ -119,7 +113,7 @@ router = api_router(prefix="/runs", tags=["runs"])
 def list_runs(
     services: ServicesDep,
     listing: ListingDep,
-    kind: Annotated[Kind | None, Query(description=VALID["kind"])] = None,
+    kind: Annotated[KindName | None, Query(description=VALID["kind"])] = None,
 ) -> Response:
     """List runs, filtered by kind, state, tag, and a part of the name, id, tags or notes."""
     return _page(services, listing._replace(kind=kind))
@@ -211,10 +205,18 @@ def _page(services: Services, listing: Listing) -> Response:
     return JSONResponse({"items": items, "next_cursor": page.next_cursor})
 
 
-def run_routes(kind: Kind) -> APIRouter:
-    """Create the routes common to all kinds of runs, for one kind."""
+def run_routes(
+    kind: Kind, view: type[RunView], page: type[Page], changed_by: Access = OWN_RUNS
+) -> APIRouter:
+    """Create the routes common to all kinds of runs, for one kind.
+
+    Args:
+        kind: of the runs.
+        view: model of a run.
+        page: model of a page of runs.
+        changed_by: who may stop and delete its runs.
+    """
     router = api_router(prefix=f"/{kind}s", tags=[f"{kind}s"])
-    view, page = VIEWS[kind]
 
     @router.get("", summary=f"List {kind}s", name=f"list_{kind}s", response_model=page)
     @policy(access=WATCH)
@@ -234,15 +236,16 @@ def run_routes(kind: Kind) -> APIRouter:
         summary=phrase("Delete {} that has ended", kind),
         name=f"del_{kind}",
     )
-    @policy(access=_changed_by(kind))
+    @policy(access=changed_by)
     def delete_run(services: ServicesDep, run_id: RunPath) -> None:
         find_any(services, kind, run_id)
         services.jobs.delete(run_id)
 
     for verb, summary in _VERBS.items():
+        access = changed_by if verb == "stop" else OPERATOR
         router.add_api_route(
             f"/{{run_id}}/{verb}",
-            policy(access=_told_by(kind, verb), starts=verb == "resume")(_command(kind, verb)),
+            policy(access=access, starts=verb == "resume")(_command(kind, verb)),
             methods=["POST"],
             status_code=202,
             summary=phrase(summary, kind),
@@ -257,30 +260,12 @@ _VERBS = {
     "pause": "Pause {}",
     "resume": "Resume {} that is paused, stopped, interrupted or failed",
 }
-VIEWS: Mapping[Kind, tuple[type[RunView], type[Page]]] = {
-    "training": (TrainingView, TrainingPage),
-    "race": (RaceView, RacePage),
-    "experiment": (ExperimentView, ExperimentPage),
-}
 
 
 def phrase(template: str, kind: Kind) -> str:
     """Insert a kind of run, with its article, into a sentence."""
-    sentence = template.format(f"an {kind}" if kind[0] in "aeiou" else f"a {kind}")
+    sentence = template.format(with_article(kind))
     return sentence[0].upper() + sentence[1:]
-
-
-def start_access(kind: Kind) -> Access:
-    """Return who may start runs of a kind: experiments, which take all cores, operators alone."""
-    return OPERATOR if kind == "experiment" else START
-
-
-def _changed_by(kind: Kind) -> Access:
-    return OPERATOR if kind == "experiment" else OWN_RUNS
-
-
-def _told_by(kind: Kind, verb: str) -> Access:
-    return _changed_by(kind) if verb == "stop" else OPERATOR
 
 
 def _command(kind: Kind, verb: str) -> Callable[..., Any]:

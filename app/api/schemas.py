@@ -231,12 +231,6 @@ class AnnotationBody(PatchBody):
     notes: Notes | None = None
 
 
-class TrialBody(Body):
-    """A trial of an experiment."""
-
-    key: Annotated[str, Field(min_length=1, max_length=1000, description=VALID["key"])]
-
-
 class StageBody(Body):
     """Changes to the stage; omitted fields are unchanged."""
 

@@ -1,16 +1,17 @@
 """Routes whose bodies depend on the registered agents: starts of runs, and live changes."""
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from app.api.agent_bodies import agent_bodies
-from app.api.answers import TrainingView
+from app.api.answers import RaceView, RunView, TrainingView
 from app.api.contract import LOCATION, answers
 from app.api.deps import ServicesDep, StartRequestDep
-from app.api.policy import OPERATOR, api_router, policy
-from app.api.runs import VIEWS, RunPath, find, start_access, start_run
+from app.api.policy import OPERATOR, START, Access, api_router, policy
+from app.api.runs import RunPath, find, start_run
 from app.storage.run import Kind
 
 
@@ -22,16 +23,20 @@ class StartKind(NamedTuple):
         body: type of the request's body, whose `start()` returns what is started.
         thing: what is started, for the summary.
         description: of the route.
+        view: model of the run.
+        access: who may start it.
     """
 
     kind: Kind
     body: Any
     thing: str
     description: str
+    view: type[RunView]
+    access: Access = START
 
 
 def start_kinds(agents: tuple[str, ...]) -> tuple[StartKind, ...]:
-    """Return the kinds of runs that can be started, with bodies of the registered agents.
+    """Return the kinds of the core that can be started, with bodies of the registered agents.
 
     Args:
         agents: names of the registered agents.
@@ -39,7 +44,11 @@ def start_kinds(agents: tuple[str, ...]) -> tuple[StartKind, ...]:
     bodies = agent_bodies(agents)
     return (
         StartKind(
-            "training", bodies.training, "a training", "Queue a training, and return its run."
+            "training",
+            bodies.training,
+            "a training",
+            "Queue a training, and return its run.",
+            TrainingView,
         ),
         StartKind(
             "race",
@@ -48,25 +57,21 @@ def start_kinds(agents: tuple[str, ...]) -> tuple[StartKind, ...]:
             "Queue the trainings of its lanes, then the race, and return the race's run.\n\n"
             "With `branch_from` the race repeats the first steps of another to the last bit, and "
             "goes on\nfrom there in another world; it takes all else from that race.",
-        ),
-        StartKind(
-            "experiment",
-            bodies.experiment,
-            "an experiment over many seeds",
-            "Queue an experiment, and return its run.",
+            RaceView,
         ),
     )
 
 
-def start_routes(agents: tuple[str, ...]) -> APIRouter:
+def start_routes(agents: tuple[str, ...], kinds: Iterable[StartKind]) -> APIRouter:
     """Return the routes, with the request bodies of the registered agents.
 
     Args:
         agents: names of the registered agents.
+        kinds: of runs that can be started.
     """
     router = api_router()
     change_body: Any = agent_bodies(agents).change
-    for start in start_kinds(agents):
+    for start in kinds:
         _add_start(router, start)
 
     @router.patch(
@@ -94,11 +99,11 @@ def _add_start(router: APIRouter, start: StartKind) -> None:
         status_code=202,
         summary=f"Start {start.thing}",
         description=start.description,
-        response_model=VIEWS[start.kind][0],
+        response_model=start.view,
         responses=answers(202, headers=LOCATION),
         name=f"start_{start.kind}",
     )
-    @policy(access=start_access(start.kind), starts=True)
+    @policy(access=start.access, starts=True)
     def start_of_kind(
         services: ServicesDep,
         request: Request,

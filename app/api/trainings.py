@@ -8,7 +8,7 @@ from pydantic import BeforeValidator
 from starlette.responses import JSONResponse, Response, StreamingResponse
 
 from app.api import curves
-from app.api.answers import TrainingView
+from app.api.answers import TrainingPage, TrainingView
 from app.api.contract import BINARY, LOCATION, TEXT, answers, takes_file
 from app.api.deps import ServicesDep, StartRequestDep
 from app.api.fields import Name
@@ -29,7 +29,7 @@ from hexapods.runs import tables
 from hexapods.runs.best_known import best_known_m
 from hexapods.runs.config import TrainingConfig
 
-router = run_routes("training")
+router = run_routes("training", TrainingView, TrainingPage)
 
 
 @router.post(

@@ -32,7 +32,6 @@ _ADVICE: Mapping[str, str] = {
     "about": "the next start of a server mends it",
     "runs": "delete these runs, or put a backup back",
     "evaluations": "delete these trainings, or put a backup back",
-    "trials": "delete these experiments, or put a backup back",
     "artifacts": "delete these runs, or put a backup back",
     "idempotency_keys": "nothing needs to be done: a repeated request with such a key is refused",
     "sessions": "nothing needs to be done: the next start of a server with a token deletes them, "

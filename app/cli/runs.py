@@ -21,7 +21,8 @@ from app.cli.terminal import show_lanes, show_table
 from app.events.run_view import run_view
 from app.settings import read_settings
 from app.storage.json_text import json_text
-from app.storage.run import KINDS, SORTS, STATES, AnyRun, DamagedRun, Run, Sort
+from app.storage.run import SORTS, STATES, AnyRun, DamagedRun, Run, Sort
+from app.storage.run_kind import WALKS, added_kind, run_kinds
 from hexapods.agents.appearance import title_of
 from hexapods.domain.errors import InvalidInput
 from hexapods.races import Race
@@ -43,7 +44,7 @@ def add_to(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     parser = commands.add_parser("runs", help="list, show and delete runs", description=__doc__)
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     listing = verbs.add_parser("list", help="list runs")
-    listing.add_argument("--kind", choices=KINDS, help="only runs of this kind")
+    listing.add_argument("--kind", choices=tuple(run_kinds()), help="only runs of this kind")
     listing.add_argument("--state", choices=STATES, help="only runs in this state")
     listing.add_argument("--tag", help="only runs with this tag")
     listing.add_argument(
@@ -102,8 +103,8 @@ def _row(run: AnyRun) -> tuple[str, ...]:
         began = "" if run.created_at is None else _local(run.created_at)
         return (run.id, run.kind or "", "damaged", "", "", began, run.damaged)
     done = f"{run.total:,}" if run.done == run.total else f"{run.done:,} of {run.total:,}"
-    if run.kind == "experiment":
-        done += " trials"
+    if (counted := run_kinds()[run.kind].counted) != "steps":
+        done += f" {counted}"
     began = _local(run.started_at or run.created_at)
     return (run.id, run.kind, run.state, done, _outcome(run), began, run.name)
 
@@ -119,8 +120,8 @@ def _outcome(run: Run) -> str:
         return "" if result.distance_m is None else f"{result.distance_m:.2f} m"
     if isinstance(result, RaceResult):
         return ", ".join(title_of(one.agent) for one in result.lanes if one.clocks.paper.rank == 1)
-    verdicts = [] if result is None else [claim.verdict for claim in result.claims]
-    return f"{verdicts.count('holds')} of {len(verdicts)} claims hold" if verdicts else ""
+    kind = added_kind(run.kind)
+    return "" if kind is None or result is None else kind.outcome(result)
 
 
 def _show(options: argparse.Namespace) -> int:
@@ -136,7 +137,7 @@ def _show(options: argparse.Namespace) -> int:
             print(f"{name:>18}  {value or ''}")
         return 0
     progress, result = view.pop("progress"), view.pop("result")
-    counted = "trials" if run.kind == "experiment" else "steps"
+    counted = run_kinds()[run.kind].counted if isinstance(run, Run) else "steps"
     if result:
         view.pop("best_known_m", None)  # it stands under the lanes
     view[counted] = f"{progress['done']:,} of {progress['total']:,}"
@@ -163,7 +164,7 @@ def _delete(options: argparse.Namespace) -> int:
         with open_store(settings) as store:
             store.delete(run.id)
     except FolderInUse:
-        kind = run.kind or KINDS[0]
+        kind = run.kind or WALKS[0]
         call_server(settings, "DELETE", f"api/v1/{kind}s/{quote(run.id, safe='')}")
     message = f"Deleted {run.kind or 'run'} {run.id}."
     print(json.dumps({"deleted": run.id}) if options.json else message)

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from typing import Any, TextIO
 
 from app.limits.log_limit import LimitedHandler
-from app.storage.run import KINDS
+from app.storage.run_kind import run_kinds
 
 _STANDARD_ATTRIBUTES = frozenset(vars(logging.makeLogRecord({}))) | {
     "message",
@@ -67,7 +67,7 @@ def _run_id_of(record: logging.LogRecord) -> str | None:
     """Return the run id in the name of a job's process or thread, which is `<kind> <run id>`."""
     for name in (record.processName, record.threadName):
         kind, _, run_id = (name or "").partition(" ")
-        if kind in KINDS and run_id:
+        if kind in run_kinds() and run_id:
             return run_id
     return None
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from app.events.bus import Channel, EventBus
 from app.storage.run import AnyRun, Run
+from app.storage.run_kind import WALKS
 
 _WINDOW_S = 10.0
 _logger = logging.getLogger(__name__)
@@ -72,7 +73,7 @@ class RunMetrics(EventBus):
             self._last_published[run_id] = (state, done)
             now = self._now()
             self._drop_old(now)
-            if done > done_before and run.kind != "experiment":
+            if done > done_before and run.kind in WALKS:
                 self._steps += done - done_before
                 self._recent_steps.append((now, done - done_before))
         if state != state_before:

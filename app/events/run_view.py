@@ -10,6 +10,7 @@ from app.storage.run import (
     DamagedRun,
     Run,
 )
+from app.storage.run_kind import added_kind
 from app.storage.run_names import is_named
 from hexapods.domain.records import to_json
 from hexapods.runs.best_known import best_known_in_race_m
@@ -58,7 +59,7 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
         "error": run.error,
         "tags": list(run.tags),
         "notes": run.notes,
-        "can_resume": run.state in RESUMABLE[run.kind] | PAUSED,
+        "can_resume": run.state in RESUMABLE | PAUSED,
         "created_at": _time(run.created_at),
         "started_at": _time(run.started_at),
         "ended_at": _time(run.ended_at),
@@ -66,8 +67,8 @@ def _whole_view(run: Run, queue_position: int | None) -> dict[str, Any]:
     if run.kind == "race":
         view["waiting_for"] = list(run.waiting_for)
         view["best_known_m"] = _best_known_m(run)
-    elif run.kind == "experiment":
-        view["workers"] = run.workers
+    elif (kind := added_kind(run.kind)) is not None:
+        view |= kind.view(run)
     else:
         view["greedy_distance_m"] = run.greedy_distance_m
         view["changes"] = [dict(change) for change in run.changes]

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from operator import itemgetter
-from typing import Any, cast
+from typing import Any
 
 from app.events.bus import EventBus
 from app.jobs.job_control import CHECKPOINT_EVERY_S
@@ -23,10 +23,8 @@ from app.jobs.messages import (
     Failed,
     Message,
     RaceTask,
-    Reported,
     Saved,
     Task,
-    TrialsDone,
 )
 from app.jobs.worker_process import Exit, WorkerProcess
 from app.storage.database.engine import retry_during_outage
@@ -36,8 +34,6 @@ from app.storage.recordings import Recordings
 from app.storage.run import ANNOTATIONS, CHECKPOINT, LIVE, RUNNING, TABLE, Run, State
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.robot import as_mapping
-from hexapods.experiments.config import SUMMARY
-from hexapods.experiments.result import ExperimentResult
 from hexapods.processes import STALLED_S
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recording import LaneRecording
@@ -448,27 +444,3 @@ def _trained_robots(task: RaceTask) -> list[Any]:
     race_robot = as_mapping(task.config.robot)
     table_robots = [table and table.meta["config"]["robot"] for table in task.tables]
     return [None if robot == race_robot else robot for robot in table_robots]
-
-
-class ExperimentJob(Job):
-    """An experiment and the worker process that runs its trials."""
-
-    # A stopped experiment still writes its report, whose figures take a while to draw.
-    stop_grace_s = 90.0
-    events_per_s = 4
-    eta_window_s = 60.0
-
-    def _handle(self, message: Message) -> None:
-        if isinstance(message, TrialsDone):
-            self._store.trials.append(self.run_id, message.rows)
-            self._handle_progress(message.done)
-        elif isinstance(message, Reported):
-            self._store.put_artifact(self.run_id, message.name, message.data)
-            if message.name == SUMMARY:
-                self._publish_event("summary", done=self.last.done, total=self.last.total)
-        else:
-            super()._handle(message)
-
-    def _handle_end(self, ended: Ended) -> None:
-        result = cast(ExperimentResult, ended.result)
-        self.end(ended.outcome, result=replace(result, shared_machine=self.shared))

@@ -33,6 +33,7 @@ from app.storage.run import (
     world_of,
 )
 from app.storage.run_ids import RunIds
+from app.storage.run_kind import WALKS
 from hexapods.domain.disturbance_documents import as_mapping, disturbance
 from hexapods.domain.disturbances import Disturbance
 from hexapods.domain.errors import HexapodError, InvalidInput, UnknownName
@@ -179,7 +180,7 @@ class Jobs:
         self._await_process(run_id)
         with self._changed:
             run = self._store.get(run_id)
-            if run.state in RESUMABLE[run.kind]:
+            if run.state in RESUMABLE:
                 runs = resumed_runs(run, self._store)
                 for one in runs:
                     self._check_needed_by_none(one)
@@ -187,14 +188,14 @@ class Jobs:
             try:
                 resumed = self._resume_paused(run)
             except Conflict as conflict:
-                if conflict.state not in RESUMABLE[run.kind]:
+                if conflict.state not in RESUMABLE:
                     raise
                 resumed = None
         # The process may die between the check and the change: then the run is queued again.
         return resumed or self.resume(run_id)
 
     def _resume_paused(self, run: Run) -> Run:
-        choices = " or ".join(sorted(PAUSED | RESUMABLE[run.kind]))
+        choices = " or ".join(sorted(PAUSED | RESUMABLE))
         job = self._live_job(run.id, PAUSED, "resumed", choices)
         resumed = self._change_state(job, PAUSED, "running")
         job.resume()
@@ -363,7 +364,7 @@ class Jobs:
             free = max(0, self.cores - self._supervisor.running)
             run = self._queue.add(runs, free, key, resumed=resumed)
             self._changed.notify_all()
-        if self._on_queued is not None and run.kind != "experiment":
+        if self._on_queued is not None and run.kind in WALKS:
             try:
                 self._on_queued(run.id)
             except HexapodError:

@@ -1,19 +1,18 @@
 """Messages between the server and a job's process, through a pipe; all are picklable."""
 
 import math
-from collections.abc import Mapping
+import queue
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapods.experiments.config import ExperimentConfig
-from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.records import LaneStep, RaceRecord, TrainingRecord
-from hexapods.runs.results import TrainingResult
 from hexapods.runs.tables import Checkpoint
 from hexapods.runs.transition_log import Transitions
 
@@ -53,24 +52,30 @@ class RaceTask:
     prefix: tuple[tuple[LaneStep, ...], ...] = ()
 
 
-@dataclass(frozen=True)
-class ExperimentTask:
-    """An experiment whose remaining trials are to be run.
+class AddedTask(ABC):
+    """A run of a kind that a feature adds."""
 
-    Attributes:
-        config: the experiment.
-        workers: trials at once; None is one per core.
-        rows: the trials that are done, as returned by `Trials.get`.
-        wall_s: for how long it ran before [s].
-    """
+    @property
+    @abstractmethod
+    def done(self) -> int:
+        """How much of it is done before the task begins."""
 
-    config: ExperimentConfig
-    workers: int | None = None
-    rows: tuple[Mapping[str, Any], ...] = ()
-    wall_s: float = 0.0
+    @abstractmethod
+    def run(
+        self, send: "Callable[[Message], None]", commands: "queue.SimpleQueue[Command]"
+    ) -> None:
+        """Run it in its process, to its end, or until a `stop` or `checkpoint_and_exit` command.
+
+        Args:
+            send: sends a message to the server: `Began` first, and at the end `Ended`.
+            commands: received from the server.
+
+        Raises:
+            HexapodError: if it cannot continue.
+        """
 
 
-Task = TrainingTask | RaceTask | ExperimentTask
+Task = TrainingTask | RaceTask | AddedTask
 
 
 class Command(NamedTuple):
@@ -134,25 +139,15 @@ class Saved(NamedTuple):
     table: bytes
 
 
-class TrialsDone(NamedTuple):
-    """New trials, as for `Trials.append`, and how many are done now."""
-
-    rows: tuple[Mapping[str, Any], ...]
-    done: int
-
-
-class Reported(NamedTuple):
-    """A file of an experiment's report; its summary also while it runs."""
-
-    name: str
-    data: bytes
+class AddedMessage:
+    """Base class of messages of a kind that a feature adds; its job handles them."""
 
 
 class Ended(NamedTuple):
-    """The job has ended; the result is that of a training or an experiment."""
+    """The job has ended; the result is that of its kind, None of a race, which is recorded."""
 
     outcome: Literal["finished", "stopped"]
-    result: TrainingResult | ExperimentResult | None
+    result: Any
 
 
 class Failed(NamedTuple):
@@ -161,4 +156,4 @@ class Failed(NamedTuple):
     reason: str
 
 
-Message = Began | Batch | Changed | Checkpointed | Saved | TrialsDone | Reported | Ended | Failed
+Message = Began | Batch | Changed | Checkpointed | Saved | AddedMessage | Ended | Failed

@@ -132,7 +132,7 @@ class RunQueue:
         """Store a resumed run as queued and delete the evaluations that it will repeat."""
         fields = ("done", "waiting_for", "error", "result", "ended_at")
         changed = {field: getattr(run, field) for field in fields}
-        queued = self._store.change(run.id, RESUMABLE[run.kind], "queued", **changed)
+        queued = self._store.change(run.id, RESUMABLE, "queued", **changed)
         self._store.curves.delete_after(run.id, after_step=run.done)
         return queued
 

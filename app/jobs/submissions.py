@@ -1,13 +1,12 @@
 """Validate what a user asks to start, and build the runs to be queued from it."""
 
-import math
-import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from app.storage.database.store import RunStore
 from app.storage.run import Run
+from app.storage.run_kind import added_kind
 from app.storage.run_names import branch_name, race_name, training_name
 from app.storage.stored_tables import load_table
 from hexapods.agents.registry import check_problem, learns, needs_practice
@@ -16,9 +15,6 @@ from hexapods.domain.errors import InvalidInput, TableMismatch
 from hexapods.domain.kinematics import check_reach
 from hexapods.domain.observation import Observation
 from hexapods.domain.world import check_ends
-from hexapods.experiments.config import GRID, ExperimentConfig
-from hexapods.experiments.names import experiment_name
-from hexapods.experiments.plan import Plan
 from hexapods.runs.config import TrainingConfig, WalkingProblem, problem_of
 from hexapods.runs.lane import LaneConfig, check_lane, lane_config, observation_of
 from hexapods.runs.race_config import Branch, RaceConfig
@@ -34,6 +30,21 @@ class Start(Protocol):
         Raises:
             InvalidInput, TableMismatch, NotFound, Conflict: if it cannot be.
         """
+
+
+@runtime_checkable
+class ManyPractices(Protocol):
+    """Request to start a run of many practices, of which several are computed at once."""
+
+    def practices(self) -> Iterable[tuple[TrainingConfig, int]]:
+        """Yield configs, each with the number of steps that are computed of it.
+
+        Raises:
+            InvalidInput, UnknownName, Unreachable: if it cannot be started.
+        """
+
+    def at_once(self, cores: int) -> int:
+        """Return how many practices are computed at once on a machine with so many cores."""
 
 
 @dataclass(frozen=True)
@@ -208,8 +219,8 @@ class CopyStart:
         config = original.config
         if isinstance(config, TrainingConfig):
             check_training(config)
-        elif isinstance(config, ExperimentConfig):
-            plan_of(config)
+        elif (kind := added_kind(original.kind)) is not None:
+            kind.checked_total(config)
         else:
             for lane, training_id in zip(config.lanes, original.lane_training_ids, strict=True):
                 check_lane(lane, has_training=training_id is not None)
@@ -292,65 +303,3 @@ def _check_agent(table: Checkpoint, agent: str, training_id: str) -> None:
             f"training {training_id} is of {table.meta['agent']}, not of {agent}; choose one of "
             "the same agent"
         )
-
-
-MAX_SETTINGS = 2_000
-"""All of them are summarised again and again while trials come in, and drawn in one report."""
-
-
-@dataclass(frozen=True)
-class ExperimentStart:
-    """Request to start an experiment.
-
-    Attributes:
-        config: the experiment.
-        name: None for a generated name.
-        workers: trials at once; None is one per core.
-    """
-
-    config: ExperimentConfig
-    name: str | None = None
-    workers: int | None = None
-
-    def runs(self, store: RunStore, new_id: Callable[[], str]) -> list[Run]:  # noqa: ARG002
-        """See `Start`."""
-        config, workers = self.config, self.workers
-        plan = plan_of(config)
-        cores = os.cpu_count() or 1
-        if workers is not None and workers > cores:
-            raise InvalidInput(f"workers must be from 1 to {cores}, the cores of this machine")
-        experiment = Run(
-            id=new_id(),
-            kind="experiment",
-            name=self.name or experiment_name(config),
-            config=config,
-            workers=workers,
-            total=plan.total,
-        )
-        return [experiment]
-
-
-def plan_of(config: ExperimentConfig) -> Plan:
-    """Return the plan of an experiment, whose settings are all checked.
-
-    Raises:
-        InvalidInput, UnknownName, Unreachable: if a setting is invalid, or there are too many.
-    """
-    # Before it is laid out: a few long lists make a grid that fits into no memory.
-    settings = _settings(config)
-    if settings > MAX_SETTINGS:
-        raise InvalidInput(
-            f"the grid has {settings:,} settings, a server takes up to {MAX_SETTINGS:,}; choose "
-            "fewer values, or use `hexapods sweep`"
-        )
-    plan = Plan(config)
-    for walk in {setting.training.walk() for setting in plan.settings}:
-        check_walk(walk)
-    return plan
-
-
-def _settings(config: ExperimentConfig) -> int:
-    """Return the number of combinations of values, without those of look-ahead agents."""
-    names = ("gaits", "observations", "robots", "worlds", "agents", *GRID)
-    lists = [*(getattr(config, name) for name in names), *config.settings.values()]
-    return math.prod(map(len, lists))

@@ -13,7 +13,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 
 from app.events.bus import EventBus
-from app.jobs.job import ExperimentJob, Job
+from app.jobs.job import Job
 from app.jobs.queue import RunQueue
 from app.jobs.tasks import task_for
 from app.jobs.worker_process import Exit
@@ -21,6 +21,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound, OwnershipLost, StorageFailed, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import LIVE, NOT_ENDED, QUEUED, RUNNING, Run, State
+from app.storage.run_kind import added_kind
 from hexapods.domain.errors import HexapodError
 
 STUCK_S = 5.0
@@ -214,10 +215,12 @@ class Supervisor:
         job.publish()
 
     def _job(self, run: Run) -> Job:
-        kind = ExperimentJob if run.kind == "experiment" else Job
+        kind = added_kind(run.kind)
+        job_class = Job if kind is None else kind.job_class()
         task = task_for(run, self._store, self._recordings)
         services = self._store, self._recordings, self._bus
-        return kind(run, task, *services, shutdown=self._shutdown, niceness=self._niceness)
+        job: Job = job_class(run, task, *services, shutdown=self._shutdown, niceness=self._niceness)
+        return job
 
     def _check_jobs(self) -> None:
         """Kill stalled processes, and reconcile the states that failed writes left uncertain."""

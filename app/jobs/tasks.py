@@ -3,8 +3,8 @@
 A training starts from its newest checkpoint; without one from the table that it continues, if any.
 Changes of rates and pace made since are replayed after the same steps, so that a resumed training
 has the same result. One that was stopped has a table, which others may have used since; then it
-stays as it is. A race is repeated from its start: it is short and deterministic. An experiment runs
-the trials that are not done yet.
+stays as it is. A race is repeated from its start: it is short and deterministic. A run of a kind
+that a feature adds has a task of its own.
 """
 
 import logging
@@ -12,16 +12,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.jobs.messages import ExperimentTask, RaceTask, Task, TrainingTask
+from app.jobs.messages import AddedTask, RaceTask, Task, TrainingTask
 from app.storage.database.store import RunStore
 from app.storage.errors import Conflict, NotFound
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, RESUMABLE, Run
+from app.storage.run_kind import added_kind
 from app.storage.stored_tables import load_checkpoint, load_table
-from app.storage.stored_trials import wall_s_of
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.simulator import Motion
-from hexapods.experiments.config import SUMMARY, ExperimentConfig
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.records import LaneStep
@@ -35,7 +34,7 @@ _NO_MOTION = Motion(np.empty(0, np.float32), np.empty((0, 0), np.float32))
 
 
 def task_for(run: Run, store: RunStore, recordings: Recordings | None = None) -> Task:
-    """Return the task of a run, with the tables, the checkpoint or the trials that it needs.
+    """Return the task of a run, with the tables, the checkpoint or the parts that it needs.
 
     Args:
         run: the run.
@@ -47,10 +46,9 @@ def task_for(run: Run, store: RunStore, recordings: Recordings | None = None) ->
         Conflict, InvalidInput: if a table or checkpoint that it needs is missing or damaged.
     """
     config = run.config
-    if isinstance(config, ExperimentConfig):
-        rows = tuple(store.trials.get(run.id))
-        wall_s = wall_s_of(store.artifact(run.id, SUMMARY), run.id)
-        return ExperimentTask(config, run.workers, rows, wall_s)
+    if (kind := added_kind(run.kind)) is not None:
+        task: AddedTask = kind.task(run, store)
+        return task
     if isinstance(config, RaceConfig):
         ids = run.lane_training_ids
         tables = tuple(None if i is None else load_table(store, i) for i in ids)
@@ -94,8 +92,8 @@ def resumed_runs(run: Run, store: RunStore) -> list[Run]:
         Conflict: if its state does not allow it, or a training it needs was deleted.
         InvalidInput: if a table or checkpoint it needs is missing or damaged.
     """
-    if run.state not in RESUMABLE[run.kind]:
-        choices = " or ".join(sorted(RESUMABLE[run.kind]))
+    if run.state not in RESUMABLE:
+        choices = " or ".join(sorted(RESUMABLE))
         raise Conflict(
             f"{run.kind} {run.id} is {run.state}; it can be resumed while it is {choices}",
             run.state,
@@ -109,8 +107,8 @@ def resumed_runs(run: Run, store: RunStore) -> list[Run]:
             _check_unused(run, store)
         # Refuses what could not start later.
         task = task_for(run, store)
-        if isinstance(task, ExperimentTask):
-            done = len(task.rows)
+        if isinstance(task, AddedTask):
+            done = task.done
         elif isinstance(task, TrainingTask) and task.checkpoint is not None:
             done = task.checkpoint.meta["step"]
     queued = replace(
@@ -137,7 +135,7 @@ def _unended_trainings(race: Run, store: RunStore) -> tuple[list[Run], tuple[str
             raise Conflict(f"race {race.id} cannot go on: {reason}", race.state) from error
         # Of one that was stopped a race has the table, unless it was to wait for its end.
         is_kept = training.state == "stopped" and training_id not in race.waiting_for
-        if training.state in RESUMABLE[training.kind] and not is_kept:
+        if training.state in RESUMABLE and not is_kept:
             resumed += resumed_runs(training, store)
         elif training.state not in NOT_ENDED:
             load_table(store, training_id)

@@ -23,7 +23,6 @@ from app.jobs.messages import (
     Checkpointed,
     Command,
     Ended,
-    ExperimentTask,
     Failed,
     Heartbeat,
     Message,
@@ -59,13 +58,10 @@ def main(pipe: Connection) -> None:
     try:
         if isinstance(task, TrainingTask):
             _train(task, control)
-        elif isinstance(task, ExperimentTask):
-            # Only here: no other job needs the engine of experiments.
-            from app.jobs.experiment_worker import experiment  # noqa: PLC0415
-
-            experiment(task, control.send, commands)
-        else:
+        elif isinstance(task, RaceTask):
             _race(task, control, stopping)
+        else:
+            task.run(control.send, commands)
     except HexapodError as error:
         control.send(Failed(str(error)))
     except Exception as error:

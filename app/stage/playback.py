@@ -15,6 +15,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
+from app.storage.run_kind import with_article
 from hexapods.domain.errors import HexapodError, InvalidInput
 from hexapods.domain.world import World
 from hexapods.runs.clocks import Clock
@@ -55,7 +56,7 @@ def show_of(
         pace: returns the present pace of a training that runs.
 
     Raises:
-        InvalidInput: if the run is an experiment.
+        InvalidInput: if the run is neither.
     """
     config = run.config
     if isinstance(config, RaceConfig):
@@ -68,7 +69,8 @@ def show_of(
             original=original_of(config, store, recordings),
         )
     if not isinstance(config, TrainingConfig):
-        raise InvalidInput(f"{run.id!r} is an {run.kind}; only trainings and races can be shown")
+        article = with_article(run.kind)
+        raise InvalidInput(f"{run.id!r} is {article}; only trainings and races can be shown")
     return PracticeShow(
         training_scene(config),
         config.steps,
@@ -198,7 +200,7 @@ class Replays:
 
         Raises:
             NotFound: if there is no such run.
-            InvalidInput: if it is an experiment, or the ghost is the run itself or of another kind.
+            InvalidInput: if it is neither, or the ghost is the run itself or of another kind.
             Conflict: if it has no recording (yet), or the ghost still runs.
         """
         run, ghost = self._runs(run_id, ghost_id)

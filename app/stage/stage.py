@@ -14,6 +14,7 @@ from app.stage.state_machine import Origin, StagedRun, StageState
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run, world_of
+from app.storage.run_kind import WALKS
 from hexapods.domain.errors import HexapodError
 from hexapods.domain.records import Record, to_json
 from hexapods.domain.world import UNDISTURBED, World
@@ -99,7 +100,7 @@ class Stage:
         store, is_public = self._store, self._store.is_public
         newest = store.list(limit=_RECENT_RUNS, condition=is_public).runs
         interrupted = store.list(state="interrupted", limit=_RECENT_RUNS, condition=is_public).runs
-        known = {run.id: run for run in (*newest, *interrupted) if run.kind != "experiment"}
+        known = {run.id: run for run in (*newest, *interrupted) if run.kind in WALKS}
         by_end = sorted(known.values(), key=_last_activity, reverse=True)
         last = [
             run
@@ -168,7 +169,7 @@ class Stage:
 
         Raises:
             NotFound: if there is no such run.
-            InvalidInput: if the run is an experiment.
+            InvalidInput: if the run is no walk.
         """
         with self._lock:
             self._update_playlist()

@@ -6,23 +6,22 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any, Literal, NamedTuple, get_args
 
+from app.storage.run_kind import Rows
 from app.storage.stored_robot import StoredRobot
 from hexapods.domain.disturbance_documents import disturbance
 from hexapods.domain.robot import Robot
 from hexapods.domain.world import UNDISTURBED, World
-from hexapods.experiments.config import ExperimentConfig
-from hexapods.experiments.result import ExperimentResult
-from hexapods.runs.config import TrainingConfig
-from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.results import Count, RaceResult, TrainingResult
 
-Kind = Literal["training", "race", "experiment"]
+Kind = str
+"""Name of a kind of run: `training`, `race`, or one that a feature adds; see `run_kind`."""
 State = Literal["queued", "running", "paused", "finished", "stopped", "failed", "interrupted"]
 Sort = Literal["newest", "oldest", "name", "distance"]
 
-Config = TrainingConfig | RaceConfig | ExperimentConfig
-
-KINDS: tuple[Kind, ...] = get_args(Kind)
+Config = Any
+"""A `TrainingConfig`, a `RaceConfig`, or a config of a kind that a feature adds."""
+Result = Any
+"""A `TrainingResult`, a `RaceResult`, or a result of a kind that a feature adds."""
 STATES: tuple[State, ...] = get_args(State)
 SORTS: tuple[Sort, ...] = get_args(Sort)
 QUEUED: frozenset[State] = frozenset({"queued"})
@@ -35,28 +34,10 @@ NOT_ENDED = QUEUED | LIVE
 INTERRUPTED: frozenset[State] = frozenset({"interrupted"})
 ANNOTATIONS = ("name", "tags", "notes")
 """Fields of a run that users may change in any of its states."""
-RESUMABLE: Mapping[Kind, frozenset[State]] = {
-    # Resumes from its newest checkpoint: most failures are caused by the machine, not the run.
-    "training": INTERRUPTED | {"stopped", "failed"},
-    # Is repeated from its start, with the same motions.
-    "race": INTERRUPTED | {"stopped", "failed"},
-    # Each trial is stored as it ends, so resuming repeats none, whatever ended the experiment.
-    "experiment": INTERRUPTED | {"stopped", "failed"},
-}
-"""By kind, the states of an ended run from which it can be queued again."""
-Result = TrainingResult | RaceResult | ExperimentResult
-CONFIGS: Mapping[Kind, type[Config]] = {
-    "training": TrainingConfig,
-    "race": RaceConfig,
-    "experiment": ExperimentConfig,
-}
-"""Config class by kind of run."""
-RESULTS: Mapping[Kind, type[Result]] = {
-    "training": TrainingResult,
-    "race": RaceResult,
-    "experiment": ExperimentResult,
-}
-"""Result class by kind of run."""
+RESUMABLE: frozenset[State] = INTERRUPTED | {"stopped", "failed"}
+"""States of an ended run from which it can be queued again. A training resumes from its newest
+checkpoint, a race is repeated from its start, with the same motions: most failures are caused by
+the machine, not by the run."""
 TABLE = "q-table.npz"
 """Artifact of a training: its learned Q-table."""
 CHECKPOINT = "checkpoint.npz"
@@ -71,15 +52,15 @@ MAX_KEYS = 10_000
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
-    """A training, a race or an experiment: config, state, progress and result.
+    """A run of any kind: config, state, progress and result.
 
     Attributes:
         id: short and URL-safe; sorts by time of creation (see `run_ids`).
         lane_training_ids: of a race, for each lane the training whose Q-table it uses, or None.
         waiting_for: of a race, ids of the trainings that must end before it starts.
         continued_from: of a training, id of the training whose Q-table it continued from.
-        done, total: steps summed over all lanes; of an experiment, trials.
-        workers: of an experiment, worker processes of its cluster; None is one per core.
+        done, total: steps summed over all lanes, or what its kind counts.
+        workers: of a run of many parts, how many are computed at once; None is one per core.
         eta_s: estimated time left [s]; None if there is no estimate, or the run is not running.
         changes: learning rates and pace changed while the run ran, each with the number of steps
             done before the change.
@@ -121,6 +102,7 @@ class DamagedRun:
         id: the id by which it can be deleted.
         kind: kind of the run; if None, it is listed under every kind.
         damaged: what is wrong with it, in a sentence.
+        is_left_out: whether nothing is, but its kind is of a feature that is left out.
     """
 
     id: str
@@ -129,6 +111,7 @@ class DamagedRun:
     state: State | None = None
     created_at: datetime | None = None
     damaged: str
+    is_left_out: bool = False
 
 
 AnyRun = Run | DamagedRun
@@ -167,13 +150,13 @@ class Content:
 
     Attributes:
         evaluations: rows as for `Curves.append`.
-        trials: rows as for `Trials.append`.
+        rows: of tables of its kind.
         artifacts: contents of files by name.
         robots: stored robots that its config names, each with its document.
     """
 
     evaluations: Sequence[Mapping[str, Any]] = ()
-    trials: Sequence[Mapping[str, Any]] = ()
+    rows: Rows = field(default_factory=dict)
     artifacts: Mapping[str, bytes] = field(default_factory=dict)
     robots: Sequence[tuple[StoredRobot, bytes]] = ()
 
@@ -181,7 +164,7 @@ class Content:
 def ranking_distance_m(result: Result | None) -> float | None:
     """Return the distance by which runs are ranked [m]: a training's, or that of a race's winner.
 
-    None if there is none, as of an experiment, or if it is NaN, which databases sort differently.
+    None if there is none, as of other kinds, or if it is NaN, which databases sort differently.
     """
     distance_m = None
     if isinstance(result, TrainingResult):
@@ -193,8 +176,8 @@ def ranking_distance_m(result: Result | None) -> float | None:
 
 
 def robots_of(config: Config) -> tuple[Robot, ...]:
-    """Return the robots of a config."""
-    return config.robots if isinstance(config, ExperimentConfig) else (config.robot,)
+    """Return the robots of a config, which has one or several."""
+    return config.robots if hasattr(config, "robots") else (config.robot,)
 
 
 def world_of(run: Run) -> World:

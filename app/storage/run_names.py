@@ -3,12 +3,10 @@
 import re
 
 from app.storage.run import Run
+from app.storage.run_kind import added_kind
 from hexapods.agents.appearance import name_of, title_of
-from hexapods.domain.errors import HexapodError
-from hexapods.domain.text import MAX_NAME, counted, whole
+from hexapods.domain.text import MAX_NAME, whole
 from hexapods.domain.world import WORLDS
-from hexapods.experiments.config import ExperimentConfig
-from hexapods.experiments.names import TITLES, experiment_name
 from hexapods.runs.config import TrainingConfig, WalkingProblem
 from hexapods.runs.race_config import RaceConfig
 
@@ -44,13 +42,8 @@ def is_named(run: Run) -> bool:
         made = training_name(config, is_continued=run.continued_from is not None)
         earlier = f"{whole(config.steps)} steps: {config.resolved_gait.title}"
         return run.name not in (made, earlier)
-    if isinstance(config, ExperimentConfig):
-        earlier = f"{TITLES[config.experiment]}, {counted(config.seeds, 'seed')}"
-        try:
-            return run.name not in (experiment_name(config), earlier)
-        except HexapodError:
-            # An agent whose settings it varies is not here: whoever added the run, named it.
-            return run.name != earlier
+    if (kind := added_kind(run.kind)) is not None:
+        return not kind.has_made_name(run)
     if config.branch_from is not None:
         return not run.name.endswith(_branch_end(config.branch_from.step))
     earlier = f"Race: {config.resolved_gait.title}"

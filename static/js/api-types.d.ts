@@ -1066,7 +1066,7 @@ export interface Judgement {
 export interface EstimateView {
   seconds: number;
   /**
-   * how many of an experiment's trials are computed at once; null of other runs.
+   * how many of its practices are computed at once; null where there are few.
    */
   workers: number | null;
 }
@@ -1091,11 +1091,11 @@ export interface EventBodies {
   rates: RatesEvent;
   stage: StageView;
   scene: SceneView;
-  summary: SummaryEvent;
   viewers: ViewersEvent;
   robots: RobotsEvent;
   room: RoomEvent;
   tournament: TournamentEvent;
+  summary: SummaryEvent;
 }
 /**
  * State of the server when the stream begins: the newest runs, or the one that is followed.
@@ -1147,7 +1147,7 @@ export interface TrainingView {
   changes: Change[];
 }
 /**
- * Progress: steps of a training or of all lanes of a race; trials of an experiment.
+ * Progress: steps of a training or of all lanes of a race, or what else a kind counts.
  */
 export interface ProgressView {
   done: number;
@@ -1986,14 +1986,6 @@ export interface RatesEvent {
   };
 }
 /**
- * The summary of an experiment has a new number of trials.
- */
-export interface SummaryEvent {
-  run_id: string;
-  done: number;
-  total: number;
-}
-/**
  * The number of pages that watch the stage.
  */
 export interface ViewersEvent {
@@ -2066,6 +2058,14 @@ export interface TournamentEvent {
    * number of draws that are judged, over all entries and references, and of all.
    */
   of: number;
+}
+/**
+ * The summary of an experiment has a new number of trials.
+ */
+export interface SummaryEvent {
+  run_id: string;
+  done: number;
+  total: number;
 }
 /**
  * An experiment, with the fields of its request body and their defaults.
@@ -3022,7 +3022,6 @@ export interface OptionsView {
   simulators: Described[];
   observations: Described[];
   clocks: Described[];
-  experiments: ExperimentOption[];
   defaults: DefaultsView;
   settings: {
     [k: string]: SettingOption;
@@ -3045,6 +3044,7 @@ export interface OptionsView {
   tournament_fields: {
     [k: string]: SettingOption;
   };
+  experiments: ExperimentOption[];
   exports: ExportOption[];
   leg_fields: {
     [k: string]: SettingOption;

@@ -12,7 +12,7 @@ import pytest
 
 from app.storage.database.store import RunStore
 from tests.cli.running import ROOT, in_process, output, refusal
-from tests.storage.ended_runs import ended_experiment, ended_race, ended_training
+from tests.storage.ended_runs import ended_race, ended_training
 from tests.storage.stores import opened, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
@@ -128,16 +128,3 @@ def test_changes_are_refused_without_a_server_address(
     sentence = refusal("runs", "delete", RACED, *here, folder=tmp_path)
     assert "does not answer at http://127.0.0.1:1/" in sentence
     assert [run.id for run in locked_store.list().items] == [TRAINING, RACED]
-
-
-def test_experiment_is_listed_shown_and_deleted(tmp_path: Path) -> None:
-    data = tmp_path / "data"
-    with opened(data, None) as store:
-        ended_experiment(store, "00000000000e1")
-    here = ("--data", str(data))
-    listed = in_process("runs", "list", "--kind", "experiment", *here, folder=tmp_path).stdout
-    assert listed.split("\t")[:4] == ["00000000000e1", "experiment", "finished", "4 trials"]
-    shown = in_process("runs", "show", "00000000000e1", *here, folder=tmp_path).stdout
-    assert "4 of 4" in shown
-    in_process("runs", "delete", "00000000000e1", *here, folder=tmp_path)
-    assert output("runs", "list", *here, folder=tmp_path, run=in_process)["items"] == []

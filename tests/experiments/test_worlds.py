@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from app.api.experiment_answers import SummaryView
+from app.features.experiments.response_models import SummaryView
 from hexapods.experiments.config import experiment_config
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.report.page import page

@@ -22,6 +22,7 @@ import numpy as np
 from sqlalchemy import Connection, Engine, event, select
 
 from app.events.bus import EventBus
+from app.features.experiments.trial_rows import Trials
 from app.jobs import table_import
 from app.jobs.jobs import Jobs
 from app.jobs.messages import Batch, Began, Checkpointed, Ended, Saved, TrainingTask
@@ -41,8 +42,9 @@ from hexapods.runs.results import training_result
 from hexapods.runs.tables import snapshot, to_bytes
 from hexapods.runs.training import train
 from tests.features.archives.exported import export_run, import_run
+from tests.features.experiments.ended_experiments import ended_experiment
 from tests.jobs.played import played_job
-from tests.storage.ended_runs import GAIT, ended_experiment, ended_training
+from tests.storage.ended_runs import GAIT, ended_training
 from tests.storage.stores import opened, training
 
 KEPT_ID, MOVED_ID, EXPERIMENT_ID, LEARNING_ID = (
@@ -250,7 +252,7 @@ def _whole(store: RunStore, run: Run) -> dict[str, Any]:
         "has_table": has_table,
         "evaluations": len(store.curves.get(run.id)),
         "recorded": 0 if recorded is None else len(recorded.evaluations),
-        "trials": len(store.trials.get(run.id)),
+        "trials": len(Trials(store.database).get(run.id)),
     }
 
 

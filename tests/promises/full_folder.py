@@ -22,7 +22,8 @@ from hexapods.tournaments.entry import EntryConfig
 from hexapods.tournaments.judging import Judgement
 from hexapods.tournaments.rules import TournamentRules
 from hexapods.tournaments.tournament_file import sha256_of
-from tests.storage.ended_runs import ended_experiment, ended_race, ended_training
+from tests.features.experiments.ended_experiments import ended_experiment
+from tests.storage.ended_runs import ended_race, ended_training
 from tests.storage.stores import training
 
 TOKEN = "a-token-for-tests"

@@ -13,6 +13,7 @@ import httpx2
 import psutil
 
 from app.events.run_view import run_view
+from app.features.experiments.trial_rows import Trials
 from app.storage.run import NOT_ENDED
 from tests.promises.length import at_length
 from tests.promises.trainings import checkpoint_step
@@ -117,6 +118,6 @@ def test_sigterm_ends_an_experiment_and_its_cluster(
 
     with opened(tmp_path, None) as store:
         now = store.get(run["id"])
-        trials = store.trials.get(run["id"])
+        trials = Trials(store.database).get(run["id"])
     assert (now.state, now.error) == ("interrupted", "The server was stopped while it ran.")
     assert len(trials) >= now.done > 0

@@ -14,7 +14,7 @@ from collections.abc import Callable
 import psutil
 import pytest
 
-from tests.jobs.experiments import sweep, tried
+from tests.features.experiments.sweeps import sweep, tried
 from tests.promises.length import at_length
 from tests.served import BODY, ENDLESS, Served
 from tests.timeouts import LONG_S

@@ -16,6 +16,7 @@ from sqlalchemy import Connection, Engine, text
 
 import hexapods
 from app.events.run_view import run_view
+from app.features.experiments.trial_rows import Trials
 from app.storage.database import migration
 from app.storage.database.engine import Database, postgresql_engine, sqlite_engine
 from app.storage.database.migration import migrate, newest_revision
@@ -72,7 +73,7 @@ def check(store: RunStore, revision: str) -> None:
     for run in runs:
         assert store.get(run.id) == run
     if revision >= "0002":
-        assert store.trials.get(sample.EXPERIMENT.id) == TRIALS
+        assert Trials(store.database).get(sample.EXPERIMENT.id) == TRIALS
     first = sample.RUNS[0].id
     assert store.curves.get(first) == sample.CURVE
     assert store.artifact(first, TABLE) == sample.FILE

@@ -51,7 +51,7 @@ SPONTANEOUS = {"queued": {"running"}, "running": {"finished"}, "paused": {"finis
 A paused run may finish: its last step may be done, and the message of its end in transit.
 """
 assert SPONTANEOUS.keys() == NOT_ENDED, "each state that a run leaves by itself is in the model"
-RESUMED = {**dict.fromkeys(PAUSED, "running"), **dict.fromkeys(RESUMABLE["training"], "queued")}
+RESUMED = {**dict.fromkeys(PAUSED, "running"), **dict.fromkeys(RESUMABLE, "queued")}
 
 WEIGHTS = {"look": 4, "pause": 4, "resume": 4, "change": 4, "stop": 1, "delete": 2}
 

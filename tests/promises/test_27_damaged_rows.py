@@ -25,8 +25,8 @@ from sqlalchemy import text
 
 from app.events.run_view import run_view
 from app.features.archives import archive
-from app.features.archives.archived_trials import TRIALS
 from app.features.archives.transfer import RUN
+from app.features.experiments.archived_trials import TRIALS
 from app.storage.database.engine import Database, postgresql_engine
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.database.store import RunStore
@@ -38,6 +38,7 @@ from tests.browser.dashboard import Dashboard
 from tests.browser.serving import serving
 from tests.cli.running import in_process
 from tests.features.archives.exported import export_run
+from tests.features.experiments.ended_experiments import ended_experiment
 from tests.postgresql import PostgresServer
 from tests.promises.length import at_length
 from tests.promises.worst_values import (
@@ -49,7 +50,7 @@ from tests.promises.worst_values import (
     put_value,
 )
 from tests.served import Served
-from tests.storage.ended_runs import ended_experiment, ended_race, ended_training
+from tests.storage.ended_runs import ended_race, ended_training
 from tests.storage.stores import opened, training
 
 SOUND, TRAINING, RACE, EXPERIMENT = (

@@ -132,7 +132,7 @@ class Audience:
 
     def resume(self) -> None:
         parts, expected = self._parts, self._expected
-        if run_id := self._any(*sorted(RESUMABLE["race"])):
+        if run_id := self._any(*sorted(RESUMABLE)):
             parts.set_state(parts.store.get(run_id), "queued")
             expected.states[run_id] = "queued"
             if expected.state not in NOT_ENDED or run_id == expected.on_stage:

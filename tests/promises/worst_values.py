@@ -9,7 +9,8 @@ from typing import Any
 from sqlalchemy import BigInteger, Boolean, Column, Double
 
 from app.storage.database.columns import JsonWithNan, PortableText, TagList, UtcTime
-from app.storage.database.schema import METADATA, RUNS
+from app.storage.database.schema import RUNS
+from tests.storage.all_tables import ALL_TABLES
 
 _DEEP = "[" * 50_000 + "]" * 50_000
 STORED: list[Any] = [
@@ -47,7 +48,7 @@ STORED: list[Any] = [
 `BROKEN_TEXT`."""
 OF_RUNS = [
     table
-    for table in METADATA.sorted_tables
+    for table in ALL_TABLES.values()
     if table is RUNS or any(key.references(RUNS) for key in table.foreign_keys)
 ]
 """Tables that have a run, and what goes with it."""

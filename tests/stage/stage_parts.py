@@ -71,7 +71,7 @@ class StageParts:
             "lane_training_ids": tuple(None for _ in lanes),
             **fields,
         }
-        run = Run(kind=kind, config=config, **fields)  # type: ignore[arg-type]
+        run = Run(kind=kind, config=config, **fields)
         self.store.create(run)
         return run
 

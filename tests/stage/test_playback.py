@@ -64,7 +64,7 @@ def test_marks_of_a_race_are_in_order_and_where_it_says(parts: StageParts) -> No
 def test_a_practice_has_its_evaluations_and_the_steps_that_are_kept(parts: StageParts) -> None:
     run = parts.finished_training(600)
     replay = replays_of(parts).get(run.id, "paper")
-    step_s = run.config.robot.step_s  # type: ignore[union-attr]
+    step_s = run.config.robot.step_s
     recording = parts.recordings.training(run.id)
     assert recording is not None
 

@@ -1,6 +1,5 @@
 """Helpers for tests: ended runs, computed by the real loops and stored with all their files."""
 
-import json
 import time
 from dataclasses import replace
 from typing import Any
@@ -10,13 +9,7 @@ import numpy as np
 from app.storage.database.store import RunStore
 from app.storage.recordings import Recordings
 from app.storage.run import TABLE, Run
-from app.storage.stored_trials import trials_as_csv
 from hexapods.assembly import build_learner, build_walkers
-from hexapods.experiments.config import SUMMARY
-from hexapods.experiments.plan import Plan
-from hexapods.experiments.result import ExperimentResult
-from hexapods.experiments.summary import summarise
-from hexapods.experiments.trial import run_trial
 from hexapods.runs.config import training_config
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import RaceConfig
@@ -26,7 +19,6 @@ from hexapods.runs.records import Evaluated, StepTaken
 from hexapods.runs.results import RaceResult, TrainingResult, race_result, training_result
 from hexapods.runs.tables import from_bytes, snapshot, to_bytes
 from hexapods.runs.training import train
-from tests.jobs.experiments import sweep
 from tests.storage.stores import training
 
 GAIT = "left-right-origin"
@@ -87,33 +79,6 @@ def ended_race(store: RunStore, run_id: str, training_id: str, **walk: Any) -> R
     return store.change(run_id, {"queued"}, "finished", done=16, result=result)
 
 
-def ended_experiment(store: RunStore, run_id: str) -> Run:
-    """Run a sweep, and store it with its trials and summary, but without figures."""
-    config = sweep(seeds=3, agents=("q-learning", "greedy"))
-    plan = Plan(config)
-    store.create(
-        Run(id=run_id, kind="experiment", name="It was tried", config=config, total=plan.total)
-    )
-    results = {trial.key: run_trial(trial.config) for trial in plan.trials()}
-    rows = [
-        {"key": key, "result": result.as_json(), "set_aside": None, "compute_s": 0.5}
-        for key, result in results.items()
-    ]
-    store.trials.append(run_id, rows)
-    summary = summarise(config, results)
-    store.put_artifact(run_id, SUMMARY, json.dumps(summary).encode())
-    store.put_artifact(run_id, "trials.csv", trials_as_csv(config, rows))
-    counted = {name: summary["trials"][name] for name in ("done", "total", "failed")}
-    claims = [{name: claim[name] for name in ("id", "verdict")} for claim in summary["claims"]]
-    result = {
-        "trials": {**counted, "set_aside": 0},
-        "claims": claims,
-        "files": [SUMMARY, "trials.csv"],
-        "shared_machine": False,
-    }
-    return store.change(run_id, {"queued"}, "finished", done=plan.total, result=result)
-
-
 def result_of_training(run: Run) -> TrainingResult:
     """Return the result of a training that has one."""
     assert isinstance(run.result, TrainingResult)
@@ -123,10 +88,4 @@ def result_of_training(run: Run) -> TrainingResult:
 def result_of_race(run: Run) -> RaceResult:
     """Return the result of a race that has one."""
     assert isinstance(run.result, RaceResult)
-    return run.result
-
-
-def experiment_result(run: Run) -> ExperimentResult:
-    """Return the result of an experiment that has one."""
-    assert isinstance(run.result, ExperimentResult)
     return run.result

@@ -30,7 +30,6 @@ from hexapods.runs.results import (
 from tests.storage.stores import (
     ODD,
     RACE,
-    TRIALS,
     experiment,
     race,
     training,
@@ -111,9 +110,6 @@ def test_unknown_run_raises_not_found(store: RunStore) -> None:
             store.get,
             store.delete,
             store.curves.get,
-            store.trials.get,
-            lambda i: store.trials.append(i, TRIALS),
-            lambda i: store.trials.append(i, []),
             lambda i: store.update(i, done=1),
             lambda i: store.update_progress(i, 1),
             lambda i: store.change(i, NOT_ENDED, "failed"),
@@ -380,24 +376,6 @@ def test_thinned_curves_end_with_the_newest_point(store: RunStore) -> None:
     assert [step for step, _ in curves["b"]] == list(range(4, 101, 4))
     assert math.isnan(curves["d"][0][1])
     assert store.curves.thinned(["b"], 1)["b"] == [(100, 1.0)]
-
-
-def test_trials_are_sorted_and_replaced_by_key(store: RunStore) -> None:
-    store.create(experiment("a"), experiment("b"))
-    assert store.trials.get("a") == []
-    first, second = TRIALS
-    store.trials.append("a", [second])
-    store.trials.append("a", [first])
-    store.trials.append("b", [first])
-    assert store.trials.get("a") == TRIALS
-    better = {**second, "result": first["result"], "set_aside": None}
-    store.trials.append("a", [better, second, better])
-    assert store.trials.get("a") == [first, better]
-    store.change("a", QUEUED, "stopped")
-    store.delete("a")
-    assert store.trials.get("b") == [first]
-    store.create(experiment("a"))
-    assert store.trials.get("a") == []
 
 
 def test_artifact_replaces_the_one_with_its_name(store: RunStore) -> None:

@@ -4,7 +4,7 @@
   which are in `export_command` and `import_command`.
 - `transfer` exports runs from a store to an archive, and imports them after validating them.
 - `archive` packs and unpacks the zip container, with a manifest of SHA-256 hashes.
-- `archived_run`, `archived_trials`, `archived_curve`, `archived_robots` and `archived_files` encode
-  and validate its members: `run.json`, `trials.json`, the learning curve, stored robots; tables,
-  recordings and reports.
+- `archived_run`, `archived_curve`, `archived_robots` and `archived_files` encode and validate its
+  members: `run.json`, the learning curve, stored robots; tables and recordings. Those of a kind of
+  run that a feature adds are that kind's (`app.storage.run_kind`).
 """

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.features.archives.archive import Member
-from app.features.archives.archived_trials import check_report_files, is_report_file, report_files
 from app.storage.artifact_file import chunks
 from app.storage.database.store import RunStore
 from app.storage.imported_tables import checked_table
 from app.storage.run import CHECKPOINT, RESUMABLE, TABLE, Run
+from app.storage.run_kind import added_kind
 from app.storage.stored_races import MAX_RACE_FILES, race_file
 from app.storage.stored_trainings import (
     PRACTICE,
@@ -35,7 +35,6 @@ from hexapods.domain.errors import DamagedFile, HexapodError
 from hexapods.domain.kinematics import legs_of
 from hexapods.domain.simulator import Motion
 from hexapods.domain.types import Action, Cells
-from hexapods.experiments.config import ExperimentConfig
 from hexapods.runs import tables
 from hexapods.runs.config import RACE_STEPS, TrainingConfig, WalkingProblem
 from hexapods.runs.npz_slices import NpzSlices
@@ -57,8 +56,8 @@ _RACE_FILES = tuple(map(race_file, range(MAX_RACE_FILES)))
 
 def is_file_of(name: str, kind: str) -> bool:
     """Whether an archive of a run of this kind may have a file of this name."""
-    if kind == "experiment":
-        return is_report_file(name)
+    if (added := added_kind(kind)) is not None:
+        return added.is_member(name)
     if kind == "race":
         return name in _RACE_FILES
     is_numbered = _EVALUATIONS.fullmatch(name) or _TRANSITIONS.fullmatch(name)
@@ -72,12 +71,12 @@ def members_of(store: RunStore, run: Run) -> dict[str, Member]:
         DamagedFile: if one is damaged or missing.
     """
     names = list(_RACE_FILES)
-    if run.kind == "experiment":
-        names = report_files(run)
+    if (kind := added_kind(run.kind)) is not None:
+        names = list(kind.file_names(run))
     if run.kind == "training":
         names = [TABLE, PRACTICE, *map(evaluations_file, range(MAX_EVALUATION_FILES))]
         names += map(transitions_file, range(MAX_TRANSITION_FILES))
-        if run.state in RESUMABLE[run.kind]:
+        if run.state in RESUMABLE:
             names.append(CHECKPOINT)
     members = {}
     # A query for each of the 140 names that there could be would take most of the export's time.
@@ -98,7 +97,7 @@ def _chunks_of(store: RunStore, run_id: str, name: str) -> Iterator[bytes]:
 
 
 def check_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
-    """Check that an imported run's files are consistent with its config and can be displayed.
+    """Check that an imported walk's files are consistent with its config and can be displayed.
 
     Args:
         run: the imported run.
@@ -109,9 +108,6 @@ def check_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
         DamagedFile: if a file is unexpected, malformed or inconsistent.
         TableMismatch: if a Q-table was learned for another problem.
     """
-    if isinstance(run.config, ExperimentConfig):
-        check_report_files(run, files, label)
-        return
     for name, data in files.items():
         if not is_file_of(name, run.kind):
             raise DamagedFile(f"{label} has {name}, which no {run.kind} has")

@@ -6,12 +6,12 @@ from typing import Any
 
 from app.storage.database.store import RunStore
 from app.storage.run import Run, robots_of
+from app.storage.run_kind import WALKS
 from app.storage.stored_robot import StoredRobot
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, HexapodError
 from hexapods.domain.robot import parse_document
 from hexapods.domain.text import check_name
-from hexapods.experiments.config import ExperimentConfig
 from hexapods.runs.results import RaceResult
 
 _MEMBER = re.compile(rf"robot-([0-9a-f]{{{robot_documents.ID_DIGITS}}})\.json", re.ASCII)
@@ -62,7 +62,7 @@ def robots_to_store(
     names = _names(run)
     if others := [one for one in documents if one not in names]:
         raise DamagedFile(f"{label} has robot {others[0]}, which its run does not use")
-    gait = None if isinstance(run.config, ExperimentConfig) else run.config.gait
+    gait = run.config.gait if run.kind in WALKS else None
     return [
         (StoredRobot(id=one, name=check_name(names[one]), gait=gait), document)
         for one, document in documents.items()

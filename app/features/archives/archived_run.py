@@ -7,18 +7,16 @@ import msgspec
 from msgspec import Meta, Raw
 
 from app.features.archives.archived_curve import CurveRows, read_curve
-from app.jobs.submissions import check_training, check_walk, plan_of
+from app.jobs.submissions import check_training, check_walk
 from app.storage.errors import Conflict
 from app.storage.imported_tables import check_change, check_settings
 from app.storage.run import (
-    CONFIGS,
     NOT_ENDED,
-    RESULTS,
     Config,
-    Kind,
     Run,
     world_of,
 )
+from app.storage.run_kind import added_kind, run_kinds
 from app.storage.untrusted_input import (
     Count,
     Metres,
@@ -34,7 +32,7 @@ from hexapods.domain.errors import DamagedFile, HexapodError, InvalidInput, Unkn
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.robot import robot
 from hexapods.domain.text import MAX_NOTES, MAX_TAG, check_name, check_notes, check_tags
-from hexapods.experiments.config import MAX_WORKERS, ExperimentConfig
+from hexapods.experiments.config import MAX_WORKERS
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.lane import check_lane
 from hexapods.runs.race_config import MAX_LANES, RaceConfig
@@ -59,7 +57,7 @@ class _EndedRun(UntrustedInput, frozen=True):
     """Fields of a `Run` that has ended."""
 
     id: _Id
-    kind: Kind
+    kind: Name
     name: Name
     state: Literal["finished", "stopped", "failed", "interrupted"]
     config: Raw
@@ -117,17 +115,20 @@ def run_json(run: Run, curve: Sequence[Mapping[str, Any]]) -> bytes:
     return data
 
 
-def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run, CurveRows]:
+def read_run_json(
+    data: bytes, label: str, kinds: Collection[str], agents: Collection[str]
+) -> tuple[Run, CurveRows]:
     """Parse and validate `run.json`; return the run and its learning curve.
 
     Args:
         data: as written by `run_json`.
         label: name of the file for error messages.
+        kinds: names of the kinds of runs that are not left out.
         agents: names of the registered agents.
 
     Raises:
         DamagedFile: if it is malformed, inconsistent, or of another format version.
-        InvalidInput: if its agent, robot or gait is not supported here.
+        InvalidInput: if its kind, agent, robot or gait is not supported here.
     """
     try:
         if len(data) > MAX_JSON_BYTES:
@@ -144,7 +145,10 @@ def read_run_json(data: bytes, label: str, agents: Collection[str]) -> tuple[Run
             raise ValueError("it is too long")
         rest = data.replace(curve_json, b"[]", 1)
         check_json(rest)
-        run = _run(msgspec.json.decode(rest, type=_File).run, agents, is_first=head.format == 1)
+        fields = msgspec.json.decode(rest, type=_File).run
+        if fields.kind not in kinds:
+            raise UnknownName("kind of run", fields.kind, kinds)
+        run = _run(fields, agents, is_first=head.format == 1)
         curve = read_curve(curve_json)
         _check(run, curve)
     except DamagedFile:
@@ -161,23 +165,24 @@ def _run(fields: _EndedRun, agents: Collection[str], *, is_first: bool) -> Run:
     given, changes = _decode(fields.config, dict[str, Any]), fields.changes
     if is_first:
         given, changes = nested_config(given), [nested_change(one) for one in changes]
-    config = from_json(CONFIGS[fields.kind], given)
+    kind, added = run_kinds()[fields.kind], added_kind(fields.kind)
+    config = from_json(kind.config, given)
     if fields.done > fields.total:
         raise ValueError("its progress does not fit together")
-    # Before `plan_of`, which imports the agents of an experiment.
+    # First, as what follows imports the agents.
     _check_agents(config, agents)
     if isinstance(config, TrainingConfig):
         check_settings(config)
         check_training(config)
-    elif isinstance(config, ExperimentConfig):
-        if plan_of(config).total != fields.total:
-            raise ValueError("its total is not that of its trials")
+    elif added is not None:
+        if added.checked_total(config) != fields.total:
+            raise ValueError(f"its total is not that of its {added.counted}")
     else:
         check_walk(config)
     result = None
     if _decode(fields.result, Any) is not None:
         # No value is converted, and no other field is allowed.
-        result = from_json(RESULTS[fields.kind], bytes(fields.result), strict=True, extra="forbid")
+        result = from_json(kind.result, bytes(fields.result), strict=True, extra="forbid")
     values = {name: getattr(fields, name) for name in fields.__struct_fields__}
     lanes = tuple(fields.lane_training_ids)
     values |= {
@@ -237,7 +242,7 @@ def _check_agents(config: Config, agents: Collection[str]) -> None:
     if isinstance(config, RaceConfig):
         used: Collection[str] = [lane.agent for lane in config.lanes]
     else:
-        used = config.agents if isinstance(config, ExperimentConfig) else [config.agent]
+        used = config.agents if hasattr(config, "agents") else [config.agent]
     for name in used:
         if name not in agents:
             raise UnknownName("agent", name, agents)

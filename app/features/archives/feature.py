@@ -5,6 +5,7 @@ from typing import Any
 
 from fastapi import APIRouter
 
+from app.api.starts import StartKind
 from app.feature import Feature
 from app.features.archives import routes
 from app.features.archives.transfer import MAX_RUNS
@@ -21,7 +22,12 @@ class Archives(Feature):
         return (routes.router,)
 
     @classmethod
-    def options(cls) -> Mapping[str, Any]:
+    def routers_of_start(cls, start: StartKind) -> Sequence[APIRouter]:
+        return (routes.export_routes(start.kind),)
+
+    @classmethod
+    def options(cls, agents: tuple[str, ...]) -> Mapping[str, Any]:
+        del agents
         return {
             "limits": {"archive_runs": [1, MAX_RUNS]},
             "help": {"archive_runs": "How many runs one archive holds."},

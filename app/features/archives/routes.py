@@ -2,19 +2,21 @@
 
 from collections.abc import Callable, Sequence
 
-from fastapi import Request
+from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import Answer, AnyRunView
+from app.api.answers import Answer
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, answers, takes_file
 from app.api.deps import Services, ServicesDep, StartRequest, StartRequestDep
 from app.api.formats import attachment
 from app.api.policy import OPERATOR, WATCH, WATCH_RUN, api_router, policy
+from app.api.run_views import AnyRunView
 from app.api.runs import RunIdsQuery, RunPath, find, located, phrase
 from app.api.work import DOWNLOAD
 from app.features.archives import archive
 from app.features.archives.transfer import export_chunks, export_many, import_runs
-from app.storage.run import KINDS, IdempotencyKey, Kind, Run, robots_of
+from app.storage.run import IdempotencyKey, Kind, Run, robots_of
+from app.storage.run_kind import run_kinds
 from hexapods.domain.errors import InvalidInput
 
 router = api_router()
@@ -37,16 +39,19 @@ def _export(kind: Kind) -> Callable[..., Response]:
     return export
 
 
-for _kind in KINDS:
+def export_routes(kind: Kind) -> APIRouter:
+    """Return the route that exports a run of a kind."""
+    router = api_router()
     router.add_api_route(
-        f"/{_kind}s/{{run_id}}/export",
-        _export(_kind),
-        tags=[f"{_kind}s"],
-        summary=phrase("Export {}", _kind),
-        name=f"export_{_kind}",
+        f"/{kind}s/{{run_id}}/export",
+        _export(kind),
+        tags=[f"{kind}s"],
+        summary=phrase("Export {}", kind),
+        name=f"export_{kind}",
         response_class=Response,
         responses=answers(200, {archive.MEDIA_TYPE: BINARY}, headers=ATTACHMENT),
     )
+    return router
 
 
 @router.get(
@@ -86,7 +91,7 @@ def import_archive_of_runs(services: ServicesDep, start_request: StartRequestDep
 @router.post(
     "/import",
     status_code=201,
-    tags=["trainings", "races", "experiments"],
+    tags=[f"{kind}s" for kind in run_kinds()],
     summary="Import an archive of one run",
     response_model=AnyRunView,
     responses=answers(201, headers=LOCATION),

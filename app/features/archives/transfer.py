@@ -7,7 +7,6 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 from app.api.budgeted_chunks import BudgetedChunks
 from app.features.archives import archive
@@ -19,21 +18,20 @@ from app.features.archives.archived_robots import (
     take_documents,
 )
 from app.features.archives.archived_run import read_run_json, run_json
-from app.features.archives.archived_trials import TRIALS, read_trials_json, trials_json
 from app.limits.memory_budget import MemoryBudget
 from app.storage.database.store import RunStore
 from app.storage.errors import Damaged
 from app.storage.json_text import is_finite
-from app.storage.run import KINDS, Content, IdempotencyKey, Run
+from app.storage.run import Content, IdempotencyKey, Run
 from app.storage.run_ids import RunIds
+from app.storage.run_kind import Rows, added_kind, run_kinds
 from hexapods.domain import robot_documents
 from hexapods.domain.errors import DamagedFile, InvalidInput
-from hexapods.experiments.config import ExperimentConfig
 
 RUN = "run.json"
 MAX_RUNS = 100
 """Runs of an archive."""
-_ONE_OF_SEVERAL = re.compile(rf"({'|'.join(KINDS)})-[0-9a-z]{{1,32}}\.zip", re.ASCII)
+_ONE_OF_SEVERAL = re.compile(rf"({'|'.join(run_kinds())})-[0-9a-z]{{1,32}}\.zip", re.ASCII)
 
 
 def export_chunks(
@@ -45,7 +43,7 @@ def export_chunks(
         store: store of the run.
         run_id: id of the run.
         budget: memory budget for what is held until the last chunk: the encoded run, its curve
-            and its trials; None for no limit.
+            and what its kind adds; None for no limit.
 
     Raises:
         NotFound: if there is no such run.
@@ -96,13 +94,13 @@ def _contents(
 ) -> tuple[Run, dict[str, bytes], dict[str, archive.Member]]:
     """Return an ended run, and of its archive the members in memory and those in files."""
     run = store.get(run_id)
-    curve, trials = store.curves.get(run_id), store.trials.get(run_id)
-    if not is_finite([curve, trials]):
-        # They would be null in JSON, which every import rejects.
-        raise Damaged(run_id, "its curve or its trials have NaN or an infinity")
+    curve = store.curves.get(run_id)
+    if not is_finite(curve):
+        # It would be null in JSON, which every import rejects.
+        raise Damaged(run_id, "its curve has NaN or an infinity")
     texts = {RUN: run_json(run, curve), **robot_members(store, run)}
-    if run.kind == "experiment":
-        texts[TRIALS] = trials_json(trials)
+    if (kind := added_kind(run.kind)) is not None:
+        texts |= kind.texts(run, store)
     return run, texts, members_of(store, run)
 
 
@@ -141,41 +139,39 @@ def import_runs(
     store.check_disk_space(len(data))
     members = archive.unpack(data, label, _is_member_name if is_one else _is_any_member_name)
     if is_one or RUN in members:
-        checked = [_checked(members, ids, agents, label)]
+        checked = [_checked(members, store.kinds, ids, agents, label)]
     elif not members or not all(map(_ONE_OF_SEVERAL.fullmatch, members)):
         raise DamagedFile(f"{label} is no archive of runs: it has no {RUN}")
     else:
         checked = [
-            _checked(archive.unpack(one, label, _is_member_name), ids, agents, label)
+            _checked(archive.unpack(one, label, _is_member_name), store.kinds, ids, agents, label)
             for label, one in ((f"{name} of {label}", one) for name, one in members.items())
         ]
     return list(store.add(checked, ids, key))
 
 
 def _checked(
-    members: dict[str, bytes], ids: RunIds, agents: Collection[str], label: str
+    members: dict[str, bytes],
+    kinds: Collection[str],
+    ids: RunIds,
+    agents: Collection[str],
+    label: str,
 ) -> tuple[Run, Content]:
     """Validate the members of a run's archive; return the run with the id that it is to get."""
     if RUN not in members:
         raise DamagedFile(f"{label} is no archive of a run: it has no {RUN}")
     documents = take_documents(members, label)
     with robot_documents.lent(documents.values()):
-        run, curve = read_run_json(members.pop(RUN), f"{RUN} of {label}", agents)
-        trials = _trials(run, members, label)
-        check_files(run, members, label)
+        run, curve = read_run_json(members.pop(RUN), f"{RUN} of {label}", kinds, agents)
+        if (kind := added_kind(run.kind)) is None:
+            check_files(run, members, label)
+            rows: Rows = {}
+        else:
+            rows = kind.take_members(run, members, label)
     robots = robots_to_store(run, documents, label)
     if not ids.is_plausible(run.id):
         run = replace(run, id=ids())
-    return run, Content(evaluations=curve, trials=trials, artifacts=members, robots=robots)
-
-
-def _trials(run: Run, members: dict[str, bytes], label: str) -> list[dict[str, Any]]:
-    """Remove `trials.json` from the members of an experiment, and return its validated rows."""
-    if not isinstance(run.config, ExperimentConfig):
-        return []
-    if TRIALS not in members:
-        raise DamagedFile(f"{label} is no archive of an experiment: it has no {TRIALS}")
-    return read_trials_json(members.pop(TRIALS), run.config, f"{TRIALS} of {label}")
+    return run, Content(evaluations=curve, rows=rows, artifacts=members, robots=robots)
 
 
 def _is_any_member_name(name: str) -> bool:
@@ -183,4 +179,4 @@ def _is_any_member_name(name: str) -> bool:
 
 
 def _is_member_name(name: str) -> bool:
-    return name in (RUN, TRIALS) or is_robot(name) or any(is_file_of(name, kind) for kind in KINDS)
+    return name == RUN or is_robot(name) or any(is_file_of(name, kind) for kind in run_kinds())

@@ -7,9 +7,10 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, JsonValue
 
 from app.api.answers import Answer, ComparisonView, Count
+from app.api.run_views import KindName
 from app.features.classroom.lesson import Card, Lesson
 from app.features.classroom.questions import Ask, Score
-from app.storage.run import Kind, State
+from app.storage.run import State
 
 
 class CardTexts(Answer):
@@ -244,7 +245,7 @@ class RunOutcome(Answer):
     """
 
     id: str
-    kind: Kind | Literal["what-if"]
+    kind: KindName | Literal["what-if"]
     state: State
     given: dict[str, Any]
     distance_m: float | None

@@ -9,7 +9,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import ServerSentEvent
 from starlette.responses import JSONResponse, Response
 
-from app.api.answers import AnyRunView, ComparisonView, DeletedView
+from app.api.answers import ComparisonView, DeletedView
 from app.api.contract import LOCATION, TEXT, Schema, answers
 from app.api.cookies import SessionCookie, is_secure
 from app.api.deps import EventListener, IdempotencyKeyHeader, Services, ServicesDep
@@ -17,6 +17,7 @@ from app.api.events import EVENT_STREAM, client_slot, stream_events
 from app.api.formats import attachment, negotiated
 from app.api.identity import charged_client
 from app.api.policy import OPERATOR, WATCH, api_router, policy
+from app.api.run_views import AnyRunView
 from app.api.runs import delete_each, located
 from app.api.spectators import address_for_others, link_of
 from app.features.classroom.access import (

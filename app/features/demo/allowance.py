@@ -8,6 +8,7 @@ from datetime import timedelta
 from app.features.demo.settings import DemoSettings
 from app.storage.errors import Busy, Forbidden
 from app.storage.run import Run
+from app.storage.run_kind import WALKS
 from hexapods.domain.errors import InvalidInput
 
 HOUR = timedelta(hours=1)
@@ -71,9 +72,9 @@ class Allowance:
             Forbidden: if it is none of a training or a race.
             InvalidInput: if it has too many steps.
         """
-        if any(run.kind == "experiment" for run in runs):
+        if others := [run.kind for run in runs if run.kind not in WALKS]:
             raise Forbidden(
-                "visitors of this demo start trainings and races; experiments need the operator"
+                f"visitors of this demo start trainings and races; {others[0]}s need the operator"
             )
         steps, most = sum(run.total for run in runs), min(self.steps_per_start, self.steps_per_hour)
         if steps > most:

@@ -30,6 +30,7 @@ from app.storage.database.store import RunStore
 from app.storage.errors import Busy, Conflict
 from app.storage.recordings import Recordings
 from app.storage.run import RUNNING, Run
+from app.storage.run_kind import with_article
 from app.storage.stored_tables import load_table
 from hexapods.agents import registry
 from hexapods.agents.protocol import Tabular, Valuing
@@ -93,7 +94,8 @@ class Explanations:
         if isinstance(run.config, RaceConfig):
             return self._explain_lane(run, run.config, step, lane)
         if not isinstance(run.config, TrainingConfig):
-            raise InvalidInput(f"run {run_id} is an experiment; its trials are no steps to explain")
+            kind = with_article(run.kind)
+            raise InvalidInput(f"run {run_id} is {kind}, which has no steps to explain")
         if lane != 0:
             raise InvalidInput("a training has one lane, 0")
         config, log = run.config, self._log(run)

@@ -34,7 +34,8 @@ class Exports(Feature):
         return (routes.router,)
 
     @classmethod
-    def options(cls) -> Mapping[str, Any]:
+    def options(cls, agents: tuple[str, ...]) -> Mapping[str, Any]:
+        del agents
         return {"exports": export_options()}
 
     @classmethod

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from app.storage.errors import Conflict, Damaged
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, AnyRun, DamagedRun
+from app.storage.run_kind import with_article
 from hexapods.domain.errors import InvalidInput
 from hexapods.exports.export_format import EncodedReplay, ExportSource
 from hexapods.exports.recorded_walks import RecordedWalks
@@ -34,7 +35,7 @@ def recorded_walks(run: AnyRun, recordings: Recordings) -> RecordedWalks:
     """Return what is recorded of a race or training that has ended.
 
     Raises:
-        InvalidInput: if the run is an experiment.
+        InvalidInput: if the run is neither.
         Damaged: if it cannot be read.
         Conflict: if it has not ended, or has no recording.
     """
@@ -43,7 +44,8 @@ def recorded_walks(run: AnyRun, recordings: Recordings) -> RecordedWalks:
     config = run.config
     if not isinstance(config, RaceConfig | TrainingConfig):
         raise InvalidInput(
-            f"{run.id} is an experiment, which records no walk; choose a race or a training"
+            f"{run.id} is {with_article(run.kind)}, which records no walk; choose a race or a "
+            "training"
         )
     if run.state in NOT_ENDED:
         raise Conflict(

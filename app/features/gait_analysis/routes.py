@@ -14,6 +14,7 @@ from app.api.runs import RunPath
 from app.api.work import ANALYSIS
 from app.storage.errors import Conflict, Damaged
 from app.storage.run import DamagedRun, Run, world_of
+from app.storage.run_kind import with_article
 from hexapods.domain.records import Record, to_json
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.gait_analysis import GaitFigures, gait_figures, window_of
@@ -126,7 +127,8 @@ def _walks(services: Services, run: Run, part: TrainingPart, from_s: float | Non
         agents = [lane.agent for lane in config.lanes]
         return _Walks("race", agents, [walk_of_lane(one, config, world_of(run)) for one in lanes])
     if not isinstance(config, TrainingConfig):
-        raise Conflict(f"{run.id} is an experiment, whose walks are not recorded", run.state)
+        kind = with_article(run.kind)
+        raise Conflict(f"{run.id} is {kind}, whose walks are not recorded", run.state)
     recording = services.recordings.training(run.id)
     if recording is None:
         raise Conflict(f"training {run.id} is {run.state} and has no recording (yet)", run.state)

@@ -30,7 +30,8 @@ class RobotFeature(Feature):
         return (routes.router,)
 
     @classmethod
-    def options(cls) -> Mapping[str, Any]:
+    def options(cls, agents: tuple[str, ...]) -> Mapping[str, Any]:
+        del agents
         fields = {"leg_fields": leg_fields(), "torso_fields": torso_fields()}
         return {
             group: {name: setting_option(setting) for name, setting in settings.items()}

@@ -84,7 +84,8 @@ class TournamentFeature(Feature):
         )
 
     @classmethod
-    def options(cls) -> Mapping[str, Any]:
+    def options(cls, agents: tuple[str, ...]) -> Mapping[str, Any]:
+        del agents
         fields = tournament_fields()
         return {"tournament_fields": {name: setting_option(s) for name, s in fields.items()}}
 

@@ -1,4 +1,4 @@
-"""Estimated time of a training, race or experiment here: its steps times their measured time."""
+"""Estimated time of a run here: its steps times their measured time."""
 
 import threading
 from collections import defaultdict
@@ -15,24 +15,21 @@ from app.jobs.process_pool import OutOfProcessorTime, ProcessPool
 from app.jobs.stopping import Stopping
 from app.jobs.submissions import (
     BranchStart,
-    ExperimentStart,
     LaneStart,
+    ManyPractices,
     RaceStart,
     TrainingStart,
     check_training,
     check_walk,
-    plan_of,
 )
 from app.jobs.turns import Turns
 from hexapods.agents.registry import learns
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.sums import ordered_sum
-from hexapods.experiments.config import ExperimentConfig
-from hexapods.experiments.plan import Plan
 from hexapods.runs.config import RACE_STEPS, TrainingConfig, training_config
 
 MAX_MEASURED = 24
-"""Kinds of steps of an experiment that are timed; others count as the mean of their cost class."""
+"""Kinds of steps of one run that are timed; others count as the mean of their cost class."""
 MAX_CACHED = 256
 LIMIT_S = 30.0
 """Processor time for a few steps of each [s]; agents that need more are too slow to be timed."""
@@ -79,7 +76,7 @@ class Estimates:
         self._lock = threading.Lock()
         self.turns = Turns("estimates", MAX_WAITING)
 
-    def of(self, start: TrainingStart | RaceStart | BranchStart | ExperimentStart) -> float:
+    def of(self, start: TrainingStart | RaceStart | BranchStart | ManyPractices) -> float:
         """Return how long a run would take once it has a core [s].
 
         Raises:
@@ -87,8 +84,8 @@ class Estimates:
                 race that branches off.
             Busy: if others wait for that, or the pool is closed.
         """
-        if isinstance(start, ExperimentStart):
-            return self._experiment_s(start.config) / self._at_once(start)
+        if isinstance(start, ManyPractices):
+            return self._all_practices_s(start) / start.at_once(self._cores)
         if isinstance(start, TrainingStart):
             check_training(start.config)
             parts = [*_practice(start.config)]
@@ -105,21 +102,18 @@ class Estimates:
         return at_once + _seconds(lanes, measured)
 
     def workers_of(
-        self, start: TrainingStart | RaceStart | BranchStart | ExperimentStart
+        self, start: TrainingStart | RaceStart | BranchStart | ManyPractices
     ) -> int | None:
-        """Return how many trials of an experiment are computed at once; None of other runs."""
-        return self._at_once(start) if isinstance(start, ExperimentStart) else None
+        """Return how many of a run's many practices are computed at once; None of other runs."""
+        return start.at_once(self._cores) if isinstance(start, ManyPractices) else None
 
     def close(self) -> None:
         """Shut down the pool."""
         self._pool.close()
 
-    def _at_once(self, start: ExperimentStart) -> int:
-        return max(1, min(start.workers or self._cores, plan_of(start.config).total))
-
-    def _experiment_s(self, config: ExperimentConfig) -> float:
-        """Return the computing time of all trials [s]."""
-        parts = [*_trials(plan_of(config))]
+    def _all_practices_s(self, start: ManyPractices) -> float:
+        """Return the computing time of all practices [s]."""
+        parts = [_Part(_kind(config), steps) for config, steps in start.practices()]
         measured = self._measured(_one_per_class_first(one.steps for one in parts))
         by_class: defaultdict[_CostClass, list[float]] = defaultdict(list)
         for steps, step_s in measured.items():
@@ -199,11 +193,3 @@ def _lane(lane: LaneStart, start: RaceStart) -> _Part:
     if lane.training is not None:
         return _Part(_kind(lane.training.config), start.steps)
     return _Part(_kind(training_config(lane.agent, **walk, **lane.settings)), start.steps)
-
-
-def _trials(plan: Plan) -> Iterator[_Part]:
-    for setting in plan.settings:
-        trial, count = setting.trial, plan.count(setting)
-        practised = trial.blocks * trial.training.steps
-        walks = len(trial.evaluations) or max(trial.blocks, 1)
-        yield _Part(_kind(trial.training), count * (practised + walks * RACE_STEPS))

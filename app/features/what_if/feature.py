@@ -45,7 +45,8 @@ class WhatIfFeature(Feature):
         return (routes.estimate_routes(start),)
 
     @classmethod
-    def options(cls) -> Mapping[str, Any]:
+    def options(cls, agents: tuple[str, ...]) -> Mapping[str, Any]:
+        del agents
         return {
             "defaults": {"what_if": {"seeds": SEEDS}},
             "limits": {"what_if_steps": [1, MAX_STEPS]},

@@ -11,7 +11,7 @@ class EstimateView(Answer):
     """Estimated duration of a run here once it has a core [s].
 
     Attributes:
-        workers: how many of an experiment's trials are computed at once; null of other runs.
+        workers: how many of its practices are computed at once; null where there are few.
     """
 
     seconds: Annotated[float, Field(ge=0)]

@@ -24,6 +24,7 @@ from app.features.what_if.what_if import (
     WhatIf,
     WhatIfRequester,
 )
+from app.storage.run_kind import run_kinds, with_article
 from hexapods.domain.errors import InvalidInput
 
 _ESTIMATES: Mapping[str, tuple[str, str]] = {
@@ -32,12 +33,8 @@ _ESTIMATES: Mapping[str, tuple[str, str]] = {
         "a race and its practice",
         "Time a few steps of each lane, and extrapolate; not for a race that branches off.",
     ),
-    "experiment": (
-        "an experiment",
-        "Time a few steps of its agents, and extrapolate to all of its trials.",
-    ),
 }
-"""By kind of run: what is estimated, for the summary, and a description."""
+"""By kind of run of the core: what is estimated, for the summary, and a description."""
 
 
 def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
@@ -75,6 +72,13 @@ def what_if_routes(agents: tuple[str, ...]) -> APIRouter:
     return router
 
 
+def _estimate_of(kind: str) -> tuple[str, str]:
+    """Return the texts, as in `_ESTIMATES`, of a kind that a feature adds."""
+    counted = run_kinds()[kind].counted
+    description = f"Time a few steps of its agents, and extrapolate to all of its {counted}."
+    return with_article(kind), description
+
+
 def estimate_routes(start: StartKind) -> APIRouter:
     """Return the route that estimates how long a run would take.
 
@@ -83,7 +87,7 @@ def estimate_routes(start: StartKind) -> APIRouter:
     """
     router = api_router()
     body_type: Any = start.body
-    thing, description = _ESTIMATES[start.kind]
+    thing, description = _ESTIMATES.get(start.kind) or _estimate_of(start.kind)
 
     @router.post(
         f"/{start.kind}s/estimate",

@@ -22,7 +22,8 @@ from app.storage.database.queries import (
     sorts_before,
 )
 from app.storage.database.schema import RUNS
-from app.storage.run import KINDS, Kind, Sort, State
+from app.storage.run import Kind, Sort, State
+from app.storage.run_kind import run_kinds
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.text import MAX_NAME
 
@@ -111,7 +112,7 @@ def _is_of_kind(connection: Connection, kind: Kind) -> ColumnElement[bool]:
 
     The second part is added only if there are such runs, because it prevents the use of an index.
     """
-    is_unknown = RUNS.c.kind.not_in(KINDS)
+    is_unknown = RUNS.c.kind.not_in(run_kinds())
     unknown = connection.execute(select(RUNS.c.id).where(is_unknown)).scalars().all()
     return or_(RUNS.c.kind == kind, is_unknown) if unknown else RUNS.c.kind == kind
 

@@ -15,6 +15,7 @@ from app.storage.database.sqlite_file import SUFFIXES, check_file, create_file
 from app.storage.database.store import RunStore
 from app.storage.disk_space import RESERVE_FILE, DiskSpace
 from app.storage.private_folder import make_private
+from app.storage.run_kind import kinds_without
 from app.storage.server_lock import ADDRESS_FILE, LOCK_FILE, lock_folder
 from hexapods.files import sync_folder
 
@@ -68,6 +69,7 @@ def open_store(
                     database,
                     ArtifactFiles(files, disk_space),
                     RobotStore(database, robots, disk_space),
+                    kinds_without(settings.without),
                 )
                 _recover(store)
                 with store.robots.known(), ownership.watched():

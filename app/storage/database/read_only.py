@@ -20,6 +20,7 @@ from app.storage.database.schema import ABOUT, METADATA
 from app.storage.database.sqlite_file import check_file
 from app.storage.database.store import RunStore
 from app.storage.disk_space import DiskSpace
+from app.storage.run_kind import kinds_without
 
 
 @contextmanager
@@ -46,7 +47,7 @@ def open_read_only(settings: Settings, *tables: MetaData) -> Iterator[RunStore]:
         files = ArtifactFiles(artifacts / name, disk_space)
         robots = RobotStore(database, settings.data / ROBOTS_FOLDER / name, disk_space)
         stack.enter_context(robots.known())
-        yield RunStore(database, files, robots)
+        yield RunStore(database, files, robots, kinds_without(settings.without))
 
 
 def _engine(settings: Settings, tables: Sequence[MetaData]) -> Engine:

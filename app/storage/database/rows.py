@@ -1,7 +1,7 @@
 """Encode runs as rows of the database, and decode them, tolerating damaged rows."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import fields
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -12,9 +12,6 @@ from app.storage.database.queries import MAX_CELL_CHARS, public_id
 from app.storage.errors import Damaged
 from app.storage.json_text import finite, is_finite
 from app.storage.run import (
-    CONFIGS,
-    KINDS,
-    RESULTS,
     STATES,
     AnyRun,
     Config,
@@ -22,6 +19,7 @@ from app.storage.run import (
     Run,
     ranking_distance_m,
 )
+from app.storage.run_kind import run_kinds
 from hexapods.domain.records import from_json, to_json
 from hexapods.domain.text import MAX_MESSAGE, NOTES_CONTROLS, message, visible
 from hexapods.runs.race_config import RaceConfig
@@ -54,38 +52,50 @@ def encode_fields(values: Mapping[str, Any]) -> dict[str, Any]:
     return columns
 
 
-def decode_run(row: Mapping[str, Any]) -> Run:
+def decode_run(row: Mapping[str, Any], kinds: Collection[str]) -> Run:
     """Decode a row that `queries` read.
 
+    Args:
+        row: of a run.
+        kinds: names of the kinds of runs that are not left out.
+
     Raises:
-        Damaged: if this version cannot decode it.
+        Damaged: if this version cannot decode it, or its kind is left out.
     """
-    run = try_decode_run(row)
+    run = try_decode_run(row, kinds)
     if isinstance(run, DamagedRun):
         raise Damaged(run.id, run.damaged)
     return run
 
 
-def try_decode_run(row: Mapping[str, Any]) -> AnyRun:
-    """Decode a row that `queries` read; return a `DamagedRun` if that fails."""
+def try_decode_run(row: Mapping[str, Any], kinds: Collection[str]) -> AnyRun:
+    """Decode a row as `decode_run` does; return a `DamagedRun` if that fails."""
+    kind = row["kind"] if row["kind"] in run_kinds() else None
+    is_left_out = kind is not None and kind not in kinds
     try:
-        return _decode(row)
+        if not is_left_out:
+            return _decode(row)
+        reason = f"it can be seen again once the feature of {kind}s is not left out any more"
     except Exception as error:  # parsing a config of another version may raise anything
-        return DamagedRun(
-            id=public_id(row["id"]),
-            kind=row["kind"] if row["kind"] in KINDS else None,
-            name=visible(row["name"])[:_MAX_TEXT] if isinstance(row["name"], str) else None,
-            state=row["state"] if row["state"] in STATES else None,
-            created_at=_created_at_or_none(row["created_at"]),
-            damaged=f"this version cannot read what the database holds of it ({_describe(error)})",
-        )
+        reason = f"this version cannot read what the database holds of it ({_describe(error)})"
+    return DamagedRun(
+        id=public_id(row["id"]),
+        kind=kind,
+        name=visible(row["name"])[:_MAX_TEXT] if isinstance(row["name"], str) else None,
+        state=row["state"] if row["state"] in STATES else None,
+        created_at=_created_at_or_none(row["created_at"]),
+        damaged=reason,
+        is_left_out=is_left_out,
+    )
 
 
 def _decode(row: Mapping[str, Any]) -> Run:
     if public_id(row["id"]) != row["id"]:
         raise ValueError("its id is malformed")
-    if row["kind"] not in KINDS:
-        raise ValueError(f"its kind is none of {', '.join(KINDS)}")
+    if (kind := run_kinds().get(row["kind"])) is None:
+        known = ", ".join(run_kinds())
+        name = str(row["kind"])[:40]
+        raise ValueError(f"its kind, {name}, is none of {known}; a feature may be missing")
     values = {k: v for k, v in row.items() if k not in ("config", "result")}
     for name in _LISTS:
         values[name] = tuple(_json(name, row[name]))
@@ -98,7 +108,7 @@ def _decode(row: Mapping[str, Any]) -> Run:
     values["config"] = config = parse(row["kind"], row["config"])
     if (result := _json("result", row["result"])) is not None:
         # NaN, which earlier versions stored, is what was not measured.
-        values["result"] = from_json(RESULTS[row["kind"]], finite(result), extra="ignore")
+        values["result"] = from_json(kind.result, finite(result), extra="ignore")
     if isinstance(config, RaceConfig) and len(config.lanes) != len(values["lane_training_ids"]):
         raise ValueError("its numbers of lanes and of training ids differ")
     run = from_json(Run, values)
@@ -112,7 +122,7 @@ def _decode(row: Mapping[str, Any]) -> Run:
 @lru_cache(maxsize=512)
 def _config(kind: str, text: str) -> Config:
     """Parse a config, cached: parsing dominates a listing, and many runs have the same config."""
-    return from_json(CONFIGS[kind], _json("config", text))  # type: ignore[index]  # it is checked
+    return from_json(run_kinds()[kind].config, _json("config", text))
 
 
 def forget_configs() -> None:

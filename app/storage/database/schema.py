@@ -72,16 +72,6 @@ EVALUATIONS = Table(
     Column("epsilon", Double),
 )
 
-TRIALS = Table(
-    "trials",
-    METADATA,
-    Column("run_id", PortableText, ForeignKey("runs.id", ondelete="CASCADE"), primary_key=True),
-    Column("key", PortableText, primary_key=True),
-    Column("result", JsonWithNan),
-    Column("set_aside", PortableText),
-    Column("compute_s", Double, nullable=False),
-)
-
 ARTIFACTS = Table(
     "artifacts",
     METADATA,

@@ -41,7 +41,6 @@ from app.storage.database.queries import (
 from app.storage.database.robots import RobotStore
 from app.storage.database.rows import decode_run, encode_fields, encode_run, try_decode_run
 from app.storage.database.schema import RUNS
-from app.storage.database.trials import Trials
 from app.storage.disk_space import START_BYTES
 from app.storage.errors import Conflict, Damaged, StorageFailed
 from app.storage.run import (
@@ -67,7 +66,7 @@ _INTERRUPTED_ERROR = "The server ended before the run did."
 
 
 class RunStore:
-    """Stores runs, curves, trials and artifacts in a database. Thread-safe.
+    """Stores runs, curves and artifacts in a database. Thread-safe.
 
     Calls are durable on return, except `update_progress`. Every call may also raise
     `StorageFailed` if the database is unavailable, and every write `StorageFull`; nothing has
@@ -76,18 +75,25 @@ class RunStore:
     Attributes:
         database: where the rows are.
         files: where the artifacts are.
-        curves, trials: learning curves of trainings, and trials of experiments.
+        curves: learning curves of trainings.
+        kinds: names of the kinds of runs that are not left out.
         keys: idempotency keys.
         robots: stored robots.
         sessions: storage of operators' browser sessions, in the same database.
         is_public: condition that a run may be shown to everybody; None for all.
     """
 
-    def __init__(self, database: Database, files: ArtifactFiles, robots: RobotStore) -> None:
-        self.database, self.files, self.robots = database, files, robots
+    def __init__(
+        self,
+        database: Database,
+        files: ArtifactFiles,
+        robots: RobotStore,
+        kinds: Collection[str],
+    ) -> None:
+        self.database, self.files, self.robots, self.kinds = database, files, robots, kinds
         self._progress = ProgressCache()
         self._artifacts = Artifacts(database, files)
-        self.curves, self.trials, self.keys = Curves(database), Trials(database), Keys(database)
+        self.curves, self.keys = Curves(database), Keys(database)
         self.sessions = SessionRows(database)
         self.is_public: ColumnElement[bool] | None = None
 
@@ -142,8 +148,8 @@ class RunStore:
         """Insert ended runs with their content (used by imports), all or none, atomically.
 
         Args:
-            imported: each run, which keeps its id if that is free in this store, and its curve,
-                trials, artifacts and robots, which are stored unless they are already.
+            imported: each run, which keeps its id if that is free in this store, and its content;
+                robots are stored unless they are already.
             new_id: creates an id if a run's own is already in use.
             key: idempotency key of the request, stored in the same transaction.
 
@@ -194,10 +200,12 @@ class RunStore:
         added = run if existing is None else replace(run, id=new_id())
         connection.execute(insert(RUNS), [{**encode_run(added), "is_imported": True}])
         self.curves.insert(connection, added.id, content.evaluations)
-        self.trials.insert(connection, added.id, content.trials)
+        for table, rows in content.rows.items():
+            if rows:
+                connection.execute(insert(table), [{"run_id": added.id, **row} for row in rows])
         self._artifacts.insert(connection, added.id, files)
         # Decoded again, so that a run that could not be read later is rejected now.
-        return decode_run(fetch_run_row(connection, added.id))
+        return decode_run(fetch_run_row(connection, added.id), self.kinds)
 
     def get(self, run_id: str) -> Run:
         """Return the run with its newest progress.
@@ -221,7 +229,7 @@ class RunStore:
         # progress seen by a reader never decreases.
         progress = self._progress.get(run_id)
         row = self.database.read(lambda connection: fetch_run_row(connection, run_id))
-        return try_decode_run(_with_progress(row, progress))
+        return self._try_decode(row, progress)
 
     def is_imported(self, run_id: str) -> bool:
         """Whether a run was imported, and so ran elsewhere; False also if there is none."""
@@ -251,7 +259,7 @@ class RunStore:
         progress = self._progress.snapshot()
         rows, cursor = self.database.read(lambda connection: fetch_page(connection, listing))
         return ListedRuns(
-            [try_decode_run(_with_progress(row, progress.get(row["id"], {}))) for row in rows],
+            [self._try_decode(row, progress.get(row["id"], {})) for row in rows],
             cursor,
         )
 
@@ -261,7 +269,7 @@ class RunStore:
         query = select_runs().where(or_(named, RUNS.c.continued_from == training_id))
         rows = self.database.read(lambda connection: fetch_rows(connection, query))
         progress = self._progress.snapshot()
-        runs = (try_decode_run(_with_progress(row, progress.get(row["id"], {}))) for row in rows)
+        runs = (self._try_decode(row, progress.get(row["id"], {})) for row in rows)
         return [run for run in runs if isinstance(run, Run)]
 
     def counts(self) -> Mapping[State, int]:
@@ -303,7 +311,7 @@ class RunStore:
             self._progress.drop_estimate(run_id)
         else:
             self._progress.drop(run_id)
-        return decode_run(_with_progress(row, {}))
+        return decode_run(_with_progress(row, {}), self.kinds)
 
     def update(self, run_id: str, **fields: Any) -> Run:
         """Set fields other than the state.
@@ -321,12 +329,11 @@ class RunStore:
 
         row = self.database.write(work)
         self._invalidate_progress(run_id, fields)
-        return decode_run(
-            _with_progress(row, {k: v for k, v in progress.items() if k not in fields})
-        )
+        unchanged = {name: value for name, value in progress.items() if name not in fields}
+        return decode_run(_with_progress(row, unchanged), self.kinds)
 
     def update_progress(self, run_id: str, done: int, eta_s: float | None = None) -> None:
-        """Set the number of steps or trials done and the estimated time left [s].
+        """Set how much is done and the estimated time left [s].
 
         Readers of this store see it at once; it is durable within a second.
 
@@ -343,7 +350,7 @@ class RunStore:
             self.database.write(work)
 
     def delete(self, run_id: str) -> None:
-        """Delete an ended run with its curve, trials and artifacts.
+        """Delete an ended run with its curve, artifacts and what else there is of it.
 
         Raises:
             NotFound: if there is no such run.
@@ -456,7 +463,8 @@ class RunStore:
         rows = self.database.write(work)
         for row in rows:
             self._progress.drop(row["id"])
-        return [run for run in map(try_decode_run, rows) if isinstance(run, Run)]
+        runs = (try_decode_run(row, self.kinds) for row in rows)
+        return [run for run in runs if isinstance(run, Run)]
 
     def delete_orphans(self) -> int:
         """Delete the artifact files that no run references; only safe before the first write.
@@ -465,6 +473,9 @@ class RunStore:
             the number of deleted files.
         """
         return self._artifacts.delete_orphans()
+
+    def _try_decode(self, row: Row, progress: Mapping[str, Any]) -> AnyRun:
+        return try_decode_run(_with_progress(row, progress), self.kinds)
 
     def _invalidate_progress(self, run_id: str, fields: Mapping[str, Any]) -> None:
         if "done" in fields:

@@ -58,7 +58,7 @@ def test_an_archive_brings_its_robot(exported: bytes) -> None:
         run = imported(store, exported)
         (rex,) = store.robots.stored()
         assert (rex.id, rex.name, rex.gait, rex.hidden) == (ID, "Rex", "trot", False)
-        assert store.get(run.id).config.robot == robot({"id": ID})  # type: ignore[union-attr]
+        assert store.get(run.id).config.robot == robot({"id": ID})
         assert members(export_run(store, run.id))[MEMBER] == DOCUMENT
         imported(store, exported)
         assert len(store.robots.stored()) == 1

@@ -8,7 +8,7 @@ import pytest
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE
 from tests.cli.running import in_process, output, refusal
-from tests.storage.ended_runs import ended_experiment, ended_race, ended_training
+from tests.storage.ended_runs import ended_race, ended_training
 from tests.storage.stores import opened, training
 
 TRAINING, RACED = "00000000000t1", "00000000000r1"
@@ -49,19 +49,6 @@ def test_exported_run_is_imported_into_another_folder(data: Path, tmp_path: Path
     with opened(tmp_path / "other", None) as store:
         assert store.artifact(TRAINING, TABLE) is not None
         assert len(store.list().items) == 4
-
-
-def test_an_experiment_is_moved(tmp_path: Path) -> None:
-    data, other = tmp_path / "data", tmp_path / "other"
-    with opened(data, None) as store:
-        ended_experiment(store, "00000000000e1")
-    archive, here = str(tmp_path / "run.zip"), ("--data", str(data))
-    in_process("export", "00000000000e1", "--out", archive, *here, folder=tmp_path)
-    in_process("import", archive, "--data", str(other), folder=tmp_path)
-    moved = output(
-        "runs", "show", "00000000000e1", "--data", str(other), folder=tmp_path, run=in_process
-    )
-    assert moved["result"]["trials"]["done"] == 4
 
 
 def test_several_runs_are_exported_and_imported_together(data: Path, tmp_path: Path) -> None:

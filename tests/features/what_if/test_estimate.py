@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
+from app.features.experiments.start import ExperimentStart
 from app.features.what_if.estimate import MAX_WAITING, Estimates
 from app.features.what_if.step_time import TimedSteps
 from app.jobs.process_pool import ProcessPool
-from app.jobs.submissions import ExperimentStart, LaneStart, RaceStart, TrainingStart
+from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from app.storage.errors import Busy
 from hexapods.assembly import build_learner
 from hexapods.domain.errors import InvalidInput

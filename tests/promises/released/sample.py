@@ -4,6 +4,7 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
+from app.features.experiments.trial_rows import Trials
 from app.storage.database.store import RunStore
 from app.storage.run import TABLE, Run
 from hexapods.domain.settings import SettingValues
@@ -61,7 +62,7 @@ FILE = bytes(range(256)) * 4
 def put(store: RunStore) -> None:
     """Fill an empty store."""
     store.create(*RUNS, EXPERIMENT)
-    store.trials.append(EXPERIMENT.id, TRIALS)
+    Trials(store.database).append(EXPERIMENT.id, TRIALS)
     store.curves.append(RUNS[0].id, CURVE)
     store.put_artifact(RUNS[0].id, TABLE, FILE)
     store.update(RUNS[0].id, **ANNOTATIONS)

@@ -120,9 +120,9 @@ def test_a_damaged_row_is_left_out(store: RunStore) -> None:
 def test_a_rename_is_seen_in_runs(store: RunStore) -> None:
     rex = add(store, body(), "Rex")
     store.create(training("a", rex.robot))
-    assert store.get("a").config.robot.name == "Rex"  # type: ignore[union-attr]
+    assert store.get("a").config.robot.name == "Rex"
     store.robots.change(rex.id, name="Max")
-    assert store.get("a").config.robot.name == "Max"  # type: ignore[union-attr]
+    assert store.get("a").config.robot.name == "Max"
 
 
 def test_a_robot_whose_row_is_damaged_can_be_deleted_and_stored_again(store: RunStore) -> None:

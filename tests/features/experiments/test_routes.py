@@ -11,7 +11,7 @@ import pytest
 from hexapods.experiments.config import experiment_config
 from tests.api.calls import Api, refused
 from tests.features.archives.test_transfer import repacked
-from tests.jobs.experiments import tried
+from tests.features.experiments.sweeps import tried
 
 Serve = Callable[..., Api]
 SMALL = {

@@ -11,10 +11,10 @@ import psutil
 import pytest
 
 from app.events.bus import EventBus
+from app.features.experiments.start import ExperimentStart
+from app.features.experiments.trial_rows import Trials
 from app.jobs.jobs import Jobs
-from app.jobs.submissions import ExperimentStart
 from app.storage.database.store import RunStore
-from app.storage.database.trials import Trials
 from app.storage.errors import Conflict, StorageFull
 from app.storage.recordings import Recordings
 from app.storage.run import NOT_ENDED, Run
@@ -23,16 +23,19 @@ from hexapods.experiments.config import REPORT, SUMMARY, ExperimentConfig, exper
 from hexapods.experiments.plan import Plan
 from hexapods.experiments.result import TrialCounts
 from tests.experiments.clusters import workers_of
-from tests.jobs.experiments import stored_results, sweep, tried
+from tests.features.experiments.ended_experiments import experiment_result
+from tests.features.experiments.sweeps import stored_results, sweep, tried
 from tests.jobs.test_jobs import pid_of
 from tests.jobs.waiting import wait_until, wait_until_ended
 from tests.served import is_job
-from tests.storage.ended_runs import experiment_result
 
 
 def wait_for_more_trials(store: RunStore, run: Run, done: int) -> None:
     wait_until(
-        lambda: len(store.trials.get(run.id)) > done or store.get(run.id).state not in NOT_ENDED
+        lambda: (
+            len(Trials(store.database).get(run.id)) > done
+            or store.get(run.id).state not in NOT_ENDED
+        )
     )
     assert store.get(run.id).state == "running"
 
@@ -40,8 +43,8 @@ def wait_for_more_trials(store: RunStore, run: Run, done: int) -> None:
 def wait_until_settled(store: RunStore, run: Run) -> Sequence[Mapping[str, Any]]:
     """Wait until no more trials arrive at the server, and return them."""
     rows: Sequence[Mapping[str, Any]] | None = None
-    while rows != store.trials.get(run.id):
-        rows = store.trials.get(run.id)
+    while rows != Trials(store.database).get(run.id):
+        rows = Trials(store.database).get(run.id)
         time.sleep(1.0)
     return rows
 
@@ -70,13 +73,13 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     wait_until(lambda: len(worker_pids() - before) == 1)
     paused = wait_until_settled(store, run)
     time.sleep(0.3)
-    assert store.trials.get(run.id) == paused
+    assert Trials(store.database).get(run.id) == paused
     jobs.resume(run.id)
     wait_for_more_trials(store, run, len(paused))
 
     stopped = jobs.stop(run.id)
     assert (stopped.state, stopped.error) == ("stopped", None)
-    kept = store.trials.get(run.id)
+    kept = Trials(store.database).get(run.id)
     assert stopped.done == len(kept) < 25
     result = experiment_result(stopped)
     assert result.trials == TrialCounts(done=len(kept), total=25, failed=0, set_aside=0)
@@ -98,7 +101,7 @@ def test_interrupted_experiment_resumes_without_repeating_trials(
     finished = wait_until_ended(store, run)
     assert (finished.state, finished.done, finished.error) == ("finished", 25, None)
     assert stored_results(store, run.id) == tried(config)
-    times = {row["key"]: row["compute_s"] for row in store.trials.get(run.id)}
+    times = {row["key"]: row["compute_s"] for row in Trials(store.database).get(run.id)}
     assert all(times[row["key"]] == row["compute_s"] for row in kept), "some were repeated"
     with pytest.raises(Conflict, match="failed or interrupted or paused or stopped"):
         jobs.resume(run.id)
@@ -116,7 +119,7 @@ def check_summary(store: RunStore, run: Run, config: ExperimentConfig) -> None:
     assert cost["workers"] == 1
     assert cost["wall_s"] > 0
     assert cost["compute_s"] == pytest.approx(
-        sum(row["compute_s"] for row in store.trials.get(run.id)), rel=0.01
+        sum(row["compute_s"] for row in Trials(store.database).get(run.id)), rel=0.01
     )
     assert (store.artifact(run.id, REPORT) or b"").startswith(b"<!doctype html>")
 
@@ -129,12 +132,13 @@ class FullTrials(Trials):
     def append(self, run_id: str, rows: Sequence[Mapping[str, Any]]) -> None:
         if self.room == 0:
             raise StorageFull("the disk of the data folder is full; delete runs")
-        self.room -= 1
         super().append(run_id, rows)
 
 
-def test_full_disk_fails_the_run_which_resumes_once_there_is_space(store: RunStore) -> None:
-    store.trials = trials = FullTrials(store.database)
+def test_full_disk_fails_the_run_which_resumes_once_there_is_space(
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.features.experiments.job.Trials", FullTrials)
     jobs = Jobs(store, Recordings(store), EventBus(), cores=1)
     jobs.open()
     try:
@@ -142,7 +146,7 @@ def test_full_disk_fails_the_run_which_resumes_once_there_is_space(store: RunSto
         failed = wait_until_ended(store, run)
         assert failed.state == "failed"
         assert "the disk of the data folder is full" in (failed.error or "")
-        trials.room = 1_000
+        monkeypatch.setattr(FullTrials, "room", 1_000)
         jobs.resume(run.id)
         assert wait_until_ended(store, run).state == "finished"
         assert stored_results(store, run.id) == tried(sweep())
@@ -155,7 +159,7 @@ def test_invalid_trials_are_set_aside_and_the_others_are_kept(jobs: Jobs, store:
     run = wait_until_ended(store, jobs.start(ExperimentStart(config, name="Mine", workers=1)))
     assert (run.name, run.state, run.done) == ("Mine", "finished", run.total)
     assert experiment_result(run).trials == TrialCounts(done=4, total=7, failed=3, set_aside=3)
-    for row in store.trials.get(run.id):
+    for row in Trials(store.database).get(run.id):
         assert (row["result"] is None) == ("Clumsy" in row["key"])
         assert row["result"] is not None or "I tripped" in row["set_aside"]
 

@@ -6,10 +6,10 @@ from typing import Any
 
 from sqlalchemy import Connection, String, bindparam, cast, delete, insert, select
 
+from app.features.experiments.tables import TRIALS
 from app.storage.database.columns import decode_json
 from app.storage.database.engine import Database
 from app.storage.database.queries import Row, fetch_rows, fetch_run_row
-from app.storage.database.schema import TRIALS
 from hexapods.domain.text import visible
 
 
@@ -38,16 +38,9 @@ class Trials:
             fetch_run_row(connection, run_id, for_update=True)
             if added:
                 connection.execute(again, [{"again": row["key"]} for row in added])
-                self.insert(connection, run_id, added)
+                connection.execute(insert(TRIALS), added)
 
         self._database.write(work)
-
-    def insert(
-        self, connection: Connection, run_id: str, rows: Sequence[Mapping[str, Any]]
-    ) -> None:
-        """Insert rows within a transaction, for keys that the run does not have yet."""
-        if rows:
-            connection.execute(insert(TRIALS), [{"run_id": run_id, **row} for row in rows])
 
     def get(self, run_id: str) -> Sequence[Mapping[str, Any]]:
         """Return the trials of an experiment so far, sorted by key.

@@ -3,8 +3,13 @@
 import argparse
 from dataclasses import fields
 
-from app.api.experiment_answers import CurveOfSetting, PooledView, SettingView, VersusView
 from app.cli import _parser
+from app.features.experiments.response_models import (
+    CurveOfSetting,
+    PooledView,
+    SettingView,
+    VersusView,
+)
 from hexapods.experiments.config import ExperimentConfig
 from hexapods.runs.config import RESERVED, TrainingConfig
 

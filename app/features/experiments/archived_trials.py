@@ -4,13 +4,15 @@ import csv
 import io
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any
 
 import msgspec
 from msgspec import UNSET, Meta, UnsetType
 
-from app.jobs.submissions import plan_of
+from app.features.experiments.start import plan_of
+from app.storage.errors import Damaged
+from app.storage.json_text import is_finite
 from app.storage.run import Run
 from app.storage.untrusted_input import (
     Large,
@@ -24,7 +26,6 @@ from app.storage.untrusted_input import (
 from hexapods.domain.errors import DamagedFile
 from hexapods.domain.text import is_formula
 from hexapods.experiments.config import SUMMARY, ExperimentConfig
-from hexapods.experiments.result import ExperimentResult
 
 TRIALS = "trials.json"
 _REPORT_FILE = re.compile(
@@ -74,9 +75,28 @@ class _Summary(msgspec.Struct):
     parameters: list[Name] | UnsetType = UNSET  # since settings are declared by agents
 
 
-def trials_json(rows: Sequence[Mapping[str, Any]]) -> bytes:
-    """Encode the trials of an experiment, as returned by `Trials.get`, as `trials.json`."""
+def trials_json(run_id: str, rows: Sequence[Mapping[str, Any]]) -> bytes:
+    """Encode the trials of an experiment, as returned by `Trials.get`, as `trials.json`.
+
+    Raises:
+        Damaged: if they have NaN or an infinity, which would be null in JSON.
+    """
+    if not is_finite(rows):
+        raise Damaged(run_id, "its trials have NaN or an infinity")
     return json.dumps(list(rows), indent=0, allow_nan=False).encode()
+
+
+def take_trials(
+    members: dict[str, bytes], config: ExperimentConfig, label: str
+) -> list[dict[str, Any]]:
+    """Remove `trials.json` from the members of an archive, and return its rows.
+
+    Raises:
+        DamagedFile: as `read_trials_json`, or if it is not there.
+    """
+    if TRIALS not in members:
+        raise DamagedFile(f"{label} is no archive of an experiment: it has no {TRIALS}")
+    return read_trials_json(members.pop(TRIALS), config, f"{TRIALS} of {label}")
 
 
 def read_trials_json(data: bytes, config: ExperimentConfig, label: str) -> list[dict[str, Any]]:
@@ -115,21 +135,23 @@ def is_report_file(name: str) -> bool:
     return _REPORT_FILE.fullmatch(name) is not None
 
 
-def report_files(run: Run) -> list[str]:
-    """Return the names of an experiment's files: its summary and those listed in its result."""
-    files = run.result.files if isinstance(run.result, ExperimentResult) else ()
-    return list(dict.fromkeys([SUMMARY, *files]))
-
-
-def check_report_files(run: Run, files: Mapping[str, bytes], label: str) -> None:
+def check_report_files(
+    run: Run, names: Iterable[str], files: Mapping[str, bytes], label: str
+) -> None:
     """Check that report files have the type of their names; their content is not trusted.
+
+    Args:
+        run: the experiment.
+        names: of the files that it has by its result.
+        files: contents of the archive's files by name.
+        label: name of the archive for error messages.
 
     Raises:
         DamagedFile: if a file is unexpected or malformed.
     """
     for name, data in files.items():
         suffix = name.rpartition(".")[2]
-        if not is_report_file(name) or name not in report_files(run):
+        if not is_report_file(name) or name not in names:
             raise DamagedFile(f"{label} has {name}, which this experiment has not")
         if not data.startswith(_SIGNATURES.get(suffix, b"")):
             raise DamagedFile(f"{label} has {name}, which is no {suffix.upper()}")
@@ -139,7 +161,7 @@ def check_report_files(run: Run, files: Mapping[str, bytes], label: str) -> None
         return
     try:
         summary = msgspec.json.decode(files[SUMMARY], type=_Summary)
-        if summary.experiment != run.config.experiment:  # type: ignore[union-attr]
+        if summary.experiment != run.config.experiment:
             raise ValueError("it is of another experiment")
     except (ValueError, RecursionError) as error:
         raise DamagedFile(f"{SUMMARY} of {label} is no summary ({error})") from error

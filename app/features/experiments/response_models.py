@@ -1,17 +1,57 @@
-"""Response models of an experiment's summary and trials; see `answers`."""
+"""Response models of experiments: runs, summary, trials, options and events; see `answers`."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.answers import Answer, Count
+from app.api.answers import Answer, Count, Page, RunView
+from app.api.option_answers import Described
 from hexapods.domain.observation import Observation
 from hexapods.domain.settings import Value
 from hexapods.experiments.config import ExperimentConfig, ExperimentName
+from hexapods.experiments.result import ExperimentResult
 from hexapods.runs.lane import PlanningModel
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Decided = Literal["yes", "no", "not established"]
+
+
+class ExperimentView(RunView):
+    """An experiment."""
+
+    kind: Literal["experiment"]
+    config: ExperimentConfig
+    result: ExperimentResult | None
+    workers: int | None
+
+
+class ExperimentPage(Page):
+    """Page of experiments."""
+
+    items: list[ExperimentView]
+
+
+class ExperimentOption(Described):
+    """An experiment, with the fields of its request body and their defaults.
+
+    Attributes:
+        simulator_defaults: by simulator: the defaults that are others there.
+        agents: the agents that it can compare.
+    """
+
+    fields: list[str]
+    grid: list[str]
+    defaults: dict[str, Any]
+    simulator_defaults: dict[str, dict[str, Any]]
+    agents: list[str]
+
+
+class SummaryEvent(Answer):
+    """The summary of an experiment has a new number of trials."""
+
+    run_id: str
+    done: Count
+    total: Count
 
 
 class WallLane(Answer):

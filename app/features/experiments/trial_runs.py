@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from app.jobs.submissions import LaneStart, RaceStart, TrainingStart, plan_of
+from app.features.experiments.start import plan_of
+from app.jobs.submissions import LaneStart, RaceStart, TrainingStart
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.text import MAX_NAME
 from hexapods.experiments.config import ExperimentConfig

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
+from app.features.experiments.start import ExperimentStart
+from app.features.experiments.trial_runs import trial_start
 from app.jobs.jobs import Jobs
-from app.jobs.submissions import ExperimentStart
-from app.jobs.trial_runs import trial_start
 from app.storage.database.store import RunStore
 from hexapods.domain.errors import InvalidInput
 from hexapods.domain.robot import robot

@@ -9,8 +9,9 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-from app.jobs.messages import Began, Command, Ended, ExperimentTask, Message, Reported, TrialsDone
-from app.storage.stored_trials import outcomes_of
+from app.features.experiments.messages import ExperimentTask, Reported, TrialsDone
+from app.features.experiments.stored_trials import outcomes_of
+from app.jobs.messages import Began, Command, Ended, Message
 from hexapods.experiments.cluster import ClusterSpec
 from hexapods.experiments.config import SUMMARY
 from hexapods.experiments.progress import Progress

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from app.features.experiments.trial_rows import Trials
 from app.storage.database.store import RunStore
 from hexapods.experiments.config import ExperimentConfig, experiment_config
 from hexapods.experiments.plan import Plan
@@ -22,7 +23,7 @@ def tried(config: ExperimentConfig) -> dict[str, Any]:
 def stored_results(store: RunStore, run_id: str) -> dict[str, Any]:
     """Return the results in a store by key, with the lists of a database turned into tuples."""
     results: dict[str, Any] = {}
-    for row in store.trials.get(run_id):
+    for row in Trials(store.database).get(run_id):
         assert row["set_aside"] is None
         results[row["key"]] = {**row["result"], "distances_m": tuple(row["result"]["distances_m"])}
     return results

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from app.features.archives import archive
-from app.features.archives.archived_trials import TRIALS
+from app.features.experiments.archived_trials import TRIALS
+from app.features.experiments.trial_rows import Trials
 from app.storage.database.store import RunStore
 from app.storage.run import State
 from hexapods.agents.registry import OURS
@@ -26,7 +27,7 @@ from tests.features.archives.test_transfer import (
     repacked,
     rewritten,
 )
-from tests.storage.ended_runs import ended_experiment
+from tests.features.experiments.ended_experiments import ended_experiment
 from tests.storage.stores import SWEEP, experiment, opened
 
 RUN_ID = "00000000000e1"
@@ -54,7 +55,7 @@ def test_export_and_import_preserve_everything(source: RunStore, tmp_path: Path)
     data = export_run(source, RUN_ID)
     with opened(tmp_path, None) as target:
         assert imported(data, target) == source.get(RUN_ID)
-        assert target.trials.get(RUN_ID) == source.trials.get(RUN_ID)
+        assert Trials(target.database).get(RUN_ID) == Trials(source.database).get(RUN_ID)
         for name in (SUMMARY, "trials.csv"):
             assert target.artifact(RUN_ID, name) == source.artifact(RUN_ID, name)
         assert export_run(target, RUN_ID) == data
@@ -63,15 +64,15 @@ def test_export_and_import_preserve_everything(source: RunStore, tmp_path: Path)
 def test_incomplete_experiments_are_imported_with_their_trials(
     source: RunStore, store: RunStore, tmp_path: Path
 ) -> None:
-    config, rows = source.get(RUN_ID).config, source.trials.get(RUN_ID)[:2]
+    config, rows = source.get(RUN_ID).config, Trials(source.database).get(RUN_ID)[:2]
     states: dict[str, State] = {"0000000000001": "interrupted", "0000000000002": "stopped"}
     for run_id, state in {**states, "0000000000003": "failed"}.items():
         run = experiment(run_id, state=state, config=config, total=4, done=2, workers=2)
         store.create(run)
-        store.trials.append(run_id, rows)
+        Trials(store.database).append(run_id, rows)
         with opened(tmp_path / run_id, None) as target:
             assert imported(export_run(store, run_id), target) == run
-            assert target.trials.get(run_id) == rows
+            assert Trials(target.database).get(run_id) == rows
 
 
 def test_unregistered_agents_are_refused_without_importing_their_module(
@@ -168,9 +169,9 @@ def test_rewards_of_a_recovery_are_preserved(store: RunStore, tmp_path: Path) ->
     rows = [Outcome(trial.key, run_trial(trial.config), None, 0.1).as_json() for trial in trials]
     run = experiment(RUN_ID, state="stopped", config=config, total=3, done=len(rows), workers=1)
     store.create(run)
-    store.trials.append(RUN_ID, rows)
+    Trials(store.database).append(RUN_ID, rows)
 
     with opened(tmp_path, None) as target:
         assert imported(export_run(store, RUN_ID), target).config == config
-        assert list(target.trials.get(RUN_ID)) == list(store.trials.get(RUN_ID))
-        assert len(target.trials.get(RUN_ID)[-1]["result"]["earned_m"]) == 6
+        assert list(Trials(target.database).get(RUN_ID)) == list(Trials(store.database).get(RUN_ID))
+        assert len(Trials(target.database).get(RUN_ID)[-1]["result"]["earned_m"]) == 6

@@ -9,18 +9,24 @@ from starlette.responses import JSONResponse, Response
 from app.api.answers import RaceView, TrainingView
 from app.api.contract import ATTACHMENT, BINARY, LOCATION, TEXT, answers
 from app.api.deps import ServicesDep, StartRequestDep
-from app.api.experiment_answers import SummaryView, TrialsView
 from app.api.formats import attachment, file_response, negotiated
 from app.api.policy import OPERATOR, WATCH_RUN, policy
 from app.api.runs import RunPath, find, run_routes, start_run
-from app.api.schemas import TrialBody
 from app.api.work import ANALYSIS, DOWNLOAD
-from app.jobs.trial_runs import trial_start
+from app.features.experiments.request_bodies import TrialBody
+from app.features.experiments.response_models import (
+    ExperimentPage,
+    ExperimentView,
+    SummaryView,
+    TrialsView,
+)
+from app.features.experiments.stored_trials import trials_as_csv
+from app.features.experiments.trial_rows import Trials
+from app.features.experiments.trial_runs import trial_start
 from app.storage.artifact_file import ArtifactFile, chunks
 from app.storage.errors import Conflict, NotFound
 from app.storage.json_text import finite
 from app.storage.run import NOT_ENDED, Run
-from app.storage.stored_trials import trials_as_csv
 from hexapods.domain.records import to_json
 from hexapods.experiments.config import REPORT, SUMMARY, SUMMARY_FORMAT, ExperimentConfig
 from hexapods.experiments.result import ExperimentResult
@@ -51,7 +57,7 @@ _FILE_SCHEMAS: dict[str, dict[str, Any]] = {
 _FIRST_FORMAT = b'{"format": 1,'
 """How a summary of a version before 0.2 begins."""
 
-router = run_routes("experiment")
+router = run_routes("experiment", ExperimentView, ExperimentPage, changed_by=OPERATOR)
 
 
 @router.get("/{run_id}/summary", summary="Get an experiment's summary", response_model=SummaryView)
@@ -113,7 +119,7 @@ def get_trials(
 ) -> Response:
     """Return the trials so far, by key: the setting and the seed's number."""
     config = _config(find(services, "experiment", run_id))
-    rows = services.store.trials.get(run_id)
+    rows = Trials(services.store.database).get(run_id)
     if negotiated(request, format, ("json", "csv")) == "csv":
         table = trials_as_csv(config, rows)
         return attachment(table, "text/csv; charset=utf-8", f"trials-{run_id}.csv")

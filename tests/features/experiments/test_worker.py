@@ -4,7 +4,7 @@ import queue
 
 import pytest
 
-from app.jobs.experiment_worker import _TrialControl
+from app.features.experiments.worker import _TrialControl
 from app.jobs.messages import Command
 
 
