@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pydantic import BaseModel
+from pydantic import TypeAdapter
 
 from app.api.memory_limit import MAX_FILE_BYTES
 from app.api.options import options_view
@@ -49,14 +49,14 @@ def test_a_stored_robot_has_its_legs_its_groups_and_its_gait(api: Api, rex: dict
 
 
 def test_answers_match_their_models(api: Api, rex: dict[str, Any]) -> None:
-    answers: dict[type[BaseModel], Any] = {
+    answers: dict[type, Any] = {
         StoredRobotView: rex,
         WholeRobotView: api.get(f"/robots/{rex['id']}"),
         StoredRobotsView: api.get("/robots"),
         options_view(load().classes): api.get("/options"),
     }
     for model, answer in answers.items():
-        model.model_validate(answer)
+        TypeAdapter(model).validate_python(answer)
 
 
 def test_the_same_content_is_stored_once(api: Api, rex: dict[str, Any]) -> None:
