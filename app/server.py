@@ -399,8 +399,8 @@ class _Server(uvicorn.Server):
         return await super().on_tick(counter) or self._lost.is_set()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        # uvicorn waits for all connections: an event stream would not end by itself, and a video or
-        # an export not in time.
+        # uvicorn waits for all connections: an event stream would not end by itself, and what takes
+        # long not in time.
         services: Services = self._app.state.services
         services.bus.close()
         await asyncio.gather(*(shared.close() for shared in services.stages))

@@ -7,6 +7,7 @@ import pytest
 
 from hexapods.domain import robot_documents
 from tests.api.calls import Api, refused
+from tests.features.needing import needs
 from tests.imports.robots import HOME, bug, dog, zipped
 
 SPOT = dog(keyframes={"home": HOME})
@@ -51,9 +52,7 @@ def test_a_file_is_stored_with_what_was_guessed(api: Api, spot: dict[str, Any]) 
     assert (again.status_code, again.json()) == (200, spot)
 
 
-def test_it_learns_races_and_travels(
-    api: Api, spot: dict[str, Any], serve: Callable[..., Api]
-) -> None:
+def test_it_learns_and_races(api: Api, spot: dict[str, Any]) -> None:
     robot = {"id": spot["id"]}
     run = api.finished(api.start("/trainings", {**SHORT, "robot": robot}))
     assert run["config"]["robot"] == {"id": spot["id"], "name": "Spot"}
@@ -65,6 +64,13 @@ def test_it_learns_races_and_travels(
     refused(
         api.call("POST", "/races", json={**race, "robot": {**robot, "femur_m": 0.1}}), 422, "femur"
     )
+
+
+@needs("archives")
+def test_it_travels_with_a_run(api: Api, spot: dict[str, Any], serve: Callable[..., Api]) -> None:
+    lanes, robot = [{"agent": "greedy"}], {"id": spot["id"]}
+    race = {"gait": "trot", "robot": robot, "lanes": lanes, "steps": 2}
+    raced = api.finished(api.start("/races", race))
     data = api.call("GET", f"/races/{raced['id']}/export").content
     other = serve()
     answer = other.call("POST", "/import", content=data)

@@ -16,6 +16,7 @@ from app.features.robots.response_models import StoredRobotsView, StoredRobotVie
 from app.installed_features import load
 from hexapods.domain.robot import PLACED_RANGES, RANGES, robot
 from tests.api.calls import WALK, Api, refused
+from tests.features.needing import needs
 
 BODY = {"preset": "dog", "femur_m": 0.0912}
 TOKEN = "0123456789abcdef0123"
@@ -220,6 +221,7 @@ def test_spectators_read_and_do_not_write(serve: Callable[..., Api]) -> None:
     assert api.call("DELETE", path, **operator).status_code == 204
 
 
+@needs("archives")
 def test_the_archive_of_a_run_brings_its_robot_to_another_server(
     api: Api, rex: dict[str, Any], serve: Callable[..., Api]
 ) -> None:
