@@ -52,7 +52,7 @@ class FeatureSettings:
 
     @property
     def audience(self) -> str | None:
-        """Who a shared link is for, if not for spectators, such as `Visitors (may train)`."""
+        """Who a shared link is for, if not for spectators, such as `Readers (may write)`."""
         return None
 
     def stricter_defaults(self) -> Mapping[str, Any]:

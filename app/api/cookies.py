@@ -60,7 +60,7 @@ class SessionCookie:
         Args:
             scope: of the request, or of a websocket.
             is_secure: whether browsers use HTTPS.
-            path: of the stage, or the code of a room.
+            path: of the stage, or of what else has a cookie of its own.
             name: beginning of its name.
         """
         self._is_secure = is_secure

@@ -64,7 +64,7 @@ class Services:
         page_files: where the files of the page are.
         stream_lock: held while a race is encoded as a recorded stream for viser.
         downloads: memory budget of files that clients are still reading.
-        analyses: gait analyses and timelines, which all pages that watch a run request at once.
+        shared_answers: encoded views of runs, which all pages that watch one request at once.
     """
 
     settings: Settings
@@ -83,7 +83,7 @@ class Services:
     page_files: PageFiles
     stream_lock: Lock = field(default_factory=Lock)
     downloads: MemoryBudget = field(default_factory=lambda: MemoryBudget(64 << 20, 64 << 20))
-    analyses: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
+    shared_answers: BytesCache = field(default_factory=lambda: BytesCache(16 << 20))
     _provided: dict[type, Any] = field(default_factory=dict)
 
     def provide(self, service: T) -> T:

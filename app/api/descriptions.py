@@ -14,7 +14,6 @@ from hexapods.domain.text import MAX_NAME, MAX_TAG, NAMES, NOTES, TAGS
 from hexapods.domain.world import MAX_DISTURBANCES, WORLDS
 from hexapods.runs.clocks import CLOCKS
 from hexapods.runs.config import SIMULATORS, TrainingConfig
-from hexapods.runs.gait_analysis import MAX_WINDOW_S
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import BRANCH_STEPS, MAX_LANES
 from hexapods.shows import show
@@ -95,12 +94,6 @@ VALID: dict[str, str] = {
     "idempotency-key": f"1 to {MAX_KEY_LENGTH} printable ASCII characters without spaces",
     "level": f"a whole number from {LOWEST_LEVEL} to {HIGHEST_LEVEL}",
     "number": "a whole number, 0 or more",
-    "from_s": "a number of seconds of robot time, 0 or more; by default the beginning of the walk",
-    "to_s": (
-        f"a number of seconds of robot time over from_s, at most {MAX_WINDOW_S:g} s later; by "
-        "default the end of the walk"
-    ),
-    "part": "practice, or evaluation for the newest one; of a training",
     "settings": "an object with the agent's settings, by name",
     "format": "a format that the description of the route names",
 }

@@ -54,7 +54,6 @@ FIELD_HELP = {
     "run_ids": "How many runs a request may name.",
     "best_known": best_known.DEFINITION,
     "best_known_where": best_known.COVERAGE,
-    "gait_window_s": "How much of a walk is analysed at once, in seconds of robot time.",
     "agent": "Which agent learns.",
 }
 FIELD_TITLES = {

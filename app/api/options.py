@@ -56,7 +56,6 @@ from hexapods.runs.config import (
     changeable_settings,
     training_config,
 )
-from hexapods.runs.gait_analysis import MAX_WINDOW_S
 from hexapods.runs.lane import LaneConfig
 from hexapods.runs.race_config import MAX_LANES, MAX_RACE_STEPS, RaceConfig
 from hexapods.shows.scene_spec import PAPERS_LANES
@@ -293,7 +292,6 @@ def _limits(settings: Mapping[str, DeclaredSetting]) -> dict[str, list[float | N
         "notes": [0, MAX_NOTES],
         "import_bytes": [1, MAX_FILE_BYTES],
         "run_ids": [1, MAX_RUN_IDS],
-        "gait_window_s": [0, MAX_WINDOW_S],
     }
 
 

@@ -92,7 +92,9 @@ def get_timeline(
 
     # Of a race that has ended it is computed once, for all who look at it.
     key = ("timeline", run.id, run.created_at, run.state, run.ended_at, clock)
-    content = compute() if run.state in NOT_ENDED else services.analyses.computed(key, compute)
+    content = (
+        compute() if run.state in NOT_ENDED else services.shared_answers.computed(key, compute)
+    )
     return gzipped(request, content, "application/json")
 
 

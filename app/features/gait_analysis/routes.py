@@ -17,7 +17,7 @@ from app.storage.run import DamagedRun, Run, world_of
 from app.storage.run_kind import with_article
 from hexapods.domain.records import Record, to_json
 from hexapods.runs.config import TrainingConfig
-from hexapods.runs.gait_analysis import GaitFigures, gait_figures, window_of
+from hexapods.runs.gait_analysis import MAX_WINDOW_S, GaitFigures, gait_figures, window_of
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.recorded_walk import (
     RecordedWalk,
@@ -29,6 +29,18 @@ from hexapods.runs.recorded_walk import (
 TrainingPart = Literal["practice", "evaluation"]
 Part = Literal["race", "practice", "evaluation"]
 
+VALID.update(
+    {
+        "from_s": (
+            "a number of seconds of robot time, 0 or more; by default the beginning of the walk"
+        ),
+        "to_s": (
+            f"a number of seconds of robot time over from_s, at most {MAX_WINDOW_S:g} s later; by "
+            "default the end of the walk"
+        ),
+        "part": "practice, or evaluation for the newest one; of a training",
+    }
+)
 router = api_router(prefix="/runs", tags=["runs"])
 
 
@@ -100,7 +112,7 @@ def get_gait(
         services.stopping.check()
         return _answer(shown, *window)
 
-    return Response(services.analyses.computed(key, answer), media_type="application/json")
+    return Response(services.shared_answers.computed(key, answer), media_type="application/json")
 
 
 class _Walks(NamedTuple):
