@@ -6,9 +6,20 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Le
 from pydantic import Field
 
+from app.api.descriptions import VALID
 from hexapods.domain.records import Record
 
 MAX_CARDS = 99
+VALID.update(
+    {
+        "presentation": "an object with any of card, shows_why, is_blank and code",
+        "presentation.card": f"the number of a card, from 1 to {MAX_CARDS}, or null",
+        "shows_why": "true or false",
+        "is_blank": "true or false",
+        "code": "large, small or none",
+    }
+)
+VALID.setdefault("card", VALID["presentation.card"])
 
 
 @dataclass(frozen=True, kw_only=True)

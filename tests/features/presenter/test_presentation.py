@@ -20,10 +20,16 @@ def test_it_is_set_and_told_with_the_stage(api: Api) -> None:
 
 
 def test_what_is_not_valid_is_refused(api: Api) -> None:
-    for presentation in ({"card": 0}, {"card": 100}, {"code": "huge"}, {"shows_why": 1}):
-        refused(api.call("PUT", "/stage", json={"presentation": presentation}), 422)
-    answer = api.call("PUT", "/stage", json={"presentation": {"lights": "off"}})
-    refused(answer, 422, "choose one of: card, shows_why, is_blank, code")
+    invalid: list[tuple[object, str]] = [
+        ({"card": 0}, "presentation.card must be the number of a card, from 1 to 99, or null"),
+        ({"card": 100}, "presentation.card must be the number of a card, from 1 to 99, or null"),
+        ({"code": "huge"}, "presentation.code must be large, small or none"),
+        ({"shows_why": 1}, "presentation.shows_why must be true or false"),
+        ({"lights": "off"}, "choose one of: card, shows_why, is_blank, code"),
+        (3, "presentation must be an object with any of card"),
+    ]
+    for presentation, words in invalid:
+        refused(api.call("PUT", "/stage", json={"presentation": presentation}), 422, words)
     assert api.get("/stage")["presentation"] == START
 
 
