@@ -7,7 +7,6 @@ import pytest
 from app.settings import Settings
 from tests.api.calls import Api, refused
 from tests.api.conftest import running
-from tests.imports.robots import dog
 
 BROKEN = b"PK\5\6 broken"
 """Neither an archive, nor a table, a robot or a lesson: one that is read is refused as such."""
@@ -15,14 +14,12 @@ QUOTA_MB = 10
 
 
 @pytest.fixture(scope="module")
-def full(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Api, str]]:
-    """Return an API client of a server whose quota is used up, and the id of a robot of a file."""
+def full(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Api]:
+    """Return an API client of a server whose quota is used up."""
     data = tmp_path_factory.mktemp("full")
     with running(Settings(data=data, quota_mb=QUOTA_MB)) as api:
-        sent = {"content": dog(), "headers": {"Content-Type": "application/xml"}}
-        robot_id = api.call("POST", "/robots", **sent).json()["id"]
         (data / "filler").write_bytes(bytes(QUOTA_MB * 1_000_000))
-        yield api, robot_id
+        yield api
 
 
 def uploads(api: Api) -> list[tuple[str, str]]:
@@ -36,17 +33,9 @@ def uploads(api: Api) -> list[tuple[str, str]]:
 
 
 @pytest.mark.promises
-def test_uploads_are_refused_before_they_are_read(full: tuple[Api, str]) -> None:
-    api, _ = full
-    paths = uploads(api)
+def test_uploads_are_refused_before_they_are_read(full: Api) -> None:
+    paths = uploads(full)
     assert {"/api/v1/trainings/import"} <= {path for path, _ in paths}
     for path, media_type in [*paths, ("/api/v1/lessons", "application/json")]:
-        answer = api.client.post(path, content=BROKEN, headers={"Content-Type": media_type})
+        answer = full.client.post(path, content=BROKEN, headers={"Content-Type": media_type})
         refused(answer, 507, "data folder")
-
-
-def test_a_robots_file_is_not_read_again_either(full: tuple[Api, str]) -> None:
-    api, robot_id = full
-    choices = {"choices": {"home_rad": {"no joint": 1.0}}}
-
-    refused(api.call("PATCH", f"/robots/{robot_id}", json=choices), 507, "data folder")

@@ -1,17 +1,21 @@
 """Robots from files over REST: stored, corrected, trained, raced and taken to another server."""
 
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from app.settings import Settings
 from hexapods.domain import robot_documents
 from tests.api.calls import Api, refused
+from tests.api.conftest import running
 from tests.features.needing import needs
 from tests.imports.robots import HOME, bug, dog, zipped
 
 SPOT = dog(keyframes={"home": HOME})
 """It stands as its file says: to search for a stance takes most of the time of an import."""
+QUOTA_MB = 10
 SHORT = {"steps": 3, "evaluate_every": 0, "gait": "trot"}
 
 
@@ -149,3 +153,11 @@ def test_urdf_in_a_zip_gets_the_name_of_the_file(api: Api) -> None:
     again = api.call("POST", "/robots?name=Bug", content=document)
     assert (again.status_code, again.json()["id"]) == (201, stored["id"])
     api.call("DELETE", f"/robots/{stored['id']}")
+
+
+def test_on_a_full_disk_a_file_is_not_read_again(tmp_path: Path) -> None:
+    with running(Settings(data=tmp_path, quota_mb=QUOTA_MB)) as api:
+        robot_id = send(api, SPOT).json()["id"]
+        (tmp_path / "filler").write_bytes(bytes(QUOTA_MB * 1_000_000))
+        choices = {"choices": {"home_rad": {"no joint": 1.0}}}
+        refused(api.call("PATCH", f"/robots/{robot_id}", json=choices), 507, "data folder")
