@@ -10,7 +10,6 @@ _IMPORTED_LATE = (
     "hexapods.experiments.cluster",
     "hexapods.experiments.report.files",
     "hexapods.experiments.summary",
-    "app.features.experiments.worker",
     "hexapods.imports.reading",
     "hexapods.physics.mujoco_simulator",
     "matplotlib.backends.backend_svg",
