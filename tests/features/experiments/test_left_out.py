@@ -6,7 +6,6 @@ import pytest
 
 from app.cli.commands import command_modules
 from app.events.damage import damaged_runs
-from app.features.archives.transfer import export_chunks, import_runs
 from app.settings import Settings
 from app.storage.database.opening import open_store
 from app.storage.errors import Damaged
@@ -17,6 +16,7 @@ from hexapods.agents.registry import registered
 from hexapods.domain.errors import InvalidInput
 from tests.api.conftest import running
 from tests.features.experiments.ended_experiments import ended_experiment
+from tests.features.needing import needs
 
 RUN_ID = "00000000000e1"
 WITHOUT = ("experiments",)
@@ -44,7 +44,10 @@ def test_its_runs_stay_and_are_listed(tmp_path: Path) -> None:
         assert api.get(f"/experiments/{RUN_ID}")["result"]["trials"]["done"] == 4
 
 
+@needs("archives")
 def test_they_count_as_no_damage_and_cannot_be_imported(tmp_path: Path) -> None:
+    from app.features.archives.transfer import export_chunks, import_runs
+
     with open_store(Settings(data=tmp_path / "with")) as store:
         ended_experiment(store, RUN_ID)
         data = b"".join(export_chunks(store, RUN_ID))

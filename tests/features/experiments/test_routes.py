@@ -10,8 +10,8 @@ import pytest
 
 from hexapods.experiments.config import experiment_config
 from tests.api.calls import Api, refused
-from tests.features.archives.test_transfer import repacked
 from tests.features.experiments.sweeps import tried
+from tests.features.needing import needs
 
 Serve = Callable[..., Api]
 SMALL = {
@@ -46,9 +46,12 @@ def test_finished_experiment_has_summary_and_report(swept: dict[str, Any], api: 
     assert swept["id"] not in {run["id"] for run in api.get("/trainings")["items"]}
 
 
+@needs("archives")
 def test_summary_of_an_earlier_version_has_its_settings_as_a_member(
     swept: dict[str, Any], api: Api
 ) -> None:
+    from tests.features.archives.test_transfer import repacked
+
     summary = api.get(f"/experiments/{swept['id']}/summary")
     config = summary["config"]
     del config["reward"], config["settings"]["objective"], config["settings"]["average_rate"]
@@ -96,11 +99,13 @@ def test_only_report_files_are_served(swept: dict[str, Any], api: Api) -> None:
         answer = api.call("GET", f"/experiments/{swept['id']}/files/{name}")
         assert answer.status_code == 404, name
     refused(api.call("GET", f"/experiments/{swept['id']}/files/no"), 404, "report.html")
-    for path in ("", "/summary", "/report", "/trials", "/files/report.html", "/export"):
+    for path in ("", "/summary", "/report", "/trials", "/files/report.html"):
         refused(api.call("GET", f"/experiments/none{path}"), 404, "/api/v1/experiments")
 
 
+@needs("archives")
 def test_exported_experiment_can_be_imported(swept: dict[str, Any], api: Api) -> None:
+    refused(api.call("GET", "/experiments/none/export"), 404, "/api/v1/experiments")
     archive = api.call("GET", f"/experiments/{swept['id']}/export")
     assert archive.headers["content-type"] == "application/zip"
     answer = api.call("POST", "/import", content=archive.content)
