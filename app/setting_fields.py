@@ -63,7 +63,7 @@ class Switch(NamedTuple):
         """Accept both."""
 
 
-class Choice(NamedTuple):
+class OneOf(NamedTuple):
     """Kind of a setting that has one of some values.
 
     Attributes:
@@ -83,7 +83,7 @@ class Choice(NamedTuple):
             raise UnknownName(variable, value, self.values)
 
 
-Kind = WholeNumber | Switch | Choice
+Kind = WholeNumber | Switch | OneOf
 
 
 def whole_number(
@@ -100,7 +100,7 @@ def switch(*, option: str | None = None) -> Any:
 
 def choice(default: str, values: Sequence[str]) -> Any:
     """Declare a field that has one of some values."""
-    return field(default=default, metadata={_KIND: Choice(values)})
+    return field(default=default, metadata={_KIND: OneOf(values)})
 
 
 def variable_of(name: str) -> str:

@@ -13,7 +13,7 @@ from app.setting_fields import variable_of
 from app.storage.errors import Busy
 
 
-class Allowance:
+class WhatIfAllowance:
     """A token for each what-if, and for each further second that it takes, by client."""
 
     def __init__(self, settings: WhatIfSettings) -> None:
@@ -49,7 +49,7 @@ class Allowance:
 
 def _refusal(scope: Scope) -> Response | None:
     services: Services = scope["app"].state.services
-    return services.of(Allowance).take(charged_client(scope))
+    return services.of(WhatIfAllowance).take(charged_client(scope))
 
 
 WHAT_IF = Work(name="what-if", spectators=Slots(1, 1), operators=None, refusal=_refusal)

@@ -9,7 +9,7 @@ from app.api.deps import Services
 from app.api.starts import StartKind
 from app.feature import Feature
 from app.features.what_if import routes
-from app.features.what_if.allowance import WHAT_IF, Allowance
+from app.features.what_if.allowance import WHAT_IF, WhatIfAllowance
 from app.features.what_if.estimate import Estimates
 from app.features.what_if.response_models import WhatIfDefaults
 from app.features.what_if.settings import WhatIfSettings
@@ -32,7 +32,7 @@ class WhatIfFeature(Feature):
     def __init__(self, core: Services) -> None:
         super().__init__(core)
         self._what_if = core.provide(WhatIf(ProcessPool()))
-        core.provide(Allowance(core.settings.of(WhatIfSettings)))
+        core.provide(WhatIfAllowance(core.settings.of(WhatIfSettings)))
         estimates = Estimates(ProcessPool(count=1), core.jobs.cores, core.stopping)
         self._estimates = core.provide(estimates)
 

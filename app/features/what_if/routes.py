@@ -13,7 +13,7 @@ from app.api.deps import RoleDep, Services, ServicesDep
 from app.api.identity import charged_client
 from app.api.policy import OPERATOR, QUESTION, api_router, policy
 from app.api.starts import StartKind
-from app.features.what_if.allowance import WHAT_IF, Allowance
+from app.features.what_if.allowance import WHAT_IF, WhatIfAllowance
 from app.features.what_if.estimate import Estimates
 from app.features.what_if.response_models import EstimateView
 from app.features.what_if.what_if import (
@@ -116,7 +116,7 @@ def spectator(services: Services, client: str) -> WhatIfRequester:
     Raises:
         Busy: if those before have taken more than its allowance.
     """
-    allowance = services.of(Allowance)
+    allowance = services.of(WhatIfAllowance)
     allowance.check(client)
     return WhatIfRequester(
         is_operator=False,
