@@ -8,8 +8,10 @@ from app.settings import Settings
 from tests.api.calls import refused
 from tests.api.conftest import running
 from tests.cli.running import in_process, refusal
+from tests.features.needing import needs
 
 
+@needs("tournaments")
 @pytest.mark.parametrize("without", [(), ("tournaments",)], ids=["tournaments", "left out"])
 def test_a_robot_that_a_feature_names_is_kept_where_that_is_left_out(
     without: tuple[str, ...], tmp_path: Path
