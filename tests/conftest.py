@@ -123,11 +123,13 @@ def pytest_runtest_teardown(
 ) -> Generator[None, None, None]:
     """Fail the last test of a folder after which an app is still open in this process.
 
-    Its stages would go on drawing beside all the tests that follow.
+    Its stages would go on drawing beside all the tests that follow. A folder below it may use the
+    same app.
     """
     yield
-    if nextitem is None or nextitem.path.parent != item.path.parent:
-        left = [one.name for one in threading.enumerate() if one.name.startswith(_OF_APPS)]
+    if nextitem is None or not nextitem.path.is_relative_to(item.path.parent):
+        threads = threading.enumerate()
+        left = [thread.name for thread in threads if thread.name.startswith(_OF_APPS)]
         assert left == [], "a test in this folder has left an app open"
 
 
