@@ -7,14 +7,11 @@ reads settings would wait for it. The feature asks for its values by
 `core.settings.of(ItsSettings)`.
 """
 
-import importlib
-import pkgutil
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, fields
-from importlib.metadata import entry_points
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from app.feature_modules import broken_part, feature_modules
 from app.setting_fields import PREFIX, Switch, check_kinds, kind_of, variable_of
 from hexapods.domain.errors import InvalidInput
 
@@ -23,7 +20,6 @@ if TYPE_CHECKING:
 
 GROUP = "hexapods.settings"
 """Entry-point group of settings of features of other packages."""
-_PACKAGE = "app.features"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,30 +78,17 @@ def installed_settings(without: Collection[str] = ()) -> Iterator[type[FeatureSe
     Raises:
         InvalidInput: if the settings of a feature of another package cannot be imported.
     """
-    package = importlib.import_module(_PACKAGE)
-    for feature in sorted(module.name for module in pkgutil.iter_modules(package.__path__)):
-        path = f"{_PACKAGE}.{feature}.settings"
-        if find_spec(path) is not None:
-            yield importlib.import_module(path).SETTINGS
-    for entry in entry_points(group=GROUP):
-        try:
-            settings = _checked(entry.load().SETTINGS, entry.name)
-        except Exception as error:
-            if entry.name in without:
-                continue
-            raise InvalidInput(
-                f"the settings of the feature {entry.name} cannot be imported from {entry.value}: "
-                f"{error}; mend or uninstall its package, or leave the feature out by "
-                f"{PREFIX}WITHOUT={entry.name}"
-            ) from error
-        yield settings
-
-
-def _checked(settings: Any, feature: str) -> type[FeatureSettings]:
-    is_class = isinstance(settings, type) and issubclass(settings, FeatureSettings)
-    if not is_class or settings.feature != feature:
-        raise InvalidInput(
-            f"SETTINGS must be a subclass of FeatureSettings with feature = {feature!r}"
-        )
-    checked: type[FeatureSettings] = settings
-    return checked
+    for feature, _, module in feature_modules("settings", GROUP, without):
+        settings = getattr(module, "SETTINGS", None)
+        if (
+            isinstance(settings, type)
+            and issubclass(settings, FeatureSettings)
+            and settings.feature == feature
+        ):
+            yield settings
+        elif feature not in without:
+            raise broken_part(
+                feature,
+                "settings",
+                f"needs SETTINGS, a subclass of FeatureSettings with feature = {feature!r}",
+            )

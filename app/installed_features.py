@@ -1,18 +1,16 @@
 """Which features are installed, and which of them are left out: `load`."""
 
-import importlib
 from collections.abc import Collection, Mapping
-from importlib.metadata import EntryPoint, entry_points
-from pkgutil import iter_modules
-from typing import NamedTuple
+from importlib.metadata import entry_points
+from typing import Any, NamedTuple
 
 from app.feature import Feature
+from app.feature_modules import broken_part, feature_modules
 from app.setting_fields import PREFIX
 from hexapods.domain.errors import InvalidInput
 
 GROUP = "hexapods.features"
 """Entry-point group of features of other packages."""
-_PACKAGE = "app.features"
 
 
 class Catalogue(NamedTuple):
@@ -37,10 +35,9 @@ def load(without: Collection[str] = ()) -> Catalogue:
         InvalidInput: if there is no feature of such a name, one needs another that is left out, or
             two have the same name.
     """
-    available, broken = _available()
-    if needed := [failure for name, failure in broken.items() if name not in without]:
-        raise needed[0]
-    unknown = sorted(set(without) - available.keys() - broken.keys())
+    available = _available(without)
+    broken = {entry.name for entry in entry_points(group=GROUP)} - available.keys()
+    unknown = sorted(set(without) - available.keys() - broken)
     if unknown:
         raise InvalidInput(
             f"{PREFIX}WITHOUT names no feature by {unknown[0]!r}; there are "
@@ -82,42 +79,22 @@ def _add(
     ordered[name] = kept[name]
 
 
-def _available() -> tuple[dict[str, type[Feature]], dict[str, InvalidInput]]:
-    """Return the classes of all features that are installed, by name, and why others are none."""
-    package = importlib.import_module(_PACKAGE)
-    modules = [f"{_PACKAGE}.{module.name}.feature" for module in iter_modules(package.__path__)]
-    classes = [(name, importlib.import_module(name).FEATURE) for name in sorted(modules)]
-    broken: dict[str, InvalidInput] = {}
-    for entry in entry_points(group=GROUP):
-        try:
-            classes.append((entry.value, _loaded(entry)))
-        except InvalidInput as error:
-            broken[entry.name] = error
+def _available(without: Collection[str]) -> dict[str, type[Feature]]:
+    """Return the classes of all features that are installed, by name."""
     available: dict[str, type[Feature]] = {}
-    for origin, feature in classes:
-        if feature.name in available:
+    for name, origin, part in feature_modules("feature", GROUP, without):
+        feature = _checked(name, getattr(part, "FEATURE", part))
+        if name in available:
             raise InvalidInput(
-                f"two features are called {feature.name}, one of them in {origin}; uninstall one"
+                f"two features are called {name}, one of them in {origin}; uninstall one"
             )
-        available[feature.name] = feature
-    return available, broken
+        available[name] = feature
+    return available
 
 
-def _loaded(entry: EntryPoint) -> type[Feature]:
-    remedy = (
-        f"mend or uninstall its package, or leave the feature out by {PREFIX}WITHOUT={entry.name}"
-    )
-    try:
-        feature = entry.load()
-    except Exception as error:
-        raise InvalidInput(
-            f"the feature {entry.name} of {entry.value} cannot be imported: {error}; {remedy}"
-        ) from error
+def _checked(name: str, feature: Any) -> type[Feature]:
     if not (isinstance(feature, type) and issubclass(feature, Feature)):
-        raise InvalidInput(f"{entry.value} is no subclass of app.feature.Feature; {remedy}")
-    if getattr(feature, "name", None) != entry.name:
-        raise InvalidInput(
-            f"the feature {entry.name} of {entry.value} must have the name of its entry point, "
-            f'name = "{entry.name}"; {remedy}'
-        )
+        raise broken_part(name, "feature", "is no subclass of app.feature.Feature")
+    if getattr(feature, "name", None) != name:
+        raise broken_part(name, "feature", f'needs the name of its entry point, name = "{name}"')
     return feature

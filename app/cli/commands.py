@@ -8,15 +8,12 @@ command of the core the modules whose `add_to` adds verbs to it; `VERIFIERS` has
 since each command of the core would wait for it.
 """
 
-import importlib
 import os
-import pkgutil
-from collections.abc import Iterator, Mapping, Sequence
-from importlib.metadata import entry_points
-from importlib.util import find_spec
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from types import ModuleType
 from typing import NamedTuple
 
+from app.feature_modules import feature_modules
 from app.settings import read_without
 from hexapods.domain.errors import InvalidInput
 
@@ -28,7 +25,6 @@ CORE_COMMANDS: Mapping[str, str] = {
 }
 GROUP = "hexapods.commands"
 """Entry-point group of commands of features of other packages."""
-_PACKAGE = "app.features"
 
 
 def command_modules(
@@ -50,7 +46,7 @@ def command_modules(
         return {name: CORE_COMMANDS[name]}
     without = read_without(environ)
     modules = dict(CORE_COMMANDS)
-    for feature, commands, *_ in _added():
+    for feature, commands, *_ in _added(without):
         if feature in without:
             if name in commands:
                 raise InvalidInput(
@@ -80,7 +76,7 @@ def verb_modules(command: str, environ: Mapping[str, str] = os.environ) -> list[
     without = read_without(environ)
     return [
         module
-        for feature, _, verbs, _ in _added()
+        for feature, _, verbs, _ in _added(without)
         if feature not in without
         for module in verbs.get(command, ())
     ]
@@ -97,7 +93,10 @@ def verifier_modules(environ: Mapping[str, str] = os.environ) -> list[str]:
     """
     without = read_without(environ)
     return [
-        module for added in _added() if added.feature not in without for module in added.verifiers
+        module
+        for added in _added(without)
+        if added.feature not in without
+        for module in added.verifiers
     ]
 
 
@@ -116,18 +115,7 @@ class _Added(NamedTuple):
         return cls(feature, module.COMMANDS, verbs, verifiers)
 
 
-def _added() -> Iterator[_Added]:
+def _added(without: Collection[str]) -> Iterator[_Added]:
     """Yield what each feature adds that has commands; left-out features too."""
-    package = importlib.import_module(_PACKAGE)
-    for feature in sorted(module.name for module in pkgutil.iter_modules(package.__path__)):
-        path = f"{_PACKAGE}.{feature}.commands"
-        if find_spec(path) is not None:
-            yield _Added.by(feature, importlib.import_module(path))
-    for entry in entry_points(group=GROUP):
-        try:
-            yield _Added.by(entry.name, entry.load())
-        except Exception as error:
-            raise InvalidInput(
-                f"the commands of the feature {entry.name} cannot be imported from {entry.value}: "
-                f"{error}; mend or uninstall its package"
-            ) from error
+    for feature, _, module in feature_modules("commands", GROUP, without):
+        yield _Added.by(feature, module)

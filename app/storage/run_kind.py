@@ -1,17 +1,17 @@
 """Kinds of runs: trainings and races, and those that features add as a value.
 
-A feature adds a kind by a module `app/features/NAME/run_kind.py` with an `AddedKind` as `KIND`. The
+A feature adds a kind by a module `app/features/NAME/run_kind.py` with an `AddedKind` as `KIND`, and
+another package by an entry point of the group `hexapods.run_kinds` that names such a module. The
 command line and worker processes read it too, so it imports neither FastAPI nor SciPy.
 """
 
-import importlib
-import pkgutil
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
+from app.feature_modules import feature_modules
+from app.settings import read_without
 from hexapods.runs.config import TrainingConfig
 from hexapods.runs.race_config import RaceConfig
 from hexapods.runs.results import RaceResult, TrainingResult
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from app.storage.database.store import RunStore
     from app.storage.run import Run
 
-_PACKAGE = "app.features"
+GROUP = "hexapods.run_kinds"
+"""Entry-point group of kinds of runs of features of other packages."""
 Rows = Mapping["Table", Sequence[Mapping[str, Any]]]
 """Rows of a run in tables beside that of runs, by table, without the column `run_id`."""
 
@@ -170,11 +171,7 @@ def added_kinds() -> Sequence[AddedKind]:
 @cache
 def _of_features() -> Mapping[str, AddedKind]:
     """Return the kinds that features add, by the feature's name."""
-    package = importlib.import_module(_PACKAGE)
-    names = sorted(module.name for module in pkgutil.iter_modules(package.__path__))
-    paths = {name: f"{_PACKAGE}.{name}.run_kind" for name in names}
     return {
-        name: cast("AddedKind", importlib.import_module(path).KIND)
-        for name, path in paths.items()
-        if find_spec(path) is not None
+        feature: cast("AddedKind", module.KIND)
+        for feature, _, module in feature_modules("run_kind", GROUP, read_without())
     }

@@ -125,4 +125,12 @@ def test_commands_that_cannot_be_imported_are_named(
     install("import nothing_of_this_name")
     assert command_modules("race") == {"race": "app.cli.race"}  # does not need the others
     assert main(["journal"]) == 2
-    assert "commands of the feature notes cannot be imported" in capsys.readouterr().err
+    assert "`commands` of the feature notes cannot be imported" in capsys.readouterr().err
+
+
+def test_commands_that_cannot_be_imported_can_be_left_out(
+    install: Callable[[str], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install("import nothing_of_this_name")
+    monkeypatch.setenv("HEXAPODS_WITHOUT", "notes")
+    assert command_modules().keys() >= CORE_COMMANDS.keys()
