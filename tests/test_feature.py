@@ -127,14 +127,19 @@ def test_a_package_without_a_feature_is_told(
         load()
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_a_server_without_a_feature_runs_a_race_and_knows_no_address_of_it(
-    name: str, tmp_path: Path
+@pytest.mark.parametrize(
+    "without",
+    [NAMES, *(pytest.param((name,), marks=pytest.mark.promises) for name in NAMES)],
+    ids=["all", *NAMES],
+)
+def test_a_server_without_features_runs_a_race_and_knows_no_address_of_them(
+    without: tuple[str, ...], tmp_path: Path
 ) -> None:
-    with running(Settings(data=tmp_path, job_niceness=0, without=(name,))) as api:
-        assert api.client.get(OF_FEATURE[name]).status_code == 404
-        described = api.client.get("/openapi.json").json()
-        assert not [path for path in described["paths"] if OF_FEATURE[name] in path]
+    with running(Settings(data=tmp_path, job_niceness=0, without=without)) as api:
+        described = api.client.get("/openapi.json").json()["paths"]
+        for name in without:
+            assert api.client.get(OF_FEATURE[name]).status_code == 404
+            assert not [path for path in described if OF_FEATURE[name] in path]
         race = {"lanes": [{"agent": "greedy"}, {"agent": "random-walk"}], "steps": 2}
         assert api.finished(api.race(**race))["result"]["lanes"]
 

@@ -34,6 +34,7 @@ from tests.model_robots import (
     with_meshes,
 )
 
+pytestmark = pytest.mark.test
 STEPS = 8
 MODELS = {
     "quadruped": (with_meshes(quadruped_model()), 12),

@@ -72,6 +72,7 @@ DIGESTS = {
 """By the name of a result the beginning of its SHA-256, as Python 3.11 gave it first."""
 
 
+@pytest.mark.promises
 def test_all_results_have_the_same_bits_in_every_python() -> None:
     is_recorded = sys.platform == "linux" and platform.machine() == "x86_64"
     # Of another kind of processor a second time, in a process with other hashes of texts.

@@ -51,6 +51,7 @@ def sentences(tournament: TournamentFile) -> list[str]:
     return verify(read_file(write_file(tournament), "it"), workers=1)
 
 
+@pytest.mark.test
 def test_a_tournament_in_mujoco_repeats_with_any_number_of_processes() -> None:
     rules = rules_of(
         simulator="mujoco",
@@ -81,6 +82,7 @@ def imported() -> Iterator[str]:
     robot_documents.forget([made.id])
 
 
+@pytest.mark.test
 def test_a_tournament_of_an_imported_robot_repeats_where_it_is_not_known(imported: str) -> None:
     own = read_document(robot_documents.find(imported), "Own")
     rules = rules_of(simulator="mujoco", gait="tripod", robot=HASTY, steps=10, robots=(own,))
