@@ -1,52 +1,21 @@
 """`hexapods doctor`, as a user runs it: passed checks, and failed checks with their remedy."""
 
-import json
 import socket
-import sqlite3
-from contextlib import closing
-from datetime import UTC, datetime
 from importlib.metadata import Distribution
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from app.cli import machine_checks
-from app.features.demo.rows import VisitorRows, VisitorRun
 from app.storage.database.opening import DATABASE_FILE
 from app.storage.server_lock import lock_folder, write_address_file
 from hexapods.domain.robot import document_of, robot
+from tests.cli.examining import ANY_PORT, examined, failures, known_machine
 from tests.cli.running import hexapods, in_process, output
 from tests.postgresql import PostgresServer
 from tests.storage.stores import database_url, opened
 
-ANY_PORT = {"HEXAPODS_PORT": "0"}
-
-
-@pytest.fixture(autouse=True)
-def known_machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave out, in this process, what takes a second each time: physics and the viewer's page.
-
-    `hexapods doctor` in a process of its own checks them.
-    """
-    for name in ("engine", "physics", "browser"):
-        monkeypatch.delitem(machine_checks.CHECKS, name)
-
-
-def examined(folder: Path, **variables: str) -> dict[str, Any]:
-    """Return the checks' results by name, for the data folder `data`."""
-    data = ("--data", str(folder / "data"))
-    done = in_process("doctor", *data, "--json", folder=folder, **{**ANY_PORT, **variables})
-    found = json.loads(done.stdout)
-    assert done.returncode == (0 if found["ok"] else 1)
-    assert "Traceback" not in done.stderr
-    assert found["ok"] == all(check["ok"] for check in found["checks"])
-    return {check["name"]: (check["ok"], check["said"]) for check in found["checks"]}
-
-
-def failures(found: dict[str, Any]) -> dict[str, str]:
-    """Return the failed checks."""
-    return {name: said for name, (ok, said) in found.items() if not ok}
+__all__ = ["known_machine"]
 
 
 def test_all_checks_pass_and_no_file_is_created(tmp_path: Path) -> None:
@@ -112,20 +81,6 @@ def test_stored_robots_that_cannot_be_read_are_named(tmp_path: Path) -> None:
     assert f"Rex ({made['id']})" in failures(found)["robots"]
     assert "put a backup" in failures(found)["robots"]
     assert found["database"][0]
-
-
-def test_runs_of_visitors_whose_rows_are_damaged_are_named(tmp_path: Path) -> None:
-    assert examined(tmp_path)["visitors"] == (True, "no run of a demo's visitor")
-    with opened(tmp_path / "data", None) as store:
-        row = VisitorRun("1m8agbvj657z5", 64 * "a", 100, True, datetime.now(UTC))
-        VisitorRows(store.database).add([row])
-    assert examined(tmp_path)["visitors"] == (True, "1 run of a demo's visitors")
-    with closing(sqlite3.connect(tmp_path / "data" / DATABASE_FILE)) as database, database:
-        database.execute("UPDATE visitor_runs SET created_at = 'yesterday', visitor = 'x'")
-    said = failures(examined(tmp_path))["rows"]
-    assert said.startswith("1 row of visitor_runs cannot be read: ")
-    assert "visitor_runs run_id 1m8agbvj657z5: created_at: " in said
-    assert "the next start of a server deletes these runs in time" in said
 
 
 def test_unusable_data_folder_is_named(tmp_path: Path) -> None:

@@ -1,0 +1,38 @@
+"""`hexapods doctor` in this process: what its checks say."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.cli import machine_checks
+from tests.cli.running import in_process
+
+ANY_PORT = {"HEXAPODS_PORT": "0"}
+
+
+@pytest.fixture(autouse=True)
+def known_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out, in this process, what takes a second each time: physics and the viewer's page.
+
+    `hexapods doctor` in a process of its own checks them.
+    """
+    for name in ("engine", "physics", "browser"):
+        monkeypatch.delitem(machine_checks.CHECKS, name)
+
+
+def examined(folder: Path, **variables: str) -> dict[str, Any]:
+    """Return the checks' results by name, for the data folder `data`."""
+    data = ("--data", str(folder / "data"))
+    done = in_process("doctor", *data, "--json", folder=folder, **{**ANY_PORT, **variables})
+    found = json.loads(done.stdout)
+    assert done.returncode == (0 if found["ok"] else 1)
+    assert "Traceback" not in done.stderr
+    assert found["ok"] == all(check["ok"] for check in found["checks"])
+    return {check["name"]: (check["ok"], check["said"]) for check in found["checks"]}
+
+
+def failures(found: dict[str, Any]) -> dict[str, str]:
+    """Return the failed checks."""
+    return {name: said for name, (ok, said) in found.items() if not ok}
