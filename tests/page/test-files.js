@@ -1,5 +1,6 @@
 // Files that the browser downloads.
 import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
 import { downloads, fileAddress } from "../../static/js/files.js";
 import { makeRun } from "./options.js";
@@ -8,6 +9,16 @@ test("addresses of files are escaped part by part", () => {
   const run = { kind: /** @type {const} */ ("experiment"), id: "a b" };
   assert.equal(fileAddress(run, "figures/one two.png"),
     "http://page.test/api/v1/experiments/a%20b/files/figures/one%20two.png");
+});
+
+test("no link has `download` without a value, which would call its file true", () => {
+  const folder = new URL("../../static/", import.meta.url);
+  const scripts = readdirSync(folder, { recursive: true, encoding: "utf-8" }).filter((path) => path.endsWith(".js"));
+  const links = scripts.flatMap((path) =>
+    [...readFileSync(new URL(path, folder), "utf-8").matchAll(/<a\b[^<>`]*\sdownload\b(=?)/g)]
+      .map(([link, sign]) => ({ path, link, hasValue: sign === "=" })));
+  assert.ok(links.length > 5);
+  assert.deepEqual(links.filter(({ hasValue }) => !hasValue), []);
 });
 
 test("each run offers the files that it has", () => {

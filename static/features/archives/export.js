@@ -8,7 +8,7 @@ import { archiveAddress, exportAddress } from "./api.js";
 /** @import { Run } from "../../js/types.js" */
 
 /** @param {{ run: Run }} props */
-export const Archive = ({ run }) => html`<a href=${archiveAddress(run)} download>Archive (zip)</a>`;
+export const Archive = ({ run }) => html`<a href=${archiveAddress(run)} download="">Archive (zip)</a>`;
 
 const exportable = computed(() => deletable.value.filter((run) => !("damaged" in run)));
 
@@ -22,6 +22,6 @@ export const exported = computed(() => {
 
 export function ExportSelected() {
   const { count, most, address } = exported.value;
-  if (address) return html`<a class="secondary compact button" href=${address} download>Export ${count}</a>`;
+  if (address) return html`<a class="secondary compact button" href=${address} download="">Export ${count}</a>`;
   return html`<span class="dim">${count ? `An export has up to ${most} runs.` : "None has ended yet."}</span>`;
 }

@@ -9,7 +9,7 @@ import { notInstalled, rendered, saveExport, walkFiles } from "./files.js";
 
 /** @param {{ run: Run, look?: string }} props */
 export const WalkFiles = ({ run, look }) =>
-  walkFiles(run).map(([label, href]) => html`<a key=${label} class=${look} href=${href} download>${label}</a>`);
+  walkFiles(run).map(([label, href]) => html`<a key=${label} class=${look} href=${href} download="">${label}</a>`);
 
 /** @param {{ run: Run }} props */
 export const RenderedFiles = ({ run }) => html`

@@ -36,7 +36,7 @@ const Files = ({ run }) => html`
   <details class="more">
     <summary>Download it</summary>
     <div class="own-choices">
-      ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download>${label}</a>`)}
+      ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download="">${label}</a>`)}
       <${Slot} name="files of a walk" run=${run} look="to-report" />
     </div>
   </details>

@@ -11,7 +11,7 @@ export function RunFiles() {
     <details class="more">
       <summary>Download this ${run.kind}</summary>
       <div class="own-choices">
-        ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download>${label}</a>`)}
+        ${downloads(run).map(([label, href]) => html`<a class="to-report" href=${href} download="">${label}</a>`)}
         <${Slot} name="files of a walk" run=${run} look="to-report" />
       </div>
     </details>

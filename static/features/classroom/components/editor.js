@@ -74,7 +74,7 @@ const Saved = ({ lesson }) => html`
         <button class="secondary compact" onClick=${() => copy(lesson.link, "Link copied.")}>
           <${Icon} name="link" />Copy the link
         </button>
-        <a class="secondary compact button" href=${lessonFile(lesson.id)} download><${Icon} name="import" />YAML</a>
+        <a class="secondary compact button" href=${lessonFile(lesson.id)} download=""><${Icon} name="import" />YAML</a>
         <button class="secondary compact" onClick=${() => askForRoom(lesson.id)}>Teach…</button>
       </div>
     </div>

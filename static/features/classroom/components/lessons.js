@@ -76,7 +76,7 @@ function Row({ lesson }) {
         ${isOperator.value && html`
           <button class="quiet" onClick=${() => edit(id)} aria-label=${`Edit a copy: ${title}`}>Edit a copy</button>
         `}
-        <a class="quiet button" href=${lessonFile(id)} download aria-label=${`YAML file: ${title}`}>YAML</a>
+        <a class="quiet button" href=${lessonFile(id)} download="" aria-label=${`YAML file: ${title}`}>YAML</a>
         ${isOperator.value && !is_built_in && html`
           <button class=${willDelete ? "danger" : "quiet"} aria-label=${`${deleteWords}: ${title}`}
             onClick=${() => (willDelete ? remove(id) : setWillDelete(true))}>${deleteWords}</button>

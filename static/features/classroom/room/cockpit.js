@@ -169,7 +169,7 @@ const Ways = ({ known }) => html`
     <a class="secondary as-button" href=${`${known.code}?projector`} target="_blank">
       <${Icon} name="present" />Projector
     </a>
-    <a class="secondary as-button" href=${resultsFile(known.code)} download>
+    <a class="secondary as-button" href=${resultsFile(known.code)} download="">
       <${Icon} name="import" />Results (CSV)
     </a>
     <a class="secondary as-button" href="../">Dashboard</a>

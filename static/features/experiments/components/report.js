@@ -235,10 +235,10 @@ function Files({ run }) {
     ${hasReport(run) && html`
       <a href=${partOf(run, "report")} target="_blank" rel="noopener">Open the report</a>
     `}
-    ${downloads(run).map(([title, href]) => html`<a href=${href} download>${title}</a>`)}
+    ${downloads(run).map(([title, href]) => html`<a href=${href} download="">${title}</a>`)}
     ${figures.length > 0 && html`
       <p class="menu-part dim">Figures</p>
-      ${figures.map((name) => html`<a href=${fileAddress(run, name)} download>${name.split("/").at(-1)}</a>`)}
+      ${figures.map((name) => html`<a href=${fileAddress(run, name)} download="">${name.split("/").at(-1)}</a>`)}
     `}
   `;
 }

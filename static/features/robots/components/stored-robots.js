@@ -105,7 +105,7 @@ function Stored({ robot }) {
       <div class="robots-row">
         <span class="dim">${hidden ? "Hidden; " : ""}${description}</span>
         <span class="space"></span>
-        <a class="link" href=${fileOf(id)} download aria-label=${`Download ${title}`}>Download</a>
+        <a class="link" href=${fileOf(id)} download="" aria-label=${`Download ${title}`}>Download</a>
         ${isOperator.value && !body && html`
           <button class="link" aria-label=${`Correct ${title}`} aria-expanded=${isCorrected}
             onClick=${() => correct(isCorrected ? null : id)}>Correct…</button>

@@ -92,7 +92,7 @@ function Downloads({ run }) {
   const hasFiles = files.length > 0 || (hasEnded && fillersOf(OF_ENDED).length > 0);
   return html`
     <p class="menu-part dim">${hasFiles ? "Download" : "Nothing to download."}</p>
-    ${files.map(([label, href]) => html`<a href=${href} download>${label}</a>`)}
+    ${files.map(([label, href]) => html`<a href=${href} download="">${label}</a>`)}
     ${hasWalked && html`<${Slot} name="files of a walk" run=${run} />`}
     ${hasEnded && html`<${Slot} name=${OF_ENDED} run=${run} />`}
   `;
