@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { test } from "node:test";
+import { Part } from "../../static/js/components/elements.js";
 import {
   actionOfKey, features, fillersOf, hasFeature, helpOfKeys, imported, install, menuRows, partsOf,
 } from "../../static/js/features.js";
@@ -115,6 +116,13 @@ test("a feature adds tabs, views, fields, places and events; one that needs a mi
   assert.ok(eventNames().includes("example"));
   applyEvent("example", { value: 7 });
   assert.deepEqual(heard, [7]);
+});
+
+test("parts with the same words while they load are kept apart", () => {
+  const parts = ["left", "right"].map((feature) => ({ feature, show: "part.js#Part", loading: "part" }));
+  const [left, right] = parts.map((part) => /** @type {any} */ (Part({ part })).props);
+  assert.equal(left.name, right.name);
+  assert.notEqual(left.source, right.source);
 });
 
 test("a key of a feature acts while a field of the page's state is set, and the help lists it", () => {

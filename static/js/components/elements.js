@@ -213,24 +213,24 @@ export function useWidth() {
 
 // ---- what is loaded when it is first opened: most visits do not
 
-/** Loaded components, by their names on the page. @type {Signal<Record<string, any>>} */
+/** Loaded components, by their sources. @type {Signal<Record<string, any>>} */
 export const loaded = signal({});
 
 /**
- * `load`: imports the module and returns its component, which is drawn with the other properties. `isQuiet`: nothing is
- * said while it comes.
+ * `load`: imports the module and returns its component, which is drawn with the other properties. `source`: tells it
+ * from all others, where its name does not. `isQuiet`: nothing is said while it comes.
  * @param {{
- *   name: string, load: () => Promise<FunctionComponent<any>>, isQuiet?: boolean,
+ *   name: string, load: () => Promise<FunctionComponent<any>>, source?: string, isQuiet?: boolean,
  * } & Record<string, unknown>} props
  */
-export function Loaded({ name, load, isQuiet = false, ...props }) {
+export function Loaded({ name, load, source = name, isQuiet = false, ...props }) {
   const [hasFailed, setFailed] = useState(false);
   const state = connection.value;
   useEffect(() => {
-    if (loaded.value[name] || state !== "live") return;
-    load().then((component) => setEntry(loaded, name, component), () => setFailed(true));
+    if (loaded.value[source] || state !== "live") return;
+    load().then((component) => setEntry(loaded, source, component), () => setFailed(true));
   }, [state]);
-  const View = loaded.value[name];
+  const View = loaded.value[source];
   if (View) return html`<${View} ...${props} />`;
   if (isQuiet) return null;
   if (state === "reconnecting") return html`<p role="status">Waiting for the server to load the ${name}.</p>`;
@@ -264,7 +264,8 @@ export const loadPart = ({ feature, show, style }) =>
 
 /** @param {{ part: LoadedPart & { feature: string } } & Record<string, unknown>} props */
 export const Part = ({ part, ...props }) => html`
-  <${Loaded} name=${part.loading} load=${() => loadPart(part)} isQuiet=${part.isQuiet} ...${props} />
+  <${Loaded} name=${part.loading} source=${`${part.feature}/${part.show}`} load=${() => loadPart(part)}
+    isQuiet=${part.isQuiet} ...${props} />
 `;
 
 /**
