@@ -1,4 +1,4 @@
-// Written by `make page-types` from the API's response models (app/api/*answers.py).
+// Written by `make page-types` from the API's response models.
 
 export type JsonValue = unknown;
 export type GivenJsonValue = unknown;

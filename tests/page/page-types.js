@@ -4,7 +4,7 @@ import { compile } from "json-schema-to-typescript";
 
 const [, , source, target] = process.argv;
 
-const BANNER = "// Written by `make page-types` from the API's response models (app/api/*answers.py).";
+const BANNER = "// Written by `make page-types` from the API's response models.";
 /** What the generator says of each type: that it is in the root. */
 const REMARK = "This interface was referenced by `Root`'s JSON-Schema\n \\* via the `definition` \"\\w+\"\\.";
 
