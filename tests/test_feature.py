@@ -17,6 +17,7 @@ from app.storage.database.opening import DATABASE_FILE
 from hexapods.domain.errors import DamagedFile, InvalidInput
 from tests.api.conftest import running
 
+ROOT = Path(__file__).parents[1]
 IN_ORDER = ("classroom", "tournaments", "demo")
 OF_FEATURE = {
     "classroom": "/api/v1/rooms",
@@ -44,6 +45,16 @@ def names(*without: str) -> tuple[str, ...]:
 def test_each_comes_after_those_that_it_uses() -> None:
     assert set(NAMES) <= set(names())
     assert [name for name in names() if name in IN_ORDER] == list(IN_ORDER)
+
+
+def test_each_folder_has_an_address_here_and_a_row_in_the_architecture() -> None:
+    folders = {path.parent.name for path in (ROOT / "app/features").glob("*/feature.py")}
+    architecture = (ROOT / "docs/architecture.md").read_text("utf-8")
+
+    assert folders - set(NAMES) == set()
+    assert [
+        name for name in sorted(folders) if f"| `app/features/{name}` |" not in architecture
+    ] == []
 
 
 def test_any_may_be_left_out() -> None:
@@ -229,9 +240,9 @@ if __name__ == "__main__":
 @pytest.mark.parametrize("name", NAMES)
 def test_the_folder_of_a_feature_can_be_deleted(name: str, tmp_path: Path) -> None:
     """In a copy of the repository."""
-    root, copy = Path(__file__).parents[1], tmp_path / "copy"
+    copy = tmp_path / "copy"
     for folder in ("app", "docs", "hexapods", "models", "static", "tests"):
-        shutil.copytree(root / folder, copy / folder, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / folder, copy / folder, ignore=shutil.ignore_patterns("__pycache__"))
     for folder in ("app", "static", "tests"):
         shutil.rmtree(copy / folder / "features" / name)
     (copy / "race_without.py").write_text(_RACE_WITHOUT)
