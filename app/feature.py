@@ -3,8 +3,9 @@
 A feature is a package `app/features/NAME` with a module `feature` that has a subclass of `Feature`
 as `FEATURE`, or a class that another package names in the entry-point group `hexapods.features`.
 The core asks its features (`active_features`), and names none of them; HEXAPODS_WITHOUT leaves some
-out (`installed_features`). Settings (`feature_settings`) and commands (`cli.commands`) of a feature
-are no members of the class: they are in modules of their own, which commands read without a server.
+out (`installed_features`). Settings (`feature_settings`), commands (`cli.commands`) and kinds of
+runs (`storage.run_kind`) of a feature are no members of the class: they are in modules of their
+own, which commands read without a server.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
