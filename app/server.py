@@ -306,7 +306,10 @@ async def _end_long_requests(app: FastAPI) -> None:
     services.stopping.set()
     app.state.work_slots.close()
     for feature in services.features:
-        await asyncio.to_thread(feature.close)
+        try:
+            await asyncio.to_thread(feature.close)
+        except Exception:  # all else is still to end, such as the jobs with a checkpoint
+            _logger.exception("the feature %s fails in `close`", feature.name)
 
 
 def serve(settings: Settings, on_ready: Callable[[int], None] | None = None) -> None:

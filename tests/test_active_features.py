@@ -10,11 +10,13 @@ from app import active_features, server
 from app.feature import Feature
 from app.installed_features import Catalogue, load
 from app.settings import Settings
+from app.storage.database.opening import open_store
 from app.storage.database.schema import RUNS
 from app.storage.database.store import RunStore
 from hexapods.domain.errors import InvalidInput
 from tests.api.calls import WALK, Api
 from tests.api.conftest import running
+from tests.jobs.waiting import wait_until
 from tests.storage.stores import training
 
 TOKEN = "a-token-for-tests"
@@ -81,6 +83,19 @@ def test_a_feature_that_fails_later_stops_nothing_else(
     assert {record.name for record in caplog.records if "failing" in record.message} == {
         active_features.__name__
     }
+
+
+def test_jobs_are_stopped_with_a_checkpoint_where_a_feature_fails_to_close(
+    tmp_path: Path, add: Add, caplog: pytest.LogCaptureFixture
+) -> None:
+    add(failing("close"))
+    settings = Settings(data=tmp_path, job_niceness=0)
+    with running(settings) as api:
+        started = api.call("POST", "/trainings", json={**WALK, "steps": 20_000}).json()
+        wait_until(lambda: api.get(f"/runs/{started['id']}")["state"] == "running")
+    assert "the feature failing fails in `close`" in caplog.messages
+    with open_store(settings) as store:
+        assert store.get(started["id"]).error == "The server was stopped while it ran."
 
 
 def test_one_condition_hides_a_run_from_lists_and_alone(tmp_path: Path, add: Add) -> None:
