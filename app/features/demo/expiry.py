@@ -69,7 +69,7 @@ class Expiry:
         before = self._now() - self._visitors.allowance.lifetime
         old = self._visitors.made_before(before)
         self._visitors.forget(self._deleted(one.run_id for one in old))
-        gone = [list(other.delete_before(before, self._deleted)) for other in self._others]
+        gone = [self._deleted_of(other, before) for other in self._others]
         try:
             self._store.keys.delete_expired()
             self._stop_overlong()
@@ -115,6 +115,14 @@ class Expiry:
                 continue
             gone.append(run_id)
         return gone
+
+    def _deleted_of(self, other: Cleaner, before: datetime) -> list[str]:
+        """Return the names of what one of the others has deleted; none if it fails."""
+        try:
+            return list(other.delete_before(before, self._deleted))
+        except Exception:  # runs of visitors are to be stopped all the same
+            _logger.exception("%s deletes nothing now", type(other).__name__)
+            return []
 
     def _stop_overlong(self) -> None:
         now_s, running = self._now_s(), self._visitors.running()

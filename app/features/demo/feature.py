@@ -61,7 +61,8 @@ class Demo(Feature):
         self._is_demo = settings.demo
         self.visitors = core.provide(Visitors(core.store, Allowance.of(settings)))
         self.visitors.is_hidden = lambda run_id: core.features.is_hidden(run_id, None)
-        self._others = [feature for feature in core.features if self._is_demo]
+        # Filled by `open`: features of other packages are made later.
+        self._others: list[Feature] = []
         self.expiry = core.provide(Expiry(core.store, core.jobs, self.visitors, self._others))
 
     @classmethod
@@ -79,6 +80,8 @@ class Demo(Feature):
 
     @asynccontextmanager
     async def open(self) -> AsyncIterator[None]:
+        if self._is_demo:
+            self._others[:] = self.core.features
         # Before what they have made is shown, or goes on.
         await self._clean_up()
         cleaning = asyncio.create_task(self._keep_clean())
@@ -148,11 +151,10 @@ class Demo(Feature):
     async def _clean_up(self) -> None:
         try:
             gone = await asyncio.to_thread(self.expiry.sweep)
+            for feature, names in zip(self._others, gone, strict=True):
+                await feature.forget(names)
         except Exception:  # such as a damaged file: the next clean-up is not to be left out
             _logger.exception("the clean-up has failed")
-            return
-        for feature, names in zip(self._others, gone, strict=True):
-            await feature.forget(names)
 
 
 def _visitors(settings: Settings) -> str:
