@@ -14,6 +14,7 @@ from app.installed_features import Catalogue
 from app.jobs.queue import Owner
 from app.storage.database.migration import migrate_feature
 from app.storage.database.store import RunStore
+from hexapods.domain.errors import InvalidInput
 from hexapods.domain.records import Record
 
 if TYPE_CHECKING:
@@ -97,18 +98,30 @@ class Features:
         return None
 
     def visible_runs(self, identity: "Identity | None") -> ColumnElement[bool] | None:
-        """Return the condition that a run is one that no feature hides; see `Feature`."""
-        conditions = [
-            *(feature.visible_runs(identity) for feature in self),
-            self._left_out.visible_runs,
-        ]
+        """Return the condition that a run is one that no feature hides; see `Feature`.
+
+        Raises:
+            InvalidInput: if a feature fails to say it.
+        """
+        conditions = [self._left_out.visible_runs]
+        for feature in self:
+            with blaming(type(feature), "`visible_runs`"):
+                conditions.append(feature.visible_runs(identity))
         hiding = [condition for condition in conditions if condition is not None]
         return and_(*hiding) if hiding else None
 
     def why_hidden(self, run_id: str, identity: "Identity | None") -> str | None:
-        """Return in a sentence why a run is hidden from a client who is no operator; else None."""
-        reasons = (feature.why_hidden(run_id, identity) for feature in self)
-        return next((why for why in reasons if why is not None), self._left_out.why_hidden(run_id))
+        """Return in a sentence why a run is hidden from a client who is no operator; else None.
+
+        Raises:
+            InvalidInput: if a feature fails to say it.
+        """
+        for feature in self:
+            with blaming(type(feature), "`why_hidden`"):
+                why = feature.why_hidden(run_id, identity)
+            if why is not None:
+                return why
+        return self._left_out.why_hidden(run_id)
 
     def is_hidden(self, run_id: str | None, identity: "Identity | None") -> bool:
         """Whether a feature hides a run from a client who is no operator; False of None."""
@@ -161,12 +174,16 @@ class _LeftOut:
     """
 
     def __init__(self, classes: Iterable[type[Feature]], store: RunStore) -> None:
-        """Read which runs are hidden: as long as the features are left out, no more will be."""
+        """Read which runs are hidden: as long as the features are left out, no more will be.
+
+        Raises:
+            InvalidInput: if a feature cannot say it, since all that it hides would be shown.
+        """
         there = set(inspect(store.database.engine).get_table_names())
         conditions: list[ColumnElement[bool]] = []
         self._hidden: dict[str, str] = {}
         for feature in classes:
-            condition = feature.visible_when_left_out()
+            condition = _visible_when_left_out(feature)
             if condition is None or not _has_tables(feature, there):
                 continue
             conditions.append(condition)
@@ -181,6 +198,16 @@ class _LeftOut:
             if feature is None
             else f"The feature {feature} hides this run, and is left out on this server."
         )
+
+
+def _visible_when_left_out(feature: type[Feature]) -> ColumnElement[bool] | None:
+    try:
+        return feature.visible_when_left_out()
+    except Exception as error:
+        raise InvalidInput(
+            f"the feature {feature.name} is left out, and cannot say which runs it hides: "
+            f"{type(error).__name__}: {error}; mend or uninstall its package"
+        ) from error
 
 
 def _has_tables(feature: type[Feature], there: Collection[str]) -> bool:

@@ -57,7 +57,9 @@ def failing(member: str) -> type[Feature]:
     )
 
 
-@pytest.mark.parametrize("member", ["__init__", "open", "routers", "pages", "provider"])
+@pytest.mark.parametrize(
+    "member", ["__init__", "open", "routers", "pages", "provider", "visible_runs"]
+)
 def test_a_feature_that_fails_at_the_start_is_named(member: str, tmp_path: Path, add: Add) -> None:
     add(failing(member))
     with (
@@ -65,6 +67,27 @@ def test_a_feature_that_fails_at_the_start_is_named(member: str, tmp_path: Path,
         running(Settings(data=tmp_path)),
     ):
         pass
+
+
+def test_a_feature_that_is_left_out_and_cannot_say_what_it_hides_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left_out = Catalogue((), (failing("visible_when_left_out"),))
+    monkeypatch.setattr(server, "load", lambda without: left_out)
+    with (
+        pytest.raises(InvalidInput, match=r"failing is left out, and cannot say.*uninstall"),
+        running(Settings(data=tmp_path)),
+    ):
+        pass
+
+
+def test_what_nobody_can_say_to_be_shown_is_refused(tmp_path: Path, add: Add) -> None:
+    add(failing("why_hidden"))
+    with running(Settings(data=tmp_path, token=TOKEN)) as api:
+        store_of(api).create(training("shown", state="finished"))
+        refused = api.call("GET", "/runs/shown")
+        assert (refused.status_code, "failing fails in `why_hidden`" in refused.text) == (422, True)
+        assert api.call("GET", "/runs/shown", headers=BEARER).status_code == 200
 
 
 def test_a_feature_that_fails_later_stops_nothing_else(
