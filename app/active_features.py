@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from app.api.identity import Identity, IdentityProvider
 
 _logger = logging.getLogger(__name__)
+_HIDE_NOTHING = (Feature.visible_runs, Feature.why_hidden)
 
 
 class Features:
@@ -46,6 +47,8 @@ class Features:
         self.classes = catalogue.classes
         self.providers: list[IdentityProvider] = []
         self._features: dict[str, Feature] = {}
+        self._hiding: list[Feature] = []
+        """Those that hide runs, which are asked of each event for each client."""
         for feature in self.classes:
             if feature.tables is not None and feature.migrations is not None:
                 migrate_feature(store.database, feature.name, feature.migrations, feature.tables)
@@ -63,6 +66,8 @@ class Features:
                 made = self._features[feature.name] = feature(core)
                 if (provider := made.provider()) is not None:
                     self.providers.append(provider)
+            if (feature.visible_runs, feature.why_hidden) != _HIDE_NOTHING:
+                self._hiding.append(made)
 
     def __iter__(self) -> Iterator[Feature]:
         return iter(self._features.values())
@@ -104,7 +109,7 @@ class Features:
             InvalidInput: if a feature fails to say it.
         """
         conditions = [self._left_out.visible_runs]
-        for feature in self:
+        for feature in self._hiding:
             with blaming(type(feature), "`visible_runs`"):
                 conditions.append(feature.visible_runs(identity))
         hiding = [condition for condition in conditions if condition is not None]
@@ -116,7 +121,7 @@ class Features:
         Raises:
             InvalidInput: if a feature fails to say it.
         """
-        for feature in self:
+        for feature in self._hiding:
             with blaming(type(feature), "`why_hidden`"):
                 why = feature.why_hidden(run_id, identity)
             if why is not None:

@@ -83,11 +83,12 @@ def test_a_feature_that_is_left_out_and_cannot_say_what_it_hides_is_named(
 
 def test_what_nobody_can_say_to_be_shown_is_refused(tmp_path: Path, add: Add) -> None:
     add(failing("why_hidden"))
+    bearer = {"authorization": f"Bearer {TOKEN}"}
     with running(Settings(data=tmp_path, token=TOKEN)) as api:
         store_of(api).create(training("shown", state="finished"))
         refused = api.call("GET", "/runs/shown")
         assert (refused.status_code, "failing fails in `why_hidden`" in refused.text) == (422, True)
-        assert api.call("GET", "/runs/shown", headers=BEARER).status_code == 200
+        assert api.call("GET", "/runs/shown", headers=bearer).status_code == 200
 
 
 def test_a_feature_that_fails_later_stops_nothing_else(
