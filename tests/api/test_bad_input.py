@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 from tests.api.calls import WALK, Api, refused
+from tests.features.needing import needs
 
 NAN = float("nan")
 WRONG_TRAININGS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
@@ -126,6 +127,7 @@ def test_body_that_is_not_json_is_refused(api: Api) -> None:
     refused(api.call("POST", "/trainings", content=b"\xff\xfe{"), 422)
 
 
+@needs("what_if", "experiments")
 def test_flat_settings_are_refused_with_the_nested_form(api: Api) -> None:
     """Versions before 0.2 took them so."""
     for path, body in (

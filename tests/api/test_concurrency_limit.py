@@ -18,6 +18,7 @@ from app.server import create_app
 from app.settings import Settings
 from app.stage.roles import Role
 from tests.api.guarding import admitted
+from tests.features.needing import needs
 from tests.storage.stores import temporary_store
 
 STOP = "/api/v1/trainings/x/stop"
@@ -205,6 +206,7 @@ def test_two_tasks_of_a_request_acquire_one_slot() -> None:
     asyncio.run(scenario())
 
 
+@needs("experiments")
 def test_each_kind_of_work_has_slots_of_its_own() -> None:
     kinds = {
         "/readyz": "probe",

@@ -31,6 +31,7 @@ from app.server import create_app
 from app.settings import Settings
 from hexapods.domain.errors import HexapodError
 from tests.api.calls import WALK, Api
+from tests.features.needing import needs
 from tests.storage.stores import temporary_store
 
 PAGES = {
@@ -161,6 +162,7 @@ def test_only_what_may_refuse_strangers_describes_that(described: dict[str, Any]
         {"token": "a-token-for-tests", "spectators": "token"},
     ],
 )
+@needs("classroom", "demo", "tournaments")
 def test_security_requirements_are_described(serve: Serve, settings: dict[str, Any]) -> None:
     api = serve(**settings)
     bearer = {"Authorization": "Bearer a-token-for-tests"} if settings else {}
@@ -184,6 +186,7 @@ def test_security_requirements_are_described(serve: Serve, settings: dict[str, A
                 assert (answer.status_code != 401) == is_free, path
 
 
+@needs("experiments")
 def test_starts_have_location_and_links(
     described: dict[str, Any],
 ) -> None:
@@ -239,6 +242,7 @@ def test_real_responses_match_their_models(api: Api, trained: dict[str, Any]) ->
     assert count > 16
 
 
+@needs("classroom", "experiments", "tournaments")
 def test_real_events_match_their_models(api: Api, trained: dict[str, Any]) -> None:
     assert isinstance(api.client.app, FastAPI)
     services: Services = api.client.app.state.services

@@ -7,10 +7,12 @@ import pytest
 from hexapods.domain.creatures import CREATURES
 from hexapods.domain.gait import gait_as_json, resolve
 from tests.api.calls import Api
+from tests.features.needing import needs
 from tests.quick_robot import QUICK_STEPS
 
 
 @pytest.mark.parametrize("name", ["starfish", "centipede"])
+@needs("explanations", "exports")
 def test_a_creature_is_trained_raced_explained_and_exported(name: str, api: Api) -> None:
     made = CREATURES[name].robot
     gait = resolve(CREATURES[name].gait, made.azimuths_deg)

@@ -12,6 +12,7 @@ from hexapods.runs.lane import lane_config
 from hexapods.runs.race_config import Branch, RaceConfig
 from hexapods.runs.racing import record_race
 from tests.api.calls import WALK, Api, refused
+from tests.features.needing import needs
 from tests.quick_robot import HASTY
 
 MUJOCO = {"gait": WALK["gait"]}
@@ -84,6 +85,7 @@ def test_what_cannot_happen_to_a_running_training_changes_nothing(api: Api) -> N
     api.stop(run)
 
 
+@needs("what_if")
 def test_an_end_after_the_run_is_refused_wherever_one_is_asked_for(api: Api) -> None:
     """In stored runs it means the same as no end."""
     noise = {"kind": "sensor-noise", "sd_m": 0.01, "until_step": 61}

@@ -22,6 +22,7 @@ from app.api.pages import (
 from hexapods import assets
 from tests.api.calls import Api
 from tests.api.guarding import let_all_pass
+from tests.features.needing import needs
 
 SCRIPT = "/static/js/main.js"
 PAGE = (
@@ -169,8 +170,9 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
     opened |= {*opened_by_features(folder)}
     opened |= {f"static/features/{n}/feature.js" for n in coded if "codeFor" in coded[n]}
     opened.add("static/js/offline/player.js")  # of files that play a replay offline
-    opened.add("static/features/classroom/room/main.js")  # of the page of rooms
-    opened.add("static/features/tournaments/main.js")  # of the page of tournaments
+    # Of pages of features.
+    pages = ("features/classroom/room/main.js", "features/tournaments/main.js")
+    opened |= {f"static/{path}" for path in pages if (folder / path).exists()}
     later = {path for one in opened for path in imported_modules(one, folder)} - modules
 
     assert {folder.parent / path for path in (*modules, *later)} == {*scripts}
@@ -182,6 +184,7 @@ def test_page_preloads_every_module_once_but_those_that_are_loaded_later(api: Ap
     assert page.index("importmap") < page.index("modulepreload")
 
 
+@needs("classroom")
 def test_page_of_rooms_is_a_folder_deeper_and_preloads_its_own_modules(api: Api) -> None:
     page = api.client.get("/r/NOROOM", headers={"Accept": "text/html"})
     folder = assets.static_dir()
@@ -220,6 +223,7 @@ def test_page_without_an_entry_point_is_refused(tmp_path: Path) -> None:
         "/static/features%2Fguide%2Ffeature.json",
     ],
 )
+@needs("guide")
 def test_no_spelling_serves_a_file_of_a_feature_that_is_left_out(
     path: str, shared: Callable[..., Api]
 ) -> None:

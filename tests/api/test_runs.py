@@ -3,6 +3,7 @@
 from typing import Any
 
 from tests.api.calls import Api, refused
+from tests.features.needing import needs
 
 
 def names(page: dict[str, Any]) -> list[str]:
@@ -28,6 +29,7 @@ def test_runs_of_every_kind_are_listed_and_searched(api: Api) -> None:
         assert api.get(f"/runs/{run['id']}") == run
 
 
+@needs("experiments")
 def test_an_unknown_filter_value_is_refused_with_the_valid_ones(api: Api) -> None:
     refused(api.call("GET", "/runs?kind=walk"), 422, "kind", "training, race, experiment")
     refused(api.call("GET", "/runs?state=tired"), 422, "state", "running")

@@ -106,7 +106,7 @@ def test_policies_open_to_spectators_what_they_are_meant_to(shared: Serve) -> No
     app = shared().client.app
     assert isinstance(app, FastAPI)
     everything = policies(app)
-    assert len(everything) > 120
+    assert ("post", "/api/v1/trainings") in everything
     for (method, path), policy in everything.items():
         if method not in ("get", "head"):
             assert not policy.access.is_read, (method, path)

@@ -12,6 +12,7 @@ from app.storage.server_lock import lock_folder, write_address_file
 from hexapods.domain.robot import document_of, robot
 from tests.cli.examining import ANY_PORT, examined, failures, known_machine
 from tests.cli.running import hexapods, in_process, output
+from tests.features.needing import needs
 from tests.postgresql import PostgresServer
 from tests.storage.stores import database_url, opened
 
@@ -69,6 +70,7 @@ def test_quota_and_database_are_checked(tmp_path: Path) -> None:
     assert "damaged" in failures(examined(tmp_path))["database"]
 
 
+@needs("robots")
 def test_stored_robots_that_cannot_be_read_are_named(tmp_path: Path) -> None:
     assert examined(tmp_path)["robots"] == (True, "none is stored")
     (tmp_path / "rex.json").write_bytes(document_of(robot({"preset": "dog", "femur_m": 0.096})))

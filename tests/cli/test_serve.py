@@ -11,6 +11,7 @@ import httpx2
 import pytest
 
 from tests.cli.running import refusal
+from tests.features.needing import needs
 from tests.forked import start_hexapods
 from tests.served import environ
 from tests.timeouts import LONG_S
@@ -46,6 +47,7 @@ def test_shared_links_are_printed_when_the_server_answers(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("is_option", [True, False])
+@needs("demo")
 def test_a_demo_on_loopback_makes_a_token_and_prints_the_links(
     tmp_path: Path, is_option: bool
 ) -> None:
@@ -77,6 +79,7 @@ def test_the_token_of_a_service_is_not_printed(tmp_path: Path) -> None:
         process.wait(LONG_S)
 
 
+@needs("demo")
 def test_a_demo_for_others_needs_a_token(tmp_path: Path) -> None:
     command = ("serve", "--demo", "--host", "0.0.0.0", "--port", "0", "--data", str(tmp_path))
     assert "a demo needs HEXAPODS_TOKEN" in refusal(*command, folder=tmp_path)

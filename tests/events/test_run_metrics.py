@@ -4,9 +4,11 @@ from dataclasses import replace
 
 from app.events.run_metrics import RunMetrics
 from app.storage.run import DamagedRun
+from tests.features.needing import needs
 from tests.storage.stores import experiment, race, training
 
 
+@needs("experiments")
 def test_steps_are_counted_from_a_runs_first_event_on() -> None:
     now = 0.0
     metrics = RunMetrics(now=lambda: now)
