@@ -11,7 +11,7 @@ from pathlib import Path
 
 from app.cli.machine_checks import CheckFailed
 from app.events.damage import damaged_rows, damaged_runs
-from app.feature import Feature
+from app.feature import Feature, blaming
 from app.installed_features import load
 from app.setting_fields import PREFIX
 from app.settings import ROBOTS_FOLDER, Settings
@@ -28,6 +28,7 @@ from hexapods.domain.text import counted
 WANTED_FREE_MB = 200
 _NEARLY_FULL = 0.9
 _MAX_NAMED = 10
+_BACKUP = "put a backup of the database back"
 _ADVICE: Mapping[str, str] = {
     "about": "the next start of a server mends it",
     "runs": "delete these runs, or put a backup back",
@@ -129,13 +130,15 @@ def _rows(settings: Settings) -> str:
     with open_read_only(settings, *tables) as store:
         # What the rows stand for is known to those who read them.
         for feature in features:
-            feature.read_rows(store)
+            with blaming(feature, "`read_rows`"):
+                feature.read_rows(store)
         damaged = {table: rows for table, rows in damaged_rows(store).items() if rows}
     if damaged:
         raise CheckFailed(
             ". ".join(
                 f"{counted(len(rows), 'row')} of {table} cannot be read: "
-                f"{'; '.join(map(str, rows[:MAX_NAMED]))}: {advice(features)[table]}"
+                f"{'; '.join(map(str, rows[:MAX_NAMED]))}: "
+                f"{advice(features).get(table, _BACKUP)}"
                 for table, rows in damaged.items()
             )
         )
@@ -201,8 +204,23 @@ def data_checks(settings: Settings) -> Mapping[str, Callable[[Settings], str]]:
     checks = {"features": _features, **_CHECKS}
     with suppress(HexapodError):
         for feature in load(settings.without).classes:
-            checks |= feature.checks()
+            checks |= _checks_of(feature)
     return checks
+
+
+def _checks_of(feature: type[Feature]) -> Mapping[str, Callable[[Settings], str]]:
+    """Return the checks of a feature; one that tells how it failed, if it cannot say them."""
+    try:
+        with blaming(feature, "`checks`"):
+            return feature.checks()
+    except HexapodError as error:
+        failure = str(error)
+
+    def fail(settings: Settings) -> str:
+        del settings
+        raise CheckFailed(failure)
+
+    return {feature.name: fail}
 
 
 def _features(settings: Settings) -> str:
