@@ -12,6 +12,7 @@ from sqlalchemy import ColumnElement, and_, inspect
 from app.feature import Feature, blaming, hidden_ids
 from app.installed_features import Catalogue
 from app.jobs.queue import Owner
+from app.setting_fields import PREFIX
 from app.storage.database.migration import migrate_feature
 from app.storage.database.store import RunStore
 from hexapods.domain.errors import InvalidInput
@@ -42,9 +43,10 @@ class Features:
 
         Raises:
             DamagedFile: if a table of one is missing.
-            InvalidInput: if a newer version made its tables.
+            InvalidInput: if a newer version made its tables, or two have something of one name.
         """
         self.classes = catalogue.classes
+        _check_names(self.classes)
         self.providers: list[IdentityProvider] = []
         self._features: dict[str, Feature] = {}
         self._hiding: list[Feature] = []
@@ -157,6 +159,29 @@ class Features:
                 yield from feature.metrics()
             except Exception:
                 _logger.exception("the feature %s has no metrics", feature.name)
+
+
+def _check_names(classes: Iterable[type[Feature]]) -> None:
+    """Check that no feature replaces what another one adds.
+
+    Raises:
+        InvalidInput: if two have a table, an event, a member of the stage or an option of one name.
+    """
+    names: dict[tuple[str, str], str] = {}
+    for feature in classes:
+        tables = () if feature.tables is None else feature.tables.tables
+        added = {
+            "table": tables,
+            "event": feature.event_bodies,
+            "member of the stage": feature.stage_members,
+            "option": feature.option_types,
+        }
+        for what, name in ((kind, name) for kind in added for name in added[kind]):
+            if (first := names.setdefault((what, name), feature.name)) != feature.name:
+                raise InvalidInput(
+                    f"the features {first} and {feature.name} both have the {what} {name}; leave "
+                    f"one of both out by {PREFIX}WITHOUT"
+                )
 
 
 def keep_named_robots(catalogue: Catalogue, store: RunStore) -> None:

@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic import BaseModel
+from sqlalchemy import Column, Integer, MetaData, Table
 
 from app import active_features, server
 from app.feature import Feature
@@ -14,8 +16,10 @@ from app.storage.database.opening import open_store
 from app.storage.database.schema import RUNS
 from app.storage.database.store import RunStore
 from hexapods.domain.errors import InvalidInput
+from hexapods.domain.records import Record
 from tests.api.calls import WALK, Api
 from tests.api.conftest import running
+from tests.features.needing import needs
 from tests.jobs.waiting import wait_until
 from tests.storage.stores import training
 
@@ -66,6 +70,27 @@ def test_a_feature_that_fails_at_the_start_is_named(member: str, tmp_path: Path,
         pytest.raises(InvalidInput, match=r"feature failing fails .*HEXAPODS_WITHOUT=failing"),
         running(Settings(data=tmp_path)),
     ):
+        pass
+
+
+@needs("classroom", "experiments", "presenter")
+@pytest.mark.parametrize(
+    ("members", "message"),
+    [
+        ({"event_bodies": {"room": BaseModel}}, "classroom and other both have the event room"),
+        ({"option_types": {"experiments": list}}, "both have the option experiments"),
+        ({"stage_members": {"presentation": Record}}, "both have the member of the stage"),
+        ({"tables": MetaData()}, "both have the table rooms"),
+    ],
+    ids=["event", "option", "stage", "table"],
+)
+def test_what_replaces_something_of_another_feature_is_refused(
+    members: dict[str, Any], message: str, tmp_path: Path, add: Add
+) -> None:
+    if "tables" in members:
+        Table("rooms", members["tables"], Column("code", Integer))
+    add(type("Other", (Feature,), {"name": "other", **members}))
+    with pytest.raises(InvalidInput, match=message), running(Settings(data=tmp_path)):
         pass
 
 
