@@ -285,6 +285,8 @@ export interface MenuRow {
   /** Its place among the rows of features. */
   order?: number;
   icon?: string;
+  /** What the button says of itself that it has in the header too, at once: what is loaded later moves the others. */
+  headerHint?: string;
   /** Who has it; everybody without one. */
   for?: "operator";
   /** Where it leads, or else what it does: loads a dialog, calls a function of a module that it loads, or runs. */

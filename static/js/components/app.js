@@ -132,7 +132,11 @@ const Header = () => html`
       <button class="quiet roomy" onClick=${share} title="Copy a link that opens the page as it is">
         <${Icon} name="link" />Share
       </button>
-      <${Slot} name="buttons of the header" />
+      ${menuRows.value.filter(({ headerHint }) => headerHint).map((row) => html`
+        <button key=${row.order} class="quiet roomy" onClick=${() => runRow(row)} title=${row.headerHint}>
+          ${row.icon && html`<${Icon} name=${row.icon} />`}${row.title}
+        </button>
+      `)}
     `}
     <${Menu} />
   </header>

@@ -5,10 +5,10 @@ import socket
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Locator, ViewportSize, expect
+from playwright.sync_api import Browser, Locator, Route, ViewportSize, expect
 
 from tests.browser.dashboard import Dashboard
-from tests.browser.serving import finished, hold, serving
+from tests.browser.serving import Serving, finished, hold, serving
 from tests.browser.type_sizes import small_texts
 from tests.conftest import new_page
 
@@ -150,3 +150,21 @@ def obeys_its_own_keys(dashboard: Dashboard) -> None:
     dashboard.eventually(lambda: not page.evaluate(is_full), "it fills the screen no more")
     # It is as deep as before.
     expect(page.get_by_role("tab", name="Board", selected=True)).to_be_visible()
+
+
+@pytest.mark.promises
+def test_its_button_is_in_the_header_before_its_code_as_it_would_move_the_others(
+    dashboard: Dashboard, shared_server: Serving
+) -> None:
+    held: list[Route] = []
+
+    def hold_back(route: Route) -> None:
+        held.append(route)
+
+    dashboard.page.route("**/features/presenter/*.js", hold_back)
+    dashboard.open(f"{shared_server.address}?depth=try")
+    expect(dashboard.page.locator("header").get_by_role("button", name="Share")).to_be_visible()
+    button = dashboard.page.locator("header").get_by_role("button", name="Present")
+    expect(button.filter(visible=True)).to_have_count(1)
+    for route in held:
+        route.continue_()
