@@ -1,5 +1,6 @@
 """Route of the options: names, defaults, limits and help texts of all forms."""
 
+import logging
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import MISSING, fields
 from functools import lru_cache
@@ -63,6 +64,8 @@ from hexapods.shows.scene_spec import PAPERS_LANES
 A = TypeVar("A", bound=Answer)
 _DEFAULTS = "defaults."
 
+_logger = logging.getLogger(__name__)
+
 
 def options_view(features: Iterable[type[Feature]]) -> type[OptionsView]:
     """Return the model of the options, with what features add to them."""
@@ -116,9 +119,15 @@ def _content(
     """
     answer = catalogue(agents, robots.readable(hidden=True), version)
     for feature in features:
-        for name, added in feature.options(agents).items():
+        try:
+            options = feature.options(agents)
             # Limits and texts of a feature stand with those of the core.
-            answer[name] = {**answer[name], **added} if name in answer else added
+            answer |= {
+                name: {**answer[name], **added} if name in answer else added
+                for name, added in options.items()
+            }
+        except Exception:  # every page needs the others
+            _logger.exception("the feature %s has no options", feature.name)
     return CompressedContent(bytes(JSONResponse(answer).body), "application/json")
 
 
