@@ -27,6 +27,7 @@ from hexapods.runs.results import (
     RaceResult,
     TrainingResult,
 )
+from tests.features.needing import needs
 from tests.storage.stores import (
     ODD,
     RACE,
@@ -44,6 +45,7 @@ def queued_run(store: RunStore, name: str = "it") -> Run:
     return run
 
 
+@needs("experiments")
 def test_stored_runs_are_returned_unchanged(store: RunStore) -> None:
     now = datetime(2026, 3, 1, 12, 30, 15, 123456, tzinfo=timezone(timedelta(hours=5)))
     runs = [
