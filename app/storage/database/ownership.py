@@ -227,6 +227,16 @@ class Ownership:
         return bool(self._execute(_HAS_LOCK)) or bool(self._execute(_TRY_LOCK))
 
     def _execute(self, statement: Executable) -> Any:
+        """Execute on its own connection; on a new one if the database has ended that."""
+        was_connected = self._connection is not None
+        try:
+            return self._execute_once(statement)
+        except HexapodError:
+            if not was_connected:
+                raise
+        return self._execute_once(statement)
+
+    def _execute_once(self, statement: Executable) -> Any:
         try:
             if self._connection is None:
                 self._connection = self._database.connect()

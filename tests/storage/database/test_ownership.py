@@ -1,15 +1,19 @@
-"""Ownership of a SQLite database whose file is removed or replaced; see also promise 31."""
+"""Ownership of a SQLite database whose file is removed or replaced, and of one of PostgreSQL that
+ends a connection; see also promise 31."""
 
 import shutil
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+import psycopg
 import pytest
 
 from app.storage.database.opening import DATABASE_FILE
+from app.storage.database.ownership import WATCH_EVERY_S
 from app.storage.errors import StorageFailed
-from tests.storage.stores import opened, training
+from tests.postgresql import PostgresServer
+from tests.storage.stores import database_url, opened, training
 
 REPLACED = f"the database file {DATABASE_FILE} was removed or replaced while the server runs"
 
@@ -62,3 +66,20 @@ def test_a_copy_is_another_file(tmp_path: Path) -> None:
         backup = shutil.copy(file, tmp_path / "backup.db")
         Path(backup).replace(file)
         assert REPLACED in eventually_refused(store.list)
+
+
+def test_a_connection_that_the_database_has_ended_is_no_outage(
+    postgresql: PostgresServer, tmp_path: Path
+) -> None:
+    """The lock is taken again by a new one."""
+    locks = "FROM pg_locks WHERE locktype = 'advisory' AND granted"
+    with database_url("postgresql", postgresql) as url, opened(tmp_path, url) as store:
+        assert url is not None
+        with psycopg.connect(url, autocommit=True) as connection:
+            connection.execute(f"SELECT pg_terminate_backend(pid, 30000) {locks}")
+            deadline = time.monotonic() + 3 * WATCH_EVERY_S
+            store.create(training("a"))
+            while time.monotonic() < deadline:
+                store.update("a", name="b")
+                time.sleep(0.02)
+            assert connection.execute(f"SELECT count(*) {locks}").fetchone() == (1,)
