@@ -88,6 +88,7 @@ const TABLE = {
   "waiting": {
     headline: () => "On the start line",
     board: ({ run }) => (isActive(run) ? "The race is about to begin." : "Its figures come with the picture."),
+    isUnseen: true,
   },
   "practising": {
     headline: ofPractice(practising), reason: ofPractice(whyPractising), board: beforeRace, isOfRun: true,

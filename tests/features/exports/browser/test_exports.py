@@ -1,6 +1,7 @@
 """Files of a walk on the page: offered where a run is, and nowhere where exports are left out."""
 
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,8 @@ def folder(tmp_path: Path) -> Path:
     with opened(tmp_path / "data", None) as store:
         ended_training(store, TRAINING)
         ended_race(store, RACED, TRAINING)
+        # As jobs set it; without it a run is one that was imported, of which nothing was recorded.
+        store.update(RACED, started_at=datetime.now(UTC))
     return tmp_path / "data"
 
 
