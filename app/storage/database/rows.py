@@ -95,7 +95,10 @@ def _decode(row: Mapping[str, Any]) -> Run:
     if (kind := run_kinds().get(row["kind"])) is None:
         known = ", ".join(run_kinds())
         name = str(row["kind"])[:40]
-        raise ValueError(f"its kind, {name}, is none of {known}; a feature may be missing")
+        raise ValueError(
+            f"its kind, {name}, is none of {known}; if a feature adds it, put that feature back "
+            "before you delete the run"
+        )
     values = {k: v for k, v in row.items() if k not in ("config", "result")}
     for name in _LISTS:
         values[name] = tuple(_json(name, row[name]))
