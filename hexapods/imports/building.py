@@ -80,12 +80,12 @@ def build(compiled: Compiled, origin: FileOrigin, choices: Choices, notes: Notes
 
 def _keyframes(model: mujoco.MjModel) -> dict[str, FloatArray]:
     """Return `qpos` of each keyframe that is finite, by name; of very many the first."""
-    found = {}
+    keyframes = {}
     for key in range(min(model.nkey, _MAX_KEYFRAMES)):
         qpos = np.array(model.key_qpos[key])
         if np.isfinite(qpos).all():
-            found[model.key(key).name or f"keyframe {key + 1}"] = qpos
-    return found
+            keyframes[model.key(key).name or f"keyframe {key + 1}"] = qpos
+    return keyframes
 
 
 def _resting(keyframes: Mapping[str, FloatArray]) -> str:
@@ -309,7 +309,7 @@ class _Builder:
         """Return the shapes of each link of a leg that touch nothing at home."""
         foot = self._posed.foot(leg), leg.foot.radius_m
         ground_m = float(chain.feet(angles[None])[0, 2]) - leg.foot.radius_m
-        found = []
+        shapes_of_links = []
         turn, moved = np.eye(3), np.zeros(3)
         origin = np.zeros(3)
         for place, joint in enumerate(leg.joints):
@@ -320,8 +320,8 @@ class _Builder:
             is_last = place + 1 == len(leg.joints)
             shapes = link_shapes(self._posed, joint, foot if is_last else None)
             lowest = [shape.lowest_m(turn, at, moved) for shape in shapes]
-            found.append(drop_touching(shapes, lowest, ground_m, self._notes))
-        return found
+            shapes_of_links.append(drop_touching(shapes, lowest, ground_m, self._notes))
+        return shapes_of_links
 
     def _name_of_torso(self) -> str:
         return quoted(self._compiled.body_name(self._posed.skeleton.root))
@@ -332,7 +332,7 @@ class _Builder:
 
 
 def _vector(values: FloatArray) -> tuple[float, float, float]:
-    x, y, z = (float(one) + 0.0 for one in values)
+    x, y, z = (float(value) + 0.0 for value in values)
     return x, y, z
 
 
@@ -375,7 +375,7 @@ def joint_kinds(names: Sequence[Sequence[str]]) -> Names:
     Of `FL_hip_joint` and `RR_hip_joint` it is `hip`: the words that all legs have in common.
     Where there are none, or two joints would have one name, joints are numbered.
     """
-    found: Names = []
+    kinds_of_legs: Names = []
     for leg in names:
         alike = [other for other in names if len(other) == len(leg)]
         kinds = []
@@ -386,8 +386,8 @@ def joint_kinds(names: Sequence[Sequence[str]]) -> Names:
             kinds.append(f"joint{kind}" if kind.isdecimal() else kind)
         if not all(kinds) or len(set(kinds)) < len(kinds) or len(alike) < 2:
             kinds = [f"joint{place}" for place in range(1, len(leg) + 1)]
-        found.append(tuple(kinds))
-    return found
+        kinds_of_legs.append(tuple(kinds))
+    return kinds_of_legs
 
 
 def _words(name: str) -> list[str]:

@@ -186,11 +186,11 @@ def _too_much_memory(most_bytes: int) -> str:
 def _imported(answer: bytes) -> ImportedRobot:
     """Validate the answer of a child."""
     try:
-        told = json.loads(answer)
-        error = told.get("error")
+        answer_document = json.loads(answer)
+        error = answer_document.get("error")
         if error is None:
-            return from_json(ImportedRobot, told["robot"])
-        kind = DamagedFile if told.get("is_damaged") else InvalidInput
+            return from_json(ImportedRobot, answer_document["robot"])
+        kind = DamagedFile if answer_document.get("is_damaged") else InvalidInput
     except (ValueError, KeyError, AttributeError, TypeError) as problem:
         _logger.warning("the process that reads robots gave no valid answer: %s", problem)
         raise DamagedFile(f"the file makes no valid robot: {_cut(str(problem))}") from problem

@@ -38,9 +38,9 @@ def read_collada(data: bytes, label: str) -> FloatArray:
 def _placed(root: Element) -> Iterator[FloatArray]:
     """Iterate over the triangles of each instance of a geometry."""
     geometries = {
-        one.attributes["id"]: _triangles(one)
-        for one in root.all("geometry")
-        if "id" in one.attributes
+        geometry.attributes["id"]: _triangles(geometry)
+        for geometry in root.all("geometry")
+        if "id" in geometry.attributes
     }
     unit = next(root.all("unit"), None)
     meter = 1.0 if unit is None else float(unit.attributes.get("meter", 1))
@@ -60,7 +60,7 @@ def _instances(root: Element) -> Iterator[tuple[str, FloatArray]]:
     """Iterate over the geometries of the first scene with their places."""
     scene = next(root.all("visual_scene"), None)
     waiting = [(scene, np.eye(4))] if scene is not None else []
-    found = 0
+    count = 0
     while waiting:
         node, above = waiting.pop()
         matrix = above @ _transform(node) if node.tag == "node" else above
@@ -68,8 +68,8 @@ def _instances(root: Element) -> Iterator[tuple[str, FloatArray]]:
             if child.tag == "node":
                 waiting.append((child, matrix))
             elif child.tag == "instance_geometry":
-                found += 1
-                if found > _MAX_INSTANCES:
+                count += 1
+                if count > _MAX_INSTANCES:
                     raise ValueError(f"it has more than {_MAX_INSTANCES} parts")
                 yield child.attributes.get("url", "").removeprefix("#"), matrix
 
@@ -80,19 +80,19 @@ def _transform(node: Element) -> FloatArray:
     for child in node:
         if child.tag not in _TEXTS:
             continue
-        numbers, part = _numbers(child), np.eye(4)
+        numbers, factor = _numbers(child), np.eye(4)
         if child.tag == "matrix":
-            part = numbers.reshape(4, 4)
+            factor = numbers.reshape(4, 4)
         elif child.tag == "translate":
-            part[:3, 3] = numbers
+            factor[:3, 3] = numbers
         elif child.tag == "scale":
-            part[:3, :3] = np.diag(numbers)
+            factor[:3, :3] = np.diag(numbers)
         elif child.tag == "rotate":
             x, y, z = numbers[:3] / max(float(np.linalg.norm(numbers[:3])), 1e-12)
             cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
             angle = np.radians(numbers[3])
-            part[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-        total = total @ part
+            factor[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+        total = total @ factor
     return total
 
 
@@ -103,14 +103,14 @@ def _triangles(geometry: Element) -> FloatArray:
         f"#{vertices.attributes['id']}": _input(vertices, "POSITION")
         for vertices in geometry.all("vertices")
     }
-    found = [np.empty((0, 3, 3))]
+    triangles = [np.empty((0, 3, 3))]
     for polygons in geometry.all(*_POLYGONS):
         vertices = _positions(sources[places[_input(polygons, "VERTEX")]])
         corners = _corners(polygons)
         if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
             raise ValueError("a corner has a vertex that does not exist")
-        found.append(vertices[corners])
-    return np.concatenate(found)
+        triangles.append(vertices[corners])
+    return np.concatenate(triangles)
 
 
 def _positions(source: Element) -> FloatArray:
@@ -126,19 +126,21 @@ def _positions(source: Element) -> FloatArray:
 
 def _corners(polygons: Element) -> IntArray:
     """Return the vertices of triangles, (n, 3); polygons are cut like fans."""
-    offsets = [int(one.attributes.get("offset", 0)) for one in polygons if one.tag == "input"]
+    offsets = [int(child.attributes.get("offset", 0)) for child in polygons if child.tag == "input"]
     offset, stride = int(_input_element(polygons, "VERTEX").attributes["offset"]), max(offsets) + 1
     if not 0 <= offset < stride <= 32:
         raise ValueError("its corners have no order")
-    lists = [_numbers(one).astype(np.int64)[offset::stride] for one in polygons if one.tag == "p"]
+    lists = [
+        _numbers(child).astype(np.int64)[offset::stride] for child in polygons if child.tag == "p"
+    ]
     if not lists:
         return np.empty((0, 3), dtype=np.int64)
     if polygons.tag == "triangles":
         flat = np.concatenate(lists)
         return flat[: len(flat) // 3 * 3].reshape(-1, 3)
-    counts = next((one for one in polygons if one.tag == "vcount"), None)
+    counts = next((child for child in polygons if child.tag == "vcount"), None)
     if counts is None:
-        sizes = np.array([len(one) for one in lists])
+        sizes = np.array([len(child) for child in lists])
     else:
         sizes = _numbers(counts).astype(np.int64)
     flat = np.concatenate(lists)
@@ -163,9 +165,9 @@ def _input(element: Element, semantic: str) -> str:
 
 
 def _input_element(element: Element, semantic: str) -> Element:
-    for one in element:
-        if one.tag == "input" and one.attributes.get("semantic") == semantic:
-            return one
+    for child in element:
+        if child.tag == "input" and child.attributes.get("semantic") == semantic:
+            return child
     raise KeyError(semantic)
 
 

@@ -12,7 +12,7 @@ from hexapods.imports.notes import Notes, listed, quoted
 from hexapods.imports.xml import Document
 
 LEAST_KG, _LEAST_INERTIA = 1e-6, 1e-9
-"""Of moving bodies, where the file has none."""
+"""Mass and inertia of moving bodies for which the file gives none."""
 _ATTEMPTS = 6
 _LINE = re.compile(r"line (\d+)")
 _ELEMENT_NAME = re.compile(r"Element name '([^']*)'")
@@ -140,7 +140,7 @@ def _spare_volumes(spec: mujoco.MjSpec) -> None:
 
 
 def _weigh_as_shells(spec: mujoco.MjSpec, notes: Notes) -> bool:
-    changed = [one for one in spec.meshes if one.inertia != _SHELL]
+    changed = [mesh for mesh in spec.meshes if mesh.inertia != _SHELL]
     for mesh in changed:
         mesh.inertia = _SHELL
     if changed:
@@ -180,26 +180,26 @@ def _mend_inertias(spec: mujoco.MjSpec, notes: Notes) -> None:
 def _name_all(spec: mujoco.MjSpec) -> None:
     """Give each body, joint and geom a name; those of the file stay."""
     for kind, elements in (("body", spec.bodies), ("joint", spec.joints), ("geom", spec.geoms)):
-        used = {one.name for one in elements}
-        for number, one in enumerate(elements):
-            if not one.name:
+        used = {element.name for element in elements}
+        for number, element in enumerate(elements):
+            if not element.name:
                 name = f"{kind} {number}"
                 while name in used:
                     name += "'"
-                one.name = name
+                element.name = name
                 used.add(name)
 
 
 def _refused(error: ValueError, document: Document) -> DamagedFile:
     """Return MuJoCo's complaint as a sentence, with the line of the original."""
     text = str(error)
-    found, named = _LINE.search(text), _ELEMENT_NAME.search(text)
-    line = document.original_line(int(found[1])) if found else None
+    line_match, name_match = _LINE.search(text), _ELEMENT_NAME.search(text)
+    line = document.original_line(int(line_match[1])) if line_match else None
     why = (
         re.sub(r"^(XML )?Error: ?", "", text.split("\nElement", maxsplit=1)[0]).strip().rstrip(".")
     )
     place = f" in line {line}" if line else ""
-    name = f" ({quoted(named[1])})" if named and named[1] else ""
+    name = f" ({quoted(name_match[1])})" if name_match and name_match[1] else ""
     return DamagedFile(f"MuJoCo refuses the file{place}{name}: {_in_one_line(why)}")
 
 

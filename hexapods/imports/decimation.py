@@ -29,11 +29,11 @@ def cluster(vertices: FloatArray, faces: IntArray, most: int) -> tuple[FloatArra
     # A closed surface has about twice as many triangles as its cells, some of each side of a cube.
     cells = min(2.0 * math.sqrt(most), _MOST_CELLS)
     while True:
-        found = _merge(vertices, faces, ((vertices - low) * (cells / size)).astype(np.int64))
-        if len(found[1]) <= most:
-            return found
+        merged = _merge(vertices, faces, ((vertices - low) * (cells / size)).astype(np.int64))
+        if len(merged[1]) <= most:
+            return merged
         if cells < _LEAST_CELLS:
-            return found[0], found[1][:most]
+            return merged[0], merged[1][:most]
         cells *= _COARSER
 
 

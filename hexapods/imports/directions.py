@@ -97,7 +97,7 @@ def _chosen(forward: str | float) -> float:
 def _mean(mounts: FloatArray, names: Sequence[Sequence[str]], word: str) -> FloatArray | None:
     """Return the mean place of the legs whose names have a word; None if none have."""
     other = {"front": "hind", "hind": "front", "left": "right", "right": "left"}[word]
-    named = [_has(one, word) and not _has(one, other) for one in names]
+    named = [_has(words, word) and not _has(words, other) for words in names]
     return mounts[named].mean(axis=0) if any(named) else None
 
 
@@ -105,7 +105,7 @@ def _has(names: Sequence[str], word: str) -> bool:
     for name in names:
         apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
         words = re.split(r"[^a-z]+", apart)
-        if any(part in apart for part in _LONG[word]) or _SHORT[word] & {*words}:
+        if any(long_word in apart for long_word in _LONG[word]) or _SHORT[word] & {*words}:
             return True
     return False
 

@@ -38,13 +38,13 @@ def find_meshes(
     aim = _AIM * MAX_TRIANGLES
     while True:
         simplified = _Simplified(posed, min(1.0, aim / max(before, 1)))
-        found = {
+        meshes = {
             joint: merged
             for joint, parts in geoms.items()
-            if (merged := _merged([simplified.surface(one) for one in parts], origins[joint]))
+            if (merged := _merged([simplified.surface(geom) for geom in parts], origins[joint]))
         }
-        triangles = sum(mesh.triangles for mesh in found.values())
-        size = sum(len(mesh.vertices) + len(mesh.faces) for mesh in found.values())
+        triangles = sum(mesh.triangles for mesh in meshes.values())
+        size = sum(len(mesh.vertices) + len(mesh.faces) for mesh in meshes.values())
         if (triangles <= MAX_TRIANGLES and size <= MAX_BASE64) or aim < _LEAST:
             break
         aim *= 0.7
@@ -52,7 +52,7 @@ def find_meshes(
         notes.repair(
             f"what is drawn was simplified from {before:,} to {counted(triangles, 'triangle')}"
         )
-    return found
+    return meshes
 
 
 def _drawn(posed: Posed, joint: int | None) -> list[int]:

@@ -120,8 +120,8 @@ def _foot_of_body(
     if joint is None or not any(compiled.model.geom_bodyid == body):
         at_m = np.zeros(3)
         return Foot(body, at_m, _radius(compiled, data, body, at_m, hinges), name, True)
-    found = find_foot(compiled, data, [body], joint)
-    return Foot(body, found.at_m, found.radius_m, name, found.is_guessed)
+    foot = find_foot(compiled, data, [body], joint)
+    return Foot(body, foot.at_m, foot.radius_m, name, foot.is_guessed)
 
 
 def _joint_above(compiled: Compiled, body: int, hinges: Collection[int]) -> int | None:
@@ -167,7 +167,7 @@ def _round_ends(
 ) -> list[tuple[Foot, bool]]:
     """Return the balls and the ends of capsules, and whether each touches the ground."""
     model = compiled.model
-    found = []
+    ends = []
     for geom in range(model.ngeom) if geoms is None else geoms:
         body, kind = int(model.geom_bodyid[geom]), kind_of(model, geom)
         if body not in bodies or kind not in ("sphere", "capsule"):
@@ -178,8 +178,8 @@ def _round_ends(
         for sign in (1, -1) if half_m else (0,):
             at_m = centre + sign * half_m * axis
             foot = Foot(body, at_m, radius_m, _name(compiled, body, geom), False)
-            found.append((foot, compiled.collides[geom]))
-    return found
+            ends.append((foot, compiled.collides[geom]))
+    return ends
 
 
 def _wheel(compiled: Compiled, body: int, joint: int) -> Foot:
@@ -252,7 +252,7 @@ def _farthest(
         key=lambda place: float(np.linalg.norm(place - from_m)),
     )
     of_geom: int | None = None
-    found = 0.0
+    farthest_m = 0.0
     model = compiled.model
     for geom in range(model.ngeom) if geoms is None else geoms:
         body = int(model.geom_bodyid[geom])
@@ -260,8 +260,8 @@ def _farthest(
             continue
         points = _points(model, geom) @ data.xmat[body].reshape(3, 3).T + data.xpos[body]
         distances = np.linalg.norm(points - from_m, axis=1)
-        if len(distances) and distances.max() > found:
-            found, of_geom = float(distances.max()), geom
+        if len(distances) and distances.max() > farthest_m:
+            farthest_m, of_geom = float(distances.max()), geom
             best = points[int(distances.argmax())]
     return best, of_geom
 

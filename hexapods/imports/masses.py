@@ -13,10 +13,10 @@ from hexapods.imports.notes import Notes, listed
 from hexapods.imports.posed import Posed
 
 _DENSITY = 500.0
-"""Of shapes whose mass is guessed [kg/m³]: half that of water, since robots are hollow."""
+"""Density of shapes whose mass is guessed [kg/m³]: half that of water, since robots are hollow."""
 _NO_MASS_KG = 1e-5
 _SHARE = 0.05
-"""Of the robot's mass, for a link of which nothing is known."""
+"""Share of the robot's mass that a link without mass and shapes gets."""
 _LEAST_INERTIA = 1e-9
 
 
@@ -52,16 +52,16 @@ def find_masses(
     Raises:
         InvalidInput: if no link has a mass or a shape.
     """
-    found = {joint: _together(posed, posed.bodies_of(joint)) for joint in links}
+    masses = {joint: _together(posed, posed.bodies_of(joint)) for joint in links}
     # A body with two joints is two links, the first of which has nothing.
     between = {joint for joint in links if joint is not None and not posed.bodies_of(joint)}
     unknown = [
-        joint for joint, mass in found.items() if mass.kg < _NO_MASS_KG and joint not in between
+        joint for joint, mass in masses.items() if mass.kg < _NO_MASS_KG and joint not in between
     ]
     by_shapes = {}
     for joint in unknown:
         by_shapes[joint] = _of_shapes(posed, posed.geoms_of(posed.bodies_of(joint)))
-    known_kg = ordered_sum(mass.kg for joint, mass in found.items() if joint not in unknown)
+    known_kg = ordered_sum(mass.kg for joint, mass in masses.items() if joint not in unknown)
     shaped_kg = ordered_sum(mass.kg for mass in by_shapes.values() if mass is not None)
     if known_kg < _NO_MASS_KG and shaped_kg <= 0:
         raise InvalidInput(
@@ -70,49 +70,49 @@ def find_masses(
     for joint in unknown:
         of_shapes = by_shapes[joint]
         kg = _SHARE * (known_kg + shaped_kg)
-        found[joint] = of_shapes or _ball(kg, ends[joint].mean(axis=0), ends[joint])
+        masses[joint] = of_shapes or _ball(kg, ends[joint].mean(axis=0), ends[joint])
     for joint in between:
-        found[joint] = Mass(LEAST_KG, ends[joint][0], np.eye(3) * _LEAST_INERTIA)
+        masses[joint] = Mass(LEAST_KG, ends[joint][0], np.eye(3) * _LEAST_INERTIA)
     if unknown:
         names = listed(links[joint] for joint in unknown)
         notes.guess(f"the file gives no mass for {names}: guessed by its shapes or by the others")
-    return found
+    return masses
 
 
 def _together(posed: Posed, bodies: Sequence[int]) -> Mass:
     masses = posed.compiled.model.body_mass
-    parts = [
+    body_masses = [
         Mass(float(masses[body]), posed.center_of_mass(body), posed.inertia(body))
         for body in bodies
         if masses[body] > 0
     ]
-    kg = ordered_sum(part.kg for part in parts)
+    kg = ordered_sum(mass.kg for mass in body_masses)
     if kg <= 0:
         return Mass(0.0, np.zeros(3), np.zeros((3, 3)))
-    center = ordered_sum((part.kg * part.center_m for part in parts), np.zeros(3)) / kg
+    center = ordered_sum((mass.kg * mass.center_m for mass in body_masses), np.zeros(3)) / kg
     inertia = np.zeros((3, 3))
-    for part in parts:
-        out = part.center_m - center
-        inertia += part.inertia + part.kg * (out @ out * np.eye(3) - np.outer(out, out))
+    for mass in body_masses:
+        out = mass.center_m - center
+        inertia += mass.inertia + mass.kg * (out @ out * np.eye(3) - np.outer(out, out))
     return Mass(kg, center, inertia + _LEAST_INERTIA * np.eye(3))
 
 
 def _of_shapes(posed: Posed, geoms: Sequence[int]) -> Mass | None:
     """Return the mass of the boxes around shapes; None if there are none."""
     colliding = [geom for geom in geoms if posed.compiled.collides[geom]]
-    parts = []
+    boxes = []
     for geom in colliding or geoms:
         vertices, _ = posed.surface(geom)
         if len(vertices):
             low, high = vertices.min(axis=0), vertices.max(axis=0)
             # Round shapes and meshes fill about half of the box around them.
             kg = 0.5 * _DENSITY * float(np.prod(high - low))
-            parts.append(_ball(kg, (low + high) / 2, np.array([low, high])))
-    kg = ordered_sum(part.kg for part in parts)
+            boxes.append(_ball(kg, (low + high) / 2, np.array([low, high])))
+    kg = ordered_sum(box.kg for box in boxes)
     if kg <= 0:
         return None
-    center = ordered_sum((part.kg * part.center_m for part in parts), np.zeros(3)) / kg
-    return Mass(kg, center, ordered_sum((part.inertia for part in parts), np.zeros((3, 3))))
+    center = ordered_sum((box.kg * box.center_m for box in boxes), np.zeros(3)) / kg
+    return Mass(kg, center, ordered_sum((box.inertia for box in boxes), np.zeros((3, 3))))
 
 
 def _ball(kg: float, center: FloatArray, ends: FloatArray) -> Mass:

@@ -19,7 +19,7 @@ from hexapods.imports.upload import MAX_MESH_BYTES, Upload
 
 MAX_MESHES = 300
 MAX_ALL_BYTES = 96 << 20
-"""Of all meshes that are used."""
+"""Size of all meshes that a robot uses, together."""
 FORMATS = (".stl", ".obj", ".dae")
 _MOST_BYTES = {".dae": 16 << 20}
 """Numbers as text take several times as much memory."""

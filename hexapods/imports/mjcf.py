@@ -26,7 +26,7 @@ _REFUSED = {
     "model": "other files are not attached: merge them into this one",
 }
 _DROPPED_TYPES = ("plane", "hfield", "sdf")
-"""Of geoms; they are the ground, not the robot."""
+"""Types of geoms that are left out: they are the ground, not the robot."""
 _ACTUATORS = ("motor", "position", "velocity", "intvelocity", "general", "damper", "cylinder")
 _KEPT: dict[str, frozenset[str]] = {
     "mujoco": frozenset({"compiler", "default", "asset", "worldbody", "actuator", "keyframe"}),
@@ -101,7 +101,7 @@ def clean_mjcf(root: Element, meshes: MeshFiles, notes: Notes) -> None:
 
 
 def _tell_of_mechanisms(root: Element, notes: Notes) -> None:
-    found = sorted(
+    mechanisms = sorted(
         {
             element.tag
             for section in root
@@ -110,10 +110,10 @@ def _tell_of_mechanisms(root: Element, notes: Notes) -> None:
             if element.tag != "joint" or section.tag != "equality"
         }
     )
-    if found:
+    if mechanisms:
         notes.repair(
-            f"left out what connects bodies beside joints ({', '.join(map(quoted, found))}): each "
-            "joint gets a servo of its own"
+            f"left out what connects bodies beside joints ({', '.join(map(quoted, mechanisms))}): "
+            "each joint gets a servo of its own"
         )
 
 
@@ -129,10 +129,12 @@ def _mesh_folder(root: Element) -> tuple[str, bool]:
 
 def _keep_known(root: Element) -> None:
     for parent in [root, *root.all()]:
-        kept = _KEPT.get(parent.tag, frozenset())
-        parent.children = [one for one in parent.children if one.tag in kept and _stays(one)]
-        known = _ATTRIBUTES.get(parent.tag, frozenset())
-        parent.attributes = {n: v for n, v in parent.attributes.items() if n in known}
+        kept_tags = _KEPT.get(parent.tag, frozenset())
+        parent.children = [
+            child for child in parent.children if child.tag in kept_tags and _stays(child)
+        ]
+        attributes = _ATTRIBUTES.get(parent.tag, frozenset())
+        parent.attributes = {n: v for n, v in parent.attributes.items() if n in attributes}
     for element in [root, *root.all()]:
         check_numbers(element, _TEXTS)
 
@@ -180,7 +182,7 @@ def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles)
     """Give meshes their names in the assets; remove those that are missing, and their geoms."""
     lost: set[str | None] = set()
     for asset in root.all("asset"):
-        kept = []
+        present = []
         for mesh in asset:
             wanted = mesh.attributes.get("file")
             if wanted is not None:
@@ -192,18 +194,20 @@ def _resolve_meshes(root: Element, folder: str, strips: bool, meshes: MeshFiles)
                     lost.add(mesh.attributes["name"])
                     continue
                 mesh.attributes["file"] = name
-            kept.append(mesh)
-        asset.children = kept
+            present.append(mesh)
+        asset.children = present
     if lost:
-        known = {mesh.attributes.get("name") for mesh in root.all("mesh")}
-        _remove_geoms(root, lost - known, meshes)
+        meshes_left = {mesh.attributes.get("name") for mesh in root.all("mesh")}
+        _remove_geoms(root, lost - meshes_left, meshes)
 
 
 def _remove_geoms(root: Element, lost: set[str | None], meshes: MeshFiles) -> None:
     for parent in [root, *root.all()]:
-        kept = [
-            one for one in parent if one.tag != "geom" or one.attributes.get("mesh", "") not in lost
+        children = [
+            child
+            for child in parent
+            if child.tag != "geom" or child.attributes.get("mesh", "") not in lost
         ]
-        if len(kept) < len(parent.children):
+        if len(children) < len(parent.children):
             meshes.undrawn.add(parent.attributes.get("name", ""))
-        parent.children = kept
+        parent.children = children

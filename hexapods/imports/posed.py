@@ -143,11 +143,11 @@ class Posed:
         for leg in self.skeleton.legs:
             for joint in leg.joints:
                 last[int(model.jnt_bodyid[joint])] = joint
-        found: dict[int, int | None] = {}
+        joint_of: dict[int, int | None] = {}
         for body in self.skeleton.bodies:  # parents come first
-            above = found.get(int(model.body_parentid[body]))
-            found[body] = last.get(body, above)
-        return found
+            above = joint_of.get(int(model.body_parentid[body]))
+            joint_of[body] = last.get(body, above)
+        return joint_of
 
 
 def resting_pose(model: mujoco.MjModel, like: FloatArray) -> FloatArray:

@@ -74,8 +74,8 @@ def find_servos(
         choices: what a person decided.
         notes: gets what is guessed and repaired.
     """
-    given = {joint: _torque(compiled.model, joint) for joint in joints}
-    without = [joint for joint, torque in given.items() if not _is_likely(torque, guess_nm)]
+    torques = {joint: _torque(compiled.model, joint) for joint in joints}
+    without = [joint for joint, torque in torques.items() if not _is_likely(torque, guess_nm)]
     if choices.servo_torque_nm is None and without:
         which = "all joints" if len(without) == len(joints) else counted(len(without), "joint")
         notes.guess(
@@ -84,7 +84,7 @@ def find_servos(
         )
     servos, raised = {}, 0
     for joint in joints:
-        file_nm = given[joint]
+        file_nm = torques[joint]
         torque = choices.servo_torque_nm
         if torque is None:
             torque = guess_nm if joint in without or file_nm is None else file_nm
@@ -118,17 +118,17 @@ def _is_likely(torque_nm: float | None, guess_nm: float) -> bool:
 
 def _torque(model: mujoco.MjModel, joint: int) -> float | None:
     """Return the largest torque that the file gives a joint; None if it gives none."""
-    found = []
+    torques = []
     if model.jnt_actfrclimited[joint]:
-        found.append(float(np.abs(model.jnt_actfrcrange[joint]).max()))
+        torques.append(float(np.abs(model.jnt_actfrcrange[joint]).max()))
     for actuator in _actuators(model, joint):
         gear = abs(float(model.actuator_gear[actuator][0]))
         if model.actuator_forcelimited[actuator]:
-            found.append(gear * float(np.abs(model.actuator_forcerange[actuator]).max()))
+            torques.append(gear * float(np.abs(model.actuator_forcerange[actuator]).max()))
         elif _is_motor(model, actuator) and model.actuator_ctrllimited[actuator]:
             gain = abs(float(model.actuator_gainprm[actuator][0]))
-            found.append(gear * gain * float(np.abs(model.actuator_ctrlrange[actuator]).max()))
-    return min(found, default=None)
+            torques.append(gear * gain * float(np.abs(model.actuator_ctrlrange[actuator]).max()))
+    return min(torques, default=None)
 
 
 def _actuators(model: mujoco.MjModel, joint: int) -> list[int]:

@@ -44,17 +44,17 @@ class GroundShape:
 
     def as_geom(self, origin: FloatArray) -> ModelGeom:
         """Return it in the frame of a link whose origin is given in the body frame."""
-        x, y, z = (float(one) for one in self.size_m)
-        at = [float(one) + 0.0 for one in self.at_m - origin]
+        x, y, z = (float(value) for value in self.size_m)
+        at = [float(value) + 0.0 for value in self.at_m - origin]
         return ModelGeom(self.kind, (x, y, z), (at[0], at[1], at[2]), quaternion(self.rotation))
 
 
 def quaternion(rotation: FloatArray) -> tuple[float, float, float, float]:
     """Return the unit quaternion (wxyz) of a rotation, (3, 3)."""
-    found = np.empty(4)
-    mujoco.mju_mat2Quat(found, np.ascontiguousarray(rotation, dtype=np.float64).reshape(9))
-    found /= np.linalg.norm(found)
-    w, x, y, z = (float(one) + 0.0 for one in found)
+    quat = np.empty(4)
+    mujoco.mju_mat2Quat(quat, np.ascontiguousarray(rotation, dtype=np.float64).reshape(9))
+    quat /= np.linalg.norm(quat)
+    w, x, y, z = (float(value) + 0.0 for value in quat)
     return w, x, y, z
 
 
@@ -66,8 +66,8 @@ def torso_shapes(posed: Posed, span_m: FloatArray) -> list[GroundShape]:
         span_m: half sides of a box for a torso without shapes, (3,).
     """
     geoms = _touching(posed, posed.geoms_of(_of_torso(posed)))
-    own = [_own(posed, geom) for geom in geoms if posed.compiled.collides[geom]]
-    simple = [shape for shape in own if shape is not None]
+    shapes = [_simple_shape(posed, geom) for geom in geoms if posed.compiled.collides[geom]]
+    simple = [shape for shape in shapes if shape is not None]
     if simple and len(simple) == len(geoms) <= _MOST_OF_TORSO:
         return simple
     points = [posed.surface(geom)[0] for geom in geoms]
@@ -93,7 +93,7 @@ def link_shapes(
     for geom in posed.geoms_of(posed.bodies_of(joint)):
         if not posed.compiled.collides[geom]:
             continue
-        shape = _own(posed, geom) or _around(posed, geom)
+        shape = _simple_shape(posed, geom) or _around(posed, geom)
         if shape is not None and not (foot is not None and _is_foot(shape, *foot)):
             shapes.append(shape)
     shapes.sort(key=lambda shape: -float(shape.size_m.max()))
@@ -104,10 +104,10 @@ def drop_touching(
     shapes: Sequence[GroundShape], lowest_m: Sequence[float], ground_m: float, notes: Notes
 ) -> list[GroundShape]:
     """Leave out shapes that would touch the ground at home, where only feet do."""
-    kept = [one for one, low in zip(shapes, lowest_m, strict=True) if low > ground_m]
-    if len(kept) < len(shapes):
+    clear = [shape for shape, low in zip(shapes, lowest_m, strict=True) if low > ground_m]
+    if len(clear) < len(shapes):
         notes.repair("shapes of legs that would touch the ground before the feet were left out")
-    return kept
+    return clear
 
 
 def _of_torso(posed: Posed) -> list[int]:
@@ -127,7 +127,7 @@ def _touching(posed: Posed, geoms: Sequence[int]) -> list[int]:
     return colliding or list(geoms)
 
 
-def _own(posed: Posed, geom: int) -> GroundShape | None:
+def _simple_shape(posed: Posed, geom: int) -> GroundShape | None:
     """Return a geom that is simple already; None for a mesh."""
     kind = posed.kind(geom)
     if kind == "mesh":

@@ -135,9 +135,9 @@ class _Finder:
                 f"it has no legs: no body has hinges below it; a robot has {MIN_LEGS} to "
                 f"{MAX_LEGS} legs of {MIN_JOINTS} to {MAX_JOINTS} hinges each"
             )
-        others = [body for body in roots if body != best]
-        if others:
-            names = listed(self._compiled.body_name(body) for body in others)
+        other_roots = [body for body in roots if body != best]
+        if other_roots:
+            names = listed(self._compiled.body_name(body) for body in other_roots)
             self._notes.repair(f"left out what is not joined to the robot: {names}")
         return best
 
@@ -175,12 +175,12 @@ class _Finder:
 
     def _rigid(self, body: int, hinges: Sequence[int]) -> list[int]:
         """Return the bodies that move with one, with those that are fixed or locked to it."""
-        found = [body]
+        rigid = [body]
         for other in range(body + 1, len(self._parent)):
             moves = any(joint in hinges for joint in self._joints_of.get(other, ()))
-            if self._parent[other] in found and not moves:
-                found.append(other)
-        return found
+            if self._parent[other] in rigid and not moves:
+                rigid.append(other)
+        return rigid
 
     def _wheels(self, hinges: Sequence[int], bodies: Sequence[int], root: int) -> set[int]:
         """Return the last joints of chains that turn without end and are wheels.
@@ -275,7 +275,7 @@ class _Finder:
         for leg in legs:
             for joint in leg.joints:
                 counts[joint] = counts.get(joint, 0) + 1
-        kept = []
+        shortened = []
         for leg in legs:
             joints = [joint for joint in leg.joints if counts[joint] == 1][-MAX_JOINTS:]
             if len(joints) < MIN_JOINTS:
@@ -283,8 +283,8 @@ class _Finder:
                     f"the leg to {quoted(leg.foot.name)} has {counted(len(joints), 'hinge')} of its"
                     f" own; a leg has {MIN_JOINTS} to {MAX_JOINTS}"
                 )
-            kept.append(FoundLeg(tuple(joints), leg.foot))
-        return kept
+            shortened.append(FoundLeg(tuple(joints), leg.foot))
+        return shortened
 
     def _possible_feet(
         self,
@@ -292,12 +292,12 @@ class _Finder:
         hinges: Sequence[int],
         wheels: set[int],
     ) -> tuple[str, ...]:
-        found = []
+        names = []
         for body, chain in ends.items():
             if len(chain) >= MIN_JOINTS:
                 rigid = self._rigid(body, hinges)
-                found.append(find_foot(self._compiled, self._data, rigid, chain[-1], wheels).name)
-        return tuple(sorted(set(found)))
+                names.append(find_foot(self._compiled, self._data, rigid, chain[-1], wheels).name)
+        return tuple(sorted(set(names)))
 
     def _tell_of_base(self, root: int) -> None:
         joints = self._joints_of.get(root, ())

@@ -18,7 +18,7 @@ from hexapods.imports.notes import Notes, listed, quoted
 _REACH_SHARE, _LIFT_SHARE = 0.08, 0.12
 """How far each foot must reach from home, to each side and upward, as shares of its length."""
 _CLEARANCE_SHARE, _LEVEL_SHARE = 0.04, 0.15
-"""Of the length of a leg: the torso's height over the ground, and how uneven feet may stand."""
+"""Least height of the torso over the ground and largest unevenness of the feet, by leg length."""
 _SAMPLES, _ROUNDS, _NEAR = 3000, 6, 400
 _HOMES = ("home", "stand", "standing", "init", "default")
 """Usual names of keyframes in which a robot stands, the best first."""
@@ -37,7 +37,7 @@ _LEAST_UNDER = 0.15
 _FOLLOWING_JOINTS = 3
 """With so many a leg follows a grid."""
 Angles = list[FloatArray]
-"""Of each leg, (joints,)."""
+"""Joint angles of each leg [rad], each (joints,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,10 @@ class Legged:
 
     def bottoms_m(self, angles: Angles) -> FloatArray:
         """Return the height of the lowest point of each foot in the body frame, (legs,)."""
-        feet = [chain.feet(one[None])[0, 2] for chain, one in zip(self.chains, angles, strict=True)]
+        feet = [
+            chain.feet(leg_angles[None])[0, 2]
+            for chain, leg_angles in zip(self.chains, angles, strict=True)
+        ]
         return np.array(feet) - self.radii_m
 
 
@@ -85,7 +88,7 @@ def find_stance(legged: Legged, choices: Choices, notes: Notes) -> Angles:
 
 def reaches_grid(legged: Legged, angles: Angles) -> bool:
     """Whether each foot reaches its box from a stance."""
-    return not any(_unreached(chain, one) for chain, one in _pairs(legged, angles))
+    return not any(_unreached(chain, leg_angles) for chain, leg_angles in _pairs(legged, angles))
 
 
 def _pairs(legged: Legged, angles: Angles) -> list[tuple[LegChain, FloatArray]]:
@@ -118,19 +121,19 @@ def _found(legged: Legged, choices: Choices, notes: Notes) -> Angles:
 
 def _suitability(name: str) -> int:
     plain = name.lower()
-    found = [place for place, usual in enumerate(_HOMES) if usual in plain]
-    return min(found, default=len(_HOMES))
+    ranks = [place for place, usual in enumerate(_HOMES) if usual in plain]
+    return min(ranks, default=len(_HOMES))
 
 
 def _within(legged: Legged, angles: Angles) -> Angles:
-    return [np.clip(one, *chain.limits) for chain, one in _pairs(legged, angles)]
+    return [np.clip(leg_angles, *chain.limits) for chain, leg_angles in _pairs(legged, angles)]
 
 
 def _problem(legged: Legged, angles: Angles) -> str | None:
     """Return why a stance is not good; None if it is."""
-    for (chain, one), names in zip(_pairs(legged, angles), legged.names, strict=True):
+    for (chain, leg_angles), names in zip(_pairs(legged, angles), legged.names, strict=True):
         low, high = chain.limits
-        out = np.flatnonzero((one < low - 1e-3) | (one > high + 1e-3))
+        out = np.flatnonzero((leg_angles < low - 1e-3) | (leg_angles > high + 1e-3))
         if len(out):
             return f"joint {quoted(names[int(out[0])])} would be outside its limits"
     bottoms = legged.bottoms_m(angles)
@@ -138,8 +141,8 @@ def _problem(legged: Legged, angles: Angles) -> str | None:
         return "the feet would not be level"
     if legged.torso_bottom_m - bottoms.max() < _CLEARANCE_SHARE * legged.length_m:
         return "the torso would touch the ground"
-    for number, (chain, one) in enumerate(_pairs(legged, angles)):
-        if _unreached(chain, one):
+    for number, (chain, leg_angles) in enumerate(_pairs(legged, angles)):
+        if _unreached(chain, leg_angles):
             return f"the foot after {quoted(legged.names[number][-1])} could hardly move"
     return None
 
@@ -162,12 +165,16 @@ def _level(legged: Legged, angles: Angles, notes: Notes) -> Angles:
     if np.ptp(bottoms) < 1e-6:
         return angles
     moved, unreached = [], []
-    for number, (chain, one) in enumerate(_pairs(legged, angles)):
-        target = chain.feet(one[None])[0] + [0, 0, float(bottoms.mean() - bottoms[number])]
-        found, off = chain.solve(target[None], one)
-        moved.append(found[0])
+    for number, (chain, leg_angles) in enumerate(_pairs(legged, angles)):
+        target = chain.feet(leg_angles[None])[0] + [0, 0, float(bottoms.mean() - bottoms[number])]
+        solution, off = chain.solve(target[None], leg_angles)
+        moved.append(solution[0])
         # With two joints only the height matters.
-        left = abs(float(chain.feet(found)[0, 2] - target[2])) if len(one) < 3 else float(off[0])
+        left = (
+            abs(float(chain.feet(solution)[0, 2] - target[2]))
+            if len(leg_angles) < 3
+            else float(off[0])
+        )
         if left > PRECISION * chain.length_m:
             unreached.append(number + 1)
     if unreached:
@@ -187,7 +194,7 @@ def _changed(legged: Legged, angles: Angles, chosen: Mapping[str, float]) -> Ang
         for leg, names in enumerate(legged.names)
         for joint, name in enumerate(names)
     }
-    changed = [one.copy() for one in angles]
+    changed = [leg_angles.copy() for leg_angles in angles]
     for name, angle in chosen.items():
         if name not in places:
             raise InvalidInput(
@@ -209,29 +216,29 @@ def search(legged: Legged) -> Angles:
 
     Of several postures the first from which all feet reach their boxes, or most.
     """
-    fewest, found = len(legged.chains) + 1, list[FloatArray]()
+    fewest, stance = len(legged.chains) + 1, list[FloatArray]()
     for lower in range(_POSTURES):
         angles = _posture(legged, lower)
         pairs = _pairs(legged, angles)
         unreached = sum(_unreached(chain, one) for chain, one in pairs)  # whole numbers
         if unreached < fewest:
-            fewest, found = unreached, angles
+            fewest, stance = unreached, angles
         if not unreached:
             break
-    return found
+    return stance
 
 
 def _posture(legged: Legged, number: int) -> Angles:
     rng = np.random.default_rng(0)
     first: FloatArray | None = None
-    found = []
+    posture = []
     for chain in legged.chains:
         is_alike = first is not None and len(first) == len(chain.axes)
         wanted = _wanted(chain, legged.torso_bottom_m, number)
         best = _best(chain, wanted, first if is_alike else None, rng)
         first = best if first is None else first
-        found.append(best)
-    return found
+        posture.append(best)
+    return posture
 
 
 def _wanted(chain: LegChain, torso_bottom_m: float, number: int) -> FloatArray:

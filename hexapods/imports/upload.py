@@ -17,12 +17,12 @@ from hexapods.imports.notes import listed, quoted
 
 MAX_UPLOAD_BYTES = 64 << 20
 MAX_DOCUMENT_BYTES = 4 << 20
-"""Of one XML document."""
+"""Size of one XML document."""
 MAX_MEMBERS = 2000
 MAX_UNPACKED_BYTES = 192 << 20
-"""Of all members of a zip."""
+"""Size of all members of a zip together."""
 MAX_MESH_BYTES = 32 << 20
-"""Of one mesh."""
+"""Size of one mesh file."""
 _MAX_DIRECTORY_BYTES = 1 << 20
 _END = struct.Struct("<4s4H2LH")  # end of central directory record, without a comment
 _DOCUMENTS = (".xml", ".urdf", ".mjcf")
@@ -61,10 +61,10 @@ class Upload:
         """Paths of the files that may describe a robot."""
         if not self.is_zip:
             return [*self.paths]
-        found = [path for path in self.paths if path.lower().endswith(_DOCUMENTS)]
-        if not found:
+        documents = [path for path in self.paths if path.lower().endswith(_DOCUMENTS)]
+        if not documents:
             raise self.without_robot()
-        return found
+        return documents
 
     def without_robot(self) -> DamagedFile:
         """Return the error for a zip without a robot."""
@@ -111,12 +111,12 @@ class Upload:
             raise DamagedFile(f"{quoted(path)} in the zip is not as large as the zip says")
         return content
 
-    def find(self, wanted: str, beside: str) -> str | None:
+    def find(self, wanted: str, document_path: str) -> str | None:
         """Return the path of the file that a document means.
 
         Args:
             wanted: path as the document has it, also such as `package://robot/meshes/hip.stl`.
-            beside: path of the document.
+            document_path: path of the document.
 
         Returns:
             the file at that path beside the document, or the one whose path ends with the most of
@@ -132,7 +132,7 @@ class Upload:
         if separator:
             parts = rest.split("/")
         else:
-            together = posixpath.join(posixpath.dirname(beside), plain)
+            together = posixpath.join(posixpath.dirname(document_path), plain)
             path = posixpath.normpath(together)
             if path.startswith(("/", "../")) or path == ".." or ":" in plain[:3]:
                 raise DamagedFile(
@@ -144,7 +144,7 @@ class Upload:
             parts = path.split("/")
         if ".." in parts:
             raise DamagedFile(f"{quoted(wanted)} leads out of the zip; give the path without `..`")
-        return self._longest_match([part for part in parts if part not in ("", ".")])
+        return self._longest_match([name for name in parts if name not in ("", ".")])
 
     def _longest_match(self, parts: Sequence[str]) -> str | None:
         """Return the path with the most of its last parts the same; of equals the shortest."""
@@ -197,25 +197,25 @@ def _checked(infos: Sequence[zipfile.ZipInfo], size: int) -> dict[str, zipfile.Z
         raise DamagedFile(
             f"the zip has {len(infos):,} members; a robot has at most {MAX_MEMBERS:,}"
         )
-    total = sum(one.file_size for one in infos)
+    total = sum(info.file_size for info in infos)
     if total > MAX_UNPACKED_BYTES:
         raise DamagedFile(
             f"the zip of {size:,} bytes would unpack to {total:,}; at most "
             f"{MAX_UNPACKED_BYTES:,} are read"
         )
-    found: dict[str, zipfile.ZipInfo] = {}
-    for one in infos:
-        path = one.orig_filename.replace("\\", "/")
+    members: dict[str, zipfile.ZipInfo] = {}
+    for info in infos:
+        path = info.orig_filename.replace("\\", "/")
         if "\0" in path or path.startswith("/") or ".." in path.split("/") or ":" in path[:3]:
             raise DamagedFile(f"the zip has a member {quoted(path)} whose path leads out of it")
-        if one.is_dir():
+        if info.is_dir():
             continue
-        if stat.S_IFMT(one.external_attr >> 16) not in (0, stat.S_IFREG):
+        if stat.S_IFMT(info.external_attr >> 16) not in (0, stat.S_IFREG):
             raise DamagedFile(f"in the zip {quoted(path)} is {_LINK_OR_DEVICE}")
-        if one.flag_bits & 1:
+        if info.flag_bits & 1:
             raise DamagedFile(f"in the zip {quoted(path)} is encrypted; give it without a password")
         name = posixpath.normpath(path)
-        if name in found:
+        if name in members:
             raise DamagedFile(f"the zip has {quoted(path)} twice")
-        found[name] = one
-    return found
+        members[name] = info
+    return members

@@ -63,10 +63,10 @@ def clean_urdf(root: Element, meshes: MeshFiles) -> None:
     """
     check_expanded(root)
     for parent in [root, *root.all()]:
-        kept = _KEPT.get(parent.tag, frozenset())
-        parent.children = [one for one in parent.children if one.tag in kept]
-        known = _ATTRIBUTES.get(parent.tag, frozenset())
-        parent.attributes = {n: v for n, v in parent.attributes.items() if n in known}
+        kept_tags = _KEPT.get(parent.tag, frozenset())
+        parent.children = [child for child in parent.children if child.tag in kept_tags]
+        attributes = _ATTRIBUTES.get(parent.tag, frozenset())
+        parent.attributes = {n: v for n, v in parent.attributes.items() if n in attributes}
     for element in [root, *root.all()]:
         check_numbers(element, _TEXTS)
     _check_tree(root)
@@ -95,8 +95,8 @@ def _drop_range(joint: Element) -> None:
 
 
 def _check_tree(root: Element) -> None:
-    links = [one for one in root if one.tag == "link"]
-    joints = [one for one in root if one.tag == "joint"]
+    links = [child for child in root if child.tag == "link"]
+    joints = [child for child in root if child.tag == "joint"]
     if not links:
         raise DamagedFile("the URDF has no <link>")
     if len(links) > MAX_BODIES:
@@ -104,8 +104,8 @@ def _check_tree(root: Element) -> None:
     shapes = sum(1 for _ in root.all("geometry"))
     if shapes > MAX_GEOMS:
         raise DamagedFile(f"it has {shapes:,} shapes; a robot has at most {MAX_GEOMS:,}")
-    names = _own_names(links)
-    _own_names(joints)
+    names = _unique_names(links)
+    _unique_names(joints)
     parent_of: dict[str, str] = {}
     for joint in joints:
         if joint.attributes.get("type") not in _JOINT_TYPES:
@@ -123,12 +123,12 @@ def _check_tree(root: Element) -> None:
     _check_connected(names, parent_of)
 
 
-def _own_names(elements: Sequence[Element]) -> set[str]:
+def _unique_names(elements: Sequence[Element]) -> set[str]:
     names: set[str] = set()
-    for one in elements:
-        name = one.attributes.get("name", "")
+    for element in elements:
+        name = element.attributes.get("name", "")
         if not name or name in names:
-            raise DamagedFile(f"{one.place}: each {one.tag} needs a name of its own")
+            raise DamagedFile(f"{element.place}: each {element.tag} needs a name of its own")
         names.add(name)
     return names
 
@@ -156,14 +156,14 @@ def _check_connected(names: set[str], parent_of: dict[str, str]) -> None:
 def _resolve_shapes(root: Element, meshes: MeshFiles) -> None:
     """Give meshes their names in the assets, and remove shapes that cannot be read."""
     for link in root.all("link"):
-        kept = []
+        readable = []
         for child in link:
             geometry = child.first("geometry")
             if child.tag == "inertial" or (geometry is not None and _is_read(geometry, meshes)):
-                kept.append(child)
+                readable.append(child)
             elif child.tag == "visual":
                 meshes.undrawn.add(link.attributes["name"])
-        link.children = kept
+        link.children = readable
 
 
 def _is_read(geometry: Element, meshes: MeshFiles) -> bool:

@@ -48,20 +48,20 @@ class Element:
         """Iterate over all elements below this one that have one of these tags, in order."""
         waiting = self.children[::-1]
         while waiting:
-            one = waiting.pop()
-            if one.tag in tags or not tags:
-                yield one
-            waiting.extend(one.children[::-1])
+            element = waiting.pop()
+            if element.tag in tags or not tags:
+                yield element
+            waiting.extend(element.children[::-1])
 
     def first(self, tag: str) -> "Element | None":
         """Return the first child of this tag."""
-        return next((one for one in self.children if one.tag == tag), None)
+        return next((child for child in self.children if child.tag == tag), None)
 
     def keep(self, keeps: Callable[["Element"], bool]) -> None:
         """Remove the elements below this one that are not to be kept, with all below them."""
-        self.children = [one for one in self.children if keeps(one)]
-        for one in self.children:
-            one.keep(keeps)
+        self.children = [child for child in self.children if keeps(child)]
+        for child in self.children:
+            child.keep(keeps)
 
     @property
     def place(self) -> str:
