@@ -45,7 +45,7 @@ def drawn_body(rng: np.random.Generator) -> tuple[Robot, GaitSpec]:
             for name, scale in zip(_SCALED, scales, strict=True)
         }
         legs = tuple(LegMount(round(360 * leg / count + off, 2)) for leg, off in enumerate(off_deg))
-        groups = tuple(tuple(sorted(part.tolist())) for part in np.array_split(order, _GROUPS))
+        groups = tuple(tuple(sorted(group.tolist())) for group in np.array_split(order, _GROUPS))
         gait = GaitSpec(1, 2, groups=groups)
         try:
             robot = Robot(name="drawn body", legs=legs, friction=friction, **dimensions)

@@ -67,7 +67,7 @@ def kept_runs(score_file: Path | None, config: BenchmarkConfig) -> Iterator[Kept
         yield KeptRuns()
         return
     path = score_file.with_name(score_file.name + ENDING)
-    there = _scored(score_file, config) if score_file.exists() else {}
+    stored = _scored(score_file, config) if score_file.exists() else {}
     try:
         file = path.open("a+b")
     except OSError as error:
@@ -78,7 +78,7 @@ def kept_runs(score_file: Path | None, config: BenchmarkConfig) -> Iterator[Kept
         except OSError as error:
             raise InvalidInput(f"another process is adding runs to {path}; wait for it") from error
         kept = KeptRuns(path, file)
-        kept.results |= there
+        kept.results |= stored
         _read(file, path, config, kept)
         yield kept
 

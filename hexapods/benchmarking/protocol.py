@@ -68,18 +68,18 @@ class Task:
             seed: root seed, by which bodies and damages are drawn.
             tolerance: build tolerance of the robots.
         """
-        made: dict[str, Any] = {"tolerance": tolerance}
+        settings: dict[str, Any] = {"tolerance": tolerance}
         if self.robot is not None:
-            made["robot"] = _robot(self.robot)
+            settings["robot"] = _robot(self.robot)
         if self.gait is not None:
-            made["gait"] = read_gait(self.gait)
+            settings["gait"] = read_gait(self.gait)
         if self.world is not None:
-            made["world"] = parse_world(self.world)
+            settings["world"] = parse_world(self.world)
         if self.drawn == "body":
-            made["robot"], made["gait"] = drawn_body(generator(seed, _BODY))
+            settings["robot"], settings["gait"] = drawn_body(generator(seed, _BODY))
         elif self.drawn == "damage":
-            made["world"], made["gait"] = drawn_damage(generator(seed, _DAMAGE))
-        return WalkingProblem(**made)
+            settings["world"], settings["gait"] = drawn_damage(generator(seed, _DAMAGE))
+        return WalkingProblem(**settings)
 
 
 @dataclass(frozen=True, kw_only=True)

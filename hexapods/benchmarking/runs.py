@@ -150,19 +150,19 @@ def run_all(
             possible.append(run)
         else:
             yield run, RunResult(0.0, reason)
-    parts = _practised_together(possible) if _ignores_length(config) else [[r] for r in possible]
-    while parts:
-        trials = [_trial(config, by_name[part[0].task], part) for part in parts]
-        pending = {trial.key: part for trial, part in zip(trials, parts, strict=True)}
-        parts = []
+    batches = _practised_together(possible) if _ignores_length(config) else [[r] for r in possible]
+    while batches:
+        trials = [_trial(config, by_name[batch[0].task], batch) for batch in batches]
+        pending = {trial.key: batch for trial, batch in zip(trials, batches, strict=True)}
+        batches = []
         with closing(run_trials(trials, spec, may_continue)) as outcomes:
             for outcome in outcomes:
-                part = pending[outcome.key]
-                results = _results(outcome, len(part))
+                batch = pending[outcome.key]
+                results = _results(outcome, len(batch))
                 if results is None:
-                    parts += [[run] for run in part]  # shorter ones may succeed
+                    batches += [[run] for run in batch]  # shorter ones may succeed
                 else:
-                    yield from zip(part, results, strict=True)
+                    yield from zip(batch, results, strict=True)
 
 
 def _ignores_length(config: BenchmarkConfig) -> bool:

@@ -31,18 +31,24 @@ def link_color(color: Rgb, conditions: World, joint: Joint) -> Rgb | None:
         conditions: what holds, a result of `World.as_of`.
         joint: the joint that moves the link.
     """
-    for one in conditions.disturbances:
-        if isinstance(one, Lost) and joint.leg in one.legs:
+    for disturbance in conditions.disturbances:
+        if isinstance(disturbance, Lost) and joint.leg in disturbance.legs:
             return None
-        if isinstance(one, Limp) and joint.leg in one.legs:
+        if isinstance(disturbance, Limp) and joint.leg in disturbance.legs:
             return _NO_TORQUE
-        if isinstance(one, Weak) and joint.leg in one.legs:
-            color = mix(color, _NO_TORQUE, _HIGHEST_SHARE * (1 - one.torque_share))
+        if isinstance(disturbance, Weak) and joint.leg in disturbance.legs:
+            color = mix(color, _NO_TORQUE, _HIGHEST_SHARE * (1 - disturbance.torque_share))
     stuck = conditions.all_of(Stuck)
-    return RED if any((one.leg, one.joint) == (joint.leg, joint.name) for one in stuck) else color
+    return (
+        RED
+        if any(
+            (disturbance.leg, disturbance.joint) == (joint.leg, joint.name) for disturbance in stuck
+        )
+        else color
+    )
 
 
 def ground_color(ground: Friction | Patch, friction: float) -> Rgb:
     """Return the colour of ground that has another friction than the one around it."""
-    own = ground.friction if isinstance(ground, Patch) else ground.value
-    return ICE if own < friction else GRIP
+    ground_friction = ground.friction if isinstance(ground, Patch) else ground.value
+    return ICE if ground_friction < friction else GRIP

@@ -48,9 +48,9 @@ class FootGridDrawing:
         self._group_of_leg = list(spec.gait.group_of_leg)
         positions, side = _cell_positions(spec), spec.grid.side_m / (spec.grid.divisions - 1)
         home_is_between = spec.grid.divisions % 2 == 0
-        others = np.arange(1, len(spec.grid))
+        away = np.arange(1, len(spec.grid))
         self._tiles = [
-            _Tiles(server, f"{root}/others", _square(side), others, positions, rim=_OTHER_RIM),
+            _Tiles(server, f"{root}/others", _square(side), away, positions, rim=_OTHER_RIM),
             _Tiles(
                 server,
                 f"{root}/home",
@@ -73,7 +73,7 @@ class FootGridDrawing:
             self._frame.position = pose[:3]
             self._frame.wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
             self._pose = pose
-        lost = {leg for one in lane.conditions.all_of(Lost) for leg in one.legs}
+        lost = {leg for disturbance in lane.conditions.all_of(Lost) for leg in disturbance.legs}
         if lost != self._lost:
             self._lost = lost
             legs = range(1, len(self._group_of_leg) + 1)

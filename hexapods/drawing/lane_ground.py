@@ -169,13 +169,15 @@ def _between(corners: FloatArray, from_m: float, to_m: float, origin: Origin) ->
     """
     for sign, limit in ((1.0, from_m), (-1.0, -to_m)):
         inside = sign * _on_ground(corners, origin)[:, 1] - limit if len(corners) else corners
-        kept: list[FloatArray] = []
+        clipped: list[FloatArray] = []
         for number in range(len(corners)):
             here, after = inside[number - 1], inside[number]
             if (here < 0) != (after < 0):
                 share = here / (here - after)
-                kept.append(corners[number - 1] + share * (corners[number] - corners[number - 1]))
+                clipped.append(
+                    corners[number - 1] + share * (corners[number] - corners[number - 1])
+                )
             if after >= 0:
-                kept.append(corners[number])
-        corners = np.array(kept)
+                clipped.append(corners[number])
+        corners = np.array(clipped)
     return corners

@@ -74,8 +74,10 @@ def encode_posture(frame: StageFrame, lane: int, cells: Cells) -> bytes:
     with in_process_viser() as server, recorder(server) as recording:
         draw_posture(server, root, spec, cells, frame.lanes[lane].conditions)
         messages, arrays = recording.take()
-        own = [one for one in messages if f"{one.get('name')}/".startswith(f"{root}/")]
-        return _encode(iter([(Recorded(own, arrays), {"time_s": frame.time_s})]))
+        messages_of_ghost = [
+            message for message in messages if f"{message.get('name')}/".startswith(f"{root}/")
+        ]
+        return _encode(iter([(Recorded(messages_of_ghost, arrays), {"time_s": frame.time_s})]))
 
 
 def _frames(replay: Replay, times_s: Sequence[float], check: Check) -> Iterator[_Frame]:

@@ -98,11 +98,13 @@ class Robots:
         """Return colours (lanes · links, 3), 0–255, and scales (lanes · links,), 0 if hidden."""
         colors: list[Rgb | None] = []
         for color, conditions in zip(self._lane_colors, self._conditions, strict=True):
-            own = rgb(color) if part.painted or self._is_ghost else mix(_DARK, rgb(color), _SHADE)
+            lane_color = (
+                rgb(color) if part.painted or self._is_ghost else mix(_DARK, rgb(color), _SHADE)
+            )
             if conditions is None:
                 colors += [None] * len(part.links)
             else:
-                colors += self._mesh.link_colors(part, own, conditions)
+                colors += self._mesh.link_colors(part, lane_color, conditions)
         scales = np.array([color is not None for color in colors], np.float32)
         return np.array([color or (0, 0, 0) for color in colors], np.uint8), scales
 

@@ -73,8 +73,8 @@ def mesh(model: mujoco.MjModel, number: int) -> Shape:
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     towards = np.repeat((np.rint(normals) + 1).astype(int) @ (1, 3, 9), 3)
-    own, number_of = np.unique(faces.ravel() * 27 + towards, return_inverse=True)
-    return _smooth(vertices[own // 27], number_of.reshape(-1, 3))
+    unique, number_of = np.unique(faces.ravel() * 27 + towards, return_inverse=True)
+    return _smooth(vertices[unique // 27], number_of.reshape(-1, 3))
 
 
 def box(half: FloatArray) -> Shape:
@@ -138,8 +138,8 @@ def surface(points: FloatArray) -> Shape:
     """
     rows, columns, _ = points.shape
     index = np.arange(rows * columns).reshape(rows, columns)
-    here, right, up = index[:-1, :-1], index[:-1, 1:], index[1:, :-1]
-    corners = [part.ravel() for part in (here, right, index[1:, 1:], up)]
+    corner, right, up = index[:-1, :-1], index[:-1, 1:], index[1:, :-1]
+    corners = [indices.ravel() for indices in (corner, right, index[1:, 1:], up)]
     faces = _triangles((corners[0], corners[1], corners[2]), (corners[0], corners[2], corners[3]))
     return _smooth(points.reshape(-1, 3), faces)
 
@@ -195,7 +195,7 @@ def _capsule(radius: float, half_length: float) -> Shape:
 def _unit_sphere() -> tuple[FloatArray, NDArray[np.integer[Any]]]:
     """Return vertices (162, 3) and faces (320, 3) of an icosahedron that is subdivided twice."""
     golden = (1 + 5**0.5) / 2
-    first = [[0, one, long] for one in (1, -1) for long in (golden, -golden)]
+    first = [[0, unit, long] for unit in (1, -1) for long in (golden, -golden)]
     vertices = np.concatenate([np.roll(first, axis, axis=1) for axis in range(3)])
     faces = np.array(list(combinations(range(len(vertices)), 3)))
     # Neighbours are 2 apart.

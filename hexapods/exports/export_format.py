@@ -143,7 +143,7 @@ class ExportFormat:
     @property
     def endings(self) -> tuple[str, ...]:
         """The endings of its types of file."""
-        return tuple(one.ending for one in self.files)
+        return tuple(file.ending for file in self.files)
 
     def file(self, ending: str) -> FileType:
         """Return the type of file with an ending.
@@ -151,10 +151,10 @@ class ExportFormat:
         Raises:
             InvalidInput: if there is none.
         """
-        for one in self.files:
-            if one.ending == ending:
-                return one
-        valid = " or ".join(f".{one}" for one in self.endings)
+        for file in self.files:
+            if file.ending == ending:
+                return file
+        valid = " or ".join(f".{name}" for name in self.endings)
         raise InvalidInput(f"the name of the file must end with {valid}")
 
 

@@ -8,6 +8,7 @@ Topics: `/lane0/joint_states` with the angle and, where it is recorded, the torq
 import heapq
 import tempfile
 from collections.abc import Callable, Iterator
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import mujoco
@@ -93,7 +94,7 @@ def _write(
         agents = {f"lane{n}": title_of(lane.agent) for n, lane in enumerate(walks.lanes)}
         writer.write_metadata("agents", agents)
         tracks = [_frames(lane, n, step_s, clock) for n, lane in enumerate(walks.lanes)]
-        for frame in heapq.merge(*tracks, key=lambda one: one.time_s):
+        for frame in heapq.merge(*tracks, key=attrgetter("time_s")):
             check()
             time = _timestamp(messages, frame.time_s)
             nanoseconds = time.sec * 1_000_000_000 + time.nsec

@@ -107,7 +107,7 @@ def missing_extras() -> dict[str, str]:
     """Return the file types whose extra is not installed: their titles and how to install it."""
     return {
         file.title: file.install
-        for one in EXPORTS.values()
-        for file in one.files
+        for export in EXPORTS.values()
+        for file in export.files
         if file.install is not None
     }

@@ -37,27 +37,27 @@ _OF_SERVO = ("board", "channel", *_BY_SLOPE, *_BY_POINTS, "zero_deg", *_OF_ALL)
 _OF_MAP = ("servos", "speed_share", *_OF_ALL)
 
 
-def load_servo_map(given: str, joints: Sequence[str]) -> ServoMap:
+def load_servo_map(name: str, joints: Sequence[str]) -> ServoMap:
     """Read a built-in map, by its name, or that of a file, by its path.
 
     Args:
-        given: the name or the path.
+        name: the name or the path.
         joints: labels of the robot's joints, in the order of poses.
 
     Raises:
         InvalidInput: if there is no such map, or as `read_servo_map` says.
     """
-    path = BUILT_IN_MAPS.get(given, Path(given))
+    path = BUILT_IN_MAPS.get(name, Path(name))
     try:
         with path.open("rb") as file:
             content = file.read(MAX_MAP_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InvalidInput(
-            f"the servo map {given} cannot be read: {reason}; name a YAML file, or a map that is "
+            f"the servo map {name} cannot be read: {reason}; name a YAML file, or a map that is "
             f"built in: {', '.join(BUILT_IN_MAPS)}"
         ) from error
-    return read_servo_map(content, given, joints)
+    return read_servo_map(content, name, joints)
 
 
 def read_servo_map(content: bytes, name: str, joints: Sequence[str]) -> ServoMap:
@@ -93,7 +93,7 @@ class _Reader:
             self._refuse(root, "servos is missing: a servo for each joint, by its name")
         share = self._number(whole, "speed_share", (0.01, 1), USUAL_SPEED_SHARE)
         of_all = self._of_all(whole, "", USUAL_LIMITS_US, None)
-        found: dict[str, Servo] = {}
+        servos: dict[str, Servo] = {}
         taken: dict[tuple[int, int], str] = {}
         for joint, node in self._pairs(whole["servos"], "servos").items():
             if joint not in self._joints:
@@ -109,14 +109,14 @@ class _Reader:
                     f"{joint}: channel {servo.channel} of board {servo.board} is that of {other} "
                     "already; each servo has its own",
                 )
-            found[joint] = servo
-        missing = [joint for joint in self._joints if joint not in found]
+            servos[joint] = servo
+        missing = [joint for joint in self._joints if joint not in servos]
         if missing:
             self._refuse(
                 whole["servos"],
                 f"no servo is given for {', '.join(missing)}; a map has one for each joint",
             )
-        return ServoMap(self._name, tuple(found[joint] for joint in self._joints), share)
+        return ServoMap(self._name, tuple(servos[joint] for joint in self._joints), share)
 
     def _servo(self, joint: str, node: Any, of_all: "_OfAll") -> Servo:
         fields = self._fields(node, joint, _OF_SERVO)
@@ -140,8 +140,10 @@ class _Reader:
 
     def _line(self, joint: str, node: Any, fields: Mapping[str, Any]) -> tuple[float, float]:
         """Return the pulse at angle 0 [µs] and its change by angle [µs/rad]."""
-        for names, others in ((_BY_SLOPE, _BY_POINTS), (_BY_POINTS, _BY_SLOPE)):
-            if all(name in fields for name in names) and not any(name in fields for name in others):
+        for names, other_names in ((_BY_SLOPE, _BY_POINTS), (_BY_POINTS, _BY_SLOPE)):
+            if all(name in fields for name in names) and not any(
+                name in fields for name in other_names
+            ):
                 break
         else:
             either, other = (" and ".join(names) for names in (_BY_SLOPE, _BY_POINTS))
@@ -170,7 +172,7 @@ class _Reader:
             what = _named("limits_us", joint)
             if not isinstance(node, yaml.SequenceNode) or len(node.value) != 2:
                 self._refuse(node, f"{what} must be a list of two numbers: [500, 2500]")
-            low, high = (self._checked(one, what, (1, _FRAME_US)) for one in node.value)
+            low, high = (self._checked(pulse, what, (1, _FRAME_US)) for pulse in node.value)
             if low >= high:
                 self._refuse(node, f"{what} must be the lowest pulse, then the highest")
             limits_us = low, high

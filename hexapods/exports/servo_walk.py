@@ -72,8 +72,8 @@ class ServoWalk:
     @property
     def too_slow(self) -> list[ServoSpeed]:
         """The servos that cannot follow, those that lack most first."""
-        lacking = [one for one in self.speeds if one.times_slower > self.slowed]
-        return sorted(lacking, key=lambda one: -one.times_slower)
+        lacking = [speed for speed in self.speeds if speed.times_slower > self.slowed]
+        return sorted(lacking, key=lambda speed: -speed.times_slower)
 
     @property
     def slow_enough(self) -> float:
@@ -83,7 +83,7 @@ class ServoWalk:
 
 def times_slower(speeds: Sequence[ServoSpeed]) -> float:
     """Return how many times as long a walk must take, rounded up to a hundredth; from 1 on."""
-    most = max(one.times_slower for one in speeds)
+    most = max(speed.times_slower for speed in speeds)
     return max(1.0, math.ceil(100 * most) / 100)
 
 

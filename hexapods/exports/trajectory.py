@@ -123,7 +123,7 @@ def _groups(blocks: Iterator[_Block]) -> Iterator[list[_Block]]:
     group: list[_Block] = []
     for block in blocks:
         group.append(block)
-        if sum(len(one.steps) for one in group) >= _ROWS_PER_GROUP:
+        if sum(len(rows.steps) for rows in group) >= _ROWS_PER_GROUP:
             yield group
             group = []
     if group:
@@ -170,7 +170,9 @@ class _Encoder(NamedTuple):
             np.repeat(steps, counts),
             (starts_s + np.concatenate([motion.time_s for motion in motions])).round(6),
             np.concatenate([motion.qpos for motion in motions]),
-            np.concatenate([self._torques(one.torque_nm, len(one.time_s)) for one in motions]),
+            np.concatenate(
+                [self._torques(motion.torque_nm, len(motion.time_s)) for motion in motions]
+            ),
         )
 
     def _torques(self, recorded: NDArray[np.float16] | None, frames: int) -> NDArray[np.float32]:

@@ -190,7 +190,7 @@ def _model(shown: ShownPoses, width_m: float, options: VideoOptions) -> mujoco.M
         robot = robot_spec(built)
         robot.delete(robot.geom("ground"))
         rgba = [*(int(color[at : at + 2], 16) / 255 for at in (1, 3, 5)), 1]
-        dark = [0.3 * one + 0.22 for one in rgba[:3]] + [1]
+        dark = [0.3 * component + 0.22 for component in rgba[:3]] + [1]
         for geom in robot.geoms:
             geom.rgba = rgba if is_painted(built, geom.name) else dark
         # MuJoCo warns of options that differ; there is no physics here.

@@ -128,18 +128,18 @@ class PracticeShow:
     def marks(self) -> list[Mark]:
         """Return what happened, in order of time."""
         last = self._step_numbers[-1] if self._step_numbers else 0
-        found = [
+        marks = [
             Mark("evaluation", ghost.step * self._step_s, 0, ghost.step, ghost.distance_m)
             for ghost in self._evaluations
         ]
-        found += [
+        marks += [
             Mark("disturbance", step * self._step_s, 0, step)
             for step in self._world().change_steps
             if step <= last
         ]
         if (fell := self._fell_at_step) is not None:
-            found.append(Mark("fall", (fell + 1) * self._step_s, 0, fell))
-        return sorted(found, key=lambda mark: mark.time_s)
+            marks.append(Mark("fall", (fell + 1) * self._step_s, 0, fell))
+        return sorted(marks, key=lambda mark: mark.time_s)
 
     def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
         """Advance the playback position; see `Show.advance`."""
@@ -345,15 +345,15 @@ class ValueRange:
         self._changes = [(0, 0.0, 0.0)]
         """Steps at which the range grew, with the range from then on."""
 
-    def include(self, step: int, known: ActionValues | None) -> None:
+    def include(self, step: int, before: ActionValues | None) -> None:
         """Include the values before a step, NaN ignored; earlier steps have been included."""
         if step <= self.last_step:
             return
         self.last_step = step
-        if known is None:
+        if before is None:
             return
         _, low, high = self._changes[-1]
-        lowest, highest = float(np.nanmin(known.values)), float(np.nanmax(known.values))
+        lowest, highest = float(np.nanmin(before.values)), float(np.nanmax(before.values))
         if lowest < low or highest > high:
             self._changes.append((step, min(low, lowest), max(high, highest)))
 

@@ -112,21 +112,21 @@ class RaceShow:
 
     def marks(self) -> list[Mark]:
         """Return what happened, in order of time, as far as all lanes are computed."""
-        found = [] if self.first_finish_s is None else [Mark("time-out", self.first_finish_s)]
+        marks = [] if self.first_finish_s is None else [Mark("time-out", self.first_finish_s)]
         changes = self._world.change_steps
         for number, lane in enumerate(self._lanes):
             ends = lane.timetable.ends
-            found += [
+            marks += [
                 Mark("disturbance", float(ends[step - 1]), number, step)
                 for step in changes
                 if step <= len(ends)
             ]
             if lane.crossing_s is not None:
-                found.append(Mark("crossing", lane.crossing_s, number))
+                marks.append(Mark("crossing", lane.crossing_s, number))
             if lane.fell_at_step is not None and lane.fell_at_step < len(ends):
                 fell = lane.fell_at_step
-                found.append(Mark("fall", float(ends[fell]), number, fell))
-        in_view = [mark for mark in found if mark.time_s <= self._horizon_s]
+                marks.append(Mark("fall", float(ends[fell]), number, fell))
+        in_view = [mark for mark in marks if mark.time_s <= self._horizon_s]
         return sorted(in_view, key=lambda mark: mark.time_s)
 
     def advance(self, elapsed_s: float, speed: float | None, run_ended: bool) -> None:
@@ -333,5 +333,5 @@ class RaceShow:
         if first is not None and self.time_s >= first:
             distances = [lane.distance_at(first) for lane in self._lanes]
         # As `lane_figures` does, to the last bit.
-        ranks = [1 + sum(other > own for other in distances) for own in distances]
+        ranks = [1 + sum(other > distance for other in distances) for distance in distances]
         return tuple(replace(lane, rank=rank) for lane, rank in zip(lanes, ranks, strict=True))

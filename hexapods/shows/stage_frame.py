@@ -210,22 +210,22 @@ class StageFrame:
         learners = (
             (n, lane.action_values) for n, lane in enumerate(self.lanes) if lane.action_values
         )
-        lane, known = next(learners, (0, None))
-        if known is None:
+        lane, values = next(learners, (0, None))
+        if values is None:
             return None
-        spec, upcoming = self.spec, known.next
+        spec, upcoming = self.spec, values.next
         return {
             "lane": lane,
             "agent": spec.lane_specs[lane].agent,
             "pairs": [list(group) for group in spec.gait.groups],
             "cells_m": spec.grid.cells.round(5).tolist(),
             "cell_names": [spec.grid.name(cell) for cell in range(len(spec.grid))],
-            "current": list(known.current),
-            "values_m": _table(known.values_m),
-            "visits": _table(known.visits),
+            "current": list(values.current),
+            "values_m": _table(values.values_m),
+            "visits": _table(values.visits),
             "next": upcoming and {"pair": upcoming.group, "cell": upcoming.cell},
-            "low": round(known.low_m, 5),
-            "high": round(known.high_m, 5),
+            "low": round(values.low_m, 5),
+            "high": round(values.high_m, 5),
         }
 
 

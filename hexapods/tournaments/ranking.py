@@ -66,7 +66,7 @@ def ranking(
         resampled_iqms,
     )
 
-    if len({len(one) for one in distances_m.values()}) > 1:
+    if len({len(distances) for distances in distances_m.values()}) > 1:
         raise ValueError("all entries of a ranking must be judged on the same draws")
     if not distances_m:
         return []

@@ -115,7 +115,7 @@ class TournamentRules(WalkingProblem):
             if robot in (self.robot, *self.robots[:number]):
                 raise InvalidInput(f"robots: {robot.name} is there twice; name each robot once")
         if not self.gaits:
-            object.__setattr__(self, "gaits", tuple(own_gait(one) for one in self.robots))
+            object.__setattr__(self, "gaits", tuple(own_gait(robot) for robot in self.robots))
         if len(self.gaits) != len(self.robots):
             raise InvalidInput(
                 f"gaits must be as many as robots, {len(self.robots)}, not {len(self.gaits)}; "
@@ -151,7 +151,7 @@ class TournamentRules(WalkingProblem):
         for allowed, gait in self._walkers():
             if allowed == robot:
                 return gait
-        names = ", ".join(one.name for one, _ in self._walkers())
+        names = ", ".join(robot.name for robot, _ in self._walkers())
         raise InvalidInput(f"{robot.name} is no robot of this tournament; choose one of: {names}")
 
 

@@ -103,7 +103,7 @@ class TournamentFile(Record):
             raise InvalidInput(
                 f"a tournament has at most {MAX_ENTRIES} entries, not {len(self.entries)}"
             )
-        numbers = [one.number for one in self.entries]
+        numbers = [entry.number for entry in self.entries]
         if numbers != sorted(set(numbers)):
             raise InvalidInput("the entries of a tournament are numbered ascending")
 
@@ -138,8 +138,8 @@ def tournament_file(
         commitment=commitment_of(secret),
         secret=secret,
         entries=tuple(entries),
-        standings=tuple(standings_of({one.number: one.judgements for one in entries})),
-        tables={sha256_of(one): b64encode(one).decode() for one in tables},
+        standings=tuple(standings_of({entry.number: entry.judgements for entry in entries})),
+        tables={sha256_of(table): b64encode(table).decode() for table in tables},
         robots={
             robot.id: json.loads(robot_documents.find(robot.id, robot.name))
             for robot in (rules.robot, *rules.robots)
@@ -176,10 +176,13 @@ def probe_m(rules: TournamentRules, draw: Draw) -> list[float]:
 def standings_of(judgements: Mapping[int, Sequence[Judgement]]) -> list[RankedEntry]:
     """Return the standings of entries by their judgements, by number; best first."""
     return ranking(
-        {number: [one.distance_m for one in given] for number, given in judgements.items()},
         {
-            number: sum(one.failure is not None for one in given)
-            for number, given in judgements.items()
+            number: [judgement.distance_m for judgement in judged]
+            for number, judged in judgements.items()
+        },
+        {
+            number: sum(judgement.failure is not None for judgement in judged)
+            for number, judged in judgements.items()
         },
     )
 
@@ -191,7 +194,7 @@ def sha256_of(table: bytes) -> str:
 
 def documents_of(tournament: TournamentFile) -> list[bytes]:
     """Return the documents of its stored robots, as `hexapods.domain.robot_documents` has them."""
-    return [robot_documents.encode(one) for one in tournament.robots.values()]
+    return [robot_documents.encode(document) for document in tournament.robots.values()]
 
 
 def write_file(tournament: TournamentFile) -> bytes:
@@ -263,8 +266,8 @@ def _robots(content: Mapping[str, Any]) -> list[bytes]:
         TypeError, ValueError, AttributeError: if they are no objects.
     """
     documents = []
-    for robot_id, given in dict(content.get("robots", {})).items():
-        document = robot_documents.encode(given)
+    for robot_id, content_of_robot in dict(content.get("robots", {})).items():
+        document = robot_documents.encode(content_of_robot)
         parse_document(document)
         if robot_documents.id_of(document) != robot_id:
             raise DamagedFile(f"the document of robot {robot_id} is that of another robot")

@@ -89,29 +89,29 @@ def verification(
         return Verification([f"The draws cannot be repeated: {error}."], None, None)
     differences = [*_secret_differences(tournament), *_reference_differences(tournament)]
     tables: dict[int, Checkpoint | None] = {}
-    for one in tournament.entries:
+    for entry in tournament.entries:
         try:
-            tables[one.number] = _checked_table(one.entry, tournament)
+            tables[entry.number] = _checked_table(entry.entry, tournament)
         except HexapodError as error:
-            differences.append(f"{_name(one)} cannot be judged: {visible(str(error))}.")
+            differences.append(f"{_name(entry)} cannot be judged: {visible(str(error))}.")
     with robot_documents.lent(documents_of(tournament)):
-        judged = [one for one in tournament.entries if one.number in tables]
+        judged = [entry for entry in tournament.entries if entry.number in tables]
         pending = len(judged) * len(draws)
         with local_pool(min(workers or cores(), max(1, pending))) as pool:
             futures = {
-                one.number: [
-                    pool.submit(judge, tournament.rules, one.entry, draw, tables[one.number])
+                entry.number: [
+                    pool.submit(judge, tournament.rules, entry.entry, draw, tables[entry.number])
                     for draw in draws
                 ]
-                for one in judged
+                for entry in judged
             }
             for done, _ in enumerate(as_completed(chain(*futures.values())), start=1):
                 on_judged(done, pending)
-    repeated = {number: [_result(one) for one in tasks] for number, tasks in futures.items()}
+    repeated = {number: [_result(task) for task in tasks] for number, tasks in futures.items()}
     ranks_hold = _ranks_hold(tournament, repeated)
     largest_m = None if differences or not ranks_hold else _largest_m(judged, repeated)
-    for one in judged:
-        differences += _judgement_differences(one, draws, repeated[one.number])
+    for entry in judged:
+        differences += _judgement_differences(entry, draws, repeated[entry.number])
     differences += _standing_differences(tournament, repeated)
     rounding = None
     if differences and largest_m is not None and largest_m <= LAST_DIGITS_M:
@@ -126,7 +126,16 @@ def _ranks_hold(tournament: TournamentFile, repeated: Repeated) -> bool | None:
     if len(judgements) < len(tournament.entries):
         return None
     shown = [
-        [(one.number, one.best_rank, one.worst_rank, one.not_separable, one.failures) for one in s]
+        [
+            (
+                ranked.number,
+                ranked.best_rank,
+                ranked.worst_rank,
+                ranked.not_separable,
+                ranked.failures,
+            )
+            for ranked in s
+        ]
         for s in (tournament.standings, standings_of(judgements))
     ]
     return shown[0] == shown[1]
@@ -135,13 +144,13 @@ def _ranks_hold(tournament: TournamentFile, repeated: Repeated) -> bool | None:
 def _largest_m(judged: Sequence[JudgedEntry], repeated: Repeated) -> float | None:
     """Return by how much distances differ at most [m]; None if failures differ."""
     differences_m = [0.0]
-    for one in judged:
-        if len(one.judgements) != len(repeated[one.number]):
+    for entry in judged:
+        if len(entry.judgements) != len(repeated[entry.number]):
             return None
-        for given, again in zip(one.judgements, repeated[one.number], strict=True):
-            if isinstance(again, str) or given.failure != again.failure:
+        for in_file, again in zip(entry.judgements, repeated[entry.number], strict=True):
+            if isinstance(again, str) or in_file.failure != again.failure:
                 return None
-            differences_m.append(abs(given.distance_m - again.distance_m))
+            differences_m.append(abs(in_file.distance_m - again.distance_m))
     return max(differences_m)
 
 
@@ -152,7 +161,7 @@ def _rounding(tournament: TournamentFile, largest_m: float, draw: Draw) -> str:
     step = None
     if isinstance(in_file, list) and len(in_file) == len(again):
         pairs = enumerate(zip(in_file, again, strict=True), start=1)
-        step = next((number for number, (given, here) in pairs if given != here), 0)
+        step = next((number for number, (filed, repeated) in pairs if filed != repeated), 0)
     begins = {
         None: "the file does not tell from which step on",
         0: "the random walk on draw 1 is the same, so that they begin in practice or planning",
@@ -166,8 +175,8 @@ def _rounding(tournament: TournamentFile, largest_m: float, draw: Draw) -> str:
 def version_note(tournament: TournamentFile) -> str | None:
     """Return how the versions here differ from those that judged; None if results must be equal."""
     # Python is in the file, but results do not depend on it.
-    kept = {name: of for name, of in tournament.versions.items() if name != "python"}
-    other = difference(kept, own_versions())
+    filed = {name: version for name, version in tournament.versions.items() if name != "python"}
+    other = difference(filed, own_versions())
     if other is None:
         return None
     return visible(f"This is {other}, by which results may differ in their last digits.")
@@ -182,7 +191,7 @@ def _secret_differences(tournament: TournamentFile) -> Iterator[str]:
 
 
 def _reference_differences(tournament: TournamentFile) -> Iterator[str]:
-    by_number = {one.number: one.entry for one in tournament.entries}
+    by_number = {entry.number: entry.entry for entry in tournament.entries}
     try:
         usual = references(tournament.rules)
     except HexapodError as error:
@@ -230,25 +239,27 @@ def _result(future: "Future[Judgement]") -> Judgement | str:
 
 
 def _judgement_differences(
-    one: JudgedEntry, draws: Sequence[Draw], repeated: Sequence[Judgement | str]
+    entry: JudgedEntry, draws: Sequence[Draw], repeated: Sequence[Judgement | str]
 ) -> Iterator[str]:
-    if len(one.judgements) != len(draws):
+    if len(entry.judgements) != len(draws):
         yield (
-            f"{_name(one)} has {len(one.judgements)} judgements in the file; the rules have "
+            f"{_name(entry)} has {len(entry.judgements)} judgements in the file; the rules have "
             f"{len(draws)} draws."
         )
         return
     differing = [
-        f"{_name(one)}, draw {number} (seed {draw.seed}, {draw.world}): "
-        f"{_text(given)} in the file, {_text(again)} repeated."
-        for number, (draw, given, again) in enumerate(
-            zip(draws, one.judgements, repeated, strict=True), start=1
+        f"{_name(entry)}, draw {number} (seed {draw.seed}, {draw.world}): "
+        f"{_text(in_file)} in the file, {_text(again)} repeated."
+        for number, (draw, in_file, again) in enumerate(
+            zip(draws, entry.judgements, repeated, strict=True), start=1
         )
-        if given != again
+        if in_file != again
     ]
     yield from differing[:MAX_TOLD]
     if len(differing) > MAX_TOLD:
-        yield (f"{_name(one)}: {len(differing) - MAX_TOLD} more of its {len(draws)} draws differ.")
+        yield (
+            f"{_name(entry)}: {len(differing) - MAX_TOLD} more of its {len(draws)} draws differ."
+        )
 
 
 def _standing_differences(tournament: TournamentFile, repeated: Repeated) -> list[str]:
@@ -256,46 +267,50 @@ def _standing_differences(tournament: TournamentFile, repeated: Repeated) -> lis
     judgements = _complete(repeated)
     if len(judgements) < len(tournament.entries):
         return ["The standings were not compared, as some entries could not be judged."]
-    expected = {one.number: one for one in standings_of(judgements)}
-    names = {one.number: _name(one) for one in tournament.entries}
-    given = {one.number: one for one in tournament.standings}
-    told = [f"{names[number]} has no standing." for number in expected if number not in given]
-    told += [
-        f"There is a standing of entry {one}, which is not there."
-        for one in given
-        if one not in expected
+    expected = {ranked.number: ranked for ranked in standings_of(judgements)}
+    names = {entry.number: _name(entry) for entry in tournament.entries}
+    in_file = {ranked.number: ranked for ranked in tournament.standings}
+    differences = [
+        f"{names[number]} has no standing." for number in expected if number not in in_file
+    ]
+    differences += [
+        f"There is a standing of entry {number}, which is not there."
+        for number in in_file
+        if number not in expected
     ]
     for number, again in expected.items():
-        if number in given:
-            told += _field_differences(names[number], given[number], again)
-    order = [one.number for one in tournament.standings]
-    if not told and order != list(expected):
-        told.append(
+        if number in in_file:
+            differences += _field_differences(names[number], in_file[number], again)
+    order = [ranked.number for ranked in tournament.standings]
+    if not differences and order != list(expected):
+        differences.append(
             f"The standings are in the order {_listed(order)} in the file, {_listed(expected)} "
             "repeated."
         )
-    return told
+    return differences
 
 
 def _complete(repeated: Repeated) -> dict[int, Sequence[Judgement]]:
     """Return the judgements of the entries that could be judged on all draws."""
     judgements: dict[int, Sequence[Judgement]] = {}
     for number, of_entry in repeated.items():
-        done = [one for one in of_entry if isinstance(one, Judgement)]
+        done = [judgement for judgement in of_entry if isinstance(judgement, Judgement)]
         if len(done) == len(of_entry):
             judgements[number] = done
     return judgements
 
 
-def _field_differences(name: str, given: RankedEntry, expected: RankedEntry) -> Iterator[str]:
-    for one in fields(RankedEntry):
-        in_file, again = getattr(given, one.name), getattr(expected, one.name)
+def _field_differences(name: str, filed: RankedEntry, expected: RankedEntry) -> Iterator[str]:
+    for field in fields(RankedEntry):
+        in_file, again = getattr(filed, field.name), getattr(expected, field.name)
         if in_file != again:
-            yield f"Standing of {name}: {one.name} is {in_file!r} in the file, {again!r} repeated."
+            yield (
+                f"Standing of {name}: {field.name} is {in_file!r} in the file, {again!r} repeated."
+            )
 
 
-def _name(one: JudgedEntry) -> str:
-    return f"Entry {one.number} ({one.name})"
+def _name(entry: JudgedEntry) -> str:
+    return f"Entry {entry.number} ({entry.name})"
 
 
 def _text(judgement: Judgement | str) -> str:

@@ -58,12 +58,12 @@ def content_policy(page: str, *, is_file: bool = False) -> str:
     Raises:
         RuntimeError: This version of viser packs its client in another way.
     """
-    own, ancestors = ("", "") if is_file else ("'self' ", "; frame-ancestors 'self'")
+    self_source, ancestors = ("", "") if is_file else ("'self' ", "; frame-ancestors 'self'")
     hashes = " ".join(_hash(script) for script in page_scripts(page))
     return (
         f"default-src 'none'; script-src 'strict-dynamic' 'wasm-unsafe-eval' {hashes}; "
-        f"worker-src blob:; style-src 'unsafe-inline'; img-src {own}blob: data:; "
-        f"connect-src {own}blob: data:; base-uri 'none'; form-action 'none'{ancestors}"
+        f"worker-src blob:; style-src 'unsafe-inline'; img-src {self_source}blob: data:; "
+        f"connect-src {self_source}blob: data:; base-uri 'none'; form-action 'none'{ancestors}"
     )
 
 
