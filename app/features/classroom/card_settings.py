@@ -44,12 +44,12 @@ def declared(form: Mapping[str, Any]) -> Mapping[str, DeclaredSetting]:
     """
     agent = form.get("agent", TrainingConfig.agent)
     try:
-        own = agent_settings(agent) if isinstance(agent, str) else {}
+        settings_of_agent = agent_settings(agent) if isinstance(agent, str) else {}
     except HexapodError:
-        own = {}  # the start says so
+        settings_of_agent = {}  # the start says so
     steps = declared_fields(RaceConfig)["steps"]
-    found = {**declared_fields(TrainingConfig), **own, RACE_STEPS: steps}
-    return {name: one for name, one in found.items() if name not in _NEVER}
+    settings = {**declared_fields(TrainingConfig), **settings_of_agent, RACE_STEPS: steps}
+    return {name: setting for name, setting in settings.items() if name not in _NEVER}
 
 
 def names_of(field: str) -> list[str] | None:
@@ -99,7 +99,7 @@ def check_given(name: str, value: Any, bounds: Limits, form: Mapping[str, Any]) 
     """
     setting = declared(form).get(name)
     value = value if setting is None else setting.normalized(value)
-    if bounds.choices is not None and not any(_is_same(value, one) for one in bounds.choices):
+    if bounds.choices is not None and not any(_is_same(value, choice) for choice in bounds.choices):
         raise UnknownName(name, value, map(str, bounds.choices))
     names = names_of(name)
     if names is not None and value not in names:

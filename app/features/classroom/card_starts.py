@@ -102,8 +102,10 @@ class CardStarts:
             errors = error.errors()
             if (refusal := refusal_in(errors)) is not None:
                 raise refusal from refusal.__cause__
-            told = field_errors(errors)
-            raise InvalidInput(" ".join(one["detail"] for one in told[:3])) from error
+            errors_of_fields = field_errors(errors)
+            raise InvalidInput(
+                " ".join(entry["detail"] for entry in errors_of_fields[:3])
+            ) from error
         return start
 
 
@@ -128,13 +130,15 @@ class _Fields:
         if not isinstance(settings, Mapping):
             raise InvalidInput("settings must be an object with the agent's settings, by name")
         agent = flat.pop("agent", TrainingConfig.agent)
-        if not isinstance(agent, str) or agent not in (known := names_of("agent") or []):
-            raise UnknownName("agent", agent, known)
+        if not isinstance(agent, str) or agent not in (agents := names_of("agent") or []):
+            raise UnknownName("agent", agent, agents)
         self.agent, self._lanes = agent, flat.pop("lanes", None)
-        own, known_settings = agent_settings(agent), declared(form)
+        settings_of_agent, known_settings = agent_settings(agent), declared(form)
         self._walk: dict[str, Any] = {"gait": _GAIT}
         self._practice: dict[str, Any] = {}
-        self._settings = {name: _value(value, own.get(name)) for name, value in settings.items()}
+        self._settings = {
+            name: _value(value, settings_of_agent.get(name)) for name, value in settings.items()
+        }
         self._of_lanes: dict[str, dict[str, Any]] = {}
         self._race_steps: dict[str, Any] = {}
         for name, text in flat.items():
@@ -145,7 +149,7 @@ class _Fields:
                 self._practice[name] = value
             elif name == RACE_STEPS:
                 self._race_steps = {"steps": value}
-            elif name in own:
+            elif name in settings_of_agent:
                 self._settings[name] = value
             elif name in ("disturb", "disturbances"):
                 self._walk.setdefault("disturbances", []).extend(_disturbances(value))
@@ -153,7 +157,7 @@ class _Fields:
                 lane, _, setting = name.rpartition(".")
                 self._of_lanes.setdefault(lane, {})[setting] = value
             else:
-                valid = ["agent", "settings", *_WALK, "disturb", *_PRACTICE, *own]
+                valid = ["agent", "settings", *_WALK, "disturb", *_PRACTICE, *settings_of_agent]
                 raise UnknownName("field", name[:60], [*valid, "lanes", RACE_STEPS])
 
     def training(self) -> dict[str, Any]:
@@ -164,19 +168,19 @@ class _Fields:
 
     def race(self, seed: int) -> dict[str, Any]:
         """Return the body of a race, whose learners practise first."""
-        default = [self.agent if one == TrainingConfig.agent else one for one in PAPERS_LANES]
+        default = [self.agent if lane == TrainingConfig.agent else lane for lane in PAPERS_LANES]
         names = self._lanes if self._lanes is not None else default
         if isinstance(names, str):
-            names = [one.strip() for one in names.split(",") if one.strip()]
-        if not isinstance(names, list) or not all(isinstance(one, str) for one in names):
+            names = [lane.strip() for lane in names.split(",") if lane.strip()]
+        if not isinstance(names, list) or not all(isinstance(lane, str) for lane in names):
             raise InvalidInput("lanes must be a list of agents' names")
         lanes = [self._lane(name) for name in names]
         return {**self._walk, **self._race_steps, "lanes": lanes, "seed": seed}
 
     def _lane(self, agent: str) -> dict[str, Any]:
         find(agent)
-        own = self._of_lanes.get(agent, {})
-        settings = {k: _value(v, agent_settings(agent).get(k)) for k, v in own.items()}
+        settings_of_lane = self._of_lanes.get(agent, {})
+        settings = {k: _value(v, agent_settings(agent).get(k)) for k, v in settings_of_lane.items()}
         of_lane = {name: settings.pop(name) for name in LANE_FIELDS if name in settings}
         if not learns(agent):
             return {"agent": agent, **of_lane, "settings": settings}
@@ -185,20 +189,20 @@ class _Fields:
         return {"agent": agent, **of_lane, "training": training}
 
 
-def _value(given: Any, setting: Any) -> Any:
+def _value(text: Any, setting: Any) -> Any:
     """Return a value of a form, which a page has as it was typed."""
-    if not isinstance(given, str):
-        return given
+    if not isinstance(text, str):
+        return text
     if setting is not None:
-        return setting.parse(given)
-    if given.startswith("{"):
+        return setting.parse(text)
+    if text.startswith("{"):
         try:
-            return json.loads(given)
+            return json.loads(text)
         except (ValueError, RecursionError) as error:
-            raise InvalidInput(f"{given[:40]!r} is no JSON object") from error
-    return given
+            raise InvalidInput(f"{text[:40]!r} is no JSON object") from error
+    return text
 
 
-def _disturbances(given: Any) -> list[Any]:
-    several = given if isinstance(given, list) else [given]
+def _disturbances(value: Any) -> list[Any]:
+    several = value if isinstance(value, list) else [value]
     return [as_mapping(parse_disturbance(x)) if isinstance(x, str) else x for x in several]

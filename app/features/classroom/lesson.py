@@ -97,8 +97,8 @@ class Card(Record):
     @property
     def revealed(self) -> Reveal:
         """Text and answer that are revealed afterwards."""
-        given = self.reveal
-        return given if isinstance(given, Reveal) else Reveal(text=given or "")
+        reveal = self.reveal
+        return reveal if isinstance(reveal, Reveal) else Reveal(text=reveal or "")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,9 +140,9 @@ def add_given_schemas(schemas: dict[str, Any]) -> None:
     Args:
         schemas: those of the description of the API, by name.
     """
-    given = adapter().json_schema(ref_template=_GIVEN_REFERENCE)
-    parts = given.pop("$defs") | {"Lesson": given}
-    schemas |= {f"Given{name}": part for name, part in parts.items()}
+    schema = adapter().json_schema(ref_template=_GIVEN_REFERENCE)
+    definitions = schema.pop("$defs") | {"Lesson": schema}
+    schemas |= {f"Given{name}": definition for name, definition in definitions.items()}
 
 
 def read_lesson(data: Any) -> Lesson:
@@ -172,12 +172,12 @@ def read_lesson(data: Any) -> Lesson:
 def plain(lesson: Lesson) -> dict[str, Any]:
     """Return a lesson as plain values without what is null or empty, as a person would write it."""
     whole = adapter().dump_python(lesson, mode="json")
-    found: dict[str, Any] = _without_nothing(whole)
-    for card, short in zip(whole["cards"], found["cards"], strict=True):
+    document: dict[str, Any] = _without_nothing(whole)
+    for card, short in zip(whole["cards"], document["cards"], strict=True):
         if card["may"]:
             # The bounds of a setting may be empty: all that is valid.
-            short["may"] = {name: _without_nothing(one) for name, one in card["may"].items()}
-    return found
+            short["may"] = {name: _without_nothing(bounds) for name, bounds in card["may"].items()}
+    return document
 
 
 def html_of(card: Card) -> dict[str, str]:
@@ -191,9 +191,9 @@ def html_of(card: Card) -> dict[str, str]:
 
 def _without_nothing(value: Any) -> Any:
     if isinstance(value, dict):
-        kept = {name: _without_nothing(one) for name, one in value.items() if one is not None}
-        return {name: one for name, one in kept.items() if one not in ([], {})}
-    return [_without_nothing(one) for one in value] if isinstance(value, list) else value
+        fields_ = {name: _without_nothing(item) for name, item in value.items() if item is not None}
+        return {name: item for name, item in fields_.items() if item not in ([], {})}
+    return [_without_nothing(item) for item in value] if isinstance(value, list) else value
 
 
 def _check_card(card: Card, where: str) -> None:
@@ -219,7 +219,7 @@ def _sentence(error: ValidationError) -> str:
         where = ".".join(map(str, path[:-1]))
         unknown = UnknownName("field", str(path[-1])[:MAX_NAME], _fields_at(path[:-1]))
         return f"{where}: {unknown}" if where else str(unknown)
-    where = ".".join(str(one) for one in path if re.fullmatch(r"[\w.-]{1,60}", str(one)))
+    where = ".".join(str(key) for key in path if re.fullmatch(r"[\w.-]{1,60}", str(key)))
     if not where:
         return "a lesson is an object with title and cards"
     message = message.replace("Input should be", "must be").replace("Value should have", "has")

@@ -77,10 +77,10 @@ def add_lesson(
     bounds. Texts are Markdown without HTML, pictures and scripts.
     """
     services.of(CardStarts).check(lesson, services.store)
-    found = services.of(Lessons).add(lesson)
-    path = request.url_for("get_lesson", lesson_id=found.id).path
-    link = link_of(request, services.settings, f"/l/{found.id}")
-    added = {"id": found.id, "link": link["address"], "qr_code": link["qr_code"]}
+    stored = services.of(Lessons).add(lesson)
+    path = request.url_for("get_lesson", lesson_id=stored.id).path
+    link = link_of(request, services.settings, f"/l/{stored.id}")
+    added = {"id": stored.id, "link": link["address"], "qr_code": link["qr_code"]}
     return JSONResponse(added, 201, {"Location": path})
 
 
@@ -90,14 +90,14 @@ def list_lessons(services: ServicesDep) -> Response:
     """Return the lessons that are built in, and those that were stored."""
     items = [
         {
-            "id": one.id,
-            "title": one.lesson.title,
-            "language": one.lesson.language,
-            "aims": list(one.lesson.aims),
-            "cards": len(one.lesson.cards),
-            "is_built_in": one.is_built_in,
+            "id": stored.id,
+            "title": stored.lesson.title,
+            "language": stored.lesson.language,
+            "aims": list(stored.lesson.aims),
+            "cards": len(stored.lesson.cards),
+            "is_built_in": stored.is_built_in,
         }
-        for one in services.of(Lessons).all()
+        for stored in services.of(Lessons).all()
     ]
     return JSONResponse({"items": items})
 
@@ -121,22 +121,22 @@ def get_lesson(
     While an open room teaches it, it is for operators alone whole: for others it has neither what
     is revealed nor the cards after the one that the room shows.
     """
-    found, is_taught = services.of(Lessons).get(lesson_id), False
+    stored, is_taught = services.of(Lessons).get(lesson_id), False
     if reader is not None:
-        found, is_taught = _while_taught(services, found)
+        stored, is_taught = _while_taught(services, stored)
     if negotiated(request, format, ("json", "yaml"), _TYPES) == "yaml":
-        text = write_file(found.lesson).encode()
-        return attachment(text, MEDIA_TYPE, f"lesson-{found.id}.yaml")
-    return JSONResponse(lesson_view(found, is_taught=is_taught))
+        text = write_file(stored.lesson).encode()
+        return attachment(text, MEDIA_TYPE, f"lesson-{stored.id}.yaml")
+    return JSONResponse(lesson_view(stored, is_taught=is_taught))
 
 
-def _while_taught(services: Services, found: FoundLesson) -> tuple[FoundLesson, bool]:
+def _while_taught(services: Services, stored: FoundLesson) -> tuple[FoundLesson, bool]:
     """Return what all may read of a lesson, and whether that is not all of it."""
-    shown = services.of(Rooms).taught(found.lesson)
+    shown = services.of(Rooms).taught(stored.lesson)
     if shown is None:
-        return found, False
-    cards = tuple(replace(card, reveal=None) for card in found.lesson.cards[: shown + 1])
-    return replace(found, lesson=replace(found.lesson, cards=cards)), True
+        return stored, False
+    cards = tuple(replace(card, reveal=None) for card in stored.lesson.cards[: shown + 1])
+    return replace(stored, lesson=replace(stored.lesson, cards=cards)), True
 
 
 @router.delete("/{lesson_id}", status_code=204, summary="Delete a stored lesson")
@@ -146,12 +146,12 @@ def delete_lesson(services: ServicesDep, lesson_id: LessonPath) -> None:
     services.of(Lessons).delete(lesson_id)
 
 
-def lesson_view(found: FoundLesson, *, is_taught: bool = False) -> dict[str, Any]:
+def lesson_view(stored: FoundLesson, *, is_taught: bool = False) -> dict[str, Any]:
     """Return a lesson as `GET /lessons/{lesson_id}` responds; `is_taught` if parts are left out."""
     return {
-        **adapter().dump_python(found.lesson, mode="json"),
-        "id": found.id,
-        "is_built_in": found.is_built_in,
+        **adapter().dump_python(stored.lesson, mode="json"),
+        "id": stored.id,
+        "is_built_in": stored.is_built_in,
         "is_taught": is_taught,
-        "html": [html_of(card) for card in found.lesson.cards],
+        "html": [html_of(card) for card in stored.lesson.cards],
     }

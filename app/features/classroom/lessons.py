@@ -50,11 +50,11 @@ class Lessons:
             StorageFull, StorageFailed: if it cannot be stored.
         """
         document = plain(lesson)
-        found = FoundLesson(_content_id(document), lesson, is_built_in=False)
-        is_stored = bool(self._rows.read(_stored, found.id).sound)
-        if not is_stored and not self._rows.put(found.id, lesson.title, document, MAX_LESSONS):
+        stored = FoundLesson(_content_id(document), lesson, is_built_in=False)
+        is_stored = bool(self._rows.read(_stored, stored.id).sound)
+        if not is_stored and not self._rows.put(stored.id, lesson.title, document, MAX_LESSONS):
             raise Busy(f"{MAX_LESSONS} lessons are stored, which is the most; delete one", _RETRY_S)
-        return found
+        return stored
 
     def get(self, lesson_id: str) -> FoundLesson:
         """Return a lesson.
@@ -62,21 +62,24 @@ class Lessons:
         Raises:
             NotFound: if there is none of this id, or it cannot be read.
         """
-        known = built_in().get(lesson_id)
-        if known is not None:
-            return FoundLesson(lesson_id, known, is_built_in=True)
+        built_in_lesson = built_in().get(lesson_id)
+        if built_in_lesson is not None:
+            return FoundLesson(lesson_id, built_in_lesson, is_built_in=True)
         rows = self._rows.read(_stored, lesson_id)
         for row in rows.damaged:
             raise NotFound(f"the lesson {lesson_id} is damaged: {row.damaged}; delete it")
         if not rows.sound:
             raise NotFound(f"there is no lesson {lesson_id!r}; GET /api/v1/lessons lists all")
-        found: FoundLesson = rows.sound[0]
-        return found
+        stored: FoundLesson = rows.sound[0]
+        return stored
 
     def all(self) -> list[FoundLesson]:
         """Return all lessons that can be read: the built-in ones, then the stored, newest first."""
-        found = [FoundLesson(one, lesson, is_built_in=True) for one, lesson in built_in().items()]
-        return found + self._rows.read(_stored).sound
+        lessons = [
+            FoundLesson(lesson_id, lesson, is_built_in=True)
+            for lesson_id, lesson in built_in().items()
+        ]
+        return lessons + self._rows.read(_stored).sound
 
     def delete(self, lesson_id: str) -> None:
         """Delete a stored lesson; rooms that have it keep it.
@@ -92,7 +95,8 @@ class Lessons:
 def built_in() -> Mapping[str, Lesson]:
     """Return the lessons that come with the server, by id."""
     return {
-        one.stem: read_file(one.read_bytes(), one.name) for one in sorted(_FOLDER.glob("*.yaml"))
+        path.stem: read_file(path.read_bytes(), path.name)
+        for path in sorted(_FOLDER.glob("*.yaml"))
     }
 
 

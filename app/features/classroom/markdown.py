@@ -86,7 +86,7 @@ def _parser(has_html: bool) -> "MarkdownIt":
 
 
 def _tokens(tokens: list[Any]) -> list[Any]:
-    return [one for token in tokens for one in (token, *_tokens(token.children or []))]
+    return [token_ for token in tokens for token_ in (token, *_tokens(token.children or []))]
 
 
 def _beginning(text: str) -> str:

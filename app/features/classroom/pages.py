@@ -52,15 +52,15 @@ def _lesson(request: Request) -> Response:
 @policy(access=BY_CODE)
 def _room(request: Request) -> Response:
     services: Services = request.app.state.services
-    given = request.path_params["code"]
+    code = request.path_params["code"]
     try:
-        room = services.of(Rooms).get(given)
+        room = services.of(Rooms).get(code)
     except NotFound as error:
         return problem(404, as_sentence(str(error)))
     if not room.is_open:
         return problem(410, f"The room {room.code} has ended; ask for the code of a new one.")
     if request.scope["root_path"]:  # the dashboard of a stage, below which there is no room
         raise HTTPException(404)
-    if normalized(given) == given:
+    if normalized(code) == code:
         return problem(503, "The room is opening; try again.", headers={"Retry-After": "1"})
     return RedirectResponse(f"../{room.code}/", 303)

@@ -163,7 +163,7 @@ class Choice(QuestionType):
         self, ask: Ask, right: float | str | None, outcomes: Sequence[WalkOutcome]
     ) -> Scorer:
         del ask
-        races = [one.winners for one in outcomes if one.winners]
+        races = [outcome.winners for outcome in outcomes if outcome.winners]
 
         def score(value: Any) -> Score:
             won = [1 / len(winners) if value in winners else 0.0 for winners in races]
@@ -205,7 +205,7 @@ class NumberType(QuestionType):
         if isinstance(right, int | float):
             return lambda value: Score(is_right=value == right, error=abs(value - right))
         metres = _METRES.get(ask.unit or "m")
-        distances = [one.distance_m for one in outcomes if one.distance_m is not None]
+        distances = [outcome.distance_m for outcome in outcomes if outcome.distance_m is not None]
         if metres is None or not distances:
             return super().scorer(ask, right, outcomes)
         # SciPy, which it imports, takes a second, and most servers score no answers.
@@ -223,7 +223,7 @@ class _ChartType(QuestionType):
     def scorer(
         self, ask: Ask, right: float | str | None, outcomes: Sequence[WalkOutcome]
     ) -> Scorer:
-        means = _mean_curve([one.curve for one in outcomes if one.curve])
+        means = _mean_curve([outcome.curve for outcome in outcomes if outcome.curve])
         if not means:
             return super().scorer(ask, right, outcomes)
         steps, distances = list(means), list(means.values())
@@ -263,7 +263,7 @@ class CurveType(_ChartType):
         valid = f"a curve is a list of 2 to {MAX_POINTS} points [x, y], from left to right"
         if not isinstance(value, list) or not 2 <= len(value) <= MAX_POINTS:
             raise InvalidInput(valid)
-        points = [_point(one, valid) for one in value]
+        points = [_point(point, valid) for point in value]
         if any(after[0] <= before[0] for before, after in pairwise(points)):
             raise InvalidInput(valid)
         return points
@@ -274,7 +274,7 @@ class CurveType(_ChartType):
 
 
 _TYPES: Mapping[str, QuestionType] = {
-    one.kind: one for one in (Choice(), NumberType(), PointType(), CurveType())
+    question.kind: question for question in (Choice(), NumberType(), PointType(), CurveType())
 }
 
 
@@ -311,7 +311,9 @@ def scorer(ask: Ask, right: float | str | None, outcomes: Sequence[WalkOutcome])
 
 def _point(value: Any, valid: str) -> list[float]:
     is_point = isinstance(value, list) and len(value) == 2
-    if not is_point or not all(_is_number(one) and abs(one) <= _MOST for one in value):
+    if not is_point or not all(
+        _is_number(coordinate) and abs(coordinate) <= _MOST for coordinate in value
+    ):
         raise InvalidInput(valid)
     return [float(value[0]), float(value[1])]
 
@@ -325,5 +327,7 @@ def _mean_curve(curves: Sequence[Curve]) -> Mapping[float, float]:
     from hexapods.experiments.statistics import iqm  # noqa: PLC0415 - as above
 
     by_step = [dict(curve) for curve in curves]
-    steps = set.intersection(*(set(one) for one in by_step)) if by_step else set()
-    return {step: float(iqm(np.array([one[step] for one in by_step]))) for step in sorted(steps)}
+    steps = set.intersection(*(set(curve) for curve in by_step)) if by_step else set()
+    return {
+        step: float(iqm(np.array([curve[step] for curve in by_step]))) for step in sorted(steps)
+    }

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _SEED_OF_INTERVALS = 0
 MEDIA_TYPE = "text/csv"
-SCORES = tuple(one.name for one in fields(Score))
+SCORES = tuple(field.name for field in fields(Score))
 """Names of the figures of a score."""
 
 
@@ -147,15 +147,15 @@ def as_csv(results: Sequence[CardResults]) -> str:
         ]
     )
     for result in results:
-        for one in result.entries:
-            run, score = one.run, one.score or Score()
+        for entry in result.entries:
+            run, score = entry.run, entry.score or Score()
             outcome = WalkOutcome(None) if run is None else run.outcome
-            prediction = one.prediction
+            prediction = entry.prediction
             if not isinstance(prediction, str | float | int | None):
                 prediction = json.dumps(prediction)
             of_run = [None] * 4 if run is None else [run.id, run.kind, run.state, _text(run.given)]
             row = [
-                *(result.card, one.seed, prediction, *(getattr(score, name) for name in SCORES)),
+                *(result.card, entry.seed, prediction, *(getattr(score, name) for name in SCORES)),
                 *(*of_run, outcome.distance_m, " ".join(outcome.winners)),
             ]
             writer.writerow([text_cell(cell) if isinstance(cell, str) else cell for cell in row])
@@ -167,14 +167,14 @@ def _text(given: dict[str, Any]) -> str:
 
 
 def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> CardResults:
-    found = {seed: _newest(room, store, seed, card) for seed in sorted(room.participants)}
-    runs = {seed: run for seed, run in found.items() if run is not None}
+    newest = {seed: _newest(room, store, seed, card) for seed in sorted(room.participants)}
+    runs = {seed: run for seed, run in newest.items() if run is not None}
     ended = {seed: run.outcome for seed, run in runs.items() if run.state == "finished"}
     seen = [outcome for seed, outcome in ended.items() if reader.sees(room, seed)]
-    ranked = sorted(one.distance_m for one in seen if one.distance_m is not None)
+    ranked = sorted(outcome.distance_m for outcome in seen if outcome.distance_m is not None)
     is_open = reader.is_teacher or card in room.revealed
-    asked = room.lesson.cards[card]
-    score = asked.ask and scorer(asked.ask, asked.revealed.answer, seen)
+    shown = room.lesson.cards[card]
+    score = shown.ask and scorer(shown.ask, shown.revealed.answer, seen)
     entries = []
     for seed, participant in sorted(room.participants.items()):
         is_own = seed == reader.seed
@@ -184,22 +184,22 @@ def _card_results(room: Room, store: RunStore, card: int, reader: Reader) -> Car
         name = participant.name if is_named else room.name_for_others(seed)
         prediction, run = room.predictions.get((seed, card)), runs.get(seed)
         if run is not None and is_open and run.outcome.distance_m is not None:
-            over = sum(one > run.outcome.distance_m for one in ranked)
+            over = sum(distance_m > run.outcome.distance_m for distance_m in ranked)
             run = run._replace(rank=1 + over)
         scored = score(prediction) if score and prediction is not None and is_open else None
         entries.append(Entry(seed, name, is_own, prediction, scored, run))
     return CardResults(
         card=card,
-        title=asked.title or "",
-        ask=asked.ask,
+        title=shown.title or "",
+        ask=shown.ask,
         is_revealed=card in room.revealed,
         participants=len(room.participants),
-        predicted=sum(one == card for _, one in room.predictions),
+        predicted=sum(number == card for _, number in room.predictions),
         finished=len(ended),
         entries=entries,
         distances_m=ranked if is_open else [],
         interval=_interval(ranked) if is_open and ranked else None,
-        answer=asked.revealed.answer if is_open else None,
+        answer=shown.revealed.answer if is_open else None,
     )
 
 
@@ -216,8 +216,8 @@ def _newest(room: Room, store: RunStore, seed: int, card: int) -> RunResult | No
     One that has finished goes before one that has not.
     """
     newest: RunResult | None = None
-    for one in room.runs_of(seed, card):
-        result = _result(room, one, store)
+    for room_run in room.runs_of(seed, card):
+        result = _result(room, room_run, store)
         if result is not None and (
             newest is None or newest.state != "finished" or result.state == "finished"
         ):
@@ -225,24 +225,29 @@ def _newest(room: Room, store: RunStore, seed: int, card: int) -> RunResult | No
     return newest
 
 
-def _result(room: Room, one: RoomRun, store: RunStore) -> RunResult | None:
-    known: RunResult | None = room.finished.get(one.run_id)
-    if known is not None:
-        return known  # a run that has finished changes no more, and a class asks again and again
-    if one.answer is not None:
-        outcome = WalkOutcome(one.answer["chosen"]["iqm_m"])
+def _result(room: Room, room_run: RoomRun, store: RunStore) -> RunResult | None:
+    finished: RunResult | None = room.finished.get(room_run.run_id)
+    if finished is not None:
+        return finished  # a run that has finished changes no more, and a class asks again and again
+    if room_run.answer is not None:
+        outcome = WalkOutcome(room_run.answer["chosen"]["iqm_m"])
         return RunResult(
-            one.run_id, "what-if", "finished", dict(one.given), outcome, answer=one.answer
+            room_run.run_id,
+            "what-if",
+            "finished",
+            dict(room_run.given),
+            outcome,
+            answer=room_run.answer,
         )
     try:
-        run = store.find(one.run_id)
+        run = store.find(room_run.run_id)
     except NotFound:
         return None  # deleted, or never stored
     if not isinstance(run, Run):
         return None
-    result = RunResult(run.id, run.kind, run.state, dict(one.given), _outcome(run, store))
+    result = RunResult(run.id, run.kind, run.state, dict(room_run.given), _outcome(run, store))
     if run.state == "finished":
-        room.finished[one.run_id] = result
+        room.finished[room_run.run_id] = result
     return result
 
 
@@ -252,7 +257,9 @@ def _outcome(run: Run, store: RunStore) -> WalkOutcome:
             curve = [(row["step"], row["distance_m"]) for row in store.curves.get(run.id)]
             return WalkOutcome(distance_m, curve=[(x, y) for x, y in curve if is_finite(y)])
         case RaceResult(lanes=lanes):
-            learner = next((n for n, one in enumerate(run.lane_training_ids) if one), 0)
+            learner = next(
+                (n for n, training_id in enumerate(run.lane_training_ids) if training_id), 0
+            )
             figures = [lane.clocks.paper for lane in lanes]
             winners = [lane.agent for lane in lanes if lane.clocks.paper.rank == 1]
             return WalkOutcome(figures[learner].finished_distance_m, tuple(dict.fromkeys(winners)))

@@ -69,7 +69,11 @@ class Room:
     def present(self) -> list[ParticipantRow]:
         """The participants who have not left, by seed."""
         # Copied first, as others may join meanwhile.
-        return [one for _, one in sorted({**self.participants}.items()) if one.left_at is None]
+        return [
+            participant
+            for _, participant in sorted({**self.participants}.items())
+            if participant.left_at is None
+        ]
 
     @property
     def phase(self) -> Phase:
@@ -82,7 +86,7 @@ class Room:
     def state(self) -> dict[str, Any]:
         """State that all in the room may know, in plain types, as its `room` event has it."""
         runs = list(self.runs.values())
-        started = {one.seed for one in runs if one.is_main and one.card == self.card}
+        started = {run.seed for run in runs if run.is_main and run.card == self.card}
         return {
             "code": self.code,
             "title": self.lesson.title,
@@ -160,7 +164,7 @@ class Room:
 
     def has_acted(self, seed: int) -> bool:
         """Whether a participant has answered or started anything, on any card."""
-        answered = any(one == seed for one, _ in list(self.predictions))
+        answered = any(participant_seed == seed for participant_seed, _ in list(self.predictions))
         return answered or any(run.seed == seed for run in list(self.runs.values()))
 
     def participant(self, seed: int) -> ParticipantRow:
@@ -176,9 +180,9 @@ class Room:
     def runs_of(self, seed: int, card: int) -> list[RoomRun]:
         """Return what a participant started on a card, oldest first."""
         return [
-            one
-            for one in list(self.runs.values())
-            if one.is_main and (one.seed, one.card) == (seed, card)
+            run
+            for run in list(self.runs.values())
+            if run.is_main and (run.seed, run.card) == (seed, card)
         ]
 
     def has_shown(self, card: int) -> bool:
@@ -191,8 +195,10 @@ class Room:
 
     def name_for_others(self, seed: int) -> str | None:
         """Return the name of a participant as others see it; None if it is hidden."""
-        one = self.participants[seed]
-        return None if one.is_name_hidden or not one.is_approved else one.name
+        participant = self.participants[seed]
+        return (
+            None if participant.is_name_hidden or not participant.is_approved else participant.name
+        )
 
 
 def given_key(given: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:

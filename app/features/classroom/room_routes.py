@@ -413,9 +413,9 @@ def get_results(
         cards = [number for number in cards if room.has_shown(number)]
         if card is not None and not cards:
             raise Forbidden(f"card {card} was not shown yet; the class is at card {room.card}")
-    own = dict(reader or ()).get(room.code)
-    who = Reader(own, is_teacher=reader is None, is_projector=projector)
-    results = results_of(room, services.store, cards, who)
+    seat = dict(reader or ()).get(room.code)
+    reader_ = Reader(seat, is_teacher=reader is None, is_projector=projector)
+    results = results_of(room, services.store, cards, reader_)
     if negotiated(request, format, ("json", "csv")) == "csv":
         return attachment(
             as_csv(results).encode(), f"{MEDIA_TYPE}; charset=utf-8", f"{room.code}.csv"

@@ -142,7 +142,7 @@ class RoomRows:
         query = select(RUNS.c.id).where(RUNS.c.id.in_(select(ROOM_RUNS.c.run_id)))
         stored = self._database.read(lambda connection: set(connection.scalars(query)))
         linked = self._read(ROOM_RUNS, RoomRun, decode, *order)
-        return [one for one in linked if one.answer is not None or one.run_id in stored]
+        return [run for run in linked if run.answer is not None or run.run_id in stored]
 
     def run_ids(self) -> set[str]:
         """Return the ids of all runs of rooms, also of those whose rows are damaged."""
@@ -233,12 +233,12 @@ def is_seen_by(reader: Sequence[Seat]) -> ColumnElement[bool]:
     Args:
         reader: the participants that the reader is.
     """
-    own: list[ColumnElement[bool]] = [
+    own_runs: list[ColumnElement[bool]] = [
         and_(ROOM_RUNS.c.room == room, ROOM_RUNS.c.seed == seed) for room, seed in reader
     ]
     # A value that is neither true nor false hides.
     hidden = and_(ROOM_RUNS.c.run_id == RUNS.c.id, ROOM_RUNS.c.is_shown.is_not(True))
-    return not_(exists().where(and_(hidden, not_(or_(*own))) if own else hidden))
+    return not_(exists().where(and_(hidden, not_(or_(*own_runs))) if own_runs else hidden))
 
 
 def _show(connection: Connection, run_ids: Collection[str]) -> None:

@@ -68,8 +68,8 @@ class RoomRuns:
         runs = [run for run in room.runs.values() if run.seed == seed]
         for run in runs:
             del room.runs[run.run_id]
-        found = [self._find(run) for run in reversed(runs)]
-        return [run.id for run in found if run is not None and run.state in NOT_ENDED]
+        stored = [self._find(run) for run in reversed(runs)]
+        return [run.id for run in stored if run is not None and run.state in NOT_ENDED]
 
     def owner_of(self, run_id: str) -> str | None:
         """Return the participant who waits for a run, as a text; None if there is none."""
@@ -90,14 +90,14 @@ class RoomRuns:
 
     def note_shown(self, room: Room, runs: Iterable[RoomRun]) -> None:
         """Show runs of a room to others; the database has been told before."""
-        for one in runs:
-            self._runs[one.run_id] = room.runs[one.run_id] = one._replace(is_shown=True)
+        for run in runs:
+            self._runs[run.run_id] = room.runs[run.run_id] = run._replace(is_shown=True)
 
     def interrupted(self, room: Room) -> list[str]:
         """Return the ids of the runs of a room that were asked for, and are interrupted."""
-        mains = [one for one in room.runs.values() if one.is_main]
-        found = [(one.run_id, self._find(one)) for one in mains]
-        return [run_id for run_id, run in found if run is not None and run.state == "interrupted"]
+        mains = [main for main in room.runs.values() if main.is_main]
+        stored = [(main.run_id, self._find(main)) for main in mains]
+        return [run_id for run_id, run in stored if run is not None and run.state == "interrupted"]
 
     def start(
         self,
@@ -113,8 +113,8 @@ class RoomRuns:
             Conflict: if a run of the participant has not ended.
             Busy: if there were too many.
         """
-        for one in _alike(room, seed, room.card, given):
-            run = self._find(one)
+        for alike in _alike(room, seed, room.card, given):
+            run = self._find(alike)
             if run is not None and run.state not in _FAILED:
                 return run
         self._check_none_goes_on(room, seed)
@@ -134,9 +134,9 @@ class RoomRuns:
         Raises:
             Busy: if it was not, and too much was started on the card.
         """
-        for one in _alike(room, seed, card, given):
-            if one.answer is not None:
-                return one.answer
+        for alike in _alike(room, seed, card, given):
+            if alike.answer is not None:
+                return alike.answer
         _check_few(room, seed, card)
         return None
 
@@ -185,28 +185,28 @@ class RoomRuns:
 
     def _keep(self, room: Room, links: Sequence[RoomRun]) -> None:
         self._rows.add_runs(links)
-        for one in links:
-            self._runs[one.run_id] = room.runs[one.run_id] = one
+        for link in links:
+            self._runs[link.run_id] = room.runs[link.run_id] = link
 
     def _unlink(self, room: Room, run_ids: Collection[str]) -> None:
         if run_ids:
             with suppress(HexapodError):  # a link to no run has no effect
                 self._rows.remove_runs(run_ids)
-        for one in run_ids:
-            self._runs.pop(one, None)
-            room.runs.pop(one, None)
+        for run_id in run_ids:
+            self._runs.pop(run_id, None)
+            room.runs.pop(run_id, None)
 
     def _check_none_goes_on(self, room: Room, seed: int) -> None:
-        for one in room.runs.values():
-            run = self._find(one) if one.is_main and one.seed == seed else None
+        for room_run in room.runs.values():
+            run = self._find(room_run) if room_run.is_main and room_run.seed == seed else None
             if run is not None and run.state in NOT_ENDED:
                 raise Conflict(f"your {run.kind} is {run.state}; wait for its end", run.state)
 
-    def _find(self, one: RoomRun) -> Run | None:
-        if one.answer is not None:
+    def _find(self, room_run: RoomRun) -> Run | None:
+        if room_run.answer is not None:
             return None
         try:
-            run = self._store.find(one.run_id)
+            run = self._store.find(room_run.run_id)
         except NotFound:
             return None
         return run if isinstance(run, Run) else None
@@ -233,7 +233,7 @@ def _sound(run: RoomRun, rooms: Mapping[str, Room]) -> RoomRun:
 def _alike(room: Room, seed: int, card: int, given: Mapping[str, Any]) -> list[RoomRun]:
     """Return what a participant started on a card with the same settings."""
     key = given_key(given)
-    return [one for one in room.runs_of(seed, card) if given_key(one.given) == key]
+    return [run for run in room.runs_of(seed, card) if given_key(run.given) == key]
 
 
 def _check_few(room: Room, seed: int, card: int) -> None:

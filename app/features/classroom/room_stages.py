@@ -45,7 +45,7 @@ class RoomStages:
 
     async def close_all(self) -> None:
         """Close the stages of all rooms."""
-        for shared in [one for one in self._stages if one.path.startswith(f"{PAGES}/")]:
+        for shared in [stage for stage in self._stages if stage.path.startswith(f"{PAGES}/")]:
             await self.close(shared.path.removeprefix(f"{PAGES}/"))
 
     async def close(self, code: str) -> None:
@@ -59,7 +59,7 @@ class RoomStages:
     def of(self, code: str) -> SharedStage | None:
         """Return the stage of a room; None if it is not open."""
         path = path_of_room(code)
-        return next((one for one in list(self._stages) if one.path == path), None)
+        return next((stage for stage in list(self._stages) if stage.path == path), None)
 
 
 def path_of_room(code: str) -> str:

@@ -56,7 +56,7 @@ def room_view(request: Request, services: Services, room: Room, seed: int | None
 
 def results_view(room: Room, results: Sequence[CardResults]) -> dict[str, Any]:
     """Return results as JSON."""
-    return {"code": room.code, "cards": [_card(one) for one in results]}
+    return {"code": room.code, "cards": [_card(card) for card in results]}
 
 
 def _me(room: Room, seed: int) -> dict[str, Any]:
@@ -65,20 +65,22 @@ def _me(room: Room, seed: int) -> dict[str, Any]:
         "seed": seed,
         "predictions": [
             {"card": card, "value": value}
-            for (one, card), value in sorted(room.predictions.items(), key=lambda item: item[0])
-            if one == seed
+            for (participant, card), value in sorted(
+                room.predictions.items(), key=lambda item: item[0]
+            )
+            if participant == seed
         ],
         "runs": [
-            {"run_id": one.run_id, "card": one.card}
-            for one in room.runs.values()
-            if one.is_main and one.seed == seed and one.answer is None
+            {"run_id": run.run_id, "card": run.card}
+            for run in room.runs.values()
+            if run.is_main and run.seed == seed and run.answer is None
         ],
     }
 
 
 def _people(room: Room, store: RunStore) -> list[dict[str, Any]]:
     people = []
-    for seed, one in sorted(room.participants.items()):
+    for seed, participant in sorted(room.participants.items()):
         newest = next(iter(reversed(room.runs_of(seed, room.card))), None)
         run, is_answered = None, newest is not None and newest.answer is not None
         if newest is not None and not is_answered:
@@ -89,11 +91,11 @@ def _people(room: Room, store: RunStore) -> list[dict[str, Any]]:
         people.append(
             {
                 "seed": seed,
-                "name": one.name,
-                "is_present": one.left_at is None,
-                "is_name_hidden": one.is_name_hidden,
-                "is_approved": one.is_approved,
-                "joined_at": one.joined_at.isoformat(),
+                "name": participant.name,
+                "is_present": participant.left_at is None,
+                "is_name_hidden": participant.is_name_hidden,
+                "is_approved": participant.is_approved,
+                "joined_at": participant.joined_at.isoformat(),
                 "has_predicted": (seed, room.card) in room.predictions,
                 "run_id": None if run is None else run.id,
                 "run_state": "finished" if is_answered else None if run is None else run.state,
@@ -102,27 +104,27 @@ def _people(room: Room, store: RunStore) -> list[dict[str, Any]]:
     return people
 
 
-def _card(one: CardResults) -> dict[str, Any]:
-    interval = one.interval
+def _card(results: CardResults) -> dict[str, Any]:
+    interval = results.interval
     return {
-        "card": one.card,
-        "title": one.title,
-        "ask": None if one.ask is None else to_json(one.ask),
-        "is_revealed": one.is_revealed,
-        "participants": one.participants,
-        "predicted": one.predicted,
-        "finished": one.finished,
-        "entries": [_entry(entry) for entry in one.entries],
-        "distances_m": one.distances_m,
+        "card": results.card,
+        "title": results.title,
+        "ask": None if results.ask is None else to_json(results.ask),
+        "is_revealed": results.is_revealed,
+        "participants": results.participants,
+        "predicted": results.predicted,
+        "finished": results.finished,
+        "entries": [_entry(entry) for entry in results.entries],
+        "distances_m": results.distances_m,
         "interval": None if interval is None else interval.as_json("iqm", "_m"),
-        "answer": one.answer,
+        "answer": results.answer,
     }
 
 
-def _entry(one: Entry) -> dict[str, Any]:
-    run, score = one.run, one.score
-    shown = {**one._asdict(), "score": None if score is None else to_json(score)}
-    return {**shown, "run": None if run is None else _run(run, is_own=one.is_own)}
+def _entry(entry: Entry) -> dict[str, Any]:
+    run, score = entry.run, entry.score
+    shown = {**entry._asdict(), "score": None if score is None else to_json(score)}
+    return {**shown, "run": None if run is None else _run(run, is_own=entry.is_own)}
 
 
 def _run(run: RunResult, *, is_own: bool) -> dict[str, Any]:

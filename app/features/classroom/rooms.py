@@ -241,12 +241,14 @@ class Rooms:
             room = self.get(code)
             room.check_card(number)
             room.check_open()
-            approved = {seed for seed, one in room.participants.items() if one.is_approved}
+            approved = {
+                seed for seed, participant in room.participants.items() if participant.is_approved
+            }
             runs = [r for r in room.runs.values() if r.card == number and r.seed in approved]
             self._rows.change_room(
                 room.code,
                 {"revealed": sorted(room.revealed | {number})},
-                [one.run_id for one in runs],
+                [run.run_id for run in runs],
             )
             room.revealed |= {number}
             self._runs.note_shown(room, runs)
@@ -271,7 +273,7 @@ class Rooms:
                 participant = room.participants[runs[0].seed]
                 if not participant.is_approved:
                     raise Conflict(f"{participant.name} is not approved yet; approve first", "open")
-            self._rows.change_room(room.code, {"spotlight": run_id}, [one.run_id for one in runs])
+            self._rows.change_room(room.code, {"spotlight": run_id}, [run.run_id for run in runs])
             room.spotlight = run_id
             self._runs.note_shown(room, runs)
         self._changed(room)
@@ -286,15 +288,15 @@ class Rooms:
             NotFound: if there is no such room or participant.
             Conflict: if the room has ended.
         """
-        given: dict[str, Any] = {"is_name_hidden": is_name_hidden, "is_approved": is_approved}
-        changes = {name: value for name, value in given.items() if value is not None}
+        flags: dict[str, Any] = {"is_name_hidden": is_name_hidden, "is_approved": is_approved}
+        changes = {name: value for name, value in flags.items() if value is not None}
         with self._lock:
             room = self.get(code)
             room.check_open()
             participant = room.participant(seed)._replace(**changes)
-            own = [one for one in room.runs.values() if one.seed == seed]
-            runs = [r for r in own if is_approved and r.card in room.revealed]
-            self._rows.change_participant(room.code, seed, changes, [one.run_id for one in runs])
+            participant_runs = [run for run in room.runs.values() if run.seed == seed]
+            runs = [r for r in participant_runs if is_approved and r.card in room.revealed]
+            self._rows.change_participant(room.code, seed, changes, [run.run_id for run in runs])
             room.participants[seed] = participant
             self._runs.note_shown(room, runs)
         self._changed(room)
@@ -424,10 +426,10 @@ class Rooms:
 
     def _seated(self, room: Room, key: str, request_key: str | None) -> Joined | None:
         requested = "" if request_key is None else key_of(room.code, request_key)
-        for known in (key, requested):
-            seat = self._seats.of(room, known)
+        for seat_key in (key, requested):
+            seat = self._seats.of(room, seat_key)
             if seat is not None:
-                return Joined(seat, known, is_new=False)
+                return Joined(seat, seat_key, is_new=False)
         return None
 
     def leave(self, code: str, seed: int) -> None:
@@ -554,17 +556,17 @@ class Rooms:
             Busy: if there were too many.
         """
         with self._lock:
-            known = self._runs.answer_of(self.check_run(code, card), seed, card, given)
-        if known is not None:
-            return known
+            stored_answer = self._runs.answer_of(self.check_run(code, card), seed, card, given)
+        if stored_answer is not None:
+            return stored_answer
         answer = compute()
         with self._lock:
             # It was asked while the card was shown, so it is kept whatever is shown now.
             room = self.get(code)
             room.check_seated(seed)
-            known = self._runs.answer_of(room, seed, card, given)
-            if known is not None:
-                return known
+            stored_answer = self._runs.answer_of(room, seed, card, given)
+            if stored_answer is not None:
+                return stored_answer
             self._runs.keep_answer(room, seed, card, given, answer=answer, now=self._now())
         self._changed(room)
         return answer
@@ -576,7 +578,7 @@ class Rooms:
 
         None if none teaches it, whatever its id there. What is revealed is for nobody meanwhile.
         """
-        return min((one.card for one in self.open_rooms() if one.lesson == lesson), default=None)
+        return min((room.card for room in self.open_rooms() if room.lesson == lesson), default=None)
 
     def owner_of(self, run_id: str) -> str | None:
         """Return who waits for a run, as a text; None if it is no participant of a room."""
@@ -594,7 +596,7 @@ class Rooms:
     def unfinished(self) -> list[str]:
         """Return the ids of interrupted runs of open rooms, which were asked for."""
         with self._lock:
-            return [one for room in self.open_rooms() for one in self._runs.interrupted(room)]
+            return [run_id for room in self.open_rooms() for run_id in self._runs.interrupted(room)]
 
 
 def _check_shown(room: Room, card: int | None) -> None:
@@ -613,7 +615,7 @@ def _room(row: RoomRow) -> Room:
     if row.code != normalized(row.code) or not (row.code.isascii() and row.code.isalnum()):
         raise ValueError("code: it is no code")
     revealed: Any = row.revealed
-    if not isinstance(revealed, list) or not all(type(one) is int for one in revealed):
+    if not isinstance(revealed, list) or not all(type(number) is int for number in revealed):
         raise ValueError("revealed: it is no list of numbers")
     lesson = read_lesson(row.lesson)
     card = min(max(row.card, 0), len(lesson.cards) - 1)

@@ -50,8 +50,8 @@ class Seats:
 
     def forget(self, room: Room) -> None:
         """Forget the seats of a room that is deleted."""
-        for one in room.participants.values():
-            self._seats.pop(one.key_sha256, None)
+        for participant in room.participants.values():
+            self._seats.pop(participant.key_sha256, None)
 
     def remove(self, room: Room, seed: int) -> None:
         """Take the seat of a participant, of whom nothing is left in the room but runs."""
@@ -106,7 +106,7 @@ def new_participant(room: Room, choose: Choose, now: datetime, key: str) -> Join
     row = ParticipantRow(
         room=room.code,
         seed=room.next_seed,
-        name=new_name(choose, {one.name for one in room.participants.values()}),
+        name=new_name(choose, {participant.name for participant in room.participants.values()}),
         key_sha256=_sha256(key),
         is_name_hidden=False,
         is_approved=not room.needs_approval,

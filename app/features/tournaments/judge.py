@@ -263,15 +263,15 @@ def in_turn(tournament: Tournament) -> Sequence[TournamentEntry]:
     of an entrant the oldest.
     """
     judged: dict[Any, int] = {}
-    for one in tournament.judged:
-        judged[one.entrant] = judged.get(one.entrant, 0) + 1
+    for entry in tournament.judged:
+        judged[entry.entrant] = judged.get(entry.entrant, 0) + 1
     return sorted(
         tournament.waiting,
-        key=lambda one: (
-            not one.is_reference,
-            not one.judgements,
-            judged.get(one.entrant, 0),
-            one.number,
+        key=lambda entry: (
+            not entry.is_reference,
+            not entry.judgements,
+            judged.get(entry.entrant, 0),
+            entry.number,
         ),
     )
 
@@ -306,8 +306,8 @@ def outcome_of(
     """
     rules, secret, judged = ended
     entries = [
-        JudgedEntry(number=number, name="", entry=EntryConfig(agent=""), judgements=one)
-        for number, one in judged.items()
+        JudgedEntry(number=number, name="", entry=EntryConfig(agent=""), judgements=judgements)
+        for number, judgements in judged.items()
     ]
     plain = to_json(tournament_file("", rules, secret, entries))
     return {name: plain[name] for name in OUTCOME}

@@ -45,8 +45,8 @@ def tournament_fields() -> dict[str, DeclaredSetting]:
     """Return the numbers of a new tournament beside those of its walking problem."""
     of_walk = declared_fields(WalkingProblem)
     of_rules = declared_fields(TournamentRules)
-    own = {name: setting for name, setting in of_rules.items() if name not in of_walk}
-    return own | {_ENTRIES_PER_HOUR.name: _ENTRIES_PER_HOUR}
+    fields_of_rules = {name: setting for name, setting in of_rules.items() if name not in of_walk}
+    return fields_of_rules | {_ENTRIES_PER_HOUR.name: _ENTRIES_PER_HOUR}
 
 
 class RulesBody(Body):
@@ -67,19 +67,19 @@ class RulesBody(Body):
         Raises:
             UnknownName, InvalidInput: if the values are not valid together.
         """
-        given: dict[str, Any] = {name: getattr(self, name) for name in type(self).model_fields}
+        values: dict[str, Any] = {name: getattr(self, name) for name in type(self).model_fields}
         worlds, robots = tuple(self.worlds), tuple(self.robots)
         try:
-            return TournamentRules(**{**given, "worlds": worlds, "robots": robots})
+            return TournamentRules(**{**values, "worlds": worlds, "robots": robots})
         except InvalidInput as error:
             error.field = f"rules.{error.field}" if error.field else ""
             raise
 
 
 # Robots walk in the gaits that suit them.
-_own = record_fields(TournamentRules, {"world", "gaits", *RulesBody.model_fields})
+_rule_fields = record_fields(TournamentRules, {"world", "gaits", *RulesBody.model_fields})
 _Rules: Any = create_model(
-    "TournamentRulesBody", __base__=RulesBody, __doc__=RulesBody.__doc__, **_own
+    "TournamentRulesBody", __base__=RulesBody, __doc__=RulesBody.__doc__, **_rule_fields
 )
 
 
@@ -125,12 +125,12 @@ class EntryBody(Body):
         Raises:
             InvalidInput: if something is.
         """
-        given = {
+        values = {
             "settings": given_settings(self.settings),
             "steps": self.steps,
             "observation": self.observation,
         }
-        for name, value in given.items():
+        for name, value in values.items():
             if value:
                 raise InvalidInput(
                     f"{name} of a table are those of its training; leave {name} out", field=name

@@ -78,9 +78,9 @@ def list_tournaments(services: ServicesDep, reader: ReaderDep) -> Response:
     """Return all to operators; to others those without a room, and those of their rooms."""
     codes = {None, *dict(reader or ())}
     items = [
-        listed_tournament(one)
-        for one in reversed(services.of(Tournaments).all())
-        if reader is None or one.room in codes
+        listed_tournament(tournament)
+        for tournament in reversed(services.of(Tournaments).all())
+        if reader is None or tournament.room in codes
     ]
     return JSONResponse({"items": items})
 

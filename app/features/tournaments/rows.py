@@ -132,7 +132,7 @@ class TournamentRows:
         def work(connection: Connection) -> None:
             check(connection)
             put_rows(connection, TOURNAMENTS, [row._asdict()])
-            put_rows(connection, TOURNAMENT_ENTRIES, [one._asdict() for one in entries])
+            put_rows(connection, TOURNAMENT_ENTRIES, [entry._asdict() for entry in entries])
 
         self._database.write(work)
 

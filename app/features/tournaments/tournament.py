@@ -82,7 +82,7 @@ class TournamentEntry:
 
     def in_order(self) -> tuple[Judgement, ...]:
         """Return its judgements in the order of the draws."""
-        return tuple(one for _, one in sorted({**self.judgements}.items()))
+        return tuple(judgement for _, judgement in sorted({**self.judgements}.items()))
 
 
 @dataclass
@@ -136,29 +136,29 @@ class Tournament:
     @property
     def progress(self) -> dict[str, Any]:
         """What all may know of it, in plain types, as its event has it."""
-        counted = [one for one in self.listed if not one.is_withdrawn]
+        counted = [entry for entry in self.listed if not entry.is_withdrawn]
         return {
             "id": self.id,
             "state": self.state,
             "entries": self.entered,
-            "judged": sum(len(one.judgements) for one in counted),
+            "judged": sum(len(entry.judgements) for entry in counted),
             "of": len(counted) * self.rules.draws,
         }
 
     @property
     def entered(self) -> int:
         """Number of its entries without the references."""
-        return sum(not one.is_reference for one in self.listed)
+        return sum(not entry.is_reference for entry in self.listed)
 
     @property
     def judged(self) -> list[TournamentEntry]:
         """The entries that are judged on all draws, by number."""
-        return [one for one in self.listed if self.is_judged(one)]
+        return [entry for entry in self.listed if self.is_judged(entry)]
 
     @property
     def waiting(self) -> list[TournamentEntry]:
         """The entries that are not judged on all draws yet, by number."""
-        return [one for one in self.listed if not (one.is_withdrawn or self.is_judged(one))]
+        return [entry for entry in self.listed if not (entry.is_withdrawn or self.is_judged(entry))]
 
     def is_judged(self, entry: TournamentEntry) -> bool:
         """Whether an entry is judged on all draws."""
@@ -174,7 +174,9 @@ class Tournament:
 
     def of_entrant(self, entrant: Entrant) -> list[TournamentEntry]:
         """Return the entries of an entrant, oldest first."""
-        return [one for one in self.listed if not one.is_reference and one.entrant == entrant]
+        return [
+            entry for entry in self.listed if not entry.is_reference and entry.entrant == entrant
+        ]
 
     def equal_entry(self, entrant: Entrant, entry: EntryConfig) -> TournamentEntry | None:
         """Return the entry of an entrant that is judged alike; None if there is none.
@@ -184,8 +186,10 @@ class Tournament:
             entry: as `completed` returns it.
         """
         wanted = self._written_out(entry)
-        own = self.of_entrant(entrant)
-        return next((one for one in own if self._written_out(one.entry) == wanted), None)
+        entries = self.of_entrant(entrant)
+        return next(
+            (stored for stored in entries if self._written_out(stored.entry) == wanted), None
+        )
 
     def _written_out(self, entry: EntryConfig) -> EntryConfig:
         robot = self.rules.robot if entry.robot is None else entry.robot
@@ -203,8 +207,8 @@ class Tournament:
             the number, and the time if it is 0, else None.
         """
         # One in the future is of before the clock was set back.
-        within = (one.entered_at for one in self.of_entrant(entrant))
-        recent = sorted(one for one in within if now - HOUR < one <= now)
+        within = (entry.entered_at for entry in self.of_entrant(entrant))
+        recent = sorted(time for time in within if now - HOUR < time <= now)
         left = max(0, self.entries_per_hour - len(recent))
         return left, None if left else recent[-self.entries_per_hour] + HOUR
 

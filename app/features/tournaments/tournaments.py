@@ -66,7 +66,7 @@ class Tournaments:
         *,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
         new_secret: Callable[[], str] = lambda: secrets.token_hex(32),
-        on_changed: Callable[[Tournament, bool], object] = lambda one, is_deleted: None,  # noqa: ARG005
+        on_changed: Callable[[Tournament, bool], object] = lambda tournament, is_deleted: None,  # noqa: ARG005
     ) -> None:
         """Load the tournaments.
 
@@ -89,7 +89,7 @@ class Tournaments:
 
     def _load(self) -> None:
         loaded = self._rows.tournaments(_tournament)
-        self._tournaments = {one.id: one for one in loaded}
+        self._tournaments = {tournament.id: tournament for tournament in loaded}
         for tournament_id, number in self._rows.numbers():
             tournament = self._tournaments.get(tournament_id)
             if tournament is not None and 0 <= number < MAX_NUMBER:
@@ -114,12 +114,14 @@ class Tournaments:
 
     def of_room(self, code: str) -> list[Tournament]:
         """Return the tournaments of a room, oldest first."""
-        return [one for one in self.all() if one.room == code]
+        return [tournament for tournament in self.all() if tournament.room == code]
 
     def has_entered(self, seat: tuple[str, int]) -> bool:
         """Whether a participant of a room has entered a tournament of it."""
         room, seed = seat
-        entries = (entry for one in self.of_room(room) for entry in {**one.entries}.values())
+        entries = (
+            entry for tournament in self.of_room(room) for entry in {**tournament.entries}.values()
+        )
         return any(not entry.is_reference and entry.entrant.seed == seed for entry in entries)
 
     def delete_left_behind(self, time: datetime, codes: Collection[str]) -> None:
@@ -143,15 +145,15 @@ class Tournaments:
         Raises:
             NotFound: if there is none.
         """
-        found = self._tournaments.get(tournament_id)
-        if found is None:
+        tournament = self._tournaments.get(tournament_id)
+        if tournament is None:
             raise NotFound(f"there is no tournament {tournament_id[:40]!r} (any more)")
-        return found
+        return tournament
 
     def room_of(self, tournament_id: str) -> str | None:
         """Return the code of a tournament's room; None without one, or if there is no such one."""
-        found = self._tournaments.get(tournament_id)
-        return None if found is None else found.room
+        tournament = self._tournaments.get(tournament_id)
+        return None if tournament is None else tournament.room
 
     def create(
         self, rules: TournamentRules, title: str, room: str | None, entries_per_hour: int
@@ -173,7 +175,10 @@ class Tournaments:
         entries, robots = references(rules), (rules.robot, *rules.robots)
         self._check_robots(robots)
         with self.changed:
-            if sum(one.state != "ended" for one in self._tournaments.values()) >= MAX_OPEN:
+            if (
+                sum(tournament_.state != "ended" for tournament_ in self._tournaments.values())
+                >= MAX_OPEN
+            ):
                 raise Busy(
                     f"{MAX_OPEN} tournaments have not ended, which is the most; end one", _RETRY_S
                 )
@@ -206,7 +211,7 @@ class Tournaments:
             ]
             self._rows.add(row, rows, lambda c: self._store.robots.check(c, robots))
             tournament = self._tournaments[row.id] = _tournament(row)
-            tournament.entries = {one.number: _entry(one) for one in rows}
+            tournament.entries = {row_.number: _entry(row_) for row_ in rows}
             tournament.next_number = len(rows)
             self.changed.notify_all()
         self._tell(tournament)
@@ -281,13 +286,13 @@ class Tournaments:
             tournament = self.get(tournament_id)
             if tournament.state == "ended":
                 return tournament
-            own = [one for one in tournament.waiting if not one.is_reference]
-            withdrawn = [one.number for one in own] if withdraw_waiting else []
+            waiting = [entry for entry in tournament.waiting if not entry.is_reference]
+            withdrawn = [entry.number for entry in waiting] if withdraw_waiting else []
             self._rows.end(tournament.id, withdrawn)
             tournament.state = "ending"
             for number in withdrawn:
-                one = tournament.entries[number]
-                tournament.entries[number] = replace(one, is_withdrawn=True)
+                entry = tournament.entries[number]
+                tournament.entries[number] = replace(entry, is_withdrawn=True)
             self.changed.notify_all()
         self._tell(tournament)
         return tournament
@@ -361,8 +366,8 @@ class Tournaments:
         self.on_changed(tournament, False)
 
     def _check_robots(self, robots: Sequence[Robot]) -> None:
-        stored = [one.id for one in robots if one.id is not None]
-        size = sum(len(self._store.robots.document(one)) for one in stored)
+        stored = [robot.id for robot in robots if robot.id is not None]
+        size = sum(len(self._store.robots.document(robot_id)) for robot_id in stored)
         if size > MAX_ROBOTS_BYTES:
             raise InvalidInput(
                 f"the stored robots of these rules have {size:,} bytes together; at most "
@@ -435,7 +440,7 @@ def _tournament(row: TournamentRow) -> Tournament:
 
 
 def _standings(outcome: Mapping[str, Any]) -> tuple[RankedEntry, ...]:
-    return tuple(from_json(RankedEntry, one) for one in outcome.get("standings", ()))
+    return tuple(from_json(RankedEntry, entry) for entry in outcome.get("standings", ()))
 
 
 def _entry(row: EntryRow) -> TournamentEntry:
