@@ -57,7 +57,7 @@ class Visitor:
             return problem(403, _NEEDS_OPERATOR)
         run_id = scope["path_params"].get("run_id")
         ids = list(_ids_in_query(scope)) if run_id is None else [run_id]
-        if ids and all(self._visitors.owns(self.cookie.value, one) for one in ids):
+        if ids and all(self._visitors.owns(self.cookie.value, run_id) for run_id in ids):
             return None
         return problem(403, _OF_OTHERS)
 

@@ -72,9 +72,10 @@ class Allowance:
             Forbidden: if it is none of a training or a race.
             InvalidInput: if it has too many steps.
         """
-        if others := [run.kind for run in runs if run.kind not in WALKS]:
+        if refused_kinds := [run.kind for run in runs if run.kind not in WALKS]:
             raise Forbidden(
-                f"visitors of this demo start trainings and races; {others[0]}s need the operator"
+                "visitors of this demo start trainings and races; "
+                f"{refused_kinds[0]}s need the operator"
             )
         steps, most = sum(run.total for run in runs), min(self.steps_per_start, self.steps_per_hour)
         if steps > most:

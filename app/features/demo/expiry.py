@@ -68,7 +68,7 @@ class Expiry:
         """
         before = self._now() - self._visitors.allowance.lifetime
         old = self._visitors.made_before(before)
-        self._visitors.forget(self._deleted(one.run_id for one in old))
+        self._visitors.forget(self._deleted(run.run_id for run in old))
         gone = [self._deleted_of(other, before) for other in self._others]
         try:
             self._store.keys.delete_expired()
@@ -84,12 +84,12 @@ class Expiry:
             NotFound: if there is no such visitor.
             Conflict: if a run is kept, as one of others waits for it.
         """
-        runs = sorted(self._visitors.runs_of(visitor_id), key=lambda one: one.is_main, reverse=True)
-        left = [one.run_id for one in runs]
+        runs = sorted(self._visitors.runs_of(visitor_id), key=lambda run: run.is_main, reverse=True)
+        left = [run.run_id for run in runs]
         for _ in range(_ATTEMPTS):
             gone = self._deleted(left)
             self._visitors.forget(gone)
-            left = [one for one in left if one not in gone]
+            left = [run_id for run_id in left if run_id not in gone]
             if not left:
                 return
             # A training that is stopped with its race has not ended yet.
@@ -126,14 +126,16 @@ class Expiry:
 
     def _stop_overlong(self) -> None:
         now_s, running = self._now_s(), self._visitors.running()
-        self._running_since_s = {one: self._running_since_s.get(one, now_s) for one in running}
+        self._running_since_s = {
+            run_id: self._running_since_s.get(run_id, now_s) for run_id in running
+        }
         longest_s = self._visitors.allowance.seconds_per_run
         for run_id, since_s in self._running_since_s.items():
             if now_s - since_s < longest_s:
                 continue
             try:
                 notes = self._jobs.stop(run_id).notes
-                told = _OVERLONG.format(seconds=longest_s)
-                self._jobs.annotate(run_id, {"notes": f"{notes}\n{told}".strip()})
+                note = _OVERLONG.format(seconds=longest_s)
+                self._jobs.annotate(run_id, {"notes": f"{notes}\n{note}".strip()})
             except (NotFound, Conflict):
                 pass  # it has ended meanwhile

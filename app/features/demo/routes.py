@@ -63,17 +63,19 @@ def list_visitors(services: ServicesDep, role: RoleDep) -> Response:
         raise Forbidden("the visitors of a demo are shown to its operators alone")
     items = []
     for visitor, runs in services.of(Visitors).by_visitor().items():
-        newest = max(one.created_at for one in runs)
+        newest = max(run.created_at for run in runs)
         items.append(
             {
                 "id": visitor,
-                "since": min(one.created_at for one in runs).isoformat(),
+                "since": min(run.created_at for run in runs).isoformat(),
                 "newest": newest.isoformat(),
-                "steps": sum(one.steps for one in runs if newest - one.created_at < HOUR),
-                "runs": [one.run_id for one in runs],
+                "steps": sum(run.steps for run in runs if newest - run.created_at < HOUR),
+                "runs": [run.run_id for run in runs],
             }
         )
-    return JSONResponse({"items": sorted(items, key=lambda one: str(one["newest"]), reverse=True)})
+    return JSONResponse(
+        {"items": sorted(items, key=lambda item: str(item["newest"]), reverse=True)}
+    )
 
 
 @router.delete("/visitors/{visitor_id}", status_code=204, summary="End a visitor of a demo")

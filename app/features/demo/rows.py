@@ -59,8 +59,11 @@ class VisitorRows:
         So each run is deleted in time: one that is left out here would stay for ever.
         """
         rows = read_rows(self._database, VISITOR_RUNS, _run, VISITOR_RUNS.c.run_id)
-        damaged = (one.values for one in rows.damaged if "run_id" in one.values)
-        return [*rows.sound, *(VisitorRun(**{**_IF_DAMAGED, **_checked(one)}) for one in damaged)]
+        damaged = (row.values for row in rows.damaged if "run_id" in row.values)
+        return [
+            *rows.sound,
+            *(VisitorRun(**{**_IF_DAMAGED, **_checked(values)}) for values in damaged),
+        ]
 
     def states(
         self, states: Collection[State] = STATES, *, visitor: str | None = None

@@ -82,8 +82,8 @@ class Visitors:
         self._lock = threading.RLock()
         self._runs: dict[str, VisitorRun] = {}
         self._by_visitor: defaultdict[str, dict[str, VisitorRun]] = defaultdict(dict)
-        for one in self._rows.all():
-            self._add(one)
+        for run in self._rows.all():
+            self._add(run)
         self._addresses: dict[str, str] = {}
         """By visitor, since the server started."""
         per_hour = allowance.steps_per_hour_of_address
@@ -99,16 +99,16 @@ class Visitors:
 
     def owner_of(self, run_id: str) -> Owner | None:
         """Return who waits for a run; None if it is no visitor."""
-        one = self._runs.get(run_id)
-        if one is None:
+        run = self._runs.get(run_id)
+        if run is None:
             return None
-        group = self._addresses.get(one.visitor, one.visitor)
-        return Owner(one.visitor, group, is_guest=True)
+        group = self._addresses.get(run.visitor, run.visitor)
+        return Owner(run.visitor, group, is_guest=True)
 
     def owns(self, key: str, run_id: str) -> bool:
         """Whether a run is of the visitor with a key; also if it was deleted."""
-        one = self._runs.get(run_id)
-        return bool(key) and one is not None and one.visitor == _sha256(key)
+        run = self._runs.get(run_id)
+        return bool(key) and run is not None and run.visitor == _sha256(key)
 
     def by_visitor(self) -> dict[str, list[VisitorRun]]:
         """Return the runs by visitor, by the beginning of its hash, oldest first."""
@@ -176,7 +176,9 @@ class Visitors:
             except BaseException:
                 self.forget(linked.links)
                 raise
-            self._of_address.charge(address, sum(self._runs[one].steps for one in linked.links))
+            self._of_address.charge(
+                address, sum(self._runs[linked_id].steps for linked_id in linked.links)
+            )
         return Started(run, key)
 
     def claim(self, key: str, request_key: str | None, run_id: str) -> str:
@@ -200,14 +202,14 @@ class Visitors:
                 return requested
             made_at, visitor = self._runs[run_id].created_at, _sha256(key)
             of_start = [
-                one
-                for one in self._by_visitor[_sha256(requested)].values()
-                if one.created_at == made_at
+                run
+                for run in self._by_visitor[_sha256(requested)].values()
+                if run.created_at == made_at
             ]
-            self._rows.give([one.run_id for one in of_start], visitor)
-            for one in of_start:
-                self._drop(one.run_id)
-                self._add(one._replace(visitor=visitor))
+            self._rows.give([run.run_id for run in of_start], visitor)
+            for run in of_start:
+                self._drop(run.run_id)
+                self._add(run._replace(visitor=visitor))
         return key
 
     def _link(self, visitor: str, address: str, runs: Sequence[Run]) -> None:
@@ -241,33 +243,35 @@ class Visitors:
         ]
         self._rows.add(links)
         self._addresses[visitor] = address
-        for one in links:
-            self._add(one)
+        for link in links:
+            self._add(link)
 
     def _use(self, visitor: str) -> Use:
         states = self._rows.states(visitor=visitor)
         runs = list(self._by_visitor.get(visitor, {}).values())
         since = self._now() - HOUR
-        kept = [one for one in runs if one.run_id in states]
+        stored = [run for run in runs if run.run_id in states]
         return Use(
-            steps=sum(one.steps for one in runs if one.created_at > since),
-            unended=sum(one.is_main and states[one.run_id] in NOT_ENDED for one in kept),
-            kept=tuple(one.run_id for one in kept),
-            oldest=min((one.created_at for one in kept), default=None),
+            steps=sum(run.steps for run in runs if run.created_at > since),
+            unended=sum(run.is_main and states[run.run_id] in NOT_ENDED for run in stored),
+            kept=tuple(run.run_id for run in stored),
+            oldest=min((run.created_at for run in stored), default=None),
         )
 
     def _unended_at(self, address: str) -> int:
         """Return how many starts of all visitors of an address wait or go on."""
-        unended = (self._runs[one] for one in self._rows.states(NOT_ENDED) if one in self._runs)
-        return sum(one.is_main and self._addresses.get(one.visitor) == address for one in unended)
+        unended = (
+            self._runs[run_id] for run_id in self._rows.states(NOT_ENDED) if run_id in self._runs
+        )
+        return sum(run.is_main and self._addresses.get(run.visitor) == address for run in unended)
 
     def _wait_s(self, visitor: str, cost: int) -> float:
         """Return the time until a visitor has so many steps left [s]."""
         now, since = self._now(), self._now() - HOUR
         counted = sorted(
-            (one.created_at, one.steps)
-            for one in self._by_visitor.get(visitor, {}).values()
-            if one.created_at > since
+            (run.created_at, run.steps)
+            for run in self._by_visitor.get(visitor, {}).values()
+            if run.created_at > since
         )
         used = sum(steps for _, steps in counted)
         for made_at, steps in counted:
@@ -282,9 +286,9 @@ class Visitors:
         """Return the ids of runs that were asked for, and that a crash has interrupted."""
         interrupted = self._rows.states(INTERRUPTED)
         return [
-            one.run_id
-            for one in list(self._runs.values())
-            if one.is_main and one.run_id in interrupted
+            run.run_id
+            for run in list(self._runs.values())
+            if run.is_main and run.run_id in interrupted
         ]
 
     def running(self) -> list[str]:
@@ -299,8 +303,8 @@ class Visitors:
         """
         latest = self._now() + _MAX_CLOCK_LEAD
         runs = list(self._runs.values())
-        found = [one for one in runs if one.created_at <= time or one.created_at > latest]
-        return sorted(found, key=lambda one: (one.created_at, one.is_main), reverse=True)
+        expired = [run for run in runs if run.created_at <= time or run.created_at > latest]
+        return sorted(expired, key=lambda run: (run.created_at, run.is_main), reverse=True)
 
     def forget(self, run_ids: Collection[str]) -> None:
         """Forget whose runs these are, and visitors of whom nothing else is known."""
@@ -312,18 +316,18 @@ class Visitors:
                 for run_id in run_ids:
                     self._drop(run_id)
 
-    def _add(self, one: VisitorRun) -> None:
-        self._runs[one.run_id] = self._by_visitor[one.visitor][one.run_id] = one
+    def _add(self, run: VisitorRun) -> None:
+        self._runs[run.run_id] = self._by_visitor[run.visitor][run.run_id] = run
 
     def _drop(self, run_id: str) -> None:
-        one = self._runs.pop(run_id, None)
-        if one is None:
+        run = self._runs.pop(run_id, None)
+        if run is None:
             return
-        of_visitor = self._by_visitor[one.visitor]
+        of_visitor = self._by_visitor[run.visitor]
         of_visitor.pop(run_id, None)
         if not of_visitor:
-            del self._by_visitor[one.visitor]
-            self._addresses.pop(one.visitor, None)
+            del self._by_visitor[run.visitor]
+            self._addresses.pop(run.visitor, None)
 
 
 def _used_by(runs: Sequence[Run]) -> Iterator[str | None]:

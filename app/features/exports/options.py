@@ -27,11 +27,11 @@ def export_options() -> list[dict[str, str | None]]:
     return [
         {
             "title": file.title,
-            "address": one.address(name, file),
-            "method": one.method,
+            "address": export.address(name, file),
+            "method": export.method,
             "ending": file.ending,
             "install": file.install,
         }
-        for name, one in EXPORTS.items()
-        for file in one.files
+        for name, export in EXPORTS.items()
+        for file in export.files
     ]

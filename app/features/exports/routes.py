@@ -30,19 +30,19 @@ class _Query(NamedTuple):
     options: ExportOptions
 
 
-def _query_of(one: ExportFormat) -> Callable[..., _Query]:
+def _query_of(export_format: ExportFormat) -> Callable[..., _Query]:
     """Return a dependency whose query parameters are a format's options, and its types of file."""
 
     def read(request: Request, **query: Any) -> _Query:
-        types = {file.media_type.partition(";")[0]: file.ending for file in one.files}
-        ending = negotiated(request, query.pop("format", None), one.endings, types)
-        return _Query(one.file(ending), one.options(**query))
+        types = {file.media_type.partition(";")[0]: file.ending for file in export_format.files}
+        ending = negotiated(request, query.pop("format", None), export_format.endings, types)
+        return _Query(export_format.file(ending), export_format.options(**query))
 
     parameters = [Parameter("request", Parameter.KEYWORD_ONLY, annotation=Request)]
     annotations: dict[str, tuple[Any, Any]] = {}
-    if len(one.files) > 1:
-        annotations["format"] = (Annotated[Literal[one.endings] | None, Query()], None)
-    for name, setting in one.settings.items():
+    if len(export_format.files) > 1:
+        annotations["format"] = (Annotated[Literal[export_format.endings] | None, Query()], None)
+    for name, setting in export_format.settings.items():
         query = Query(description=f"{setting.about.title}. {setting.about.help}")
         annotations[name] = (
             Annotated[Any, Declared(setting, is_text=True), query],
@@ -65,18 +65,22 @@ _POLICIES: dict[Load, Policy] = {
 """By what a format costs a server."""
 
 
-def _endpoint(one: ExportFormat) -> Callable[..., Response]:
-    @with_policy(_POLICIES[one.load])
+def _endpoint(export_format: ExportFormat) -> Callable[..., Response]:
+    @with_policy(_POLICIES[export_format.load])
     def export(
-        services: ServicesDep, run_id: RunPath, query: Annotated[_Query, Depends(_query_of(one))]
+        services: ServicesDep,
+        run_id: RunPath,
+        query: Annotated[_Query, Depends(_query_of(export_format))],
     ) -> Response:
         run = services.store.find(run_id)
         source = source_of(run, services.recordings, services.replays.encoded)
         execution = Execution(
-            one.max_served_frames, services.stopping.check, services.of(FileRenderer).render
+            export_format.max_served_frames,
+            services.stopping.check,
+            services.of(FileRenderer).render,
         )
         try:
-            chunks = one.write(source, query.file, query.options, execution)
+            chunks = export_format.write(source, query.file, query.options, execution)
         except TooLong as error:
             raise Conflict(str(error), "finished") from error
         return attachment(chunks, query.file.media_type, f"{run.kind}-{run.id}.{query.file.ending}")
@@ -84,27 +88,31 @@ def _endpoint(one: ExportFormat) -> Callable[..., Response]:
     return export
 
 
-def _description(one: ExportFormat) -> str:
-    sentences = [one.note]
-    for extra in dict.fromkeys(file.extra for file in one.files if file.extra is not None):
-        endings = " and ".join(f"`.{file.ending}`" for file in one.files if file.extra == extra)
+def _description(export_format: ExportFormat) -> str:
+    sentences = [export_format.note]
+    for extra in dict.fromkeys(
+        file.extra for file in export_format.files if file.extra is not None
+    ):
+        endings = " and ".join(
+            f"`.{file.ending}`" for file in export_format.files if file.extra == extra
+        )
         sentences.append(f"For {endings} the server needs `racing-hexapods[{extra}]`.")
-    if one.max_served_frames is not None:
-        sentences.append(f"At most {one.max_served_frames:,} frames.")
-    if one.load == "render":
+    if export_format.max_served_frames is not None:
+        sentences.append(f"At most {export_format.max_served_frames:,} frames.")
+    if export_format.load == "render":
         sentences.append("One at a time.")
     return f"{' '.join(sentences)}\n\n`docs/exports.md` describes it."
 
 
-for _name, _one in EXPORTS.items():
-    _types = {file.media_type.partition(";")[0] for file in _one.files}
+for _name, _format in EXPORTS.items():
+    _types = {file.media_type.partition(";")[0] for file in _format.files}
     router.add_api_route(
         f"/{_name}",
-        _endpoint(_one),
-        methods=[_one.method],
-        name=f"{'render' if _one.load == 'render' else 'get'}_{_name}",
-        summary=f"Export {_one.title} ({', '.join(f'.{ending}' for ending in _one.endings)})",
-        description=_description(_one),
+        _endpoint(_format),
+        methods=[_format.method],
+        name=f"{'render' if _format.load == 'render' else 'get'}_{_name}",
+        summary=f"Export {_format.title} ({', '.join(f'.{ending}' for ending in _format.endings)})",
+        description=_description(_format),
         response_class=Response,
         responses=answers(
             200,

@@ -95,9 +95,9 @@ class _Robots:
 
     def add(self, robots: Iterable[Robot]) -> None:
         """Add those of some robots that are stored."""
-        for one in robots:
-            if one.id is not None:
-                self._names[one.id] = as_mapping(one)["name"]
+        for robot in robots:
+            if robot.id is not None:
+                self._names[robot.id] = as_mapping(robot)["name"]
 
     def before(self, code: RunCode) -> RunCode:
         """Return the code with what makes the robots known before it."""
@@ -159,15 +159,15 @@ class _Practices:
                 self._add_file(before)
                 break
             runs[before] = run = earlier
-        for one in reversed(runs.values()):
-            self._add(one)
+        for training in reversed(runs.values()):
+            self._add(training)
 
     def _add(self, run: Run) -> None:
         if run.id in self._configs or not isinstance(run.config, TrainingConfig):
             return
         before = run.continued_from
-        given = self._differing(run.config, [] if before is None else [before])
-        given |= _differing_settings(run.config.agent, run.config.settings)
+        arguments = self._differing(run.config, [] if before is None else [before])
+        arguments |= _differing_settings(run.config.agent, run.config.settings)
         tuned = {name for change in run.changes for name in change.get("settings", ())}
         if tuned:
             names = ", ".join(sorted(tuned))
@@ -178,13 +178,13 @@ class _Practices:
         else:
             # Disturbances of the run happen at the same step.
             world = _world(replace(run.config, world=world_of(run)))
-            self.commands.append(_training_command(run, {**given, **world}))
+            self.commands.append(_training_command(run, {**arguments, **world}))
         if before is not None:
-            given["table"] = _Code(_variable(before))
+            arguments["table"] = _Code(_variable(before))
         if changes := [c for c in map(_without_pace, run.changes) if set(c) != {"step"}]:
-            given["changes"] = changes
+            arguments["changes"] = changes
         variable = self._keep(run.id, run.config)
-        call = _call("train", repr(run.config.agent), given)
+        call = _call("train", repr(run.config.agent), arguments)
         self.calls.append(f"{variable} = {call}\nprint({variable}.result)")
 
     def _add_file(self, training_id: str) -> None:
@@ -195,13 +195,13 @@ class _Practices:
 
     def add_race(self, run: Run, config: RaceConfig) -> None:
         """Add the race, after the trainings of its lanes."""
-        ids = [one for one in run.lane_training_ids if one is not None]
-        given = self._differing(config, ids)
+        ids = [training_id for training_id in run.lane_training_ids if training_id is not None]
+        arguments = self._differing(config, ids)
         lanes = list(zip(config.lanes, run.lane_training_ids, strict=True))
-        self.commands.append(_race_command(lanes, given))
+        self.commands.append(_race_command(lanes, arguments))
         calls = "".join(f"\n        {_lane_call(lane, practised)}," for lane, practised in lanes)
         self.calls.append(
-            f"race = {_call('race', f'[{calls}{chr(10)}    ]', given)}\nprint(race.result)"
+            f"race = {_call('race', f'[{calls}{chr(10)}    ]', arguments)}\nprint(race.result)"
         )
 
     def _differing(self, config: WalkingProblem, rests_on: Iterable[str]) -> Arguments:
@@ -211,18 +211,20 @@ class _Practices:
             config: the run's.
             rests_on: ids of the trainings from which Python takes what is not given.
         """
-        others = [self._configs[one] for one in rests_on]
-        given: Arguments = {}
-        own = {k: v for k, v in to_json(config).items() if k in _DEFAULTS and k in _named(config)}
-        for name, value in own.items():
+        practices = [self._configs[training_id] for training_id in rests_on]
+        arguments: Arguments = {}
+        values = {
+            k: v for k, v in to_json(config).items() if k in _DEFAULTS and k in _named(config)
+        }
+        for name, value in values.items():
             is_inherited = name in _INHERITED and any(
-                one is None or to_json(one)[name] != value for one in others
+                practice is None or to_json(practice)[name] != value for practice in practices
             )
             if name in _ALWAYS or value != _DEFAULTS[name] or is_inherited:
-                given[name] = value
-        if "robot" in given and config.robot.id is None and config.robot in PRESETS.values():
-            given["robot"] = config.robot.name
-        return given | _world(config)
+                arguments[name] = value
+        if "robot" in arguments and config.robot.id is None and config.robot in PRESETS.values():
+            arguments["robot"] = config.robot.name
+        return arguments | _world(config)
 
     def _keep(self, training_id: str, config: TrainingConfig | None) -> str:
         self._configs[training_id] = config
@@ -237,12 +239,18 @@ class _Practices:
 
 def _named(config: WalkingProblem) -> set[str]:
     """Return the names of a config's fields that are arguments by themselves."""
-    return {one.name for one in fields(config)} - {"world", "agent", "settings", "pace", "lanes"}
+    return {field.name for field in fields(config)} - {
+        "world",
+        "agent",
+        "settings",
+        "pace",
+        "lanes",
+    }
 
 
 def _world(config: WalkingProblem) -> Arguments:
     """Return the disturbances, each as both the command line and Python read them."""
-    texts = [as_text(one) for one in config.world.disturbances]
+    texts = [as_text(disturbance) for disturbance in config.world.disturbances]
     return {"world": texts} if texts else {}
 
 
@@ -253,7 +261,7 @@ def _without_pace(change: Mapping[str, Any]) -> Arguments:
 def _differing_settings(agent: str, settings: Mapping[str, Value]) -> dict[str, Value]:
     """Return the settings that are not the agent's defaults; all of an agent that is unknown."""
     try:
-        defaults = {name: one.default for name, one in agent_settings(agent).items()}
+        defaults = {name: setting.default for name, setting in agent_settings(agent).items()}
     except HexapodError:
         defaults = {}
     return {
@@ -265,13 +273,13 @@ def _differing_settings(agent: str, settings: Mapping[str, Value]) -> dict[str, 
 
 def _lane_arguments(lane: LaneConfig, is_practised: bool) -> Arguments:
     usual: Arguments = {"keep_learning": _keeps_learning(lane.agent)}
-    given = {
+    arguments = {
         name: getattr(lane, name)
-        for name, one in declared_fields(LaneConfig).items()
-        if getattr(lane, name) != usual.get(name, one.default)
+        for name, setting in declared_fields(LaneConfig).items()
+        if getattr(lane, name) != usual.get(name, setting.default)
         and not (is_practised and name == "observation")
     }
-    return {**given, **_differing_settings(lane.agent, lane.settings)}
+    return {**arguments, **_differing_settings(lane.agent, lane.settings)}
 
 
 def _keeps_learning(agent: str) -> bool:
@@ -284,8 +292,8 @@ def _keeps_learning(agent: str) -> bool:
 # ---- Python
 
 
-def _call(function: str, first: str, given: Arguments) -> str:
-    texts = {name: _indented(pformat(value, sort_dicts=False)) for name, value in given.items()}
+def _call(function: str, first: str, arguments: Arguments) -> str:
+    texts = {name: _indented(pformat(value, sort_dicts=False)) for name, value in arguments.items()}
     lines = "".join(f"    {name}={text},\n" for name, text in texts.items())
     return f"hx.{function}(\n    {first},\n{lines})"
 
@@ -296,8 +304,8 @@ def _indented(text: str) -> str:
 
 def _lane_call(lane: LaneConfig, training_id: str | None) -> str:
     agent = repr(lane.agent) if training_id is None else _variable(training_id)
-    given = _lane_arguments(lane, training_id is not None)
-    return f"hx.lane({', '.join([agent, *(f'{k}={v!r}' for k, v in given.items())])})"
+    arguments = _lane_arguments(lane, training_id is not None)
+    return f"hx.lane({', '.join([agent, *(f'{k}={v!r}' for k, v in arguments.items())])})"
 
 
 def _file(training_id: str) -> str:
@@ -311,8 +319,8 @@ def _variable(training_id: str) -> str:
 # ---- commands
 
 
-def _training_command(run: Run, given: Arguments) -> str:
-    options = list(_options(given))
+def _training_command(run: Run, arguments: Arguments) -> str:
+    options = list(_options(arguments))
     if run.continued_from is not None:
         options = [(flag, text) for flag, text in options if flag != "--seed"]
         options.append(("--from", _file(run.continued_from)))
@@ -322,17 +330,19 @@ def _training_command(run: Run, given: Arguments) -> str:
     return _command("hexapods train", [*options, ("--out", _file(run.id))])
 
 
-def _race_command(lanes: Iterable[tuple[LaneConfig, str | None]], given: Arguments) -> str:
-    options = list(_options(given))
+def _race_command(lanes: Iterable[tuple[LaneConfig, str | None]], arguments: Arguments) -> str:
+    options = list(_options(arguments))
     for lane, training_id in lanes:
         head = lane.agent if training_id is None else f"{lane.agent}={_file(training_id)}"
-        own = _lane_arguments(lane, training_id is not None)
-        options.append(("--lane", ",".join([head, *(f"{k}={_text(v)}" for k, v in own.items())])))
+        settings = _lane_arguments(lane, training_id is not None)
+        options.append(
+            ("--lane", ",".join([head, *(f"{k}={_text(v)}" for k, v in settings.items())]))
+        )
     return _command("hexapods race", options)
 
 
-def _options(given: Arguments) -> Iterable[tuple[str, str]]:
-    for name, value in given.items():
+def _options(arguments: Arguments) -> Iterable[tuple[str, str]]:
+    for name, value in arguments.items():
         if name == "world":
             yield from (("--disturb", text) for text in value)
         else:

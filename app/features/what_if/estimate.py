@@ -89,14 +89,14 @@ class Estimates:
         if isinstance(start, TrainingStart):
             check_training(start.config)
             parts = [*_practice(start.config)]
-            return _seconds(parts, self._measured(one.steps for one in parts))
+            return _seconds(parts, self._measured(part.steps for part in parts))
         if isinstance(start, BranchStart):
             raise InvalidInput("a branch takes what is left of its race; leave out branch_from")
         check_walk(start.walk)
-        lanes = [_lane(one, start) for one in start.lanes]
-        trainings = (one.training for one in start.lanes if one.training is not None)
+        lanes = [_lane(lane, start) for lane in start.lanes]
+        trainings = (lane.training for lane in start.lanes if lane.training is not None)
         practices = [[*_practice(training.config)] for training in trainings]
-        measured = self._measured(one.steps for one in chain(lanes, *practices))
+        measured = self._measured(part.steps for part in chain(lanes, *practices))
         alone = [_seconds(parts, measured) for parts in practices]
         at_once = max([*alone, ordered_sum(alone) / self._cores], default=0.0)
         return at_once + _seconds(lanes, measured)
@@ -114,37 +114,37 @@ class Estimates:
     def _all_practices_s(self, start: ManyPractices) -> float:
         """Return the computing time of all practices [s]."""
         parts = [_Part(_kind(config), steps) for config, steps in start.practices()]
-        measured = self._measured(_one_per_class_first(one.steps for one in parts))
+        measured = self._measured(_one_per_class_first(part.steps for part in parts))
         by_class: defaultdict[_CostClass, list[float]] = defaultdict(list)
         for steps, step_s in measured.items():
             by_class[_cost_class(steps)].append(step_s)
         return ordered_sum(
-            one.number
+            part.number
             * measured.get(
-                one.steps, fmean(by_class[_cost_class(one.steps)] or [*measured.values()])
+                part.steps, fmean(by_class[_cost_class(part.steps)] or [*measured.values()])
             )
-            for one in parts
+            for part in parts
         )
 
     def _measured(self, wanted: Iterable[TimedSteps]) -> Mapping[TimedSteps, float]:
         """Return the time of a step of each kind [s], of the first `MAX_MEASURED` kinds."""
         kinds = list(dict.fromkeys(wanted))[:MAX_MEASURED]
-        known = self._known(kinds)
-        if len(known) < len(kinds):
+        times_s = self._known(kinds)
+        if len(times_s) < len(kinds):
             with self.turns.turn(self._stopping.check):
                 # A request that was answered meanwhile may have timed the same.
-                known = self._known(kinds)
-                missing = [kind for kind in kinds if kind not in known]
-                known |= zip(missing, self._timed(missing), strict=True)
+                times_s = self._known(kinds)
+                missing = [kind for kind in kinds if kind not in times_s]
+                times_s |= zip(missing, self._timed(missing), strict=True)
                 with self._lock:
-                    self._cache.update({kind: known[kind] for kind in missing})
-        return known
+                    self._cache.update({kind: times_s[kind] for kind in missing})
+        return times_s
 
     def _timed(self, kinds: Sequence[TimedSteps]) -> Sequence[float]:
         try:
             return self._pool.map(step_s_of, kinds, self._stopping.check, LIMIT_S)
         except OutOfProcessorTime as error:
-            agents = ", ".join(dict.fromkeys(one.training.agent for one in kinds))
+            agents = ", ".join(dict.fromkeys(kind.training.agent for kind in kinds))
             raise InvalidInput(
                 f"a few steps ({agents}) took over {LIMIT_S:g} s of processor time, so the run "
                 "would take very long; choose settings with less work in each step"
@@ -157,7 +157,7 @@ class Estimates:
 
 
 def _seconds(parts: Iterable[_Part], measured: Mapping[TimedSteps, float]) -> float:
-    return ordered_sum(one.number * max(one.paced_s, measured[one.steps]) for one in parts)
+    return ordered_sum(part.number * max(part.paced_s, measured[part.steps]) for part in parts)
 
 
 def _cost_class(steps: TimedSteps) -> _CostClass:

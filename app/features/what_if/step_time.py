@@ -53,8 +53,8 @@ def step_s_of(steps: TimedSteps) -> float:
         if is_long or time.perf_counter() - began_s > MAX_WAIT_S:
             break
     durations = np.diff(moments)
-    others = np.sort(durations[1:] if len(durations) > 1 else durations)
-    return float(others[: max(1, len(others) * 9 // 10)].mean()) if len(others) else 0.0
+    sorted_s = np.sort(durations[1:] if len(durations) > 1 else durations)
+    return float(sorted_s[: max(1, len(sorted_s) * 9 // 10)].mean()) if len(sorted_s) else 0.0
 
 
 def timed_trial(config: TrialConfig) -> tuple[TrialResult, float]:

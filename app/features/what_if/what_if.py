@@ -134,7 +134,7 @@ class WhatIf:
         with self._turns.turn(requester.check, is_operator=requester.is_operator) as check:
             # A request that was served meanwhile may have cached the same trials.
             distances = self._cached(trials)
-            missing = [one for one in dict.fromkeys(trials) if one not in distances]
+            missing = [trial for trial in dict.fromkeys(trials) if trial not in distances]
             began_s, cost_s = time.monotonic(), None
             try:
                 self._check_time(missing, requester.limit_s, check)
@@ -160,11 +160,12 @@ class WhatIf:
             InvalidInput: if all steps would take too long. Later ones may take longer than these.
             OutOfProcessorTime: if even a few do.
         """
-        trainings = [one.training for one in trials if one.blocks]
-        kinds = [TimedSteps(one, practises=True) for one in trainings]
+        trainings = [trial.training for trial in trials if trial.blocks]
+        kinds = [TimedSteps(training, practises=True) for training in trainings]
         times_s = self._pool.map(step_s_of, kinds, check, limit_s * self._pool.count)
         work_s = ordered_sum(
-            SEEDS * one.steps * step_s for one, step_s in zip(trainings, times_s, strict=True)
+            SEEDS * training.steps * step_s
+            for training, step_s in zip(trainings, times_s, strict=True)
         )
         if (total_s := work_s / self._pool.count) > limit_s:
             raise _takes_too_long(f"about {total_s:,.0f} s", limit_s)
@@ -173,18 +174,18 @@ class WhatIf:
         self, missing: Sequence[TrialConfig], check: Callable[[], None], limit_s: float
     ) -> tuple[dict[TrialConfig, tuple[float, ...]], float]:
         """Return the distances of all seeds of each trial [m], and what they cost [s]."""
-        trials = [(one, seeded) for one in missing for seeded in _with_seeds(one)]
+        trials = [(trial, seeded) for trial in missing for seeded in _with_seeds(trial)]
         seeded_trials = [seeded for _, seeded in trials]
         limit_s *= self._pool.count
         results = self._pool.map(timed_trial, seeded_trials, check, limit_s)
         distances: dict[TrialConfig, tuple[float, ...]] = dict.fromkeys(missing, ())
-        for (one, _), (result, _) in zip(trials, results, strict=True):
-            distances[one] += (_distance_m(result),)
+        for (trial, _), (result, _) in zip(trials, results, strict=True):
+            distances[trial] += (_distance_m(result),)
         return distances, ordered_sum(cpu_s for _, cpu_s in results) / self._pool.count
 
     def _cached(self, trials: Sequence[TrialConfig]) -> dict[TrialConfig, tuple[float, ...]]:
         with self._cache_lock:
-            return {one: self._cache[one] for one in trials if one in self._cache}
+            return {trial: self._cache[trial] for trial in trials if trial in self._cache}
 
 
 def _check_limits(training: TrainingConfig) -> None:
